@@ -1,0 +1,32 @@
+//! Which frames, axes and units does everything else stand on? (DESIGN §2)
+//!
+//! | frame | origin | axes | who thinks in it |
+//! |---|---|---|---|
+//! | [`Field`] | centre of the field | +x along the length, +y to the left of +x | cases, robots, wire, simulator |
+//! | [`Attack`] | centre of the field | +x towards the goal we attack | the host's strategy only |
+//! | [`Body`] | centre of the robot | +x where the robot faces, +y to its left | drives, kicks, sensors |
+//!
+//! Angles are radians, counter-clockwise. Lengths are metres, times seconds, all `f32`. A frame is a type
+//! parameter, so that mixing frames does not compile:
+//!
+//! ```compile_fail
+//! use geometry::{Body, Field, Point};
+//! let ball: Point<Field> = Point::new(1.0, 0.0);
+//! let mouth: Point<Body> = Point::new(0.1, 0.0);
+//! let _ = ball - mouth;
+//! ```
+//!
+//! **Invariants.** No I/O, no clock, no allocation. Everything beyond `+ − × ÷` goes through [`math`], so that the
+//! same program gives the same bits on a PC and on a Cortex-M (a golden hash watches it, see [`math::golden_hash`]).
+#![no_std]
+
+mod angle;
+mod frame;
+pub mod math;
+mod pose;
+mod segment;
+
+pub use angle::Angle;
+pub use frame::{Attack, Body, Field, Point, Vector};
+pub use pose::{Pose, Twist};
+pub use segment::Segment;

@@ -1,0 +1,92 @@
+//! Who is who, and which gameplay is it? Ids that cannot be taken for each other.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A robot of one team, 0–15; fixed for its life (paper §4.1: "each robot has a unique fixed Id").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct RobotId(u8);
+
+impl RobotId {
+    /// Number of ids there are.
+    pub const COUNT: usize = 16;
+
+    /// `None` above 15.
+    pub const fn new(id: u8) -> Option<Self> {
+        if (id as usize) < Self::COUNT { Some(Self(id)) } else { None }
+    }
+
+    /// 0–15.
+    pub const fn number(self) -> u8 {
+        self.0
+    }
+
+    /// For arrays with one place per id.
+    pub const fn index(self) -> usize {
+        (self.0 & 0x0f) as usize
+    }
+
+    /// Every id, lowest first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..Self::COUNT as u8).map(Self)
+    }
+}
+
+impl fmt::Display for RobotId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// A team on the air; two teams share no cycle and no key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct TeamId(pub u8);
+
+/// A stored case: 4 × authored index + symmetry (DESIGN §4.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct CaseId(pub u16);
+
+impl fmt::Display for CaseId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// One retrieve–reuse cycle of a team. Totally ordered: the counter first, then the proposer, so that two
+/// proposals made at once still have one winner, and whatever carries an older id is known to be stale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct CycleId {
+    /// Rises with every proposal.
+    #[serde(with = "postcard::fixint::le")]
+    pub counter: u32,
+    /// The elector that proposed the cycle.
+    pub proposer: RobotId,
+}
+
+impl fmt::Display for CycleId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}", self.counter, self.proposer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cycle_is_newer_by_its_counter_and_then_by_its_proposer() {
+        let id = |counter, proposer| CycleId { counter, proposer: RobotId(proposer) };
+        assert!(id(2, 0) > id(1, 9));
+        assert!(id(2, 3) > id(2, 1));
+    }
+
+    #[test]
+    fn there_are_sixteen_ids() {
+        assert_eq!(RobotId::new(16), None);
+        assert_eq!(RobotId::all().count(), RobotId::COUNT);
+    }
+}

@@ -1,0 +1,15 @@
+//! What travels between robots, host and simulator? (DESIGN §5–§7)
+//!
+//! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
+//! [`frame`] is the radio's envelope (who, when, genuine?); [`team`] is what robots tell each other; [`robot_io`] is
+//! what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer.
+//! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
+//!
+//! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
+#![no_std]
+
+pub mod ids;
+pub mod time;
+
+pub use ids::{CaseId, CycleId, RobotId, TeamId};
+pub use time::{Duration, Instant};

@@ -1,0 +1,86 @@
+//! What time is it? Whatever the caller says: microseconds since the robot's start. Nothing here reads a clock.
+
+use core::ops::{Add, AddAssign, Mul, Sub};
+
+use serde::{Deserialize, Serialize};
+
+/// A moment, µs since the start of the clock of whoever speaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Instant(pub u64);
+
+/// A stretch of time, µs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Duration(pub u64);
+
+impl Instant {
+    /// How long ago `earlier` was; zero if it lies ahead.
+    pub const fn since(self, earlier: Self) -> Duration {
+        Duration(self.0.saturating_sub(earlier.0))
+    }
+
+    /// Seconds since the start of the clock (exact to the microsecond for the first 16 seconds, then to 2⁻²⁴).
+    pub fn as_secs_f32(self) -> f32 {
+        Duration(self.0).as_secs_f32()
+    }
+}
+
+impl Duration {
+    /// From milliseconds.
+    pub const fn millis(ms: u64) -> Self {
+        Self(ms * 1000)
+    }
+
+    /// In seconds.
+    pub fn as_secs_f32(self) -> f32 {
+        self.0 as f32 * 1e-6
+    }
+
+    /// From seconds; negative or NaN gives zero.
+    pub fn from_secs_f32(seconds: f32) -> Self {
+        Self((seconds * 1e6) as u64)
+    }
+}
+
+impl Add<Duration> for Instant {
+    type Output = Self;
+    fn add(self, d: Duration) -> Self {
+        Self(self.0.saturating_add(d.0))
+    }
+}
+impl AddAssign<Duration> for Instant {
+    fn add_assign(&mut self, d: Duration) {
+        *self = *self + d;
+    }
+}
+impl Sub<Duration> for Instant {
+    type Output = Self;
+    fn sub(self, d: Duration) -> Self {
+        Self(self.0.saturating_sub(d.0))
+    }
+}
+impl Add for Duration {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+}
+impl Mul<u64> for Duration {
+    type Output = Self;
+    fn mul(self, k: u64) -> Self {
+        Self(self.0.saturating_mul(k))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_never_runs_below_zero() {
+        assert_eq!(Instant(3).since(Instant(5)), Duration(0));
+        assert_eq!(Instant(3) - Duration(5), Instant(0));
+        assert_eq!(Duration::from_secs_f32(-1.0), Duration(0));
+    }
+}
