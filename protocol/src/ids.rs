@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// A robot of one team, 0–15; fixed for its life (paper §4.1: "each robot has a unique fixed Id").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(transparent)]
+#[serde(try_from = "u8", into = "u8")]
 pub struct RobotId(u8);
 
 impl RobotId {
@@ -31,6 +31,31 @@ impl RobotId {
     /// Every id, lowest first.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..Self::COUNT as u8).map(Self)
+    }
+}
+
+/// An id above 15.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoSuchRobot(pub u8);
+
+impl fmt::Display for NoSuchRobot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "robot ids are 0 to 15, not {}", self.0)
+    }
+}
+
+impl core::error::Error for NoSuchRobot {}
+
+impl TryFrom<u8> for RobotId {
+    type Error = NoSuchRobot;
+    fn try_from(id: u8) -> Result<Self, NoSuchRobot> {
+        Self::new(id).ok_or(NoSuchRobot(id))
+    }
+}
+
+impl From<RobotId> for u8 {
+    fn from(id: RobotId) -> Self {
+        id.0
     }
 }
 

@@ -8,7 +8,13 @@
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![no_std]
 
+pub mod frame;
 pub mod ids;
+pub mod link;
+pub mod lockstep;
+pub mod quantized;
+pub mod robot_io;
+pub mod team;
 pub mod time;
 
 pub use ids::{CaseId, CycleId, RobotId, TeamId};

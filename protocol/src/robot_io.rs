@@ -1,0 +1,98 @@
+//! What does a body give its brain, and what does it take? (DESIGN §3) SI units, field frame where not said otherwise.
+//!
+//! Noise enters the system here and nowhere else: the simulator (or a real camera) fills a [`SensorFrame`], and that
+//! is all a robot knows of the world besides its teammates' beacons.
+
+use geometry::{Body, Field, Point, Pose, Twist};
+use serde::{Deserialize, Serialize};
+
+use crate::Duration;
+
+/// Opponents a robot can see at once: a whole team of the largest league.
+pub const OPPONENTS_MAX: usize = 11;
+
+/// What a robot perceives at one moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SensorFrame {
+    /// Where it believes itself to be.
+    pub pose: Pose<Field>,
+    /// The ball, if it is seen.
+    pub ball: Option<BallSight>,
+    /// Opponents seen, in no meaningful order.
+    pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
+    /// The ball is in the robot's grip: between the legs, or on the dribbler.
+    pub ball_contact: bool,
+    /// A grab or kick is under way; the body takes no other until it ends.
+    pub busy: bool,
+    /// How it has moved since the last frame, in its own frame.
+    pub odometry: Twist<Body>,
+}
+
+/// The ball as perceived.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BallSight {
+    /// Where it seems to be.
+    pub position: Point<Field>,
+    /// Standard deviation of that, m.
+    pub sigma: f32,
+    /// How old the picture is.
+    pub age: Duration,
+}
+
+/// What the brain wants of its body for the coming step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ActuatorFrame {
+    /// A walking robot.
+    Legged {
+        /// Wanted velocity in the body frame, m/s and rad/s; the body does what it can.
+        walk: Twist<Body>,
+        /// A primitive to begin, unless one is under way.
+        primitive: LeggedPrimitive,
+    },
+    /// A robot on omnidirectional wheels.
+    Omni {
+        /// Rim speed of each wheel, m/s.
+        wheels: [f32; 4],
+        /// Share of the dribbler's full speed, 0–1.
+        dribbler: f32,
+        /// What the kicker shall do.
+        kick: OmniKick,
+    },
+}
+
+/// A short motion of the whole body of a walking robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum LeggedPrimitive {
+    /// Just walk.
+    None,
+    /// Take the ball between the front legs.
+    Grab,
+    /// Kick the ball held.
+    Kick(LeggedKick),
+}
+
+/// The kicks a walking robot has; directions relative to where it faces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum LeggedKick {
+    /// Short, straight ahead.
+    ForwardSoft,
+    /// Long, straight ahead.
+    ForwardHard,
+    /// With the head, to the left.
+    Left,
+    /// With the head, to the right.
+    Right,
+    /// Straight ahead, meant to roll this far, m.
+    Pass(f32),
+}
+
+/// What a kicker shall do.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum OmniKick {
+    /// Nothing.
+    None,
+    /// Along the ground, ball speed in m/s.
+    Flat(f32),
+    /// Through the air, ball speed in m/s.
+    Chip(f32),
+}
