@@ -1,0 +1,65 @@
+//! What is fixed for a robot's life, and what may be chosen? Identity, abilities and the paper's alternatives.
+
+use casebase::{GoalEnd, Settings};
+use protocol::{Duration, RobotId, TeamId};
+use serde::{Deserialize, Serialize};
+
+/// A robot's configuration; travels in the lockstep set-up and is compiled or provisioned on a board.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BrainConfig {
+    /// Who it is.
+    pub robot: RobotId,
+    /// Whose robot it is.
+    pub team: TeamId,
+    /// Which life this is: rises with every boot.
+    pub epoch: u32,
+    /// The goal its team defends.
+    pub defending: GoalEnd,
+    /// Whether it is one of the k robots that may retrieve (paper §4.1).
+    pub retriever: bool,
+    /// When a case's actions begin.
+    pub positioning: Positioning,
+    /// How it chooses what to do.
+    pub approach: Approach,
+    /// How it retrieves.
+    pub settings: Settings,
+    /// How long robots stand still after every cycle (5 s in the paper's experiments with real robots; else 0).
+    pub pause_after_cycle: Duration,
+}
+
+/// When the robots of a case start their actions (paper §4.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Positioning {
+    /// As soon as the robot that gets the ball is at its place.
+    #[default]
+    Dependent,
+    /// When all of them are at their places.
+    Independent,
+}
+
+/// What a robot lets itself be led by (paper §5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Approach {
+    /// Cases; the reactive behaviour where none fits.
+    #[default]
+    Cases,
+    /// The reactive behaviour alone.
+    Reactive,
+}
+
+impl BrainConfig {
+    /// An attacker towards +x with the paper's settings, able to retrieve.
+    pub fn new(robot: RobotId, team: TeamId) -> Self {
+        Self {
+            robot,
+            team,
+            epoch: 1,
+            defending: GoalEnd::Negative,
+            retriever: true,
+            positioning: Positioning::default(),
+            approach: Approach::default(),
+            settings: Settings::default(),
+            pause_after_cycle: Duration(0),
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! How do bytes of the air reach the brain, and its words the air? Brain and radio link as one value: bytes in, bytes out.
+//!
+//! `runtime`'s tasks on a board and the native simulator drive this very value, so that both send the same bytes.
+
+use casebase::CaseBase;
+use protocol::Instant;
+use protocol::frame::TeamKey;
+use protocol::link::{Link, Packet};
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+
+use crate::{Brain, BrainConfig};
+
+/// A brain with its end of the radio.
+pub struct Station<'a> {
+    brain: Brain<'a>,
+    link: Link,
+}
+
+impl<'a> Station<'a> {
+    /// A robot that wakes up at `now`.
+    pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
+        Self {
+            brain: Brain::new(now, config, base),
+            link: Link::new(config.team, config.robot, TeamKey::ZERO, config.epoch),
+        }
+    }
+
+    /// A packet came; whatever is not a genuine, new message of this team is counted and dropped.
+    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
+        if let Ok((from, message)) = self.link.open(packet) {
+            self.brain.handle_team_message(now, from, &message);
+        }
+    }
+
+    /// The body's senses: one brain step.
+    pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
+        self.brain.handle_sensors(now, sensors);
+    }
+
+    /// A deadline that [`Station::poll_timeout`] announced has come.
+    pub fn handle_timeout(&mut self, now: Instant) {
+        self.brain.handle_timeout(now);
+    }
+
+    /// The next packet to send. Call after every `handle_…` until `None`.
+    pub fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
+        self.brain.poll_message(now).map(|message| self.link.seal(&message))
+    }
+
+    /// What the body shall do, if something new was decided.
+    pub fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame> {
+        self.brain.poll_actuators(now)
+    }
+
+    /// When to call [`Station::handle_timeout`], if nothing else happens before.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        self.brain.poll_timeout()
+    }
+
+    /// The brain, to look at.
+    pub fn brain(&self) -> &Brain<'a> {
+        &self.brain
+    }
+
+    /// The link, to look at.
+    pub fn link(&self) -> &Link {
+        &self.link
+    }
+}
