@@ -1,0 +1,184 @@
+//! Is the image there, and is it what its sources say? Whoever plays on QEMU asks here first.
+//!
+//! cargo itself is the judge of freshness: an image that is up to date costs one short call and no words.
+
+use std::env;
+use std::fmt;
+use std::io::{BufRead, BufReader, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+
+use crate::process::{line_of, output_of};
+use crate::target::cargo_program;
+use crate::{Install, TARGET, TargetError, ensure_target};
+
+/// The image for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
+///
+/// Where the sources or cargo are gone (an installed program), an image that is already there will do.
+pub fn build_image(root: &Path) -> Result<PathBuf, BuildError> {
+    build_into(&target_dir(root), root)
+}
+
+fn build_into(target_dir: &Path, root: &Path) -> Result<PathBuf, BuildError> {
+    let image = image_in(target_dir);
+    if let Some(why) = cannot_build(root) {
+        return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
+    }
+    let toolchain = ensure_target(root, Install::ForUser).map_err(BuildError::Target)?;
+    let mut build = toolchain.cargo(root, "build");
+    build.args(["--package", PACKAGE, "--profile", PROFILE, "--target-dir"]).arg(target_dir);
+    run_cargo(&mut build)?;
+    if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
+}
+
+/// Where the image lies once it is built.
+pub fn image_path(root: &Path) -> PathBuf {
+    image_in(&target_dir(root))
+}
+
+fn image_in(target_dir: &Path) -> PathBuf {
+    target_dir.join(TARGET).join(PROFILE).join(PACKAGE)
+}
+
+/// Where cargo puts what it builds: `CARGO_TARGET_DIR` as cargo reads it, or the workspace's own `target`.
+pub fn target_dir(root: &Path) -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR")
+        .filter(|folder| !folder.is_empty())
+        .and_then(|folder| std::path::absolute(folder).ok())
+        .unwrap_or_else(|| root.join("target"))
+}
+
+/// Why there is no image to run.
+#[derive(Debug)]
+pub enum BuildError {
+    /// Nothing here compiles for the robot's processor.
+    Target(TargetError),
+    /// The sources or cargo are not here, and no image was built before.
+    NothingToBuild {
+        /// What is missing.
+        why: String,
+        /// Where an image was looked for.
+        image: PathBuf,
+    },
+    /// cargo could not be run.
+    Cargo {
+        /// The command.
+        command: String,
+        /// The system's words.
+        error: std::io::Error,
+    },
+    /// The firmware does not compile; the compiler's words are on stderr.
+    Failed {
+        /// The command that repeats it.
+        command: String,
+        /// How it ended.
+        status: ExitStatus,
+    },
+    /// cargo was content, but the image is not where it belongs.
+    NoImage {
+        /// Where it should be.
+        image: PathBuf,
+    },
+}
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Target(error) => write!(f, "the firmware cannot be built: {error}"),
+            Self::NothingToBuild { why, image } => write!(
+                f,
+                "the firmware cannot be built: {why}, and there is no image at {}; install rustup and run in a clone of the \
+                 project, or set CARGO_TARGET_DIR to where an image was built",
+                image.display()
+            ),
+            Self::Cargo { command, error } => write!(f, "`{command}` does not run: {error}"),
+            Self::Failed { command, status } => {
+                write!(f, "the firmware does not build: `{command}` failed ({status})")
+            }
+            Self::NoImage { image } => write!(f, "cargo left no image at {}", image.display()),
+        }
+    }
+}
+
+impl std::error::Error for BuildError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Target(error) => Some(error),
+            Self::Cargo { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
+
+/// Runs cargo with its words on our stderr, except where it had nothing to do: then it keeps silent.
+fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
+    let color = if std::io::stderr().is_terminal() { "always" } else { "never" };
+    build.args(["--color", color]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let command = line_of(build);
+    let lost = |error| BuildError::Cargo { command: command.clone(), error };
+    let mut child = build.spawn().map_err(lost)?;
+    if let Some(words) = child.stderr.take() {
+        let mut told = false;
+        for line in BufReader::new(words).split(b'\n').map_while(Result::ok) {
+            let line = String::from_utf8_lossy(&line).into_owned();
+            if told || !line.contains("Finished") {
+                if !told {
+                    eprintln!("firmware: building the image ({command})");
+                }
+                told = true;
+                eprintln!("{line}");
+            }
+        }
+    }
+    let status = child.wait().map_err(lost)?;
+    if status.success() { Ok(()) } else { Err(BuildError::Failed { command, status }) }
+}
+
+/// What keeps us from building at all, whatever the compiler.
+fn cannot_build(root: &Path) -> Option<String> {
+    let manifest = root.join(MANIFEST);
+    if !manifest.is_file() {
+        return Some(format!("its sources are not here ({})", manifest.display()));
+    }
+    output_of(Command::new(cargo_program()).current_dir(root).arg("--version")).err()
+}
+
+/// The board QEMU emulates.
+const PACKAGE: &str = "board-mps2";
+const MANIFEST: &str = "firmware/boards/mps2/Cargo.toml";
+/// The one profile images are built with (Cargo.toml says why); a debug image would run 30 times slower.
+const PROFILE: &str = "firmware";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn the_board_is_where_we_look_for_it() {
+        let manifest = fs::read_to_string(crate::workspace_root().join(MANIFEST)).unwrap();
+        assert!(manifest.contains(&format!("name = \"{PACKAGE}\"")));
+        let workspace = fs::read_to_string(crate::workspace_root().join("Cargo.toml")).unwrap();
+        assert!(workspace.contains(&format!("[profile.{PROFILE}]")));
+    }
+
+    #[test]
+    fn without_sources_an_image_that_is_there_will_do() {
+        let root = env::temp_dir().join(format!("onetwo-no-sources-{}", std::process::id()));
+        let (target, image) = (root.join("target"), image_in(&root.join("target")));
+        let error = build_into(&target, &root).unwrap_err().to_string();
+        assert!(error.contains("its sources are not here") && error.contains("install rustup"), "{error}");
+        fs::create_dir_all(image.parent().unwrap()).unwrap();
+        fs::write(&image, b"an image").unwrap();
+        assert_eq!(build_into(&target, &root).unwrap(), image);
+        fs::remove_dir_all(&root).unwrap();
+    }
+
+    #[test]
+    fn a_build_that_fails_tells_its_command() {
+        let error = run_cargo(Command::new(cargo_program()).args(["build", "--package", "no-such-board"]))
+            .unwrap_err();
+        let BuildError::Failed { command, status } = &error else { panic!("{error}") };
+        assert!(command.contains("build --package no-such-board") && !status.success());
+    }
+}

@@ -1,0 +1,53 @@
+//! How does the firmware image come about on this machine, and what must be installed for it?
+//!
+//! Runs on the PC. `cargo xtask` and `onetwo` (`trial --backend qemu`, `firmware build`) stand on the same three
+//! questions, answered here once:
+//!
+//! * [`ensure_target`]: with which compiler can we build for the robot's processor?
+//! * [`ensure_qemu`]: where is the emulator?
+//! * [`build_image`]: give me the image, fresh.
+//!
+//! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
+//! done that takes time is told on stderr.
+
+mod debian;
+mod image;
+mod process;
+mod qemu;
+mod target;
+
+use std::path::{Path, PathBuf};
+
+pub use image::{BuildError, build_image, image_path, target_dir};
+pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
+pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
+
+/// How far may we go to get a tool that is missing?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Install {
+    /// Into the user's own folders only: rustup's targets, a cache. What a program may do unasked.
+    ForUser,
+    /// System packages as well, where we are root. For the test command, which promises to install what it needs.
+    SystemWide,
+}
+
+/// The workspace these sources were compiled in. It may be gone when an installed program runs; then
+/// [`build_image`] falls back to an image that is already there.
+pub fn workspace_root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.ancestors().nth(2).unwrap_or(here).to_path_buf()
+}
+
+/// The robots' processor: a Cortex-M4F, hard float.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_workspace_holds_this_crate() {
+        assert!(workspace_root().join("firmware/build/Cargo.toml").is_file());
+        assert!(workspace_root().join("rust-toolchain.toml").is_file());
+    }
+}

@@ -1,0 +1,97 @@
+//! Where is QEMU, and does it know the robots' machine?
+
+use std::fmt;
+use std::path::PathBuf;
+use std::process::Command;
+
+use crate::process::{in_path, output_of};
+use crate::{Install, debian};
+
+/// The emulator's program, fit to run the image; installed first where `install` allows it.
+pub fn ensure_qemu(install: Install) -> Result<PathBuf, QemuError> {
+    let program = match in_path(QEMU) {
+        Some(program) => program,
+        None if install == Install::SystemWide => {
+            debian::install(&[QEMU]).map_err(|why| QemuError::Missing { why: Some(why) })?;
+            in_path(QEMU).ok_or(QemuError::Missing { why: None })?
+        }
+        None => return Err(QemuError::Missing { why: None }),
+    };
+    let machines = output_of(Command::new(&program).args(["-machine", "help"]))
+        .map_err(|why| QemuError::Broken { why })?;
+    let knows = machines.lines().any(|line| line.split_whitespace().next() == Some(MACHINE));
+    if knows { Ok(program) } else { Err(QemuError::UnknownMachine { program }) }
+}
+
+/// Why there is no QEMU to run the image with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum QemuError {
+    /// It is not installed, and this is why we could not install it (where that was tried).
+    Missing {
+        /// What stood in the way of installing it.
+        why: Option<String>,
+    },
+    /// It is there but does not run.
+    Broken {
+        /// What it said.
+        why: String,
+    },
+    /// It is there but lacks the machine our image is made for: too old, or built without it.
+    UnknownMachine {
+        /// The program that was asked.
+        program: PathBuf,
+    },
+}
+
+impl fmt::Display for QemuError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing { why: Some(why) } => {
+                write!(f, "{QEMU} is not installed ({why}); {HOW_TO_INSTALL}")
+            }
+            Self::Missing { why: None } => write!(f, "{QEMU} is not installed; {HOW_TO_INSTALL}"),
+            Self::Broken { why } => write!(f, "{QEMU} does not run: {why}; {HOW_TO_INSTALL}"),
+            Self::UnknownMachine { program } => {
+                write!(f, "{} has no machine {MACHINE}; QEMU 4.0 or newer is needed", program.display())
+            }
+        }
+    }
+}
+
+impl std::error::Error for QemuError {}
+
+/// The emulator for 32-bit Arm.
+pub const QEMU: &str = "qemu-system-arm";
+/// The emulated board: Arm MPS2 with the AN386 image, a Cortex-M4F.
+pub const MACHINE: &str = "mps2-an386";
+
+const HOW_TO_INSTALL: &str = "\
+install it, for example with
+  Debian, Ubuntu:  apt-get install qemu-system-arm
+  Fedora:          dnf install qemu-system-arm-core
+  Arch:            pacman -S qemu-system-arm
+  macOS:           brew install qemu
+  Windows:         winget install SoftwareFreedomConservancy.QEMU";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_lacks_it_reads_what_to_install() {
+        let text = QemuError::Missing { why: Some("not root".into()) }.to_string();
+        assert!(text.starts_with("qemu-system-arm is not installed (not root); install it"), "{text}");
+        for system in ["apt-get install qemu-system-arm", "dnf install", "pacman -S", "brew install qemu"] {
+            assert!(text.contains(system), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_emulator_that_is_found_runs_the_machine() {
+        // Whichever holds on this machine: a program that knows the board, or words that tell what is missing.
+        match ensure_qemu(Install::ForUser) {
+            Ok(program) => assert!(program.is_file()),
+            Err(error) => assert!(error.to_string().starts_with(QEMU), "{error}"),
+        }
+    }
+}
