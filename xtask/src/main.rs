@@ -1,2 +1,120 @@
-//! Placeholder: being built.
-fn main() {}
+//! What does a person type to have everything checked? `cargo xtask test`, on a laptop and in CI alike.
+//!
+//! It installs what is missing or says what to install, runs every step whatever failed before, and tells all
+//! failures last, each with the command that repeats it.
+
+mod context;
+mod determinism;
+mod report;
+mod steps;
+
+use std::env;
+use std::process::ExitCode;
+
+use context::Context;
+use steps::{STEPS, Step};
+
+fn main() -> ExitCode {
+    let words: Vec<String> = env::args().skip(1).collect();
+    match Request::from_words(&words) {
+        Ok(Request::Test(steps)) => test(&steps),
+        Ok(Request::List) => {
+            for step in &STEPS {
+                println!("{:<16} {}", step.name, step.what);
+            }
+            ExitCode::SUCCESS
+        }
+        Ok(Request::Help) => {
+            println!("{USAGE}");
+            ExitCode::SUCCESS
+        }
+        Err(wrong) => {
+            eprintln!("xtask: {wrong}\n{USAGE}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn test(steps: &[&'static Step]) -> ExitCode {
+    let context = Context::new();
+    let outcomes: Vec<_> = steps.iter().map(|step| report::run(step, &context)).collect();
+    println!("{}", report::summary(&outcomes));
+    if outcomes.iter().all(|outcome| outcome.failure.is_none()) {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
+/// What was asked for.
+#[derive(Debug)]
+enum Request {
+    Test(Vec<&'static Step>),
+    List,
+    Help,
+}
+
+impl Request {
+    fn from_words(words: &[String]) -> Result<Self, String> {
+        let mut words = words.iter().map(String::as_str);
+        match words.next() {
+            None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
+            Some("test") => {}
+            Some(verb) => return Err(format!("no verb `{verb}`")),
+        }
+        let mut chosen = Vec::new();
+        while let Some(word) = words.next() {
+            match word {
+                "--list" => return Ok(Self::List),
+                "--help" | "-h" => return Ok(Self::Help),
+                "--only" => {
+                    let name = words.next().ok_or("--only needs the name of a step")?;
+                    let step = STEPS.iter().find(|step| step.name == name);
+                    chosen.push(step.ok_or_else(|| {
+                        format!("no step `{name}`; `cargo xtask test --list` has them all")
+                    })?);
+                }
+                other => return Err(format!("unknown argument `{other}`")),
+            }
+        }
+        Ok(Self::Test(if chosen.is_empty() { STEPS.iter().collect() } else { chosen }))
+    }
+}
+
+const USAGE: &str = "\
+usage: cargo xtask test [--only STEP]... [--list]
+  test           check everything: style, tests, documentation, firmware, QEMU, determinism
+    --only STEP  this step alone; may be repeated
+    --list       name the steps";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ask(line: &str) -> Result<Request, String> {
+        Request::from_words(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn test_alone_means_every_step_in_order() {
+        let Ok(Request::Test(steps)) = ask("test") else { panic!("not understood") };
+        let names: Vec<_> = steps.iter().map(|step| step.name).collect();
+        assert_eq!(names, STEPS.iter().map(|step| step.name).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn chosen_steps_run_in_the_order_they_were_named() {
+        let Ok(Request::Test(steps)) = ask("test --only doc --only fmt") else { panic!("not understood") };
+        assert_eq!(steps.iter().map(|step| step.name).collect::<Vec<_>>(), ["doc", "fmt"]);
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        assert!(ask("test --only nothing").unwrap_err().contains("no step `nothing`"));
+        assert!(ask("test --only").unwrap_err().contains("needs the name"));
+        assert!(ask("test --fast").unwrap_err().contains("--fast"));
+        assert!(ask("deploy").unwrap_err().contains("deploy"));
+        assert!(matches!(ask(""), Ok(Request::Help)));
+        assert!(matches!(ask("test --list"), Ok(Request::List)));
+    }
+}

@@ -1,0 +1,140 @@
+//! What do the steps share? The workspace, the tools found so far, and how a command is run and judged.
+
+use std::cell::OnceCell;
+use std::env;
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+
+use firmware_build::{BuildError, Install, QemuError, TargetError, ThumbToolchain};
+
+/// The workspace and its tools. A tool is looked for once, when the first step needs it.
+pub(crate) struct Context {
+    root: PathBuf,
+    target: OnceCell<Result<ThumbToolchain, TargetError>>,
+}
+
+impl Context {
+    pub(crate) fn new() -> Self {
+        Self { root: firmware_build::workspace_root(), target: OnceCell::new() }
+    }
+
+    pub(crate) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// `cargo` for this machine, in the workspace.
+    pub(crate) fn cargo(&self, line: &str) -> Command {
+        let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        command.current_dir(&self.root).args(line.split_whitespace());
+        command
+    }
+
+    /// `cargo` for the robot's processor; the first word of the line is the verb.
+    pub(crate) fn cargo_thumb(&self, line: &str) -> Result<Command, Failure> {
+        let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
+        let mut command = self.ensure_target()?.cargo(&self.root, verb);
+        command.args(rest.split_whitespace());
+        Ok(command)
+    }
+
+    /// The compiler for the robot's processor, installed first where it is missing.
+    pub(crate) fn ensure_target(&self) -> Result<&ThumbToolchain, Failure> {
+        let look = || firmware_build::ensure_target(&self.root, Install::SystemWide);
+        self.target.get_or_init(look).as_ref().map_err(|error| Failure::Target(error.clone()))
+    }
+
+    /// A component of the toolchain (`fmt`, `clippy`), fetched by rustup where it is missing.
+    pub(crate) fn ensure_component(&self, verb: &str, component: &'static str) -> Result<(), Failure> {
+        let is_there = || {
+            let mut question = self.cargo(verb);
+            question.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
+            question.status().is_ok_and(|status| status.success())
+        };
+        if is_there() {
+            return Ok(());
+        }
+        let mut add = Command::new("rustup");
+        add.current_dir(&self.root).args(["component", "add", component]);
+        // Whether it helped is seen in the answer to the same question again.
+        let _ = run(&mut add);
+        if is_there() { Ok(()) } else { Err(Failure::Component(component)) }
+    }
+}
+
+/// Runs a command to its end, its words going where ours go.
+pub(crate) fn run(command: &mut Command) -> Result<(), Failure> {
+    let line = line_of(command);
+    println!("xtask: {line}");
+    match command.stdin(Stdio::null()).status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(Failure::Command { line, status }),
+        Err(error) => Err(Failure::Start { line, error }),
+    }
+}
+
+/// Why a step failed.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A command ended badly; its own words stand above.
+    Command { line: String, status: ExitStatus },
+    /// A command could not be started.
+    Start { line: String, error: std::io::Error },
+    /// A part of the toolchain is missing.
+    Component(&'static str),
+    /// Nothing compiles for the robot's processor.
+    Target(TargetError),
+    /// There is no emulator.
+    Qemu(QemuError),
+    /// The firmware image cannot be made.
+    Image(BuildError),
+    /// The same trial gave different traces, or none.
+    Determinism(Vec<String>),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Command { line, status } => write!(f, "`{line}` failed ({status})"),
+            Self::Start { line, error } => write!(f, "`{line}` does not start: {error}"),
+            Self::Component(name) => {
+                write!(f, "{name} is missing; install it with `rustup component add {name}`")
+            }
+            Self::Target(error) => error.fmt(f),
+            Self::Qemu(error) => error.fmt(f),
+            Self::Image(error) => error.fmt(f),
+            Self::Determinism(trials) => {
+                write!(f, "{} trials differ or fail", trials.len())?;
+                trials.iter().try_for_each(|trial| write!(f, "\n  {trial}"))
+            }
+        }
+    }
+}
+
+/// The command as a person would type it: cargo by its name, not by where it lies.
+pub(crate) fn line_of(command: &Command) -> String {
+    let program = Path::new(command.get_program());
+    let program = program.file_stem().unwrap_or(program.as_os_str());
+    let words = std::iter::once(program).chain(command.get_args());
+    words.map(OsStr::to_string_lossy).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_is_told_as_it_is_typed() {
+        let context = Context::new();
+        assert_eq!(line_of(&context.cargo("fmt --all --check")), "cargo fmt --all --check");
+    }
+
+    #[test]
+    fn a_command_that_fails_or_is_not_there_says_so() {
+        let failed = run(&mut Command::new("false")).unwrap_err().to_string();
+        assert!(failed.starts_with("`false` failed"), "{failed}");
+        let missing = run(&mut Command::new("onetwo-has-no-such-program")).unwrap_err().to_string();
+        assert!(missing.contains("does not start"), "{missing}");
+    }
+}

@@ -1,0 +1,169 @@
+//! Does the same seed give the same bits: in debug and release, on the PC and on the robot's processor?
+//!
+//! DESIGN §2: a trial's trace hash runs over every pose, actuator frame and air packet, and is taken by the same code
+//! whatever the robots run on. So three hashes that agree say that three builds played the same trial.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use firmware_build::Install;
+
+use crate::context::{self, Context, Failure, line_of};
+
+pub(crate) const WHAT: &str = "the same trials have the same trace in debug, release and on QEMU";
+
+pub(crate) fn run(context: &Context) -> Result<(), Failure> {
+    firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
+    // `onetwo` builds the image by itself; that must find a compiler for the target.
+    context.ensure_target()?;
+    // Built as `cargo run` builds them, so that both are the programs a person runs.
+    context::run(&mut context.cargo("build --bin onetwo"))?;
+    context::run(&mut context.cargo("build --release --bin onetwo"))?;
+    let built = |folder: &str| {
+        let name = format!("onetwo{}", std::env::consts::EXE_SUFFIX);
+        firmware_build::target_dir(context.root()).join(folder).join(name)
+    };
+    let players = [
+        Player { what: "debug", program: built("debug"), backend: "native" },
+        Player { what: "release", program: built("release"), backend: "native" },
+        Player { what: "QEMU", program: built("release"), backend: "qemu" },
+    ];
+    let mut differing = Vec::new();
+    let mut hashes = BTreeSet::new();
+    for trial in trials() {
+        let played = players.each_ref().map(|player| player.trace_hash(context.root(), trial));
+        println!("xtask: {trial}: {}", told(&players, &played));
+        match same(&played) {
+            Some(hash) => {
+                hashes.insert(hash.to_string());
+            }
+            None => differing.push(format!("{trial}: {}", told(&players, &played))),
+        }
+    }
+    // A hash that never changes would agree with itself for ever.
+    if differing.is_empty() && hashes.len() < trials().count() {
+        differing.push(format!("{} different trials have only {} hashes", trials().count(), hashes.len()));
+    }
+    if differing.is_empty() { Ok(()) } else { Err(Failure::Determinism(differing)) }
+}
+
+/// A trial of the paper with full brains.
+#[derive(Clone, Copy)]
+struct Trial {
+    scenario: u8,
+    opponents: &'static str,
+    seed: u64,
+}
+
+impl fmt::Display for Trial {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scenario, opponents, seed } = self;
+        write!(f, "trial --scenario {scenario} --opponents {opponents} --approach cbr --seed {seed}")
+    }
+}
+
+/// Every scenario against both kinds of opponents.
+fn trials() -> impl Iterator<Item = Trial> {
+    (1..=SEEDS).flat_map(|seed| {
+        ["dg", "2d"].into_iter().flat_map(move |opponents| {
+            (1..=SCENARIOS).map(move |scenario| Trial { scenario, opponents, seed })
+        })
+    })
+}
+
+/// One build of the program, with one kind of robots.
+struct Player {
+    what: &'static str,
+    program: PathBuf,
+    backend: &'static str,
+}
+
+impl Player {
+    fn trace_hash(&self, root: &Path, trial: Trial) -> Result<String, String> {
+        let mut command = Command::new(&self.program);
+        command.current_dir(root).args(trial.to_string().split(' ')).args([
+            "--backend",
+            self.backend,
+            "--json",
+        ]);
+        let line = line_of(&command);
+        let output = command.output().map_err(|error| format!("`{line}` does not start: {error}"))?;
+        if !output.status.success() {
+            let said = String::from_utf8_lossy(&output.stderr);
+            return Err(format!(
+                "`{line}` failed ({}): {}",
+                output.status,
+                said.lines().last().unwrap_or("")
+            ));
+        }
+        let report = String::from_utf8_lossy(&output.stdout);
+        trace_hash_in(&report).map(str::to_string).ok_or(format!("`{line}` printed no trace_hash"))
+    }
+}
+
+/// The hash, where all players have the same one.
+fn same(played: &[Result<String, String>]) -> Option<&str> {
+    let first = played.first()?.as_ref().ok()?;
+    played.iter().all(|hash| hash.as_ref() == Ok(first)).then_some(first)
+}
+
+fn told(players: &[Player], played: &[Result<String, String>]) -> String {
+    if let Some(hash) = same(played) {
+        return hash.to_string();
+    }
+    let each = players.iter().zip(played).map(|(player, hash)| match hash {
+        Ok(hash) => format!("{} {hash}", player.what),
+        Err(why) => format!("{} {why}", player.what),
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+/// The value of `"trace_hash"` in a trial's report: 16 hexadecimal digits.
+fn trace_hash_in(report: &str) -> Option<&str> {
+    let (_, rest) = report.split_once("\"trace_hash\"")?;
+    let (hash, _) = rest.trim_start().strip_prefix(':')?.trim_start().strip_prefix('"')?.split_once('"')?;
+    (hash.len() == 16 && hash.bytes().all(|digit| digit.is_ascii_hexdigit())).then_some(hash)
+}
+
+/// Seeds per scenario and kind of opponents: 3 × 4 × 2 = 24 trials, above the 20 that are promised.
+const SEEDS: u64 = 3;
+/// The paper's scenarios (Ros et al. 2009, §5.1.1).
+const SCENARIOS: u8 = 4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hash_is_found_however_the_report_is_spaced() {
+        let tight = r#"{"time_s":3.2,"trace_hash":"00ff00ff00ff00ff"}"#;
+        let airy = "{\n  \"trace_hash\" : \"00ff00ff00ff00ff\"\n}";
+        assert_eq!(trace_hash_in(tight), Some("00ff00ff00ff00ff"));
+        assert_eq!(trace_hash_in(airy), Some("00ff00ff00ff00ff"));
+        assert_eq!(trace_hash_in(r#"{"trace_hash":"00ff"}"#), None);
+        assert_eq!(trace_hash_in(r#"{"trace_hash":null,"x":"00ff00ff00ff00ff"}"#), None);
+        assert_eq!(trace_hash_in("{}"), None);
+    }
+
+    #[test]
+    fn one_player_who_differs_or_fails_is_enough() {
+        let (a, b) = (Ok("a".to_string()), Ok("b".to_string()));
+        let failed = Err("no QEMU".to_string());
+        assert_eq!(same(&[a.clone(), a.clone(), a.clone()]), Some("a"));
+        assert_eq!(same(&[a.clone(), a.clone(), b]), None);
+        assert_eq!(same(&[a.clone(), a, failed.clone()]), None);
+        assert_eq!(same(&[failed.clone(), failed]), None);
+    }
+
+    #[test]
+    fn at_least_twenty_trials_cover_every_scenario() {
+        let all: Vec<_> = trials().collect();
+        assert!(all.len() >= 20);
+        for scenario in 1..=4 {
+            assert!(all.iter().any(|trial| trial.scenario == scenario && trial.opponents == "2d"));
+        }
+        assert_eq!(all[0].to_string(), "trial --scenario 1 --opponents dg --approach cbr --seed 1");
+    }
+}

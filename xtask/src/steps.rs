@@ -1,0 +1,112 @@
+//! What is checked, and in which order?
+//!
+//! Quick answers first. Steps share what they build: the linter and the documentation check metadata, the tests are a
+//! debug build, QEMU and the trials a release build, the robot's crates and the image a build for the target.
+
+use firmware_build::Install;
+
+use crate::context::{Context, Failure, run};
+use crate::determinism;
+
+/// One thing that is checked.
+#[derive(Debug)]
+pub(crate) struct Step {
+    /// As `--only` takes it.
+    pub(crate) name: &'static str,
+    /// What holds when it passes.
+    pub(crate) what: &'static str,
+    pub(crate) run: fn(&Context) -> Result<(), Failure>,
+}
+
+pub(crate) const STEPS: [Step; 10] = [
+    Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
+    Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
+    Step {
+        name: "test",
+        what: "unit, integration and doc tests pass on the PC, tidy and README among them",
+        run: test,
+    },
+    Step { name: "doc", what: "the documentation builds without a warning or a broken link", run: doc },
+    Step { name: "thumb", what: "the robot's crates build for its processor", run: thumb },
+    Step { name: "clippy-thumb", what: "the linter has no warning, on the robot's side", run: clippy_thumb },
+    Step { name: "image", what: "the firmware image for QEMU links, without an allocator", run: image },
+    Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
+    Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
+    Step { name: "play", what: "README's first command plays", run: play },
+];
+
+fn fmt(context: &Context) -> Result<(), Failure> {
+    context.ensure_component("fmt", "rustfmt")?;
+    run(&mut context.cargo("fmt --all --check"))
+}
+
+fn clippy(context: &Context) -> Result<(), Failure> {
+    context.ensure_component("clippy", "clippy")?;
+    run(&mut context.cargo("clippy --workspace --all-targets -- -D warnings"))
+}
+
+fn test(context: &Context) -> Result<(), Failure> {
+    // All failures, not only those of the first crate that has one.
+    run(&mut context.cargo("test --workspace --no-fail-fast"))
+}
+
+fn doc(context: &Context) -> Result<(), Failure> {
+    run(context.cargo("doc --workspace --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+fn thumb(context: &Context) -> Result<(), Failure> {
+    run(&mut context.cargo_thumb(&format!("build{}", packages(&ON_ROBOT)))?)
+}
+
+fn clippy_thumb(context: &Context) -> Result<(), Failure> {
+    context.ensure_component("clippy", "clippy")?;
+    let packages = packages(&ON_ROBOT) + &packages(&BOARDS);
+    run(&mut context.cargo_thumb(&format!("clippy{packages} -- -D warnings"))?)
+}
+
+fn image(context: &Context) -> Result<(), Failure> {
+    // First in the more generous way: `build_image` itself installs nothing system-wide.
+    context.ensure_target()?;
+    let image = firmware_build::build_image(context.root()).map_err(Failure::Image)?;
+    println!("xtask: the image is {}", image.display());
+    Ok(())
+}
+
+fn qemu(context: &Context) -> Result<(), Failure> {
+    image(context)?;
+    firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
+    let line = "test --release --no-fail-fast --features match-tests/qemu --test qemu_*";
+    run(&mut context.cargo(line))
+}
+
+fn play(context: &Context) -> Result<(), Failure> {
+    run(&mut context.cargo("run --release -- play"))
+}
+
+fn packages(names: &[&str]) -> String {
+    names.iter().flat_map(|name| [" --package ", name]).collect()
+}
+
+/// What a robot carries, lowest first; tests/tests/tidy.rs holds the same crates to `no_std`.
+const ON_ROBOT: [&str; 8] =
+    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
+/// Programs for the robot's processor.
+const BOARDS: [&str; 1] = ["board-mps2"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_step_has_a_name_of_its_own() {
+        let names: BTreeSet<_> = STEPS.iter().map(|step| step.name).collect();
+        assert_eq!(names.len(), STEPS.len());
+        assert!(names.iter().all(|name| !name.contains(char::is_whitespace)));
+    }
+
+    #[test]
+    fn a_package_list_is_ready_for_cargo() {
+        assert_eq!(packages(&["geometry", "rules"]), " --package geometry --package rules");
+    }
+}
