@@ -1,1 +1,4 @@
-//! Placeholder: being built.
+//! What tests that cross crates share. Runs on the developer's machine only.
+
+pub mod oracle;
+pub mod random_library;

@@ -1,0 +1,268 @@
+//! Which case answers a problem, by an independent and naive reading of the agreement?
+//!
+//! DESIGN §4.3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed. **Invariant:** it uses no
+//! crate of the project, so that it can be wrong only on its own account. Field frame, mm, default settings.
+//!
+//! Two honest implementations may differ where a number falls on a threshold: every decision that hangs on a relative
+//! difference below [`NEAR`] is noted in the answer.
+
+pub mod library;
+pub mod problem;
+pub mod walk;
+
+use std::cell::Cell;
+use std::cmp::Ordering;
+
+use serde_json::{Map, Value, json};
+
+use library::{Case, Library, Point, Radii};
+use problem::Problem;
+use walk::Leg;
+
+/// What the agreement says to a problem.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The case to play; `None` when nothing fits.
+    pub winner: Option<Candidate>,
+    /// Cases that pass filters 1–4.
+    pub candidates: usize,
+    /// The first decision that was nearly a tie.
+    pub near_tie: Option<&'static str>,
+}
+
+/// A case that passes the filters, with all that its rank depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Stored id.
+    pub id: usize,
+    /// Of the ball.
+    pub similarity: f64,
+    /// Sum of the distances to the adapted positions, mm.
+    pub cost: f64,
+    /// Opponent scopes that are occupied.
+    pub conditions: usize,
+    /// Robot id of tm1, tm2, …
+    pub correspondence: Vec<u8>,
+    /// Adapted position of tm1, tm2, …
+    pub adapted: Vec<Point>,
+}
+
+/// One line's answer as `onetwo cases retrieve` prints it (DESIGN §8), line counted from 1; `None` for a blank line.
+/// Numbers are not rounded, and an error's wording is the oracle's own.
+pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value> {
+    if line.trim().is_empty() {
+        return None;
+    }
+    Some(match Problem::parse(line) {
+        Ok(problem) => retrieve(library, &problem).to_json(library),
+        Err(reason) => json!({ "error": format!("line {number}: {reason}") }),
+    })
+}
+
+/// The answer to a problem.
+pub fn retrieve(library: &Library, problem: &Problem) -> Answer {
+    let close = Close::default();
+    let mut candidates: Vec<Candidate> = library
+        .cases
+        .iter()
+        .enumerate()
+        .filter_map(|(id, case)| candidate(library, id, case, problem, &close))
+        .collect();
+    candidates.sort_by(|a, b| rank(a, b, &Close::default()));
+    if let [first, others @ ..] = candidates.as_slice() {
+        for other in others {
+            rank(first, other, &close);
+        }
+    }
+    let count = candidates.len();
+    Answer { winner: candidates.into_iter().next(), candidates: count, near_tie: close.0.get() }
+}
+
+/// Filters 1–4, and the numbers of the rank.
+fn candidate(
+    library: &Library,
+    id: usize,
+    case: &Case,
+    problem: &Problem,
+    close: &Close,
+) -> Option<Candidate> {
+    if case.defending != problem.defending {
+        return None;
+    }
+    let exponent = scope_exponent(case.ball, case.scope, problem.ball);
+    if !close.less("ball", exponent, threshold()) {
+        return None;
+    }
+    let shift = Point { x: problem.ball.x - case.ball.x, y: problem.ball.y - case.ball.y };
+    let shifted = |p: Point| Point { x: p.x + shift.x, y: p.y + shift.y };
+    let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
+    let (correspondence, cost) = correspondence(&adapted, &problem.teammates, close)?;
+
+    let legs = walk::legs(library, case, problem.ball).ok()?;
+    let blocked = |leg: &Leg| problem.opponents.iter().any(|&opponent| inside(leg, opponent, close));
+    if legs.iter().any(blocked) {
+        return None;
+    }
+    let occupied = |&&(centre, radii): &&(Point, Radii)| {
+        let centre = shifted(centre);
+        let within =
+            |&opponent: &Point| close.less("condition", scope_exponent(centre, radii, opponent), threshold());
+        problem.opponents.iter().any(within)
+    };
+    Some(Candidate {
+        id,
+        similarity: (-exponent).exp(),
+        cost,
+        conditions: case.opponents.iter().filter(occupied).count(),
+        correspondence,
+        adapted,
+    })
+}
+
+/// The injection of least total distance, unless one of its robots has further than [`FURTHEST`] to go.
+fn correspondence(adapted: &[Point], present: &[(u8, Point)], close: &Close) -> Option<(Vec<u8>, f64)> {
+    let mut best: Option<(Vec<usize>, f64)> = None;
+    let mut second = f64::INFINITY;
+    // In ascending order, so that among equals the lexicographically smallest list of ids stays.
+    injections(adapted.len(), present.len(), &mut Vec::new(), &mut |chosen| {
+        let cost = chosen.iter().zip(adapted).map(|(&r, &place)| distance(present[r].1, place)).sum();
+        match &best {
+            Some((_, least)) if cost >= *least => second = second.min(cost),
+            _ => {
+                second = best.as_ref().map_or(second, |(_, least)| *least);
+                best = Some((chosen.to_vec(), cost));
+            }
+        }
+    });
+    let (chosen, cost) = best?;
+    if second.is_finite() {
+        close.less("correspondence", cost, second);
+    }
+    let near_enough =
+        |(&r, &place): (&usize, &Point)| !close.less("thr_c", FURTHEST, distance(present[r].1, place));
+    let accepted = chosen.iter().zip(adapted).all(near_enough);
+    accepted.then(|| (chosen.iter().map(|&r| present[r].0).collect(), cost))
+}
+
+/// Calls `visit` with every way to choose `places` different robots among `present`, lexicographically.
+fn injections(places: usize, present: usize, chosen: &mut Vec<usize>, visit: &mut impl FnMut(&[usize])) {
+    if chosen.len() == places {
+        visit(chosen);
+        return;
+    }
+    for robot in 0..present {
+        if !chosen.contains(&robot) {
+            chosen.push(robot);
+            injections(places, present, chosen, visit);
+            chosen.pop();
+        }
+    }
+}
+
+/// Is an opponent within the fuzzy trapezoid of a leg?
+fn inside(leg: &Leg, opponent: Point, close: &Close) -> bool {
+    let (dx, dy) = (leg.to.0 - leg.from.0, leg.to.1 - leg.from.1);
+    let length = dx.hypot(dy);
+    if length == 0.0 {
+        return false;
+    }
+    let (px, py) = (opponent.x as f64 - leg.from.0, opponent.y as f64 - leg.from.1);
+    let along = (px * dx + py * dy) / length;
+    let across = (py * dx - px * dy) / length;
+    let r_min = leg.tube.r_min as f64;
+    let radius = r_min + (leg.tube.r_max as f64 - r_min) * along / length;
+    if close.less_by("leg start", along, 0.0, length) || close.less("leg end", length, along) {
+        return false;
+    }
+    close.less("leg", (across / radius).powi(2), threshold())
+}
+
+/// Better candidates first.
+fn rank(a: &Candidate, b: &Candidate, close: &Close) -> Ordering {
+    b.conditions
+        .cmp(&a.conditions)
+        .then(b.correspondence.len().cmp(&a.correspondence.len()))
+        .then_with(|| interval(a.similarity, close).cmp(&interval(b.similarity, close)))
+        .then_with(|| close.order("cost", a.cost, b.cost))
+        .then_with(|| close.order("similarity", b.similarity, a.similarity))
+        .then(a.id.cmp(&b.id))
+}
+
+/// 0 = H, 1 = h, 2 = l, 3 = L.
+fn interval(similarity: f64, close: &Close) -> u8 {
+    [0.8, 0.6, 0.4].iter().filter(|&&bound| close.less("interval", similarity, bound)).count() as u8
+}
+
+/// (Δx/τx)² + (Δy/τy)².
+fn scope_exponent(centre: Point, radii: Radii, point: Point) -> f64 {
+    let x = (point.x - centre.x) as f64 / radii.x as f64;
+    let y = (point.y - centre.y) as f64 / radii.y as f64;
+    x * x + y * y
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    ((a.x - b.x) as f64).hypot((a.y - b.y) as f64)
+}
+
+/// The exponent at which a membership is 0.367.
+fn threshold() -> f64 {
+    -(0.367_f64.ln())
+}
+
+/// thr_c, mm (paper, Algorithm 1).
+const FURTHEST: f64 = 1500.0;
+
+/// Relative difference below which two honest implementations may decide differently.
+pub const NEAR: f64 = 1e-4;
+
+/// Remembers the first comparison that was nearly a tie.
+#[derive(Default)]
+struct Close(Cell<Option<&'static str>>);
+
+impl Close {
+    fn less(&self, what: &'static str, a: f64, b: f64) -> bool {
+        self.less_by(what, a, b, a.abs().max(b.abs()))
+    }
+
+    fn less_by(&self, what: &'static str, a: f64, b: f64, scale: f64) -> bool {
+        if (a - b).abs() <= NEAR * scale && self.0.get().is_none() {
+            self.0.set(Some(what));
+        }
+        a < b
+    }
+
+    fn order(&self, what: &'static str, a: f64, b: f64) -> Ordering {
+        self.less(what, a, b);
+        a.total_cmp(&b)
+    }
+}
+
+impl Answer {
+    /// As `onetwo cases retrieve` prints it, without rounding.
+    pub fn to_json(&self, library: &Library) -> Value {
+        let Some(winner) = &self.winner else {
+            return json!({ "case": null, "candidates": self.candidates });
+        };
+        let case = &library.cases[winner.id];
+        let robots = || winner.correspondence.iter().zip(&winner.adapted).enumerate();
+        let matched: Map<String, Value> =
+            robots().map(|(i, (id, _))| ((i + 1).to_string(), json!(id))).collect();
+        let adapted: Map<String, Value> =
+            robots().map(|(_, (id, at))| (id.to_string(), json!([at.x, at.y]))).collect();
+        json!({
+            "case": case.name,
+            "id": winner.id,
+            "symmetry": case.symmetry,
+            "similarity": winner.similarity,
+            "cost": winner.cost,
+            "conditions": winner.conditions,
+            "teammates": winner.correspondence.len(),
+            "match": matched,
+            "adapted": adapted,
+            "candidates": self.candidates,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

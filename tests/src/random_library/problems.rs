@@ -1,0 +1,106 @@
+//! Which situations put a library to the test? Those near its cases, a good share of them with several candidates.
+//!
+//! Field frame, mm; printed as one line of DESIGN §8's problem format.
+
+use std::fmt::Write as _;
+
+use super::Dice;
+use crate::oracle::library::{Goal, Library, Point};
+
+/// A random problem near one of the library's stored cases; now and then anywhere, or beyond all reason.
+pub fn problem_line(dice: &mut Dice, library: &Library) -> String {
+    let case = dice.pick(&library.cases).clone();
+    let defending = if dice.chance(0.95) { case.defending } else { *dice.pick(&[Goal::Yellow, Goal::Cyan]) };
+    let lost = dice.chance(0.03);
+    let near = |dice: &mut Dice, at: Point, sigma: f64| {
+        if lost {
+            return Point { x: far(dice), y: far(dice) };
+        }
+        Point { x: at.x + dice.scatter(sigma), y: at.y + dice.scatter(sigma) }
+    };
+    let anywhere = |dice: &mut Dice| Point {
+        x: dice.between(-library.length, library.length) * 11 / 20,
+        y: dice.between(-library.width, library.width) * 11 / 20,
+    };
+
+    let ball = Point {
+        x: case.ball.x + dice.scatter(0.4 * case.scope.x as f64),
+        y: case.ball.y + dice.scatter(0.4 * case.scope.y as f64),
+    };
+    let shift = Point { x: ball.x - case.ball.x, y: ball.y - case.ball.y };
+    let shifted = |p: Point| Point { x: p.x + shift.x, y: p.y + shift.y };
+
+    let mut teammates = Vec::new();
+    for robot in &case.robots {
+        if dice.chance(0.95) {
+            teammates.push(near(dice, shifted(robot.at), 350.0));
+        }
+    }
+    let extra = dice.between(0, 11 - teammates.len() as i64) * i64::from(dice.chance(0.6));
+    for _ in 0..extra {
+        teammates.push(if dice.chance(0.5) { near(dice, ball, 900.0) } else { anywhere(dice) });
+    }
+    let mut opponents = Vec::new();
+    for (centre, _) in &case.opponents {
+        if dice.chance(0.6) {
+            opponents.push(near(dice, shifted(*centre), 250.0));
+        }
+    }
+    let extra = dice.between(0, 11 - opponents.len() as i64) * i64::from(dice.chance(0.4));
+    for _ in 0..extra {
+        opponents.push(anywhere(dice));
+    }
+    print(dice, ball, defending, &teammates, &opponents)
+}
+
+/// Coordinates that a 32-bit integer just holds.
+fn far(dice: &mut Dice) -> i64 {
+    *dice.pick(&[i64::from(i32::MIN), i64::from(i32::MAX), -1_000_000, 40_000, 0])
+}
+
+/// Ids are drawn from 0–15 and listed in any order.
+fn print(dice: &mut Dice, ball: Point, defending: Goal, teammates: &[Point], opponents: &[Point]) -> String {
+    let mut ids: Vec<u8> = (0..16).collect();
+    for i in (1..ids.len()).rev() {
+        let other = dice.between(0, i as i64) as usize;
+        ids.swap(i, other);
+    }
+    let word = match defending {
+        Goal::Yellow => "yellow",
+        Goal::Cyan => "cyan",
+    };
+    let mut line = format!(r#"{{"ball":[{},{}],"defending":"{word}","teammates":{{"#, ball.x, ball.y);
+    for (i, (id, at)) in ids.iter().zip(teammates).enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        let _ = write!(line, r#"{comma}"{id}":[{},{}]"#, at.x, at.y);
+    }
+    line += r#"},"opponents":["#;
+    for (i, at) in opponents.iter().enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        let _ = write!(line, "{comma}[{},{}]", at.x, at.y);
+    }
+    line + "]}"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::RandomLibrary;
+    use super::*;
+    use crate::oracle::problem::Problem;
+    use crate::oracle::retrieve;
+
+    #[test]
+    fn a_good_share_of_the_problems_has_several_candidates() {
+        let random = RandomLibrary::new(1, 60);
+        let library = Library::from_texts(&random.league, &random.cases).expect("readable");
+        let mut dice = Dice::new(2);
+        let (mut some, mut several) = (0, 0);
+        for _ in 0..1000 {
+            let line = problem_line(&mut dice, &library);
+            let answer = retrieve(&library, &Problem::parse(&line).expect("well formed"));
+            some += usize::from(answer.candidates > 0);
+            several += usize::from(answer.candidates > 1);
+        }
+        assert!(some > 400 && several > 150, "{some} of 1000 with a candidate, {several} with several");
+    }
+}
