@@ -61,6 +61,9 @@ pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value
 
 /// The answer to a problem.
 pub fn retrieve(library: &Library, problem: &Problem) -> Answer {
+    let mut teammates = problem.teammates.clone();
+    teammates.sort_by_key(|(id, _)| *id);
+    let problem = &Problem { teammates, ..problem.clone() };
     let close = Close::default();
     let mut candidates: Vec<Candidate> = library
         .cases

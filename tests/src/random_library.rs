@@ -14,7 +14,7 @@ use std::io;
 use std::path::Path;
 
 pub use dice::Dice;
-pub use problems::problem_line;
+pub use problems::random_problem;
 
 use crate::oracle::library::Library;
 

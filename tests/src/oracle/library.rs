@@ -153,6 +153,14 @@ impl Goal {
         }
     }
 
+    /// The word of files and problems.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Yellow => "yellow",
+            Self::Cyan => "cyan",
+        }
+    }
+
     fn mirrored(self, sign_x: i64) -> Self {
         match (self, sign_x) {
             (goal, 1) => goal,

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
-use super::library::{Goal, Point};
+use super::library::{Case, Goal, Point};
 
 /// A situation to find a case for.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Problem {
     pub ball: Point,
     /// The goal we defend.
     pub defending: Goal,
-    /// Robots present, ascending by id.
+    /// Robots present, by id.
     pub teammates: Vec<(u8, Point)>,
     /// Opponents seen.
     pub opponents: Vec<Point>,
@@ -27,7 +27,33 @@ pub struct Problem {
 const ROBOTS_MAX: usize = 11;
 
 impl Problem {
-    /// Reads one line.
+    /// The case's own situation, as if nothing but the case were on the field: tm1 has id 1, tm2 id 2, …, and
+    /// an opponent stands on the centre of each scope.
+    pub fn own_situation(case: &Case) -> Self {
+        Self {
+            ball: case.ball,
+            defending: case.defending,
+            teammates: (1..).zip(&case.robots).map(|(id, robot)| (id, robot.at)).collect(),
+            opponents: case.opponents.iter().map(|(centre, _)| *centre).collect(),
+        }
+    }
+
+    /// The line that asks this, robots and opponents in the order they are listed.
+    pub fn to_line(&self) -> String {
+        let pair = |p: &Point| format!("[{},{}]", p.x, p.y);
+        let robots: Vec<String> =
+            self.teammates.iter().map(|(id, at)| format!("\"{id}\":{}", pair(at))).collect();
+        let opponents: Vec<String> = self.opponents.iter().map(pair).collect();
+        format!(
+            r#"{{"ball":{},"defending":"{}","teammates":{{{}}},"opponents":[{}]}}"#,
+            pair(&self.ball),
+            self.defending.word(),
+            robots.join(","),
+            opponents.join(","),
+        )
+    }
+
+    /// Reads one line; robots come out ascending by id.
     pub fn parse(line: &str) -> Result<Self, String> {
         let Pairs(pairs) = serde_json::from_str(line).map_err(|error| error.to_string())?;
         let (mut ball, mut defending, mut teammates, mut opponents) = (None, None, None, None);
@@ -135,6 +161,12 @@ impl<'de> Deserialize<'de> for Pairs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_printed_problem_reads_as_it_was() {
+        let line = r#"{"ball":[-600,10],"defending":"cyan","teammates":{"1":[-700,0],"3":[2,8]},"opponents":[[4,5]]}"#;
+        assert_eq!(Problem::parse(line).expect("well formed").to_line(), line);
+    }
 
     #[test]
     fn a_malformed_line_says_where() {

@@ -1,14 +1,13 @@
 //! Which situations put a library to the test? Those near its cases, a good share of them with several candidates.
 //!
-//! Field frame, mm; printed as one line of DESIGN §8's problem format.
-
-use std::fmt::Write as _;
+//! Field frame, mm.
 
 use super::Dice;
 use crate::oracle::library::{Goal, Library, Point};
+use crate::oracle::problem::Problem;
 
 /// A random problem near one of the library's stored cases; now and then anywhere, or beyond all reason.
-pub fn problem_line(dice: &mut Dice, library: &Library) -> String {
+pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     let case = dice.pick(&library.cases).clone();
     let defending = if dice.chance(0.95) { case.defending } else { *dice.pick(&[Goal::Yellow, Goal::Cyan]) };
     let lost = dice.chance(0.03);
@@ -50,7 +49,7 @@ pub fn problem_line(dice: &mut Dice, library: &Library) -> String {
     for _ in 0..extra {
         opponents.push(anywhere(dice));
     }
-    print(dice, ball, defending, &teammates, &opponents)
+    Problem { ball, defending, teammates: with_any_ids(dice, teammates), opponents }
 }
 
 /// Coordinates that a 32-bit integer just holds.
@@ -58,35 +57,20 @@ fn far(dice: &mut Dice) -> i64 {
     *dice.pick(&[i64::from(i32::MIN), i64::from(i32::MAX), -1_000_000, 40_000, 0])
 }
 
-/// Ids are drawn from 0–15 and listed in any order.
-fn print(dice: &mut Dice, ball: Point, defending: Goal, teammates: &[Point], opponents: &[Point]) -> String {
+/// Ids are drawn from 0–15, in no order.
+fn with_any_ids(dice: &mut Dice, robots: Vec<Point>) -> Vec<(u8, Point)> {
     let mut ids: Vec<u8> = (0..16).collect();
     for i in (1..ids.len()).rev() {
         let other = dice.between(0, i as i64) as usize;
         ids.swap(i, other);
     }
-    let word = match defending {
-        Goal::Yellow => "yellow",
-        Goal::Cyan => "cyan",
-    };
-    let mut line = format!(r#"{{"ball":[{},{}],"defending":"{word}","teammates":{{"#, ball.x, ball.y);
-    for (i, (id, at)) in ids.iter().zip(teammates).enumerate() {
-        let comma = if i == 0 { "" } else { "," };
-        let _ = write!(line, r#"{comma}"{id}":[{},{}]"#, at.x, at.y);
-    }
-    line += r#"},"opponents":["#;
-    for (i, at) in opponents.iter().enumerate() {
-        let comma = if i == 0 { "" } else { "," };
-        let _ = write!(line, "{comma}[{},{}]", at.x, at.y);
-    }
-    line + "]}"
+    ids.into_iter().zip(robots).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::RandomLibrary;
     use super::*;
-    use crate::oracle::problem::Problem;
     use crate::oracle::retrieve;
 
     #[test]
@@ -96,8 +80,7 @@ mod tests {
         let mut dice = Dice::new(2);
         let (mut some, mut several) = (0, 0);
         for _ in 0..1000 {
-            let line = problem_line(&mut dice, &library);
-            let answer = retrieve(&library, &Problem::parse(&line).expect("well formed"));
+            let answer = retrieve(&library, &random_problem(&mut dice, &library));
             some += usize::from(answer.candidates > 0);
             several += usize::from(answer.candidates > 1);
         }
