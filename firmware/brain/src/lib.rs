@@ -1,37 +1,29 @@
-//! What does a robot do next? The robot's logic, sans-IO (DESIGN §3, §5; Ros et al. 2009 §4–§5).
+//! What does a robot do next? The robot's logic as a value (DESIGN §3–§5; Ros et al. 2009 §4–§5). Runs on the MCU, in the
+//! simulator and in tests, unchanged.
+//!
+//! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for what happens; `poll_*` for what it wants, to be
+//! drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`] and [`mates`]
+//! (what it holds true), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by itself), [`execution`]
+//! (its part of a case), [`team`] (the cycle), [`Brain`] (the order of thought), [`Station`] (brain with radio).
+//!
+//! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it knows the world only
+//! by [`SensorFrame`](protocol::robot_io::SensorFrame) and its teammates' beacons; it takes a
+//! [`CaseBase`](casebase::CaseBase) and never links a library.
 #![no_std]
 
+pub mod belief;
+pub mod body;
+mod brain;
 mod config;
+mod estimate;
+pub mod execution;
+pub mod mates;
+pub mod reactive;
+pub mod skills;
 mod station;
+pub mod team;
+pub mod timer;
 
+pub use brain::Brain;
 pub use config::{Approach, BrainConfig, Positioning};
 pub use station::Station;
-
-use casebase::CaseBase;
-use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use protocol::team::TeamMessage;
-use protocol::{Instant, RobotId};
-
-/// A robot's brain.
-pub struct Brain<'a> {
-    _base: CaseBase<'a>,
-}
-
-#[allow(missing_docs, clippy::unused_self)]
-impl<'a> Brain<'a> {
-    pub fn new(_now: Instant, _config: &BrainConfig, base: CaseBase<'a>) -> Self {
-        Self { _base: base }
-    }
-    pub fn handle_team_message(&mut self, _now: Instant, _from: RobotId, _message: &TeamMessage) {}
-    pub fn handle_sensors(&mut self, _now: Instant, _sensors: &SensorFrame) {}
-    pub fn handle_timeout(&mut self, _now: Instant) {}
-    pub fn poll_message(&mut self, _now: Instant) -> Option<TeamMessage> {
-        None
-    }
-    pub fn poll_actuators(&mut self, _now: Instant) -> Option<ActuatorFrame> {
-        None
-    }
-    pub fn poll_timeout(&self) -> Option<Instant> {
-        None
-    }
-}

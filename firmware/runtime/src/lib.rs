@@ -1,1 +1,34 @@
-//! Placeholder: being built.
+//! What runs around the brain on a robot's own computer? Embassy tasks, generic over the board (DESIGN §3).
+//!
+//! ```text
+//! air ──► radio_receive ─┐              ┌─► outbox ─► radio_send ──► air
+//!                        ├─► inbox ─► brain
+//! senses ─► sensors ─────┘              └─► orders ─► body ────────► wheels, legs, kicker
+//! ```
+//!
+//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival; deadlines due run
+//! before what arrived after them. A board implements the four traits of [`ports`], declares a task for each function of
+//! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
+//!
+//! ```ignore
+//! static BOXES: Mailboxes = Mailboxes::new();
+//! #[embassy_executor::task]
+//! async fn brain(config: BrainConfig, base: CaseBase<'static>) { tasks::brain(&config, base, &BOXES).await }
+//! ```
+//!
+//! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped and counted.
+#![no_std]
+
+#[cfg(test)]
+extern crate std;
+
+mod mailboxes;
+mod mind;
+pub mod ports;
+pub mod setup;
+pub mod tasks;
+#[cfg(test)]
+mod tests;
+
+pub use brain::BrainConfig;
+pub use mailboxes::{Arrival, INBOX_LEN, Mailboxes, OUTBOX_LEN};

@@ -30,6 +30,12 @@ impl Angle {
         Self(wrapped.clamp(-math::PI, math::PI))
     }
 
+    /// For constants: `radians` must already lie in (−π, π] (checked when the constant is made).
+    pub const fn const_new(radians: f32) -> Self {
+        assert!(radians > -math::PI && radians <= math::PI, "a constant angle lies in (−π, π]");
+        Self(radians)
+    }
+
     /// From degrees.
     pub fn degrees(degrees: f32) -> Self {
         Self::new(degrees * (math::PI / 180.0))

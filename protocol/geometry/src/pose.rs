@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Angle, Body, Field, Point, Vector};
 
 /// Place and heading of a robot in frame `F`.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Pose<F> {
     /// The robot's centre, m.
@@ -15,13 +15,25 @@ pub struct Pose<F> {
 }
 
 /// Velocity and turning rate, as seen in frame `F`.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Twist<F> {
     /// m/s.
     pub linear: Vector<F>,
     /// rad/s, counter-clockwise.
     pub angular: f32,
+}
+
+impl<F> Default for Pose<F> {
+    fn default() -> Self {
+        Self { position: Point::default(), heading: Angle::ZERO }
+    }
+}
+
+impl<F> Default for Twist<F> {
+    fn default() -> Self {
+        Self { linear: Vector::default(), angular: 0.0 }
+    }
 }
 
 impl Pose<Field> {

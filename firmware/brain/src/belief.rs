@@ -1,0 +1,223 @@
+//! What does a robot hold true about the world? From its own senses and its mates' beacons, never from anybody's truth.
+//!
+//! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the mate nearest
+//! the ball stands in (its information is the most accurate, paper §4.1).
+
+use geometry::{Field, Point, Pose, Vector};
+use motion::rolling::RollingBall;
+use protocol::robot_io::{OPPONENTS_MAX, SensorFrame};
+use protocol::{Duration, Instant, RobotId};
+use rules::League;
+
+use crate::mates::Mates;
+
+/// Own sight older than this counts as none.
+const SIGHT_LEASE: Duration = Duration::millis(400);
+/// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
+pub const REST_SPEED: f32 = 0.05;
+/// An opponent whose centre is this near the ball has it: radii of body and ball and a hand's breadth, m.
+pub const OPPONENT_HOLDS_WITHIN: f32 = 0.2;
+
+/// The ball as believed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Where it is.
+    pub position: Point<Field>,
+    /// Where it goes.
+    pub velocity: Vector<Field>,
+    /// Where it will come to rest if nobody touches it, cut at the lines of the field.
+    pub rest: Point<Field>,
+}
+
+impl Ball {
+    /// Slow enough to count as lying.
+    pub fn is_at_rest(&self) -> bool {
+        self.velocity.norm() < REST_SPEED
+    }
+
+    /// Whether it rolls towards `point`: within `reach` of it, sooner or later.
+    pub fn rolls_towards(&self, point: Point<Field>, reach: f32) -> bool {
+        !self.is_at_rest()
+            && self.velocity.dot(point - self.position) > 0.0
+            && geometry::Segment::new(self.position, self.rest).distance_to(point) < reach
+    }
+}
+
+/// The robot's picture of the world.
+#[derive(Clone, Debug)]
+pub struct Belief {
+    /// Where it is itself.
+    pub pose: Pose<Field>,
+    /// The ball, if anybody knows.
+    pub ball: Option<Ball>,
+    /// Opponents.
+    pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
+    /// It holds the ball itself.
+    pub holds_ball: bool,
+    /// Its body is in the middle of a grab or kick.
+    pub busy: bool,
+    sight: Option<Sight>,
+    league: League,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sight {
+    position: Point<Field>,
+    velocity: Vector<Field>,
+    at: Instant,
+}
+
+impl Belief {
+    /// Knows nothing yet.
+    pub fn new(league: League) -> Self {
+        Self {
+            pose: Pose::default(),
+            ball: None,
+            opponents: heapless::Vec::new(),
+            holds_ball: false,
+            busy: false,
+            sight: None,
+            league,
+        }
+    }
+
+    /// Takes in what the body perceives and what mates report.
+    pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, mates: &Mates) {
+        if sensors.pose.position.is_finite() {
+            self.pose = sensors.pose;
+        }
+        self.holds_ball = sensors.ball_contact;
+        self.busy = sensors.busy;
+        self.opponents.clear();
+        // Same capacity: every finite one fits.
+        let seen = sensors.opponents.iter().filter(|p| p.is_finite());
+        self.opponents.extend(seen.copied());
+        if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
+            self.see(now - ball.age, ball.position, ball.sigma);
+        }
+        self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, mates, self.league));
+    }
+
+    /// The opponent whose centre is nearest to `point`, and its distance.
+    pub fn nearest_opponent(&self, point: Point<Field>) -> Option<(Point<Field>, f32)> {
+        nearest(self.opponents.iter().copied(), point)
+    }
+
+    /// Whether an opponent is on the ball while neither this robot nor a mate holds it.
+    pub fn opponent_on_ball(&self, mates: &Mates) -> bool {
+        let Some(ball) = self.ball else { return false };
+        !self.holds_ball
+            && !mates.anyone_holds_ball()
+            && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < OPPONENT_HOLDS_WITHIN)
+    }
+
+    /// The league played.
+    pub fn league(&self) -> League {
+        self.league
+    }
+
+    /// Velocity by an alpha–beta filter; without noise (σ = 0) it is the plain difference.
+    fn see(&mut self, at: Instant, position: Point<Field>, sigma: f32) {
+        let Some(before) = self.sight else {
+            self.sight = Some(Sight { position, velocity: Vector::default(), at });
+            return;
+        };
+        let dt = at.since(before.at).as_secs_f32();
+        if dt <= 0.0 {
+            return;
+        }
+        let (alpha, beta) = if sigma > 0.0 { (0.5, 0.2) } else { (1.0, 1.0) };
+        let predicted = before.position + before.velocity * dt;
+        let miss = position - predicted;
+        let velocity = before.velocity + miss * (beta / dt);
+        self.sight = Some(Sight { position: predicted + miss * alpha, velocity, at });
+    }
+
+    fn own_ball(&self, now: Instant) -> Option<Ball> {
+        let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
+        Some(rolling(sight.position, sight.velocity, self.league))
+    }
+
+    fn reported_ball(now: Instant, me: RobotId, mates: &Mates, league: League) -> Option<Ball> {
+        let report = mates
+            .present(now)
+            .filter(|(id, _)| *id != me)
+            .filter_map(|(_, mate)| mate.beacon.ball)
+            .min_by_key(|ball| ball.distance)?;
+        Some(rolling(report.at.into(), Vector::default(), league))
+    }
+}
+
+/// The nearest of `points` to `to`; the first one among equals.
+pub(crate) fn nearest(
+    points: impl Iterator<Item = Point<Field>>,
+    to: Point<Field>,
+) -> Option<(Point<Field>, f32)> {
+    points.map(|p| (p, p.distance(to))).reduce(|best, next| if next.1 < best.1 { next } else { best })
+}
+
+fn rolling(position: Point<Field>, velocity: Vector<Field>, league: League) -> Ball {
+    let model = RollingBall { deceleration: league.ball().rolling_deceleration };
+    let speed = velocity.norm();
+    let rest = match velocity.unit() {
+        Some(direction) if speed >= REST_SPEED => position + direction * model.rest_distance(speed),
+        _ => position,
+    };
+    Ball { position, velocity, rest: league.field().clamp(rest, 0.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Twist;
+    use protocol::robot_io::BallSight;
+
+    fn seen(x: f32) -> SensorFrame {
+        SensorFrame {
+            pose: Pose::default(),
+            ball: Some(BallSight { position: Point::new(x, 0.0), sigma: 0.0, age: Duration(0) }),
+            opponents: heapless::Vec::new(),
+            ball_contact: false,
+            busy: false,
+            odometry: Twist::default(),
+        }
+    }
+
+    #[test]
+    fn two_sights_of_a_ball_tell_its_speed_and_where_it_will_rest() {
+        let me = RobotId::new(1).unwrap();
+        let mut belief = Belief::new(League::FourLegged);
+        let mates = Mates::default();
+        belief.update(Instant(40_000), me, &seen(0.0), &mates);
+        belief.update(Instant(80_000), me, &seen(0.028), &mates);
+        let ball = belief.ball.unwrap();
+        assert!((ball.velocity.x() - 0.7).abs() < 1e-4);
+        // s = v²/2a = 0.49/0.7 = 0.7 m further on
+        assert!((ball.rest.x() - 0.728).abs() < 1e-3);
+        assert!(ball.rolls_towards(Point::new(0.6, 0.1), 0.2));
+        assert!(!ball.rolls_towards(Point::new(-0.6, 0.1), 0.2));
+    }
+
+    #[test]
+    fn without_a_fresh_sight_or_report_there_is_no_ball() {
+        let me = RobotId::new(1).unwrap();
+        let mut belief = Belief::new(League::FourLegged);
+        belief.update(Instant(40_000), me, &seen(0.5), &Mates::default());
+        let blind = SensorFrame { ball: None, ..seen(0.0) };
+        belief.update(Instant(80_000), me, &blind, &Mates::default());
+        assert!(belief.ball.is_some());
+        belief.update(Instant(900_000), me, &blind, &Mates::default());
+        assert_eq!(belief.ball, None);
+    }
+
+    #[test]
+    fn a_sensor_that_says_nan_is_not_believed() {
+        let me = RobotId::new(1).unwrap();
+        let mut belief = Belief::new(League::FourLegged);
+        let mut mad = seen(f32::NAN);
+        mad.pose.position = Point::new(f32::INFINITY, 0.0);
+        belief.update(Instant(40_000), me, &mad, &Mates::default());
+        assert_eq!(belief.ball, None);
+        assert_eq!(belief.pose, Pose::default());
+    }
+}

@@ -1,0 +1,395 @@
+//! The brain as a value: what comes in, what goes out, and in which order it thinks (DESIGN §3).
+//!
+//! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
+//! `poll_timeout` when to come back.
+
+use casebase::{CaseBase, CaseRobot, GoalEnd};
+use protocol::quantized::length_to_mm;
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use protocol::team::{
+    AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage,
+};
+use protocol::{Duration, Instant, RobotId};
+use rules::{GoalSide, League};
+
+use crate::belief::Belief;
+use crate::body::{Intent, legged};
+use crate::config::{Approach, BrainConfig};
+use crate::estimate;
+use crate::execution::{Execution, Scene};
+use crate::mates::{Mates, PRESENCE_LEASE};
+use crate::reactive::{Freedom, Reactive};
+use crate::team::cycle::News;
+use crate::team::monitor::Monitor;
+use crate::team::reuse::{self, Wish};
+use crate::team::{Cycle, election, retrieval};
+use crate::timer::{Timer, TimerTable};
+
+/// A robot's brain.
+pub struct Brain<'a> {
+    config: BrainConfig,
+    base: CaseBase<'a>,
+    belief: Belief,
+    mates: Mates,
+    cycle: Cycle,
+    execution: Option<Execution>,
+    monitor: Monitor,
+    reactive: Reactive,
+    timers: TimerTable,
+    awake: bool,
+    /// How far the first proposal of this life jumps ahead.
+    skip: u32,
+    actuators: Option<ActuatorFrame>,
+    beacon_due: bool,
+}
+
+impl<'a> Brain<'a> {
+    /// A robot that boots at `now`; it listens for one lease before it is present.
+    pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
+        let mut timers = TimerTable::default();
+        timers.set(Timer::Boot, now + PRESENCE_LEASE);
+        Self {
+            config: config.clone(),
+            base,
+            belief: Belief::new(League::FourLegged),
+            mates: Mates::default(),
+            cycle: Cycle::new(config.robot),
+            execution: None,
+            monitor: Monitor::default(),
+            reactive: Reactive::default(),
+            timers,
+            awake: false,
+            skip: config.epoch.saturating_sub(1) % BOOT_SKIP,
+            actuators: None,
+            beacon_due: false,
+        }
+    }
+
+    /// A teammate's beacon.
+    pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
+        let TeamMessage::Beacon(beacon) = message;
+        self.timers.advance(now);
+        self.mates.hear(now, from, beacon);
+        if self.config.approach == Approach::Cases
+            && let Some(state) = &beacon.cycle
+        {
+            self.adopt(now, state);
+        }
+    }
+
+    /// The body's senses: one whole step of thought.
+    pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
+        self.timers.advance(now);
+        self.mates.forget_the_silent(now);
+        self.belief.update(now, self.config.robot, sensors, &self.mates);
+        self.coordinate(now);
+        let intent = self.act(now);
+        self.actuators = Some(legged::actuate(now, &self.belief, &self.mates, intent));
+        self.beacon_due = true;
+    }
+
+    /// A deadline has come.
+    pub fn handle_timeout(&mut self, now: Instant) {
+        self.timers.advance(now);
+        self.mates.forget_the_silent(now);
+        self.coordinate(now);
+    }
+
+    /// The next message to teammates.
+    pub fn poll_message(&mut self, now: Instant) -> Option<TeamMessage> {
+        core::mem::take(&mut self.beacon_due).then(|| TeamMessage::Beacon(self.beacon(now)))
+    }
+
+    /// What the body shall do, once per step.
+    pub fn poll_actuators(&mut self, _now: Instant) -> Option<ActuatorFrame> {
+        self.actuators.take()
+    }
+
+    /// When [`Brain::handle_timeout`] wants to be called.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        self.timers.next()
+    }
+
+    /// What it believes.
+    pub fn belief(&self) -> &Belief {
+        &self.belief
+    }
+
+    /// What it knows of the running cycle.
+    pub fn cycle(&self) -> &Cycle {
+        &self.cycle
+    }
+
+    fn beacon(&self, _now: Instant) -> Beacon {
+        let mut status = Status::default();
+        if self.awake {
+            status = status.with(Status::AVAILABLE);
+        }
+        if self.config.retriever {
+            status = status.with(Status::RETRIEVER);
+        }
+        if self.belief.holds_ball {
+            status = status.with(Status::HOLDS_BALL);
+        }
+        Beacon {
+            pose: self.belief.pose.into(),
+            ball: self.belief.ball.map(|ball| BallReport {
+                at: ball.position.into(),
+                distance: length_to_mm(ball.position.distance(self.belief.pose.position)),
+            }),
+            status,
+            case_base: self.base.hash(),
+            cycle: self.cycle.state().cloned(),
+            progress: self.cycle.progress,
+            role: if self.execution.is_some() { Role::None } else { self.reactive.role() },
+        }
+    }
+
+    /// Takes over what is newer, and sets this robot's own part accordingly.
+    fn adopt(&mut self, now: Instant, state: &CycleState) {
+        let news = self.cycle.adopt(state, self.awake);
+        if news == News::Known {
+            return;
+        }
+        self.beacon_due = true;
+        for timer in [Timer::NoDecision, Timer::Retry, Timer::Pause] {
+            self.timers.clear(timer);
+        }
+        match &state.decision {
+            Decision::Undecided => self.timers.set(Timer::NoDecision, now + DECISION_PATIENCE),
+            Decision::NoCase => self.timers.set(Timer::Retry, now + RETRY_AFTER),
+            Decision::Closed(_) if self.config.pause_after_cycle > Duration(0) => {
+                self.timers.set(Timer::Pause, now + self.config.pause_after_cycle);
+            }
+            Decision::Play(_) | Decision::Closed(_) => {}
+        }
+        if news == News::Gameplay {
+            self.begin_part(now);
+        }
+    }
+
+    /// A gameplay has begun or ended: forget the old part, prepare the new one.
+    fn begin_part(&mut self, now: Instant) {
+        self.execution = None;
+        self.monitor.reset();
+        for timer in [Timer::Reuse, Timer::Action, Timer::PassPatience, Timer::OpponentHolds] {
+            self.timers.clear(timer);
+        }
+        let Some(play) = self.cycle.play() else { return };
+        let part = play.part_of(self.config.robot).and_then(|part| CaseRobot::new(part as u8));
+        self.execution = part.map(Execution::new);
+        let expected = self.scene(now).map_or(0.0, |scene| estimate::gameplay(&scene));
+        self.timers.set(Timer::Reuse, now + estimate::limit(expected));
+    }
+
+    /// Everything that concerns the team: being present, proposing, deciding, closing, aborting.
+    fn coordinate(&mut self, now: Instant) {
+        if !self.awake {
+            if !self.timers.has_fired(Timer::Boot) {
+                return;
+            }
+            self.awake = true;
+            self.beacon_due = true;
+        }
+        if self.config.approach == Approach::Reactive {
+            return;
+        }
+        if let Some(reason) = self.reason_to_stop(now) {
+            // Whoever takes part aborts; an elector that does not, supersedes.
+            let next = if self.takes_part() { self.cycle.aborted(reason) } else { self.propose(now) };
+            if let Some(state) = next {
+                self.adopt(now, &state);
+            }
+        }
+        if let Some(state) = self.next_state(now) {
+            self.adopt(now, &state);
+            // A cycle of one's own is decided at once.
+            if let Some(state) = self.next_state(now) {
+                self.adopt(now, &state);
+            }
+        }
+    }
+
+    /// Proposal, decision or end of the cycle, where it is this robot's to say.
+    fn next_state(&mut self, now: Instant) -> Option<CycleState> {
+        let me = self.config.robot;
+        let elects = election::elector(now, me, &self.mates) == me;
+        match self.cycle.state().map(|s| &s.decision) {
+            None | Some(Decision::Closed(_)) => {
+                let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
+                if elects && !paused { self.propose(now) } else { None }
+            }
+            Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
+                let problem =
+                    retrieval::problem(now, me, &self.base, self.config.defending, &self.belief, &self.mates);
+                let decision = problem.map_or(Decision::NoCase, |problem| {
+                    retrieval::decide(&self.base, &problem, &self.config.settings)
+                });
+                self.cycle.decided(decision)
+            }
+            Some(Decision::Undecided) => None,
+            Some(Decision::NoCase) => {
+                let over = self.cycle.is_mine_to_decide() && self.timers.has_fired(Timer::Retry);
+                if over { self.cycle.closed(Closure::NoCase) } else { None }
+            }
+            Some(Decision::Play(_)) => {
+                let over = self.cycle.is_mine_to_decide() && self.all_have_finished(now);
+                if over { self.cycle.closed(Closure::Finished) } else { None }
+            }
+        }
+    }
+
+    fn propose(&mut self, now: Instant) -> Option<CycleState> {
+        let me = self.config.robot;
+        let coordinator = election::coordinator(now, me, &self.beacon(now), &self.mates)?;
+        let skip = core::mem::take(&mut self.skip);
+        Some(election::proposal(self.cycle.id(), me, coordinator, skip))
+    }
+
+    /// Involved in the running case, or its coordinator.
+    fn takes_part(&self) -> bool {
+        let me = self.config.robot;
+        self.cycle.state().is_some_and(|state| {
+            state.coordinator == me || state.play().is_some_and(|play| play.part_of(me).is_some())
+        })
+    }
+
+    /// Why the open cycle cannot go on, as far as presence, time and the case base tell; asked by those who may stop it.
+    fn reason_to_stop(&self, now: Instant) -> Option<AbortReason> {
+        let me = self.config.robot;
+        let state = self.cycle.state().filter(|_| self.cycle.closure().is_none())?;
+        let elects = election::elector(now, me, &self.mates) == me;
+        let takes_part = self.takes_part();
+        if !(elects || takes_part) {
+            return None;
+        }
+        // Reborn since: this life does not know what the earlier one did.
+        let lost = |id: RobotId| {
+            if id == me { self.cycle.is_of_an_earlier_life() } else { self.mates.get(now, id).is_none() }
+        };
+        let players = state.play().map_or(&[][..], |play| &play.robots[..]);
+        if lost(state.coordinator) || players.iter().any(|&id| lost(id)) {
+            return Some(AbortReason::RobotLost);
+        }
+        if elects && self.timers.has_fired(Timer::NoDecision) {
+            return Some(AbortReason::NoDecision);
+        }
+        if takes_part && self.timers.has_fired(Timer::Reuse) {
+            return Some(AbortReason::Timeout);
+        }
+        let play = state.play().filter(|play| play.part_of(me).is_some())?;
+        let theirs = self.mates.get(now, state.coordinator).map_or(self.base.hash(), |m| m.beacon.case_base);
+        let unknown = theirs != self.base.hash() || self.base.case(play.case).is_none();
+        unknown.then_some(AbortReason::UnknownCase)
+    }
+
+    fn all_have_finished(&self, now: Instant) -> bool {
+        let Some(state) = self.cycle.state() else { return false };
+        let Some(play) = state.play() else { return false };
+        play.robots.iter().all(|&id| {
+            let progress = if id == self.config.robot {
+                Some(self.cycle.progress)
+            } else {
+                self.mates.get(now, id).and_then(|mate| mate.progress_in(state.id))
+            };
+            progress == Some(Progress::WaitEnd { finished: true })
+        })
+    }
+
+    /// What the body shall do in this step.
+    fn act(&mut self, now: Instant) -> Intent {
+        if !self.awake {
+            return Intent::Stand { face: None };
+        }
+        if self.config.approach == Approach::Reactive {
+            return self.default_behaviour(now, Freedom::Full);
+        }
+        match self.reuse(now) {
+            Wish::Body(intent) => {
+                self.reactive.rest();
+                return intent;
+            }
+            Wish::Abort(reason) => {
+                if let Some(state) = self.cycle.aborted(reason) {
+                    self.adopt(now, &state);
+                }
+            }
+            Wish::Nothing => {}
+        }
+        if !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause) {
+            return Intent::Stand { face: None };
+        }
+        let freedom = match self.cycle.state().map(|s| &s.decision) {
+            Some(Decision::NoCase | Decision::Closed(Closure::NoCase)) => Freedom::Full,
+            Some(Decision::Play(_)) => Freedom::KeepNear,
+            None | Some(Decision::Undecided | Decision::Closed(_)) => Freedom::Approach,
+        };
+        self.default_behaviour(now, freedom)
+    }
+
+    /// This robot's part in the running case, if it has one.
+    fn reuse(&mut self, now: Instant) -> Wish {
+        let Some(mut execution) = self.execution.take() else { return Wish::Nothing };
+        let mut progress = self.cycle.progress;
+        let mut touched = self.cycle.touched;
+        let mut timers = core::mem::take(&mut self.timers);
+        let mut monitor = core::mem::take(&mut self.monitor);
+        let wish = match self.scene(now) {
+            None => Wish::Abort(AbortReason::UnknownCase),
+            Some(scene) => {
+                touched |= scene.belief.holds_ball
+                    || scene.play.robots.iter().any(|&id| {
+                        self.mates
+                            .get(now, id)
+                            .filter(|mate| mate.progress_in(scene.cycle).is_some())
+                            .is_some_and(|mate| mate.beacon.status.has(Status::HOLDS_BALL))
+                    });
+                let playing = !matches!(progress, Progress::WaitEnd { .. });
+                let doubt = monitor.step(&scene, touched, &self.config.settings).filter(|_| playing);
+                match doubt {
+                    Some(reason) => Wish::Abort(reason),
+                    None => {
+                        let how = self.config.positioning;
+                        reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
+                    }
+                }
+            }
+        };
+        self.timers = timers;
+        self.monitor = monitor;
+        self.cycle.touched = touched;
+        self.cycle.progress = progress;
+        self.execution = Some(execution);
+        wish
+    }
+
+    fn default_behaviour(&mut self, now: Instant, freedom: Freedom) -> Intent {
+        let attacked = match self.config.defending {
+            GoalEnd::Negative => GoalSide::Positive,
+            GoalEnd::Positive => GoalSide::Negative,
+        };
+        self.reactive.step(now, self.config.robot, &self.belief, &self.mates, attacked, freedom)
+    }
+
+    fn scene(&self, now: Instant) -> Option<Scene<'_>> {
+        let state = self.cycle.state()?;
+        let play = state.play()?;
+        let case = self.base.case(play.case)?;
+        Some(Scene {
+            now,
+            belief: &self.belief,
+            mates: &self.mates,
+            cycle: state.id,
+            play,
+            case,
+            base: &self.base,
+        })
+    }
+}
+
+/// How long the coordinator may keep its decision to itself: one lease.
+const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
+/// How soon the coordinator tries again after "no case": six steps of a walking robot.
+const RETRY_AFTER: Duration = Duration::millis(240);
+/// Lives of a robot jump ahead by their number modulo this.
+const BOOT_SKIP: u32 = 64;

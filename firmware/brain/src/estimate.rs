@@ -1,0 +1,80 @@
+//! How long should a gameplay take, and when has it taken too long? (DESIGN §5: 1.5 × expected duration + 2 s)
+
+use casebase::Action;
+use geometry::{Field, Point};
+use motion::legged::{CARRY_SPEED, WALK_FORWARD};
+use motion::rolling::RollingBall;
+use protocol::Duration;
+
+use crate::execution::{Scene, to_field};
+
+/// The limit for something expected to take `expected` seconds.
+pub fn limit(expected: f32) -> Duration {
+    Duration::from_secs_f32(1.5 * expected + 2.0)
+}
+
+/// Expected seconds from now until the whole gameplay is over: the way of the ball getter, then every action that the
+/// ball waits for, one after the other; walks without the ball run beside them.
+pub fn gameplay(scene: &Scene<'_>) -> f32 {
+    let case = &scene.case;
+    let mut walk = 0.0_f32;
+    for part in case.robots() {
+        let from = scene
+            .player(part)
+            .and_then(|id| scene.mates.get(scene.now, id))
+            .map_or(scene.belief.pose.position, |mate| mate.pose().position);
+        walk = walk.max(from.distance(scene.place_of(part)) / WALK_FORWARD);
+    }
+    let chain: f32 = case
+        .robots()
+        .map(|part| {
+            case.gameplay(part)
+                .enumerate()
+                .map(|(index, kind)| match kind {
+                    Action::Wait => 0.0,
+                    _ => action(scene, part, index),
+                })
+                .sum::<f32>()
+        })
+        .sum();
+    walk + chain
+}
+
+/// Expected seconds of one action, from the time it starts.
+pub fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize) -> f32 {
+    let place = scene.place_of(part);
+    match scene.case.action(part, index) {
+        None | Some(Action::Wait) => 0.0,
+        Some(Action::GoToPoint(p)) => walk(place, scene.adapt(p), WALK_FORWARD),
+        Some(Action::DribbleTo(p)) => TURN + walk(place, scene.adapt(p), CARRY_SPEED),
+        Some(Action::Turn(_)) => TURN,
+        Some(Action::GetBall) => walk(place, to_field(scene.ball_used()), WALK_FORWARD).min(LONGEST_FETCH) + GRAB,
+        Some(Action::ReceiveBall(_)) => scene
+            .case
+            .partner_of(part, index)
+            .and_then(|(from, action)| {
+                scene.case.legs(scene.ball_used()).into_iter().find(|l| l.robot == from && l.action == action)
+            })
+            .map_or(GRAB, |leg| {
+                let length = Point::<Field>::new(leg.from.0, leg.from.1)
+                    .distance(Point::new(leg.to.0, leg.to.1))
+                    * 0.001;
+                let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
+                ball.speed_for(length) / ball.deceleration + GRAB
+            }),
+        Some(Action::PassBall(_) | Action::Kick(_)) => TURN + KICK,
+    }
+}
+
+fn walk(from: Point<Field>, to: Point<Field>, speed: f32) -> f32 {
+    from.distance(to) / speed
+}
+
+/// A quarter turn with the ball at 1 rad/s, s.
+const TURN: f32 = 1.5;
+/// Grabs of 0.5 s each, of which three in four succeed, and the last steps before them, s.
+const GRAB: f32 = 1.5;
+/// A kick, s.
+const KICK: f32 = 0.5;
+/// No fetch is expected to take longer, s: half the adaptation limit of 1.5 m at walking speed.
+const LONGEST_FETCH: f32 = 2.5;

@@ -1,0 +1,389 @@
+//! Which action of its part does a robot do now? Preconditions start actions, no clock does (paper §2.2; DESIGN §4.4).
+//!
+//! The place in the action list is the whole memory that teammates see: `done` counts finished actions, is repeated in
+//! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
+//! the coordinator used. Field frame, SI.
+
+use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, LegKind, PointMm, Primitive, TurnTarget};
+use geometry::{Angle, Field, Point};
+use protocol::quantized::from_mm;
+use protocol::robot_io::LeggedKick;
+use protocol::team::{AbortReason, Play, Progress};
+use protocol::{CycleId, Duration, Instant, RobotId};
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::estimate;
+use crate::mates::Mates;
+use crate::skills::{self, Reception, Step};
+use crate::timer::{Timer, TimerTable};
+
+/// Everything an execution looks at in one step.
+#[derive(Clone, Copy)]
+pub struct Scene<'s> {
+    /// The time.
+    pub now: Instant,
+    /// What this robot believes.
+    pub belief: &'s Belief,
+    /// What its mates say.
+    pub mates: &'s Mates,
+    /// The cycle's id.
+    pub cycle: CycleId,
+    /// The gameplay of the cycle.
+    pub play: &'s Play,
+    /// Its case.
+    pub case: Case<'s>,
+    /// Its case base.
+    pub base: &'s CaseBase<'s>,
+}
+
+impl Scene<'_> {
+    /// A point of the case, adapted, on the field.
+    pub fn adapt(&self, point: PointMm) -> Point<Field> {
+        let shift = self.case.shift(self.ball_used());
+        to_field(PointMm { x: point.x.saturating_add(shift.x), y: point.y.saturating_add(shift.y) })
+    }
+
+    /// Where case robot `part` has its place.
+    pub fn place_of(&self, part: CaseRobot) -> Point<Field> {
+        to_field(self.case.adapted(part, self.ball_used()))
+    }
+
+    /// The ball that all adapted positions of this cycle are relative to, mm.
+    pub fn ball_used(&self) -> PointMm {
+        PointMm { x: i32::from(self.play.ball.x), y: i32::from(self.play.ball.y) }
+    }
+
+    /// Who plays case robot `part`.
+    pub fn player(&self, part: CaseRobot) -> Option<RobotId> {
+        self.play.robots.get(part.index()).copied()
+    }
+
+    /// How far the mate who plays `part` has come; `None` if nothing is known of it in this cycle.
+    pub fn progress_of(&self, part: CaseRobot) -> Option<Progress> {
+        self.mates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
+    }
+
+    /// Where the ball's leg of that action leads: field point of its end, and its direction.
+    fn leg_of(&self, part: CaseRobot, action: usize) -> Option<(Point<Field>, Angle)> {
+        let leg = self.case.legs(self.ball_used()).into_iter().find(|l| l.robot == part && l.action == action)?;
+        let (from, to) = (mm_to_field(leg.from), mm_to_field(leg.to));
+        Some((to, from.direction_to(to)))
+    }
+}
+
+/// What came of one step of execution.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// Wanting this of the body.
+    Running(Intent),
+    /// All actions are done.
+    Finished,
+    /// This cannot be finished.
+    Failed(AbortReason),
+}
+
+/// One robot's way through its actions.
+#[derive(Clone, Debug)]
+pub struct Execution {
+    part: CaseRobot,
+    done: usize,
+    place: Option<Point<Field>>,
+    held: bool,
+    kicked: bool,
+    started: bool,
+}
+
+impl Execution {
+    /// At the beginning of `part`.
+    pub fn new(part: CaseRobot) -> Self {
+        Self { part, done: 0, place: None, held: false, kicked: false, started: false }
+    }
+
+    /// The case robot it plays.
+    pub fn part(&self) -> CaseRobot {
+        self.part
+    }
+
+    /// Number of actions done.
+    pub fn done(&self) -> u8 {
+        self.done.min(usize::from(u8::MAX)) as u8
+    }
+
+    /// One step: runs the current action, going on to the next ones as they start and end.
+    pub fn step(&mut self, scene: &Scene<'_>, timers: &mut TimerTable) -> Outcome {
+        for _ in 0..ACTIONS_A_STEP {
+            let Some(action) = scene.case.action(self.part, self.done) else { return Outcome::Finished };
+            if !self.started {
+                if !self.may_start(scene, timers, self.done) {
+                    return Outcome::Running(self.hold(scene));
+                }
+                self.started = true;
+                let after = estimate::limit(estimate::action(scene, self.part, self.done));
+                timers.set(Timer::Action, scene.now + after);
+            }
+            match self.run(scene, timers, action) {
+                Verdict::Running(intent) => {
+                    return if timers.has_fired(Timer::Action) {
+                        Outcome::Failed(AbortReason::Timeout)
+                    } else {
+                        Outcome::Running(intent)
+                    };
+                }
+                Verdict::Failed(reason) => return Outcome::Failed(reason),
+                Verdict::Done => self.advance(scene, timers, action),
+            }
+        }
+        Outcome::Running(self.hold(scene))
+    }
+
+    fn advance(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) {
+        if matches!(
+            action,
+            Action::GoToPoint(_) | Action::DribbleTo(_) | Action::GetBall | Action::ReceiveBall(_)
+        ) {
+            self.place = Some(scene.belief.pose.position);
+        }
+        self.done += 1;
+        self.held = scene.belief.holds_ball;
+        (self.kicked, self.started) = (false, false);
+        for timer in [Timer::Action, Timer::PassPatience, Timer::OpponentHolds] {
+            timers.clear(timer);
+        }
+    }
+
+    /// Whether action number `index` may begin.
+    fn may_start(&self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
+        match scene.case.action(self.part, index) {
+            None | Some(Action::Wait | Action::GoToPoint(_) | Action::Turn(_)) => true,
+            Some(Action::GetBall) if index == 0 => true,
+            Some(Action::GetBall | Action::ReceiveBall(_)) => self.ball_is_handed_over(scene, index),
+            Some(Action::DribbleTo(_) | Action::Kick(_)) => scene.belief.holds_ball || self.held,
+            Some(Action::PassBall(to)) => {
+                if !(scene.belief.holds_ball || self.held) {
+                    return false;
+                }
+                timers.set_if_idle(Timer::PassPatience, scene.now, PASS_PATIENCE);
+                timers.has_fired(Timer::PassPatience) || self.receiver_is_ready(scene, index, to)
+            }
+        }
+    }
+
+    /// The kick or pass that gives us the ball is done, or the ball is seen coming.
+    fn ball_is_handed_over(&self, scene: &Scene<'_>, index: usize) -> bool {
+        let Some((from, their_action)) = scene.case.partner_of(self.part, index) else { return true };
+        let done = if from == self.part {
+            self.done > their_action
+        } else {
+            match scene.progress_of(from) {
+                Some(Progress::Execute { done }) => usize::from(done) > their_action,
+                Some(Progress::WaitEnd { finished }) => finished,
+                _ => false,
+            }
+        };
+        let receiving = matches!(scene.case.action(self.part, index), Some(Action::ReceiveBall(_)));
+        let coming = receiving
+            && scene.belief.ball.is_some_and(|ball| ball.rolls_towards(scene.belief.pose.position, COMING_WITHIN))
+            && !scene.mates.anyone_holds_ball();
+        let taken = !receiving && scene.mates.anyone_holds_ball();
+        (done && !taken) || coming
+    }
+
+    /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its place.
+    fn receiver_is_ready(&self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
+        let Some((_, receive)) = scene.case.partner_of(self.part, index) else { return true };
+        let Some(Progress::Execute { done }) = scene.progress_of(to) else { return false };
+        let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
+        let at_receive = (usize::from(done)..receive).all(waits);
+        let Some((place, _)) = scene.leg_of(self.part, index) else { return at_receive };
+        let near = scene
+            .player(to)
+            .and_then(|id| scene.mates.get(scene.now, id))
+            .is_some_and(|mate| mate.pose().position.distance(place) < RECEIVER_NEAR);
+        at_receive && near
+    }
+
+    fn run(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) -> Verdict {
+        let belief = scene.belief;
+        match action {
+            Action::Wait => {
+                let next = self.done + 1;
+                let last = scene.case.action(self.part, next).is_none();
+                if last || self.may_start(scene, timers, next) {
+                    Verdict::Done
+                } else {
+                    Verdict::Running(self.hold(scene))
+                }
+            }
+            Action::GoToPoint(point) => {
+                let to = scene.adapt(point);
+                if belief.pose.position.distance(to) <= ARRIVED_WITHIN {
+                    return Verdict::Done;
+                }
+                let face = face_ball(belief, to);
+                Verdict::Running(Intent::Walk { to, face, shy_of_ball: true })
+            }
+            Action::Turn(target) => {
+                let heading = match target {
+                    TurnTarget::HeadingDeg(degrees) => {
+                        attack_direction(scene) + Angle::degrees(degrees as f32)
+                    }
+                    TurnTarget::Face(point) => belief.pose.position.direction_to(scene.adapt(point)),
+                };
+                if (heading - belief.pose.heading).abs() <= TURNED_WITHIN {
+                    return Verdict::Done;
+                }
+                Verdict::Running(Intent::Turn { heading })
+            }
+            Action::GetBall => self.take(scene, timers, skills::get_ball(belief, self.onwards(scene))),
+            Action::ReceiveBall(_) => match skills::receive(belief) {
+                Reception::Going(step) => self.take(scene, timers, step),
+                Reception::Missed => Verdict::Failed(AbortReason::ActionFailed),
+            },
+            Action::DribbleTo(point) => {
+                if !belief.holds_ball {
+                    return Verdict::Failed(AbortReason::ActionFailed);
+                }
+                Verdict::from(skills::carry_to(belief, scene.adapt(point), ARRIVED_WITHIN))
+            }
+            Action::PassBall(_) => {
+                let Some((place, _)) = scene.leg_of(self.part, self.done) else {
+                    return Verdict::Failed(AbortReason::ActionFailed);
+                };
+                let distance = belief.pose.position.distance(place);
+                self.let_go(belief, skills::aim(belief, place), LeggedKick::Pass(distance))
+            }
+            Action::Kick(id) => {
+                let leg = scene.leg_of(self.part, self.done);
+                let (Some(kick), Some((end, along))) = (scene.base.kick(id), leg) else {
+                    return Verdict::Failed(AbortReason::ActionFailed);
+                };
+                let direction = match kick.aim {
+                    KickAim::Goal { .. } => skills::aim(belief, end),
+                    KickAim::Heading { .. } => along,
+                };
+                self.let_go(belief, direction, legged_kick(kick.primitive, kick.aim))
+            }
+        }
+    }
+
+    /// Going for the ball fails when an opponent has had it for too long.
+    fn take(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
+        if scene.belief.opponent_on_ball(scene.mates) {
+            timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
+        } else {
+            timers.clear(Timer::OpponentHolds);
+        }
+        if timers.has_fired(Timer::OpponentHolds) {
+            return Verdict::Failed(AbortReason::OpponentOnBall);
+        }
+        Verdict::from(step)
+    }
+
+    /// Aims and kicks; done when the ball has left, failed when it was lost before.
+    fn let_go(&mut self, belief: &Belief, direction: Angle, kick: LeggedKick) -> Verdict {
+        if self.kicked && !belief.holds_ball {
+            return Verdict::Done;
+        }
+        if !belief.holds_ball {
+            return Verdict::Failed(AbortReason::ActionFailed);
+        }
+        if belief.busy {
+            return Verdict::Running(Intent::Stand { face: None });
+        }
+        let intent = skills::shoot(belief, direction, kick);
+        self.kicked = matches!(intent, Intent::Kick(_));
+        Verdict::Running(intent)
+    }
+
+    /// Holding its place, facing the ball: what a robot does before its next action may start.
+    fn hold(&self, scene: &Scene<'_>) -> Intent {
+        if scene.belief.holds_ball {
+            return Intent::Stand { face: None };
+        }
+        let to = self.place.unwrap_or_else(|| scene.place_of(self.part));
+        Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
+    }
+
+    /// Where the action after the ball is had will want to face.
+    fn onwards(&self, scene: &Scene<'_>) -> Option<Angle> {
+        let next = self.done + 1;
+        match scene.case.action(self.part, next)? {
+            Action::PassBall(_) => scene.leg_of(self.part, next).map(|(_, along)| along),
+            Action::Kick(id) => {
+                let kick = legged_kick(scene.base.kick(id)?.primitive, scene.base.kick(id)?.aim);
+                let (_, along) = scene.leg_of(self.part, next)?;
+                Some(along - crate::body::legged::nominal(kick).0)
+            }
+            Action::DribbleTo(point) => Some(scene.belief.pose.position.direction_to(scene.adapt(point))),
+            _ => None,
+        }
+    }
+}
+
+enum Verdict {
+    Running(Intent),
+    Done,
+    Failed(AbortReason),
+}
+
+impl From<Step> for Verdict {
+    fn from(step: Step) -> Self {
+        match step {
+            Step::Running(intent) => Self::Running(intent),
+            Step::Done => Self::Done,
+        }
+    }
+}
+
+/// Whether any leg of the ball path begins with a pass (a case of one robot has none).
+pub fn is_cooperative(case: &Case<'_>, ball: PointMm) -> bool {
+    case.legs(ball).into_iter().any(|leg| matches!(leg.kind, LegKind::Pass(_)))
+}
+
+/// The heading from `at` to the ball, or the present one while no ball is known.
+pub(crate) fn face_ball(belief: &Belief, at: Point<Field>) -> Angle {
+    belief.ball.map_or(belief.pose.heading, |ball| at.direction_to(ball.position))
+}
+
+/// The body's kick for a kind of the library: the one it names, else by reach.
+fn legged_kick(primitive: Primitive, aim: KickAim) -> LeggedKick {
+    match (primitive, aim) {
+        (Primitive::ForwardSoft, _) => LeggedKick::ForwardSoft,
+        (Primitive::ForwardHard, _) => LeggedKick::ForwardHard,
+        (Primitive::Left, _) => LeggedKick::Left,
+        (Primitive::Right, _) => LeggedKick::Right,
+        (Primitive::Pass | Primitive::Unspecified, KickAim::Heading { length_mm, .. }) => {
+            LeggedKick::Pass(from_mm(length_mm))
+        }
+        (Primitive::Pass | Primitive::Unspecified, KickAim::Goal { .. }) => LeggedKick::ForwardHard,
+    }
+}
+
+fn attack_direction(scene: &Scene<'_>) -> Angle {
+    if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
+}
+
+/// Millimetres of the case base to metres of the field.
+pub(crate) fn to_field(point: PointMm) -> Point<Field> {
+    Point::new(from_mm(point.x), from_mm(point.y))
+}
+
+fn mm_to_field((x, y): (f32, f32)) -> Point<Field> {
+    Point::new(x * 0.001, y * 0.001)
+}
+
+/// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
+const ACTIONS_A_STEP: usize = 8;
+/// A walking robot has arrived within this distance, m (DESIGN §4.4).
+pub const ARRIVED_WITHIN: f32 = 0.15;
+/// And has turned within 10° (DESIGN §4.4).
+const TURNED_WITHIN: f32 = 0.175;
+/// How long the passer waits for its receiver (DESIGN §4.4).
+const PASS_PATIENCE: Duration = Duration::millis(1000);
+/// How long an opponent may hold the ball before `get_ball` gives up (DESIGN §4.4).
+const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
+/// A ball rolling within this distance of a receiver comes to it, m.
+const COMING_WITHIN: f32 = 0.4;
+/// A receiver this near its place is there for the passer, m.
+const RECEIVER_NEAR: f32 = 0.3;

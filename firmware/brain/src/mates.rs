@@ -1,0 +1,117 @@
+//! Who is in the game, where, and how far has everybody come? The newest beacon of every teammate, with a lease.
+
+use geometry::{Field, Pose};
+use protocol::team::{Beacon, CycleState, Progress, Status};
+use protocol::{CycleId, Duration, Instant, RobotId};
+
+/// Silent for longer, and a robot is gone (DESIGN §5).
+pub const PRESENCE_LEASE: Duration = Duration::millis(400);
+
+/// A teammate's newest beacon.
+#[derive(Clone, Debug)]
+pub struct Mate {
+    /// What it said.
+    pub beacon: Beacon,
+    /// When it was heard.
+    pub heard: Instant,
+}
+
+impl Mate {
+    /// Where it says it is.
+    pub fn pose(&self) -> Pose<Field> {
+        self.beacon.pose.into()
+    }
+
+    /// How far it has come in cycle `id`; `None` while it speaks of another.
+    pub fn progress_in(&self, id: CycleId) -> Option<Progress> {
+        self.beacon.cycle.as_ref().filter(|c| c.id == id).map(|_| self.beacon.progress)
+    }
+
+    /// What it knows of cycle `id`.
+    pub fn knows(&self, id: CycleId) -> Option<&CycleState> {
+        self.beacon.cycle.as_ref().filter(|c| c.id == id)
+    }
+}
+
+/// Everybody heard of.
+#[derive(Clone, Debug, Default)]
+pub struct Mates {
+    table: [Option<Mate>; RobotId::COUNT],
+}
+
+impl Mates {
+    /// Takes in a beacon.
+    pub fn hear(&mut self, now: Instant, from: RobotId, beacon: &Beacon) {
+        self.table[from.index()] = Some(Mate { beacon: beacon.clone(), heard: now });
+    }
+
+    /// The mate, if it is present: heard within the lease and available.
+    pub fn get(&self, now: Instant, id: RobotId) -> Option<&Mate> {
+        self.table[id.index()].as_ref().filter(|mate| is_present(now, mate))
+    }
+
+    /// Every present mate, lowest id first.
+    pub fn present(&self, now: Instant) -> impl Iterator<Item = (RobotId, &Mate)> {
+        RobotId::all()
+            .zip(&self.table)
+            .filter_map(|(id, mate)| mate.as_ref().map(|m| (id, m)))
+            .filter(move |(_, mate)| is_present(now, mate))
+    }
+
+    /// Whether the newest word of any mate is that it holds the ball.
+    pub fn anyone_holds_ball(&self) -> bool {
+        self.table.iter().flatten().any(|mate| mate.beacon.status.has(Status::HOLDS_BALL))
+    }
+
+    /// Drops the words of those who have been silent for longer than the lease.
+    pub fn forget_the_silent(&mut self, now: Instant) {
+        for slot in &mut self.table {
+            if slot.as_ref().is_some_and(|mate| now.since(mate.heard) > PRESENCE_LEASE) {
+                *slot = None;
+            }
+        }
+    }
+}
+
+fn is_present(now: Instant, mate: &Mate) -> bool {
+    now.since(mate.heard) <= PRESENCE_LEASE && mate.beacon.status.has(Status::AVAILABLE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::quantized::WirePose;
+    use protocol::team::Role;
+
+    fn beacon(status: Status) -> Beacon {
+        Beacon {
+            pose: WirePose::default(),
+            ball: None,
+            status,
+            case_base: 0,
+            cycle: None,
+            progress: Progress::Idle,
+            role: Role::None,
+        }
+    }
+
+    #[test]
+    fn presence_ends_with_the_lease_and_needs_availability() {
+        let mut mates = Mates::default();
+        let (one, two) = (RobotId::new(1).unwrap(), RobotId::new(2).unwrap());
+        mates.hear(Instant(0), two, &beacon(Status::AVAILABLE));
+        mates.hear(Instant(0), one, &beacon(Status::default()));
+        assert_eq!(mates.present(Instant(400_000)).map(|(id, _)| id).collect::<heapless::Vec<_, 4>>(), [two]);
+        assert_eq!(mates.present(Instant(400_001)).count(), 0);
+    }
+
+    #[test]
+    fn a_silent_holder_is_forgotten() {
+        let mut mates = Mates::default();
+        mates.hear(Instant(0), RobotId::new(3).unwrap(), &beacon(Status::HOLDS_BALL));
+        mates.forget_the_silent(Instant(400_000));
+        assert!(mates.anyone_holds_ball());
+        mates.forget_the_silent(Instant(400_001));
+        assert!(!mates.anyone_holds_ball());
+    }
+}

@@ -1,0 +1,126 @@
+//! `get_ball`: go where the ball can be met and take it. Field frame, SI.
+
+use geometry::{Angle, Field, Point, Vector, math};
+use motion::legged::{GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
+
+use crate::belief::{Ball, Belief};
+use crate::body::Intent;
+use crate::skills::Step;
+
+/// Takes the ball; facing `onwards` afterwards if that costs no race against an opponent.
+pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
+    if belief.holds_ball {
+        return Step::Done;
+    }
+    let Some(ball) = belief.ball else { return Step::Running(Intent::Stand { face: None }) };
+    if belief.busy {
+        return Step::Running(Intent::Stand { face: None });
+    }
+    let pose = belief.pose;
+    let seen = pose.to_body(ball.position);
+    let distance = math::hypot(seen.x(), seen.y());
+    let off = math::atan2(seen.y(), seen.x()).abs();
+    if distance < GRAB_REACH && off < GRAB_HALF_ANGLE && ball.velocity.norm() < GRAB_BALL_SPEED {
+        return Step::Running(Intent::Grab);
+    }
+    let meeting = meeting_point(belief, &ball);
+    let direct = pose.position.direction_to(meeting);
+    let contested = belief.nearest_opponent(meeting).is_some_and(|(_, d)| d < CONTESTED_WITHIN);
+    let detour = onwards.filter(|&onwards| {
+        !contested && ball.is_at_rest() && (onwards - direct).abs() > DIRECT_WITHIN && distance > STAND_OFF
+    });
+    let heading = detour.unwrap_or(direct);
+    // From straight behind, the last steps go to a place from which the ball is in reach.
+    let to = meeting - Vector::polar(STAND_OFF, heading);
+    if detour.is_none() && distance < NEAR {
+        let face = pose.position.direction_to(ball.position);
+        return Step::Running(Intent::Walk { to, face, shy_of_ball: false });
+    }
+    Step::Running(Intent::Walk { to, face: heading, shy_of_ball: detour.is_some() })
+}
+
+/// The earliest place on the ball's way that the robot reaches no later than the ball; else where it will rest.
+fn meeting_point(belief: &Belief, ball: &Ball) -> Point<Field> {
+    if ball.is_at_rest() {
+        return ball.position;
+    }
+    let way = ball.rest - ball.position;
+    let speed = ball.velocity.norm();
+    // An evenly slowing ball: at share 1 − (1 − τ)² of its way after share τ of its time 2·way/speed.
+    let duration = 2.0 * way.norm() / speed;
+    for step in 1..MEETING_STEPS {
+        let tau = step as f32 / MEETING_STEPS as f32;
+        let point = ball.position + way * (1.0 - (1.0 - tau) * (1.0 - tau));
+        let robot = belief.pose.position.distance(point) / WALK_FORWARD;
+        if robot <= tau * duration {
+            return point;
+        }
+    }
+    ball.rest
+}
+
+/// Where the robot's centre stands to grab, behind the ball, m: body and ball touch at about 0.16.
+const STAND_OFF: f32 = 0.165;
+/// Within this distance only the way to the ball counts, m.
+const NEAR: f32 = 0.5;
+/// Facing onwards comes for free within this angle, rad.
+const DIRECT_WITHIN: f32 = 1.0;
+/// An opponent this near the ball makes it a race, m.
+const CONTESTED_WITHIN: f32 = 0.9;
+/// A ball faster than this slips through the grab, m/s.
+const GRAB_BALL_SPEED: f32 = 0.4;
+/// Places tried on the ball's way.
+const MEETING_STEPS: u32 = 16;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Pose;
+    use rules::League;
+
+    fn belief(ball: (f32, f32), velocity: (f32, f32), rest: (f32, f32)) -> Belief {
+        let mut belief = Belief::new(League::FourLegged);
+        belief.pose = Pose::from_mm_deg(0.0, 0.0, 0.0);
+        belief.ball = Some(Ball {
+            position: Point::new(ball.0, ball.1),
+            velocity: Vector::new(velocity.0, velocity.1),
+            rest: Point::new(rest.0, rest.1),
+        });
+        belief
+    }
+
+    #[test]
+    fn a_ball_in_reach_is_grabbed_and_one_held_is_done() {
+        let mut b = belief((0.16, 0.0), (0.0, 0.0), (0.16, 0.0));
+        assert_eq!(get_ball(&b, None), Step::Running(Intent::Grab));
+        b.holds_ball = true;
+        assert_eq!(get_ball(&b, None), Step::Done);
+    }
+
+    #[test]
+    fn a_rolling_ball_is_met_where_the_robot_is_in_time() {
+        // 1 m ahead, rolling to the left at 0.7 m/s, to rest after 0.7 m and 2 s: the robot needs more than 3 s.
+        let b = belief((1.0, 0.0), (0.0, 0.7), (1.0, 0.7));
+        assert_eq!(meeting_point(&b, &b.ball.unwrap()), Point::new(1.0, 0.7));
+        // Rolling towards the robot it is met on the way.
+        let b = belief((1.0, 0.0), (-0.7, 0.0), (0.3, 0.0));
+        let met = meeting_point(&b, &b.ball.unwrap());
+        assert!(met.x() > 0.3 && met.x() < 0.7, "{met:?}");
+    }
+
+    #[test]
+    fn with_time_it_walks_around_to_face_onwards() {
+        let b = belief((0.6, 0.0), (0.0, 0.0), (0.6, 0.0));
+        let Step::Running(Intent::Walk { to, shy_of_ball, .. }) = get_ball(&b, Some(Angle::HALF_TURN)) else {
+            panic!("walks")
+        };
+        assert!(shy_of_ball && to.x() > 0.7);
+        // With an opponent at the ball it goes straight for it.
+        let mut contested = b.clone();
+        let _ = contested.opponents.push(Point::new(1.0, 0.0));
+        let Step::Running(Intent::Walk { to, .. }) = get_ball(&contested, Some(Angle::HALF_TURN)) else {
+            panic!("walks")
+        };
+        assert!(to.x() < 0.5);
+    }
+}

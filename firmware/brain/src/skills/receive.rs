@@ -1,0 +1,54 @@
+//! `receive_ball`: meet a passed ball and take it, or say why it will not be had. Field frame, SI.
+
+use geometry::Segment;
+
+use crate::belief::Belief;
+use crate::skills::{Step, get_ball};
+
+/// How a reception stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reception {
+    /// On the way to it, or to its end.
+    Going(Step),
+    /// The ball has passed by, or came to rest too far away.
+    Missed,
+}
+
+/// Goes for a ball that has been passed to this robot.
+pub fn receive(belief: &Belief) -> Reception {
+    if belief.holds_ball {
+        return Reception::Going(Step::Done);
+    }
+    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, None)) };
+    let me = belief.pose.position;
+    let missed = if ball.is_at_rest() {
+        ball.position.distance(me) > FETCH_WITHIN
+    } else {
+        // Rolling away, and its way to rest comes no nearer than can be fetched.
+        Segment::new(ball.position, ball.rest).distance_to(me) > FETCH_WITHIN
+    };
+    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, None)) }
+}
+
+/// A pass that ends within this distance is still fetched, m: 3 s of walking, one case's typical time.
+const FETCH_WITHIN: f32 = 0.9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::Ball;
+    use geometry::{Point, Vector};
+    use rules::League;
+
+    #[test]
+    fn a_ball_that_rests_out_of_reach_is_missed_and_a_near_one_fetched() {
+        let mut belief = Belief::new(League::FourLegged);
+        let lying = |x| Ball { position: Point::new(x, 0.0), velocity: Vector::default(), rest: Point::new(x, 0.0) };
+        belief.ball = Some(lying(1.2));
+        assert_eq!(receive(&belief), Reception::Missed);
+        belief.ball = Some(lying(0.7));
+        assert!(matches!(receive(&belief), Reception::Going(Step::Running(_))));
+        belief.ball = Some(Ball { position: Point::new(1.5, 0.0), velocity: Vector::new(-0.9, 0.0), rest: Point::new(0.35, 0.0) });
+        assert!(matches!(receive(&belief), Reception::Going(Step::Running(_))));
+    }
+}

@@ -1,0 +1,78 @@
+//! Who elects, and who is elected? The lowest id present names the retriever nearest the ball (paper §4.1).
+
+use protocol::team::{Beacon, CycleState, Decision, Status};
+use protocol::{CycleId, Instant, RobotId};
+
+use crate::mates::Mates;
+
+/// The robot whose task it is to propose cycles.
+pub fn elector(now: Instant, me: RobotId, mates: &Mates) -> RobotId {
+    mates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
+}
+
+/// The retriever nearest the ball; of equals the lowest id. `None` without a retriever.
+pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, mates: &Mates) -> Option<RobotId> {
+    let distance = |beacon: &Beacon| beacon.ball.map_or(u32::MAX, |ball| u32::from(ball.distance));
+    mates
+        .present(now)
+        .map(|(id, mate)| (id, &mate.beacon))
+        .chain([(me, own)])
+        .filter(|(_, beacon)| beacon.status.has(Status::RETRIEVER))
+        .min_by_key(|(id, beacon)| (distance(beacon), *id))
+        .map(|(id, _)| id)
+}
+
+/// The next cycle. `skip` more than the successor: a robot that has just booted cannot know whether an earlier life
+/// of its own proposed the successor already to somebody it does not hear.
+pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, skip: u32) -> CycleState {
+    let counter = known.map_or(0, |id| id.counter).saturating_add(1).saturating_add(skip);
+    CycleState { id: CycleId { counter, proposer: me }, coordinator, decision: Decision::Undecided }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::quantized::{WirePoint, WirePose};
+    use protocol::team::{BallReport, Progress, Role};
+
+    fn robot(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn beacon(distance: Option<u16>, retriever: bool) -> Beacon {
+        let status = if retriever { Status::AVAILABLE.with(Status::RETRIEVER) } else { Status::AVAILABLE };
+        Beacon {
+            pose: WirePose::default(),
+            ball: distance.map(|distance| BallReport { at: WirePoint::default(), distance }),
+            status,
+            case_base: 0,
+            cycle: None,
+            progress: Progress::Idle,
+            role: Role::None,
+        }
+    }
+
+    #[test]
+    fn the_lowest_id_elects_even_if_it_cannot_retrieve() {
+        let mut mates = Mates::default();
+        mates.hear(Instant(0), robot(2), &beacon(Some(900), false));
+        mates.hear(Instant(0), robot(7), &beacon(Some(500), true));
+        let now = Instant(40_000);
+        assert_eq!(elector(now, robot(5), &mates), robot(2));
+        assert_eq!(coordinator(now, robot(5), &beacon(Some(400), false), &mates), Some(robot(7)));
+        assert_eq!(coordinator(now, robot(5), &beacon(Some(500), true), &mates), Some(robot(5)));
+        assert_eq!(coordinator(now, robot(5), &beacon(None, true), &mates), Some(robot(7)));
+    }
+
+    #[test]
+    fn without_a_retriever_nobody_is_named() {
+        assert_eq!(coordinator(Instant(0), robot(1), &beacon(Some(1), false), &Mates::default()), None);
+    }
+
+    #[test]
+    fn the_silent_are_not_elected() {
+        let mut mates = Mates::default();
+        mates.hear(Instant(0), robot(1), &beacon(Some(1), true));
+        assert_eq!(elector(Instant(500_000), robot(3), &mates), robot(3));
+    }
+}

@@ -1,0 +1,79 @@
+//! Does the case still apply? What every robot involved watches while it plays (DESIGN §5, checklist R27).
+//!
+//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the ball not at
+//! rest where nobody of the case expects it. A doubt must last [`DOUBT`] steps before it aborts: an opponent at the
+//! edge of a trapezoid shall not end a gameplay by swaying.
+
+use casebase::{PointMm, Settings};
+use geometry::{Field, Point, Segment, math};
+use protocol::team::AbortReason;
+
+use crate::execution::Scene;
+
+/// A doubt and how long it has lasted.
+#[derive(Clone, Debug, Default)]
+pub struct Monitor {
+    doubt: Option<AbortReason>,
+    steps: u8,
+}
+
+impl Monitor {
+    /// A new gameplay.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The reason to abort, if there is one.
+    pub fn step(&mut self, scene: &Scene<'_>, touched: bool, settings: &Settings) -> Option<AbortReason> {
+        let doubt = if touched { after_touch(scene) } else { before_touch(scene, settings) };
+        self.steps = if doubt.is_some() && doubt == self.doubt { self.steps.saturating_add(1) } else { 0 };
+        self.doubt = doubt;
+        doubt.filter(|_| self.steps >= DOUBT)
+    }
+}
+
+fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
+    let ball = to_mm(scene.belief.ball?.rest);
+    if !scene.case.ball_in_scope(ball) {
+        return Some(AbortReason::BallOutOfScope);
+    }
+    let mut opponents: heapless::Vec<PointMm, { protocol::robot_io::OPPONENTS_MAX }> = heapless::Vec::new();
+    // Same capacity as the belief's.
+    opponents.extend(scene.belief.opponents.iter().copied().map(to_mm));
+    casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
+        .map(|_| AbortReason::PathBlocked)
+}
+
+fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
+    if scene.belief.opponent_on_ball(scene.mates) {
+        return Some(AbortReason::OpponentOnBall);
+    }
+    let ball = scene.belief.ball?;
+    let held = scene.belief.holds_ball || scene.mates.anyone_holds_ball();
+    if held || !ball.is_at_rest() {
+        return None;
+    }
+    let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
+        let way = Segment::new(field(leg.from), field(leg.to));
+        way.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
+    });
+    let at_start = ball.position.distance(field_mm(scene.ball_used())) < STRAY;
+    (!expected && !at_start).then_some(AbortReason::BallAtRest)
+}
+
+fn to_mm(point: Point<Field>) -> PointMm {
+    PointMm { x: math::round_to_i32(point.x() * 1000.0), y: math::round_to_i32(point.y() * 1000.0) }
+}
+
+fn field((x, y): (f32, f32)) -> Point<Field> {
+    Point::new(x * 0.001, y * 0.001)
+}
+
+fn field_mm(point: PointMm) -> Point<Field> {
+    crate::execution::to_field(point)
+}
+
+/// Steps a doubt must last: at 25 steps a second a fifth of a second.
+const DOUBT: u8 = 5;
+/// How far outside a leg's trapezoid a resting ball is still where the case expects it, m.
+const STRAY: f32 = 0.3;

@@ -1,0 +1,65 @@
+//! Which problem does the coordinator see, and what does it decide? Beliefs to a problem, a retrieval to a decision.
+//!
+//! The ball of the problem is where the ball will lie: robots that adapt to a place a rolling ball has left would only
+//! abort. For a ball at rest it is the paper's own ball position.
+
+use casebase::{CaseBase, GoalEnd, PointMm, Problem, Settings};
+use geometry::{Field, Point, math};
+use protocol::quantized::WirePoint;
+use protocol::team::{Decision, Play};
+use protocol::{Instant, RobotId};
+
+use crate::belief::Belief;
+use crate::mates::Mates;
+
+/// The problem as this robot believes it; `None` while no ball is known.
+pub fn problem(
+    now: Instant,
+    me: RobotId,
+    base: &CaseBase<'_>,
+    defending: GoalEnd,
+    belief: &Belief,
+    mates: &Mates,
+) -> Option<Problem> {
+    let ball = belief.ball?;
+    let mut problem = Problem {
+        ball: to_mm(ball.rest),
+        defending,
+        teammates: heapless::Vec::new(),
+        opponents: heapless::Vec::new(),
+    };
+    // Robots that carry another case base could not look the case up.
+    let able = mates
+        .present(now)
+        .filter(|(_, mate)| mate.beacon.case_base == base.hash())
+        .map(|(id, mate)| (id, mate.pose().position));
+    for (id, position) in able.chain([(me, belief.pose.position)]) {
+        // A team larger than a problem holds is told to its limit.
+        let _ = problem.teammates.push((id, to_mm(position)));
+    }
+    for opponent in &belief.opponents {
+        let _ = problem.opponents.push(to_mm(*opponent));
+    }
+    Some(problem)
+}
+
+/// What the coordinator announces about `problem`.
+pub fn decide(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Decision {
+    match casebase::retrieve(base, problem, settings).best {
+        Some(best) => Decision::Play(Play {
+            case: best.case,
+            ball: to_wire(problem.ball),
+            robots: best.correspondence.into_iter().collect(),
+        }),
+        None => Decision::NoCase,
+    }
+}
+
+fn to_mm(point: Point<Field>) -> PointMm {
+    PointMm { x: math::round_to_i32(point.x() * 1000.0), y: math::round_to_i32(point.y() * 1000.0) }
+}
+
+fn to_wire(point: PointMm) -> WirePoint {
+    let saturate = |v: i32| v.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
+    WirePoint { x: saturate(point.x), y: saturate(point.y) }
+}

@@ -1,0 +1,95 @@
+//! ADAPT → EXECUTE → WAIT END: the state machine of a robot involved in a case (paper §4.2, Fig. 10).
+
+use protocol::team::{AbortReason, Progress};
+
+use crate::body::Intent;
+use crate::config::Positioning;
+use crate::execution::{ARRIVED_WITHIN, Execution, Outcome, Scene, face_ball};
+use crate::timer::TimerTable;
+
+/// What a step of reuse wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Wish {
+    /// This of the body.
+    Body(Intent),
+    /// Nothing: this robot's part is over, default behaviour.
+    Nothing,
+    /// The cycle's end.
+    Abort(AbortReason),
+}
+
+/// One step of the machine; `progress` moves on, never back.
+pub fn step(
+    scene: &Scene<'_>,
+    positioning: Positioning,
+    execution: &mut Execution,
+    progress: &mut Progress,
+    timers: &mut TimerTable,
+) -> Wish {
+    if let Progress::Adapt { .. } = progress {
+        let arrived = has_arrived(scene, execution);
+        *progress = if may_execute(scene, positioning, execution, arrived) {
+            Progress::Execute { done: 0 }
+        } else {
+            Progress::Adapt { arrived }
+        };
+    }
+    match progress {
+        Progress::Adapt { .. } => Wish::Body(adapt(scene, execution)),
+        Progress::Execute { .. } => match execution.step(scene, timers) {
+            Outcome::Running(intent) => {
+                *progress = Progress::Execute { done: execution.done() };
+                Wish::Body(intent)
+            }
+            Outcome::Finished => {
+                *progress = Progress::WaitEnd { finished: true };
+                Wish::Nothing
+            }
+            Outcome::Failed(reason) => Wish::Abort(reason),
+        },
+        Progress::WaitEnd { .. } | Progress::Idle => Wish::Nothing,
+    }
+}
+
+/// On the way to the adapted position, facing the ball at its end.
+fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
+    if scene.belief.holds_ball {
+        return Intent::Stand { face: None };
+    }
+    let to = scene.place_of(execution.part());
+    Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
+}
+
+/// At its adapted position and, for the robot that will take the ball, facing it.
+fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
+    let pose = scene.belief.pose;
+    if scene.belief.holds_ball {
+        return true;
+    }
+    let near = pose.position.distance(scene.place_of(execution.part())) <= ARRIVED_WITHIN;
+    let face = face_ball(scene.belief, pose.position);
+    near && (face - pose.heading).abs() <= FACING_WITHIN
+}
+
+/// Dependent: the ball getter is there. Independent: all are. Either way a mate who executes has seen it so.
+fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Execution, arrived: bool) -> bool {
+    let there = |part| {
+        if part == execution.part() {
+            arrived
+        } else {
+            matches!(scene.progress_of(part), Some(Progress::Adapt { arrived: true })) || executes(scene, part)
+        }
+    };
+    let ready = match positioning {
+        Positioning::Dependent => there(scene.case.getter()),
+        Positioning::Independent => scene.case.robots().all(there),
+    };
+    ready || scene.case.robots().any(|part| part != execution.part() && executes(scene, part))
+}
+
+fn executes(scene: &Scene<'_>, part: casebase::CaseRobot) -> bool {
+    matches!(scene.progress_of(part), Some(Progress::Execute { .. } | Progress::WaitEnd { finished: true }))
+}
+
+/// Facing the ball within this angle, rad: 20° (checklist R24).
+const FACING_WITHIN: f32 = 0.35;

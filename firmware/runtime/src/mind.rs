@@ -1,0 +1,38 @@
+//! What does the brain's task need of a brain? The sans-IO face of [`brain::Station`] (DESIGN §3), so that tests can put
+//! a simpler mind in its place.
+
+use brain::Station;
+use protocol::Instant;
+use protocol::link::Packet;
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+
+/// Bytes, pictures and deadlines in; packets, orders and the next deadline out.
+pub(crate) trait Mind {
+    fn handle_packet(&mut self, now: Instant, packet: &[u8]);
+    fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame);
+    fn handle_timeout(&mut self, now: Instant);
+    fn poll_packet(&mut self, now: Instant) -> Option<Packet>;
+    fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame>;
+    fn poll_timeout(&self) -> Option<Instant>;
+}
+
+impl Mind for Station<'_> {
+    fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
+        Station::handle_packet(self, now, packet);
+    }
+    fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
+        Station::handle_sensors(self, now, sensors);
+    }
+    fn handle_timeout(&mut self, now: Instant) {
+        Station::handle_timeout(self, now);
+    }
+    fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
+        Station::poll_packet(self, now)
+    }
+    fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame> {
+        Station::poll_actuators(self, now)
+    }
+    fn poll_timeout(&self) -> Option<Instant> {
+        Station::poll_timeout(self)
+    }
+}

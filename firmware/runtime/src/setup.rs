@@ -1,0 +1,52 @@
+//! Who shall this robot be? The configuration as it comes from outside: from the simulator, or from provisioning.
+
+use core::fmt;
+
+use brain::BrainConfig;
+
+/// Reads a configuration (postcard), to its last byte.
+pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
+    match postcard::take_from_bytes(bytes) {
+        Ok((config, [])) => Ok(config),
+        Ok((_, rest)) => Err(SetupError::Rest(rest.len())),
+        Err(_) => Err(SetupError::Unreadable),
+    }
+}
+
+/// Why bytes are no configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SetupError {
+    /// They do not decode: cut short, or of another version of the firmware.
+    Unreadable,
+    /// This many bytes are left over behind it.
+    Rest(usize),
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable => f.write_str("the bytes are no configuration of this firmware's version"),
+            Self::Rest(n) => write!(f, "{n} bytes are left over behind the configuration"),
+        }
+    }
+}
+
+impl core::error::Error for SetupError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::{RobotId, TeamId};
+
+    #[test]
+    fn a_configuration_survives_the_way_and_any_cut_is_noticed() {
+        let config = BrainConfig::new(RobotId::new(3).unwrap(), TeamId(1));
+        let mut buffer = [0; 512];
+        let bytes = postcard::to_slice(&config, &mut buffer).unwrap().len();
+        assert_eq!(read(&buffer[..bytes]), Ok(config));
+        assert_eq!(read(&buffer[..=bytes]), Err(SetupError::Rest(1)));
+        for cut in 0..bytes {
+            assert_eq!(read(&buffer[..cut]), Err(SetupError::Unreadable), "cut at {cut}");
+        }
+    }
+}

@@ -1,0 +1,399 @@
+//! Do the tasks drive a mind exactly as one would by hand? Against a plain loop over the same mind (DESIGN §7).
+
+use std::boxed::Box;
+use std::cell::RefCell;
+use std::format;
+use std::future::Future;
+use std::pin::Pin;
+use std::rc::Rc;
+use std::string::String;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Wake, Waker};
+use std::vec;
+use std::vec::Vec;
+
+use brain::{BrainConfig, Station};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::channel::Channel;
+use geometry::{Angle, Point, Pose, Twist, Vector};
+use protocol::link::Packet;
+use protocol::robot_io::{ActuatorFrame, BallSight, OmniKick, SensorFrame};
+use protocol::{Duration, Instant, RobotId, TeamId};
+
+use crate::mailboxes::{Arrival, Mailboxes, OUTBOX_LEN};
+use crate::mind::Mind;
+use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
+use crate::tasks;
+
+#[test]
+fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
+    let diary = Diary::default();
+    let mut robot = Robot::new(Clerk::new(&diary, &[7_000, 3_000, 40_000, 40_001]));
+    robot.tick(40_000, &[packet(&[9])], &picture(0.0));
+    let expected =
+        ["3000 timeout", "7000 timeout", "40000 timeout", "40000 packet 9", "40000 sensors", "40001 timeout"];
+    robot.world.advance(50_000);
+    assert_eq!(*diary.borrow(), expected);
+}
+
+#[test]
+fn a_deadline_that_is_due_at_once_runs_before_the_next_packet() {
+    let diary = Diary::default();
+    let mut robot = Robot::new(Clerk::new(&diary, &[]));
+    robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &picture(0.0));
+    assert_eq!(*diary.borrow(), ["10 packet 1", "10 timeout", "10 packet 2", "10 sensors"]);
+}
+
+#[test]
+fn the_tasks_drive_a_mind_as_a_plain_loop_does() {
+    let (by_tasks, by_hand) = (Diary::default(), Diary::default());
+    let mut robot = Robot::new(Clerk::new(&by_tasks, &[1]));
+    let mut twin = Plain::new(Clerk::new(&by_hand, &[1]));
+    let mut random = Random(7);
+    let mut now = 0;
+    for _ in 0..2_000 {
+        now += u64::from(random.below(50));
+        let packets: Vec<_> = (0..random.below(4))
+            .map(|_| packet(&[random.below(200) as u8, random.below(60) as u8][..1 + random.below(2) as usize]))
+            .collect();
+        let sight = picture(now as f32);
+        robot.tick(now, &packets, &sight);
+        twin.tick(now, &packets, &sight);
+    }
+    assert!(by_hand.borrow().len() > 4_000, "the script says too little");
+    assert_eq!(by_tasks.borrow().len(), by_hand.borrow().len());
+    assert!(by_tasks.borrow().iter().eq(by_hand.borrow().iter()));
+    assert!(*robot.sent.borrow() == twin.sent && *robot.done.borrow() == twin.done);
+}
+
+#[test]
+fn a_station_says_and_does_the_same_through_the_tasks() {
+    let config = |id| BrainConfig::new(RobotId::new(id).unwrap(), TeamId(1));
+    let base = case_library::four_legged();
+    let station = |id| Station::new(Instant(0), &config(id), base);
+    // The robot under test, its twin driven by a plain loop, and a mate whose packets both hear.
+    let mut robot = Robot::new(station(1));
+    let mut twin = Plain::new(station(1));
+    let mut mate = Plain::new(station(2));
+    let mut random = Random(3);
+    for tick in 1..=500_u64 {
+        let now = tick * 40_000;
+        let sight = picture(random.below(1_000) as f32 * 0.001);
+        let said = mate.sent.len();
+        mate.tick(now, &[], &sight);
+        let heard: Vec<_> = mate.sent[said..].iter().filter(|_| random.below(5) > 0).cloned().collect();
+        robot.tick(now, &heard, &sight);
+        twin.tick(now, &heard, &sight);
+        assert_eq!(robot.sent.borrow()[..], twin.sent[..], "tick {tick}");
+        assert_eq!(robot.done.borrow()[..], twin.done[..], "tick {tick}");
+    }
+    assert!(twin.sent.len() >= 500 && twin.done.len() >= 490, "a robot that hardly speaks or moves proves nothing");
+}
+
+#[test]
+fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
+    let diary = Diary::default();
+    let boxes: &'static Mailboxes = Box::leak(Box::default());
+    let mut clerk = Clerk::new(&diary, &[]);
+    // Nobody sends: the radio is stuck.
+    for n in 0..OUTBOX_LEN as u8 + 3 {
+        clerk.handle_packet(Instant(0), &[n]);
+    }
+    let mut world = World::new();
+    world.spawn(tasks::think(clerk, boxes));
+    boxes.inbox.try_send(Arrival::Sensors(picture(0.0))).unwrap();
+    world.settle();
+    assert_eq!(boxes.unsent(), 3);
+    assert_eq!(boxes.outbox.try_receive().unwrap()[..], [0, 1], "what was said first is kept");
+}
+
+#[test]
+fn a_body_that_is_late_does_the_latest_order_only() {
+    let boxes: &'static Mailboxes = Box::leak(Box::default());
+    let done: &'static RefCell<_> = Box::leak(Box::default());
+    let mut world = World::new();
+    world.spawn(tasks::body(Limbs(done), boxes));
+    for speed in [1.0, 2.0, 3.0] {
+        boxes.orders.signal(order(speed));
+    }
+    world.settle();
+    assert_eq!(*done.borrow(), [order(3.0)]);
+}
+
+/// A robot as a board starts it: all five tasks around a mind.
+struct Robot {
+    world: World,
+    air: &'static Mail<Packet>,
+    sights: &'static Mail<SensorFrame>,
+    sent: &'static RefCell<Vec<Packet>>,
+    done: &'static RefCell<Vec<ActuatorFrame>>,
+}
+
+impl Robot {
+    fn new(mind: impl Mind + 'static) -> Self {
+        let boxes: &'static Mailboxes = Box::leak(Box::default());
+        let mut robot = Self {
+            world: World::new(),
+            air: Box::leak(Box::new(Channel::new())),
+            sights: Box::leak(Box::new(Channel::new())),
+            sent: Box::leak(Box::default()),
+            done: Box::leak(Box::default()),
+        };
+        robot.world.spawn(tasks::body(Limbs(robot.done), boxes));
+        robot.world.spawn(tasks::sensors(Eyes(robot.sights), boxes));
+        robot.world.spawn(tasks::radio_receive(Ear(robot.air), boxes));
+        robot.world.spawn(tasks::radio_send(Mouth(robot.sent), boxes));
+        robot.world.spawn(tasks::think(mind, boxes));
+        robot.world.settle();
+        robot
+    }
+
+    fn tick(&mut self, now: u64, packets: &[Packet], sight: &SensorFrame) {
+        self.world.advance(now);
+        for packet in packets {
+            self.air.try_send(packet.clone()).unwrap();
+            self.world.settle();
+        }
+        self.sights.try_send(sight.clone()).unwrap();
+        self.world.settle();
+    }
+}
+
+/// The same mind, driven by hand.
+struct Plain<M> {
+    mind: M,
+    sent: Vec<Packet>,
+    done: Vec<ActuatorFrame>,
+}
+
+impl<M: Mind> Plain<M> {
+    fn new(mind: M) -> Self {
+        Self { mind, sent: vec![], done: vec![] }
+    }
+
+    fn tick(&mut self, now: u64, packets: &[Packet], sight: &SensorFrame) {
+        let now = Instant(now);
+        self.deadlines(now);
+        for packet in packets {
+            self.mind.handle_packet(now, packet);
+            self.drain(now);
+            self.deadlines(now);
+        }
+        self.mind.handle_sensors(now, sight);
+        self.drain(now);
+        self.deadlines(now);
+    }
+
+    fn deadlines(&mut self, now: Instant) {
+        while let Some(due) = self.mind.poll_timeout().filter(|due| *due <= now) {
+            self.mind.handle_timeout(due);
+            self.drain(due);
+        }
+    }
+
+    fn drain(&mut self, now: Instant) {
+        while let Some(packet) = self.mind.poll_packet(now) {
+            self.sent.push(packet);
+        }
+        self.done.extend(self.mind.poll_actuators(now));
+    }
+}
+
+/// What a clerk was asked, and when.
+type Diary = Rc<RefCell<Vec<String>>>;
+
+/// A mind that writes down what it is asked, answers every packet, and sets a deadline where a packet wants one.
+struct Clerk {
+    diary: Diary,
+    deadlines: Vec<u64>,
+    answers: Vec<Packet>,
+    order: Option<ActuatorFrame>,
+}
+
+impl Clerk {
+    fn new(diary: &Diary, deadlines: &[u64]) -> Self {
+        Self { diary: diary.clone(), deadlines: deadlines.to_vec(), answers: vec![], order: None }
+    }
+}
+
+impl Mind for Clerk {
+    fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
+        self.diary.borrow_mut().push(format!("{} packet {}", now.0, packet[0]));
+        self.answers.push(self::packet(&[packet[0], 1]));
+        self.deadlines.extend(packet.get(1).map(|after| now.0 + u64::from(*after)));
+    }
+
+    fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
+        self.diary.borrow_mut().push(format!("{} sensors", now.0));
+        self.order = Some(order(sensors.pose.position.x()));
+    }
+
+    fn handle_timeout(&mut self, now: Instant) {
+        self.diary.borrow_mut().push(format!("{} timeout", now.0));
+        self.deadlines.retain(|due| *due > now.0);
+        self.answers.push(packet(&[now.0 as u8, 2]));
+    }
+
+    fn poll_packet(&mut self, _now: Instant) -> Option<Packet> {
+        (!self.answers.is_empty()).then(|| self.answers.remove(0))
+    }
+
+    fn poll_actuators(&mut self, _now: Instant) -> Option<ActuatorFrame> {
+        self.order.take()
+    }
+
+    fn poll_timeout(&self) -> Option<Instant> {
+        self.deadlines.iter().min().copied().map(Instant)
+    }
+}
+
+type Mail<T> = Channel<CriticalSectionRawMutex, T, 1>;
+struct Ear(&'static Mail<Packet>);
+struct Eyes(&'static Mail<SensorFrame>);
+struct Mouth(&'static RefCell<Vec<Packet>>);
+struct Limbs(&'static RefCell<Vec<ActuatorFrame>>);
+
+impl RadioReceiver for Ear {
+    async fn receive(&mut self) -> Packet {
+        self.0.receive().await
+    }
+}
+impl Senses for Eyes {
+    async fn sense(&mut self) -> SensorFrame {
+        self.0.receive().await
+    }
+}
+impl RadioSender for Mouth {
+    async fn send(&mut self, packet: &Packet) {
+        self.0.borrow_mut().push(packet.clone());
+    }
+}
+impl Body for Limbs {
+    async fn act(&mut self, wanted: ActuatorFrame) {
+        self.0.borrow_mut().push(wanted);
+    }
+}
+
+/// A little executor on a clock that moves only when told to; one at a time, for embassy has one clock a program.
+struct World {
+    tasks: Vec<Pin<Box<dyn Future<Output = ()>>>>,
+    woken: Arc<Flag>,
+    _turn: MutexGuard<'static, ()>,
+}
+
+impl World {
+    fn new() -> Self {
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        *CLOCK.lock() = Time { now: 0, alarms: vec![] };
+        Self { tasks: vec![], woken: Arc::default(), _turn: turn }
+    }
+
+    fn spawn<F: Future + 'static>(&mut self, task: F) {
+        self.tasks.push(Box::pin(async move {
+            task.await;
+        }));
+        self.woken.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Polls until nobody wants to be polled.
+    fn settle(&mut self) {
+        let waker = Waker::from(self.woken.clone());
+        while self.woken.0.swap(false, Ordering::Relaxed) {
+            for task in &mut self.tasks {
+                assert!(task.as_mut().poll(&mut Context::from_waker(&waker)).is_pending(), "a task ended");
+            }
+        }
+    }
+
+    /// Moves time to `to`, stopping at every alarm on the way.
+    fn advance(&mut self, to: u64) {
+        while let Some(alarm) = CLOCK.next_alarm(to) {
+            alarm.wake();
+            self.settle();
+        }
+        CLOCK.lock().now = to;
+    }
+}
+
+#[derive(Default)]
+struct Flag(AtomicBool);
+impl Wake for Flag {
+    fn wake(self: Arc<Self>) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+struct Clock(Mutex<Time>);
+struct Time {
+    now: u64,
+    alarms: Vec<(u64, Waker)>,
+}
+
+impl Clock {
+    fn lock(&self) -> MutexGuard<'_, Time> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Moves to the first alarm not after `to`, and takes it.
+    fn next_alarm(&self, to: u64) -> Option<Waker> {
+        let mut time = self.lock();
+        let first = time.alarms.iter().enumerate().min_by_key(|(_, (at, _))| *at)?.0;
+        if time.alarms[first].0 > to {
+            return None;
+        }
+        let (at, waker) = time.alarms.remove(first);
+        time.now = time.now.max(at);
+        Some(waker)
+    }
+}
+
+impl embassy_time_driver::Driver for Clock {
+    fn now(&self) -> u64 {
+        self.lock().now
+    }
+
+    fn schedule_wake(&self, at: u64, waker: &Waker) {
+        let mut time = self.lock();
+        if at <= time.now {
+            waker.wake_by_ref();
+        } else {
+            time.alarms.push((at, waker.clone()));
+        }
+    }
+}
+
+embassy_time_driver::time_driver_impl!(static CLOCK: Clock = Clock(Mutex::new(Time { now: 0, alarms: Vec::new() })));
+static TURN: Mutex<()> = Mutex::new(());
+
+fn packet(bytes: &[u8]) -> Packet {
+    Packet::from_slice(bytes).unwrap()
+}
+
+fn order(speed: f32) -> ActuatorFrame {
+    ActuatorFrame::Omni { wheels: [speed; 4], dribbler: 0.0, kick: OmniKick::None }
+}
+
+/// A robot and the ball somewhere left of the centre, moved by `x`.
+fn picture(x: f32) -> SensorFrame {
+    let ball = BallSight { position: Point::new(x - 1.0, 0.2), sigma: 0.01, age: Duration(0) };
+    SensorFrame {
+        pose: Pose { position: Point::new(x, 0.1), heading: Angle::new(0.3) },
+        ball: Some(ball),
+        opponents: heapless::Vec::new(),
+        ball_contact: false,
+        busy: false,
+        odometry: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
+    }
+}
+
+/// A small generator of whole numbers, for scripts.
+struct Random(u64);
+impl Random {
+    fn below(&mut self, n: u32) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 40) as u32 % n
+    }
+}
