@@ -1,0 +1,39 @@
+//! Which commit is this program built from? Answered by git at build time, for `onetwo --version` and for everything
+//! that records where it came from; "unknown" where there is no git or no repository of ours.
+
+use std::path::Path;
+use std::process::Command;
+
+fn main() {
+    let commit = if is_tracked() { git(&["rev-parse", "HEAD"]) } else { None };
+    println!("cargo::rustc-env=ONETWO_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
+    rerun_when_head_moves();
+}
+
+/// A source archive unpacked inside somebody else's repository must not name that repository's commit.
+fn is_tracked() -> bool {
+    git(&["ls-files", "--error-unmatch", "build.rs"]).is_some()
+}
+
+/// HEAD itself changes on a checkout, the branch it names on a commit; a packed branch lives in `packed-refs`.
+fn rerun_when_head_moves() {
+    println!("cargo::rerun-if-changed=build.rs");
+    let branch = git(&["symbolic-ref", "-q", "HEAD"]);
+    let places = ["HEAD", "logs/HEAD", "packed-refs"].into_iter().map(str::to_owned).chain(branch);
+    for path in places.filter_map(|place| git(&["rev-parse", "--git-path", &place])) {
+        // A file that is named and missing would rerun this script on every build.
+        if Path::new(&path).exists() {
+            println!("cargo::rerun-if-changed={path}");
+        }
+    }
+}
+
+/// What git answers, if it answers.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    if !output.status.success() {
+        return None;
+    }
+    let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (!text.is_empty()).then_some(text)
+}

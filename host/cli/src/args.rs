@@ -1,0 +1,108 @@
+//! What can be said on the command line? The verbs and the arguments they share (DESIGN §8).
+
+use std::path::PathBuf;
+
+use casebase::Settings;
+use clap::{Args, Parser, Subcommand};
+
+use crate::Failure;
+use crate::cases::CasesVerb;
+
+/// Case-based robot soccer: robots that choose a gameplay together and play it.
+#[derive(Debug, Parser)]
+#[command(name = "onetwo", version = VERSION, arg_required_else_help = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// One verb, one file.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Check, list, show, retrieve and explain cases.
+    Cases {
+        #[command(subcommand)]
+        verb: CasesVerb,
+    },
+}
+
+/// Whose cases, where every built-in league is meant unless a folder is named.
+#[derive(Debug, Args)]
+pub(crate) struct FolderArgs {
+    /// One league's folder of case files, read now: `league.toml` and `<region>/<name>.toml`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) library: Option<PathBuf>,
+}
+
+/// Whose cases, where exactly one library is meant.
+#[derive(Debug, Args)]
+pub(crate) struct LibraryArgs {
+    #[command(flatten)]
+    pub(crate) folder: FolderArgs,
+    /// A built-in league.
+    #[arg(long, value_name = "NAME", default_value = "four-legged", conflicts_with = "library")]
+    pub(crate) league: String,
+}
+
+/// Retrieval's named settings (DESIGN §4.3).
+#[derive(Debug, Args)]
+pub(crate) struct SettingsArgs {
+    /// Change a setting of retrieval; may be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = assignment)]
+    assignments: Vec<(String, String)>,
+}
+
+/// What retrieval is asked with.
+#[derive(Debug)]
+pub(crate) struct Chosen {
+    pub(crate) settings: Settings,
+    /// Name and value of every setting that is not at its default, to be recorded with the results.
+    pub(crate) changed: Vec<(String, String)>,
+}
+
+impl SettingsArgs {
+    /// The defaults, changed as the command line says; the later of two assignments to a name stands.
+    pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
+        let mut settings = Settings::default();
+        for (name, value) in &self.assignments {
+            settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
+        }
+        let defaults = described(&Settings::default());
+        let changed = described(&settings).into_iter().filter(|setting| !defaults.contains(setting)).collect();
+        Ok(Chosen { settings, changed })
+    }
+}
+
+/// Every setting's name and value.
+pub(crate) fn described(settings: &Settings) -> Vec<(String, String)> {
+    settings.describe().map(|(name, value)| (name.to_string(), value.to_string())).collect()
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) => Ok((name.trim().to_owned(), value.trim().to_owned())),
+        None => Err("expected NAME=VALUE, such as thr_c=1200".to_owned()),
+    }
+}
+
+/// The package's version and the commit it was built from.
+pub(crate) const VERSION: &str =
+    concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ONETWO_COMMIT"), ")");
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn an_assignment_is_split_at_its_first_equals_sign() {
+        assert_eq!(assignment("a = b=c"), Ok(("a".to_owned(), "b=c".to_owned())));
+        assert!(assignment("thr_c").is_err());
+    }
+}

@@ -1,0 +1,118 @@
+//! How is an answer written down? One JSON object a line, keys in the order of DESIGN §8; lengths in mm, similarity to
+//! four decimals and cost to two.
+
+use std::io::{self, Write};
+
+use casebase::{Case, CaseRobot, Match, PointMm, Problem, Retrieval};
+use serde::{Serialize, Serializer};
+
+use crate::args::Chosen;
+use crate::library::Shelf;
+
+/// The answer to one line of `cases retrieve`.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(crate) enum Answer<'a> {
+    /// The best case.
+    Found(Found<'a>),
+    /// No case fits.
+    Nothing {
+        /// Always `null`.
+        case: (),
+        /// None.
+        candidates: u16,
+        /// See [`Found::settings`].
+        #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
+        settings: &'a [(String, String)],
+    },
+    /// The line holds no problem.
+    Malformed {
+        /// `line 7: place: reason`.
+        error: String,
+    },
+}
+
+/// A retrieved case and what it asks of the robots.
+#[derive(Debug, Serialize)]
+pub(crate) struct Found<'a> {
+    case: &'a str,
+    id: u16,
+    symmetry: &'static str,
+    similarity: f64,
+    cost: f64,
+    conditions: u8,
+    teammates: u8,
+    #[serde(rename = "match", serialize_with = "as_object")]
+    roles: Vec<(u8, u8)>,
+    #[serde(serialize_with = "as_object")]
+    adapted: Vec<(u8, [i32; 2])>,
+    candidates: u16,
+    /// What differs from retrieval's defaults, recorded with every result (DESIGN §4.3); left out where nothing does.
+    #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
+    settings: &'a [(String, String)],
+}
+
+impl<'a> Answer<'a> {
+    pub(crate) fn new(shelf: &'a Shelf, problem: &Problem, chosen: &'a Chosen, retrieval: &Retrieval) -> Self {
+        let best = retrieval.best.as_ref().and_then(|best| Some((best, shelf.base().case(best.case)?)));
+        let Some((best, case)) = best else {
+            return Self::Nothing { case: (), candidates: retrieval.candidates, settings: &chosen.changed };
+        };
+        Self::Found(Found {
+            case: shelf.name(best.case),
+            id: best.case.0,
+            symmetry: case.symmetry().word(),
+            similarity: similarity(best),
+            cost: cost(best),
+            conditions: best.conditions,
+            teammates: best.teammates,
+            roles: roles(best),
+            adapted: adapted(&case, best, problem.ball),
+            candidates: retrieval.candidates,
+            settings: &chosen.changed,
+        })
+    }
+}
+
+/// Case robot, from 1, to the id of the robot that plays it.
+pub(super) fn roles(found: &Match) -> Vec<(u8, u8)> {
+    (1..).zip(found.correspondence.iter().map(|robot| robot.number())).collect()
+}
+
+/// Robot id to where it starts from, mm.
+fn adapted(case: &Case<'_>, found: &Match, ball: PointMm) -> Vec<(u8, [i32; 2])> {
+    let place = |(robot, player): (CaseRobot, &protocol::RobotId)| {
+        let PointMm { x, y } = case.adapted(robot, ball);
+        (player.number(), [x, y])
+    };
+    case.robots().zip(&found.correspondence).map(place).collect()
+}
+
+/// To four decimals.
+pub(super) fn similarity(found: &Match) -> f64 {
+    rounded(found.similarity, 1e4)
+}
+
+/// In mm, to two decimals.
+pub(super) fn cost(found: &Match) -> f64 {
+    rounded(found.cost, 1e2)
+}
+
+/// To one in `parts`.
+pub(super) fn rounded(value: f32, parts: f64) -> f64 {
+    (f64::from(value) * parts).round() / parts
+}
+
+/// Pairs in their order as one JSON object; numbers become keys as JSON wants them.
+pub(super) fn as_object<K: Serialize, V: Serialize, S: Serializer>(
+    pairs: &(impl AsRef<[(K, V)]> + ?Sized),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.as_ref().iter().map(|(key, value)| (key, value)))
+}
+
+/// One value on one line.
+pub(super) fn write_line(output: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *output, value)?;
+    output.write_all(b"\n")
+}

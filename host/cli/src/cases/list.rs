@@ -1,0 +1,88 @@
+//! Which cases are stored, and what is each for? The table, or one JSON list of all of them (DESIGN §8).
+
+use std::io::{self, BufWriter, Write, stdout};
+use std::process::ExitCode;
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::Failure;
+use crate::args::FolderArgs;
+use crate::library::Shelf;
+
+/// What `cases list` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct ListArgs {
+    #[command(flatten)]
+    folder: FolderArgs,
+    /// One JSON list instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
+    let shelves = Shelf::all(args.folder.library.as_deref())?;
+    let rows: Vec<Row<'_>> = shelves.iter().flat_map(rows).collect();
+    let mut output = BufWriter::new(stdout().lock());
+    let written = if args.json { write_json(&mut output, &rows) } else { write_table(&mut output, &rows) };
+    written.and_then(|()| output.flush()).map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// One stored case; the fields of DESIGN §8.
+#[derive(Debug, Serialize)]
+struct Row<'a> {
+    league: &'a str,
+    id: u16,
+    case: &'a str,
+    symmetry: &'static str,
+    region: &'a str,
+    defending: &'static str,
+    teammates: usize,
+    opponents: usize,
+}
+
+fn rows(shelf: &Shelf) -> impl Iterator<Item = Row<'_>> {
+    shelf.base().cases().map(|case| {
+        let name = shelf.name(case.id());
+        Row {
+            league: shelf.league(),
+            id: case.id().0,
+            case: name,
+            symmetry: case.symmetry().word(),
+            region: name.split_once('/').map_or(name, |(region, _)| region),
+            defending: case.defending().word(),
+            teammates: case.teammates(),
+            opponents: case.opponents().count(),
+        }
+    })
+}
+
+/// A list with one case a line: for programs, and for `grep` and `diff`.
+fn write_json(output: &mut impl Write, rows: &[Row<'_>]) -> io::Result<()> {
+    output.write_all(b"[")?;
+    for (index, row) in rows.iter().enumerate() {
+        output.write_all(if index == 0 { b"\n" } else { b",\n" })?;
+        serde_json::to_writer(&mut *output, row)?;
+    }
+    output.write_all(if rows.is_empty() { b"]\n" } else { b"\n]\n" })
+}
+
+fn write_table(output: &mut impl Write, rows: &[Row<'_>]) -> io::Result<()> {
+    let width = |column: fn(&Row<'_>) -> usize, least| rows.iter().map(column).fold(least, usize::max);
+    let league = width(|row| row.league.chars().count(), "league".len());
+    let case = width(|row| row.case.chars().count(), "case".len());
+    writeln!(
+        output,
+        "{:league$}  {:>5}  {:case$}  {:8}  {:9}  {:>9}  {:>9}",
+        "league", "id", "case", "symmetry", "defending", "teammates", "opponents"
+    )?;
+    for row in rows {
+        writeln!(
+            output,
+            "{:league$}  {:>5}  {:case$}  {:8}  {:9}  {:>9}  {:>9}",
+            row.league, row.id, row.case, row.symmetry, row.defending, row.teammates, row.opponents
+        )?;
+    }
+    Ok(())
+}

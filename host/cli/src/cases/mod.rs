@@ -1,0 +1,41 @@
+//! What is in a case base, is it sound, what does it answer and why? The verb `cases` (DESIGN §8).
+
+mod answer;
+mod check;
+mod explain;
+mod lines;
+mod list;
+mod problem;
+mod retrieve;
+mod show;
+
+use std::process::ExitCode;
+
+use clap::Subcommand;
+
+use crate::Failure;
+
+/// One file per verb.
+#[derive(Debug, Subcommand)]
+pub(crate) enum CasesVerb {
+    /// Is a library sound? Tells every error and warning with its file, line and mend.
+    Check(check::CheckArgs),
+    /// Which cases are stored?
+    List(list::ListArgs),
+    /// What does a stored case say: the situation, each robot's gameplay, the ball's path?
+    Show(show::ShowArgs),
+    /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
+    Retrieve(retrieve::RetrieveArgs),
+    /// Why that case? Every case's verdict for each problem on stdin.
+    Explain(explain::ExplainArgs),
+}
+
+pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
+    match verb {
+        CasesVerb::Check(args) => check::run(args),
+        CasesVerb::List(args) => list::run(args),
+        CasesVerb::Show(args) => show::run(args),
+        CasesVerb::Retrieve(args) => retrieve::run(args),
+        CasesVerb::Explain(args) => explain::run(args),
+    }
+}

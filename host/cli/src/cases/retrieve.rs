@@ -1,0 +1,36 @@
+//! Which case fits each of these situations? Problems in on stdin, answers out on stdout, one a line (DESIGN §8).
+
+use std::io::{BufWriter, stdin, stdout};
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::answer::{Answer, write_line};
+use super::lines::for_each_problem;
+use crate::Failure;
+use crate::args::{LibraryArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// What `cases retrieve` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct RetrieveArgs {
+    #[command(flatten)]
+    library: LibraryArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+}
+
+pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
+    let chosen = args.settings.choose()?;
+    let shelf = Shelf::open(&args.library)?;
+    let base = shelf.base();
+    let mut output = BufWriter::new(stdout().lock());
+    for_each_problem(stdin().lock(), &mut output, |output, problem| match problem {
+        Ok(problem) => {
+            let retrieval = casebase::retrieve(&base, &problem, &chosen.settings);
+            write_line(output, &Answer::new(&shelf, &problem, &chosen, &retrieval))
+        }
+        Err(error) => write_line(output, &Answer::Malformed { error }),
+    })?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,124 @@
+//! What does a stored case say: the situation, what each robot does, and the ball's path? (paper §2; DESIGN §4.1–§4.3)
+//! Text for people; mm and degrees, the case's own coordinates.
+
+use std::io::{self, BufWriter, Write, stdout};
+use std::process::ExitCode;
+
+use casebase::{Action, Case, CaseBase, GoalEnd, Kick, KickAim, Leg, LegKind, PointMm, TurnTarget};
+use clap::Args;
+use protocol::CaseId;
+
+use crate::Failure;
+use crate::args::LibraryArgs;
+use crate::library::Shelf;
+
+/// What `cases show` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct ShowArgs {
+    /// `region/name` of a case (shown as authored), or the id of a stored case.
+    #[arg(value_name = "NAME|ID")]
+    case: String,
+    #[command(flatten)]
+    library: LibraryArgs,
+}
+
+pub(super) fn run(args: &ShowArgs) -> Result<ExitCode, Failure> {
+    let shelf = Shelf::open(&args.library)?;
+    let case = find(&shelf, &args.case).ok_or_else(|| unknown(&shelf, &args.case))?;
+    let mut output = BufWriter::new(stdout().lock());
+    let written = write_case(&mut output, &shelf, &case);
+    written.and_then(|()| output.flush()).map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn find<'a>(shelf: &'a Shelf, asked: &str) -> Option<Case<'a>> {
+    match asked.parse() {
+        Ok(id) => shelf.base().case(CaseId(id)),
+        Err(_) => shelf.base().cases().find(|case| shelf.name(case.id()) == asked),
+    }
+}
+
+fn unknown(shelf: &Shelf, asked: &str) -> Failure {
+    let base = shelf.base();
+    Failure::UnknownCase { asked: asked.to_owned(), league: shelf.league().to_owned(), stored: base.len() }
+}
+
+fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {
+    let base = shelf.base();
+    writeln!(output, "{}  id {}, {}, {}", shelf.name(case.id()), case.id(), case.symmetry().word(), shelf.league())?;
+    if let Some(intent) = shelf.intent(case.id()) {
+        writeln!(output, "{intent}")?;
+    }
+    let (side, ball, scope) = (case.defending(), case.ball(), case.ball_scope());
+    let towards = if side == GoalEnd::Negative { "+x" } else { "-x" };
+    writeln!(output, "defending {}: attacks towards {towards}; mm and degrees, field frame", side.word())?;
+    writeln!(output, "\n{:5} {:>14}  scope {} x {}", "ball", at(ball), scope.x, scope.y)?;
+    for robot in case.robots() {
+        let gameplay: Vec<_> = case.gameplay(robot).map(|action| told(action, &base)).collect();
+        writeln!(output, "{:5} {:>14}  {}", robot.to_string(), at(case.position(robot)), gameplay.join("; "))?;
+    }
+    for (number, (opponent, scope)) in (1..).zip(case.opponents()) {
+        writeln!(output, "{:5} {:>14}  scope {} x {}", format!("opp{number}"), at(opponent), scope.x, scope.y)?;
+    }
+    writeln!(output, "\npath of the ball")?;
+    for (number, leg) in (1..).zip(case.legs(ball)) {
+        writeln!(output, "leg {number} {}", told_leg(&leg))?;
+    }
+    Ok(())
+}
+
+fn told_leg(leg: &Leg) -> String {
+    let [from, to] = [leg.from, leg.to].map(|end| format!("({:.0}, {:.0})", end[0], end[1]));
+    let kind = match leg.kind {
+        LegKind::Pass(receiver) => format!("{} passes to {receiver}", leg.robot),
+        LegKind::Kick => format!("{} kicks", leg.robot),
+    };
+    format!("{kind}: {from} to {to}, {:.0} mm, radius {:.0} to {:.0}", leg.length(), leg.r_min, leg.r_max)
+}
+
+fn told(action: Action, base: &CaseBase<'_>) -> String {
+    let word = action.word();
+    match action {
+        Action::Wait | Action::GetBall => word.to_owned(),
+        Action::GoToPoint(point) | Action::DribbleTo(point) => format!("{word} {}", at(point)),
+        Action::Turn(TurnTarget::HeadingDeg(degrees)) => format!("{word} to {}", heading(degrees)),
+        Action::Turn(TurnTarget::Face(point)) => format!("{word} to face {}", at(point)),
+        Action::PassBall(other) => format!("{word} to {other}"),
+        Action::ReceiveBall(other) => format!("{word} from {other}"),
+        Action::Kick(kind) => format!("{word} {}", base.kick(kind).map_or_else(String::new, told_kick)),
+    }
+}
+
+fn told_kick(kick: Kick) -> String {
+    match kick.aim {
+        KickAim::Goal { offset_mm: 0 } => "at the goal".to_owned(),
+        KickAim::Goal { offset_mm } => format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm)),
+        KickAim::Heading { degrees, length_mm } => format!("{length_mm} mm {}", heading(degrees)),
+    }
+}
+
+/// A heading relative to the direction of attack.
+fn heading(degrees: i32) -> String {
+    if degrees == 0 { "straight ahead".to_owned() } else { format!("{} deg {}", degrees.abs(), side(degrees)) }
+}
+
+/// Left is positive, seen in attack.
+fn side(signed: i32) -> &'static str {
+    if signed > 0 { "left" } else { "right" }
+}
+
+fn at(point: PointMm) -> String {
+    format!("({}, {})", point.x, point.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn left_is_told_as_left() {
+        assert_eq!(heading(45), "45 deg left");
+        assert_eq!(heading(-45), "45 deg right");
+        assert_eq!(heading(0), "straight ahead");
+    }
+}

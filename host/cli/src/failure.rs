@@ -1,0 +1,100 @@
+//! Why could the thing asked for not be done, and how is it mended? Exit code 1 (DESIGN §8); wrong usage is clap's.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use case_tools::{Finding, Severity};
+use casebase::SettingError;
+
+/// One variant per thing the person can do something about.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// `--library` names no folder.
+    NoFolder(PathBuf),
+    /// The case files in a folder are faulty.
+    FaultyLibrary {
+        /// The league's folder.
+        folder: PathBuf,
+        /// What is wrong, errors among them.
+        findings: Vec<Finding>,
+    },
+    /// `--league` names none of the built-in leagues.
+    UnknownLeague(String),
+    /// A case asked for by a name or id that the library lacks.
+    UnknownCase {
+        /// What was asked for.
+        asked: String,
+        /// Whose cases.
+        league: String,
+        /// Stored cases there are.
+        stored: usize,
+    },
+    /// `--set` with a name or value that retrieval does not know.
+    Setting {
+        /// As given.
+        assignment: String,
+        /// What retrieval says to it.
+        error: SettingError,
+    },
+    /// Stdin could not be read.
+    Input(io::Error),
+    /// Stdout could not be written.
+    Output(io::Error),
+}
+
+impl Failure {
+    pub(crate) fn setting(name: &str, value: &str, error: SettingError) -> Self {
+        Self::Setting { assignment: format!("{name}={value}"), error }
+    }
+
+    pub(crate) fn missing_folder(folder: &Path) -> Self {
+        Self::NoFolder(folder.to_owned())
+    }
+
+    /// Says it on stderr. Whoever closed our stdout has read enough: that is a quiet end.
+    pub(crate) fn report(&self) -> ExitCode {
+        if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
+            return ExitCode::SUCCESS;
+        }
+        eprintln!("error: {self}");
+        ExitCode::FAILURE
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoFolder(folder) => write!(
+                f,
+                "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
+                folder.display()
+            ),
+            Self::FaultyLibrary { folder, findings } => {
+                let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
+                writeln!(f, "the library at {} is refused:", folder.display())?;
+                for finding in errors {
+                    writeln!(f, "  {finding}")?;
+                }
+                f.write_str("mend the files; `onetwo cases check --library DIR` tells again, with warnings")
+            }
+            Self::UnknownLeague(name) => {
+                let known: Vec<_> = case_library::LEAGUES.iter().map(|league| league.name).collect();
+                write!(f, "no built-in league {name:?}; --league takes one of: {}", known.join(", "))
+            }
+            Self::UnknownCase { asked, league, stored } => match stored.checked_sub(1) {
+                Some(last) => write!(
+                    f,
+                    "no case {asked:?} in {league}; take an id, 0 to {last}, or a region/name that `onetwo cases list` tells"
+                ),
+                None => write!(f, "no case {asked:?} in {league}; the library holds no case"),
+            },
+            Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
+            Self::Input(error) => write!(f, "cannot read stdin: {error}"),
+            Self::Output(error) => write!(f, "cannot write stdout: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
