@@ -1,4 +1,5 @@
 //! What tests that cross crates share. Runs on the developer's machine only.
 
+pub mod invariants;
 pub mod oracle;
 pub mod random_library;

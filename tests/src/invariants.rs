@@ -1,0 +1,309 @@
+//! Does a team keep its promises? The coordination invariants of DESIGN §5, watched from outside the brain.
+//!
+//! The watcher sees only what an eavesdropper with the key sees: which beacon each robot sent and heard, and when
+//! robots died, came back, and the air was cut or healed. What a robot does with its body in a step is judged by the
+//! beacon of the same step, which the brain sends after it has decided.
+
+use std::collections::BTreeMap;
+
+use protocol::team::{Beacon, CycleState, Decision, Play, Progress};
+use protocol::{CycleId, Duration, Instant, RobotId};
+
+/// Something seen from outside.
+#[derive(Clone, Debug)]
+pub enum Seen {
+    /// A robot sent this beacon.
+    Sent(RobotId, Beacon),
+    /// A robot heard this beacon of another.
+    Heard(RobotId, RobotId, Beacon),
+    /// A robot died.
+    Crashed(RobotId),
+    /// A robot boots.
+    Booted(RobotId),
+}
+
+/// A broken promise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Violation {
+    /// When.
+    pub at: Instant,
+    /// What, in a sentence.
+    pub what: String,
+}
+
+/// What is promised depends on the air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Air {
+    /// Nothing is lost: gameplays never overlap longer than [`LEAVE_WITHIN`].
+    Lossless,
+    /// Packets are lost: overlaps are counted, robots leave the old gameplay when they hear of the new one.
+    Lossy,
+}
+
+/// Watches a team.
+#[derive(Debug)]
+pub struct Watcher {
+    air: Air,
+    robots: BTreeMap<RobotId, Watched>,
+    contents: BTreeMap<CycleId, (RobotId, Option<Play>)>,
+    overlap_since: Option<Instant>,
+    pending: Option<Pending>,
+    /// Times at which two gameplays ran at once.
+    pub overlaps: u32,
+    /// Cycles seen.
+    pub cycles: u32,
+    /// Gameplays seen.
+    pub gameplays: u32,
+    /// The longest time from a fault to the next cycle.
+    pub slowest_recovery: Duration,
+    violations: Vec<Violation>,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Watched {
+    beacon: Option<Beacon>,
+    /// The newest cycle it has heard of, and since when.
+    told: Option<(CycleState, Instant)>,
+}
+
+/// A fault that obliges the team to start a new cycle.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    since: Instant,
+    newer_than: CycleId,
+}
+
+/// A robot of an older gameplay leaves it within this time of hearing of a newer cycle (DESIGN §5).
+pub const LEAVE_WITHIN: Duration = Duration::millis(150);
+/// A new cycle comes within this time of a fault (DESIGN §5).
+pub const RECOVER_WITHIN: Duration = Duration::millis(1000);
+
+impl Watcher {
+    /// Watches from the start.
+    pub fn new(air: Air) -> Self {
+        Self {
+            air,
+            robots: BTreeMap::new(),
+            contents: BTreeMap::new(),
+            overlap_since: None,
+            pending: None,
+            overlaps: 0,
+            cycles: 0,
+            gameplays: 0,
+            slowest_recovery: Duration(0),
+            violations: Vec::new(),
+        }
+    }
+
+    /// Every broken promise so far.
+    pub fn violations(&self) -> &[Violation] {
+        &self.violations
+    }
+
+    /// Takes in what was seen at `now`, in order.
+    pub fn see(&mut self, now: Instant, seen: &Seen) {
+        match seen {
+            Seen::Booted(id) => {
+                self.robots.insert(*id, Watched::default());
+            }
+            Seen::Crashed(id) => self.crashed(now, *id),
+            Seen::Heard(id, _, beacon) => self.heard(now, *id, beacon),
+            Seen::Sent(id, beacon) => self.sent(now, *id, beacon),
+        }
+    }
+
+    /// To be called after everything of one moment was seen.
+    pub fn end_of_step(&mut self, now: Instant) {
+        let running: Vec<CycleId> = self.robots.iter().filter_map(|(id, w)| active_in(*id, w)).collect();
+        let overlapping = running.windows(2).any(|pair| pair[0] != pair[1]);
+        if !overlapping {
+            self.overlap_since = None;
+        } else if let Some(since) = self.overlap_since {
+            if self.air == Air::Lossless && now.since(since) > LEAVE_WITHIN {
+                self.violate(now, format!("two gameplays have run at once since {} ms", since.0 / 1000));
+            }
+        } else {
+            self.overlap_since = Some(now);
+            self.overlaps += 1;
+        }
+        let Some(pending) = self.pending else { return };
+        if self.newest().is_some_and(|id| id > pending.newer_than) {
+            self.slowest_recovery = self.slowest_recovery.max(now.since(pending.since));
+            self.pending = None;
+        } else if now.since(pending.since) > RECOVER_WITHIN {
+            self.violate(now, format!("no new cycle since the fault at {} ms", pending.since.0 / 1000));
+            self.pending = None;
+        }
+    }
+
+    fn crashed(&mut self, now: Instant, id: RobotId) {
+        let newest = self.newest();
+        self.robots.remove(&id);
+        // Whoever is left must start anew if the lost robot took part in the newest cycle.
+        let took_part = newest.and_then(|n| self.contents.get(&n)).is_some_and(|(coordinator, play)| {
+            *coordinator == id || play.as_ref().is_some_and(|play| play.part_of(id).is_some())
+        });
+        if let (Some(newer_than), true, false) = (newest, took_part, self.robots.is_empty()) {
+            self.pending = Some(Pending { since: now, newer_than });
+        }
+    }
+
+    fn heard(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
+        let (Some(watched), Some(cycle)) = (self.robots.get_mut(&id), &beacon.cycle) else { return };
+        if cycle.is_newer_than(watched.told.as_ref().map(|(state, _)| state)) {
+            watched.told = Some((cycle.clone(), now));
+        }
+    }
+
+    fn sent(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
+        if let Some(cycle) = &beacon.cycle {
+            self.agree(now, cycle);
+        }
+        let Some(watched) = self.robots.get_mut(&id) else { return };
+        let before = watched.beacon.as_ref().and_then(|b| b.cycle.as_ref());
+        let told = watched.told.clone();
+        let backwards = before.is_some_and(|before| {
+            beacon.cycle.as_ref().is_none_or(|cycle| before.is_newer_than(Some(cycle)))
+        });
+        watched.beacon = Some(beacon.clone());
+        let active = active_in(id, watched);
+        if backwards {
+            self.violate(now, format!("robot {id} went back to an older state of its cycle"));
+        }
+        // Told of a newer cycle, or of the end of this one: out, from this step on.
+        if let (Some(active), Some((told, _))) = (active, told) {
+            let over = told.id > active || (told.id == active && matches!(told.decision, Decision::Closed(_)));
+            if over {
+                self.violate(now, format!("robot {id} plays on in {active} after hearing of {told:?}"));
+            }
+        }
+    }
+
+    /// One cycle, one coordinator, one gameplay.
+    fn agree(&mut self, now: Instant, cycle: &CycleState) {
+        let new = !self.contents.contains_key(&cycle.id);
+        let entry = self.contents.entry(cycle.id).or_insert((cycle.coordinator, None));
+        let mut complaint = None;
+        if entry.0 != cycle.coordinator {
+            complaint = Some(format!("cycle {} has two coordinators", cycle.id));
+        }
+        if let Some(play) = cycle.play() {
+            match &entry.1 {
+                None => {
+                    entry.1 = Some(play.clone());
+                    self.gameplays += 1;
+                }
+                Some(known) if known != play => {
+                    complaint = Some(format!("cycle {} has two gameplays: {known:?} and {play:?}", cycle.id));
+                }
+                Some(_) => {}
+            }
+        }
+        self.cycles += u32::from(new);
+        if let Some(what) = complaint {
+            self.violate(now, what);
+        }
+    }
+
+    fn newest(&self) -> Option<CycleId> {
+        self.robots.values().filter_map(|w| w.beacon.as_ref()?.cycle.as_ref()).map(|c| c.id).max()
+    }
+
+    fn violate(&mut self, at: Instant, what: String) {
+        self.violations.push(Violation { at, what });
+    }
+}
+
+/// The cycle whose gameplay this robot's body is at.
+fn active_in(id: RobotId, watched: &Watched) -> Option<CycleId> {
+    let beacon = watched.beacon.as_ref()?;
+    let cycle = beacon.cycle.as_ref()?;
+    let involved = cycle.play().is_some_and(|play| play.part_of(id).is_some());
+    let busy = matches!(beacon.progress, Progress::Adapt { .. } | Progress::Execute { .. });
+    (involved && busy).then_some(cycle.id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::CaseId;
+    use protocol::quantized::{WirePoint, WirePose};
+    use protocol::team::{AbortReason, Closure, Role, Status};
+
+    fn robot(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn beacon(counter: u32, decision: Decision, progress: Progress) -> Beacon {
+        let id = CycleId { counter, proposer: robot(1) };
+        Beacon {
+            pose: WirePose::default(),
+            ball: None,
+            status: Status::AVAILABLE,
+            case_base: 1,
+            cycle: Some(CycleState { id, coordinator: robot(1), decision }),
+            progress,
+            role: Role::None,
+        }
+    }
+
+    fn play(robots: &[u8]) -> Decision {
+        let robots = robots.iter().map(|&n| robot(n)).collect();
+        Decision::Play(Play { case: CaseId(1), ball: WirePoint::default(), robots })
+    }
+
+    fn watch(air: Air) -> Watcher {
+        let mut watcher = Watcher::new(air);
+        for n in [1, 2] {
+            watcher.see(Instant(0), &Seen::Booted(robot(n)));
+        }
+        watcher
+    }
+
+    const BUSY: Progress = Progress::Execute { done: 0 };
+
+    #[test]
+    fn gameplays_that_overlap_too_long_are_a_violation_where_nothing_is_lost() {
+        for (air, expected) in [(Air::Lossless, true), (Air::Lossy, false)] {
+            let mut watcher = watch(air);
+            for ms in [0, 80, 160] {
+                let now = Instant(ms * 1000);
+                watcher.see(now, &Seen::Sent(robot(1), beacon(2, play(&[1]), BUSY)));
+                watcher.see(now, &Seen::Sent(robot(2), beacon(1, play(&[2]), BUSY)));
+                watcher.end_of_step(now);
+            }
+            assert_eq!(!watcher.violations().is_empty(), expected, "{air:?}");
+            assert_eq!(watcher.overlaps, 1);
+        }
+    }
+
+    #[test]
+    fn playing_on_after_hearing_an_abort_is_a_violation() {
+        let mut watcher = watch(Air::Lossy);
+        let abort = Closure::Aborted { by: robot(2), reason: AbortReason::Timeout };
+        watcher.see(Instant(0), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
+        let end = beacon(1, Decision::Closed(abort), Progress::Idle);
+        watcher.see(Instant(40_000), &Seen::Heard(robot(1), robot(2), end));
+        watcher.see(Instant(40_000), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
+        assert_eq!(watcher.violations().len(), 1);
+    }
+
+    #[test]
+    fn a_team_that_never_recovers_is_a_violation() {
+        let mut watcher = watch(Air::Lossless);
+        watcher.see(Instant(0), &Seen::Sent(robot(2), beacon(1, play(&[1, 2]), BUSY)));
+        watcher.see(Instant(0), &Seen::Crashed(robot(1)));
+        watcher.end_of_step(Instant(990_000));
+        assert!(watcher.violations().is_empty());
+        watcher.end_of_step(Instant(1_001_000));
+        assert_eq!(watcher.violations().len(), 1);
+    }
+
+    #[test]
+    fn two_gameplays_in_one_cycle_are_a_violation() {
+        let mut watcher = watch(Air::Lossy);
+        watcher.see(Instant(0), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
+        watcher.see(Instant(0), &Seen::Sent(robot(2), beacon(1, play(&[2]), BUSY)));
+        assert_eq!(watcher.violations().len(), 1);
+    }
+}
