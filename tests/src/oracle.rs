@@ -1,7 +1,7 @@
 //! Which case answers a problem, by an independent and naive reading of the agreement?
 //!
 //! DESIGN §4.3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed. **Invariant:** it uses no
-//! crate of the project, so that it can be wrong only on its own account. Field frame, mm, default settings.
+//! crate of the project, so that it can be wrong only on its own account. Field frame, mm.
 //!
 //! Two honest implementations may differ where a number falls on a threshold: every decision that hangs on a relative
 //! difference below [`NEAR`] is noted in the answer.
@@ -37,7 +37,7 @@ pub struct Candidate {
     pub id: usize,
     /// Of the ball.
     pub similarity: f64,
-    /// Sum of the distances to the adapted positions, mm.
+    /// Sum of the ways to the adapted positions (or the longest of them), mm.
     pub cost: f64,
     /// Opponent scopes that are occupied.
     pub conditions: usize,
@@ -47,6 +47,54 @@ pub struct Candidate {
     pub adapted: Vec<Point>,
 }
 
+/// The settings of DESIGN §4.3 that change which answer is right, as far as the agreement says how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rules {
+    /// Furthest way to an adapted position, mm (`thr_c`; paper, Algorithm 1).
+    pub furthest: f64,
+    /// Where a membership ends (`thr`; paper §3.1).
+    pub membership: f64,
+    /// Only correspondences within `thr_c` are looked at (`correspondence = constrained`).
+    pub constrained: bool,
+    /// Opponent scopes stay where the case has them (`scopes = absolute`).
+    pub scopes_absolute: bool,
+    /// The cost is the longest way, not the sum (`cost = max`).
+    pub longest: bool,
+    /// What counts first (`ranking`).
+    pub ranking: [Criterion; 3],
+}
+
+/// A step of the ranking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// More occupied scopes first.
+    Conditions,
+    /// More case robots first.
+    Teammates,
+    /// The better interval of similarity first, then the lower cost.
+    IntervalCost,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self {
+            furthest: 1500.0,
+            membership: 0.367,
+            constrained: false,
+            scopes_absolute: false,
+            longest: false,
+            ranking: [Criterion::Conditions, Criterion::Teammates, Criterion::IntervalCost],
+        }
+    }
+}
+
+impl Rules {
+    /// The exponent at which a membership ends.
+    fn threshold(&self) -> f64 {
+        -self.membership.ln()
+    }
+}
+
 /// One line's answer as `onetwo cases retrieve` prints it (DESIGN §8), line counted from 1; `None` for a blank line.
 /// Numbers are not rounded, and an error's wording is the oracle's own.
 pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value> {
@@ -54,13 +102,13 @@ pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value
         return None;
     }
     Some(match Problem::parse(line) {
-        Ok(problem) => retrieve(library, &problem).to_json(library),
+        Ok(problem) => retrieve(library, &problem, &Rules::default()).to_json(library),
         Err(reason) => json!({ "error": format!("line {number}: {reason}") }),
     })
 }
 
 /// The answer to a problem.
-pub fn retrieve(library: &Library, problem: &Problem) -> Answer {
+pub fn retrieve(library: &Library, problem: &Problem, rules: &Rules) -> Answer {
     let mut teammates = problem.teammates.clone();
     teammates.sort_by_key(|(id, _)| *id);
     let problem = &Problem { teammates, ..problem.clone() };
@@ -69,12 +117,12 @@ pub fn retrieve(library: &Library, problem: &Problem) -> Answer {
         .cases
         .iter()
         .enumerate()
-        .filter_map(|(id, case)| candidate(library, id, case, problem, &close))
+        .filter_map(|(id, case)| candidate(library, id, case, problem, rules, &close))
         .collect();
-    candidates.sort_by(|a, b| rank(a, b, &Close::default()));
+    candidates.sort_by(|a, b| rank(a, b, rules, &Close::default()));
     if let [first, others @ ..] = candidates.as_slice() {
         for other in others {
-            rank(first, other, &close);
+            rank(first, other, rules, &close);
         }
     }
     let count = candidates.len();
@@ -87,29 +135,31 @@ fn candidate(
     id: usize,
     case: &Case,
     problem: &Problem,
+    rules: &Rules,
     close: &Close,
 ) -> Option<Candidate> {
     if case.defending != problem.defending {
         return None;
     }
     let exponent = scope_exponent(case.ball, case.scope, problem.ball);
-    if !close.less("ball", exponent, threshold()) {
+    if !close.less("ball", exponent, rules.threshold()) {
         return None;
     }
     let shift = Point { x: problem.ball.x - case.ball.x, y: problem.ball.y - case.ball.y };
     let shifted = |p: Point| Point { x: p.x + shift.x, y: p.y + shift.y };
     let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
-    let (correspondence, cost) = correspondence(&adapted, &problem.teammates, close)?;
+    let (correspondence, cost) = correspondence(&adapted, &problem.teammates, rules, close)?;
 
     let legs = walk::legs(library, case, problem.ball).ok()?;
-    let blocked = |leg: &Leg| problem.opponents.iter().any(|&opponent| inside(leg, opponent, close));
+    let blocked = |leg: &Leg| problem.opponents.iter().any(|&opponent| inside(leg, opponent, rules, close));
     if legs.iter().any(blocked) {
         return None;
     }
     let occupied = |&&(centre, radii): &&(Point, Radii)| {
-        let centre = shifted(centre);
-        let within =
-            |&opponent: &Point| close.less("condition", scope_exponent(centre, radii, opponent), threshold());
+        let centre = if rules.scopes_absolute { centre } else { shifted(centre) };
+        let within = |&opponent: &Point| {
+            close.less("condition", scope_exponent(centre, radii, opponent), rules.threshold())
+        };
         problem.opponents.iter().any(within)
     };
     Some(Candidate {
@@ -122,13 +172,26 @@ fn candidate(
     })
 }
 
-/// The injection of least total distance, unless one of its robots has further than [`FURTHEST`] to go.
-fn correspondence(adapted: &[Point], present: &[(u8, Point)], close: &Close) -> Option<(Vec<u8>, f64)> {
+/// The injection of least cost, unless one of its robots has too far to go.
+fn correspondence(
+    adapted: &[Point],
+    present: &[(u8, Point)],
+    rules: &Rules,
+    close: &Close,
+) -> Option<(Vec<u8>, f64)> {
+    let ways = |chosen: &[usize]| -> Vec<f64> {
+        chosen.iter().zip(adapted).map(|(&r, &place)| distance(present[r].1, place)).collect()
+    };
+    let reachable = |ways: &[f64]| ways.iter().all(|&way| !close.less("thr_c", rules.furthest, way));
     let mut best: Option<(Vec<usize>, f64)> = None;
     let mut second = f64::INFINITY;
     // In ascending order, so that among equals the lexicographically smallest list of ids stays.
     injections(adapted.len(), present.len(), &mut Vec::new(), &mut |chosen| {
-        let cost = chosen.iter().zip(adapted).map(|(&r, &place)| distance(present[r].1, place)).sum();
+        let ways = ways(chosen);
+        if rules.constrained && !reachable(&ways) {
+            return;
+        }
+        let cost = if rules.longest { ways.iter().copied().fold(0.0, f64::max) } else { ways.iter().sum() };
         match &best {
             Some((_, least)) if cost >= *least => second = second.min(cost),
             _ => {
@@ -141,9 +204,7 @@ fn correspondence(adapted: &[Point], present: &[(u8, Point)], close: &Close) -> 
     if second.is_finite() {
         close.less("correspondence", cost, second);
     }
-    let near_enough =
-        |(&r, &place): (&usize, &Point)| !close.less("thr_c", FURTHEST, distance(present[r].1, place));
-    let accepted = chosen.iter().zip(adapted).all(near_enough);
+    let accepted = reachable(&ways(&chosen));
     accepted.then(|| (chosen.iter().map(|&r| present[r].0).collect(), cost))
 }
 
@@ -163,7 +224,7 @@ fn injections(places: usize, present: usize, chosen: &mut Vec<usize>, visit: &mu
 }
 
 /// Is an opponent within the fuzzy trapezoid of a leg?
-fn inside(leg: &Leg, opponent: Point, close: &Close) -> bool {
+fn inside(leg: &Leg, opponent: Point, rules: &Rules, close: &Close) -> bool {
     let (dx, dy) = (leg.to.0 - leg.from.0, leg.to.1 - leg.from.1);
     let length = dx.hypot(dy);
     if length == 0.0 {
@@ -177,16 +238,22 @@ fn inside(leg: &Leg, opponent: Point, close: &Close) -> bool {
     if close.less_by("leg start", along, 0.0, length) || close.less("leg end", length, along) {
         return false;
     }
-    close.less("leg", (across / radius).powi(2), threshold())
+    close.less("leg", (across / radius).powi(2), rules.threshold())
 }
 
 /// Better candidates first.
-fn rank(a: &Candidate, b: &Candidate, close: &Close) -> Ordering {
-    b.conditions
-        .cmp(&a.conditions)
-        .then(b.correspondence.len().cmp(&a.correspondence.len()))
-        .then_with(|| interval(a.similarity, close).cmp(&interval(b.similarity, close)))
-        .then_with(|| close.order("cost", a.cost, b.cost))
+fn rank(a: &Candidate, b: &Candidate, rules: &Rules, close: &Close) -> Ordering {
+    let by = |criterion| match criterion {
+        Criterion::Conditions => b.conditions.cmp(&a.conditions),
+        Criterion::Teammates => b.correspondence.len().cmp(&a.correspondence.len()),
+        Criterion::IntervalCost => interval(a.similarity, close)
+            .cmp(&interval(b.similarity, close))
+            .then_with(|| close.order("cost", a.cost, b.cost)),
+    };
+    let [first, second, third] = rules.ranking;
+    by(first)
+        .then_with(|| by(second))
+        .then_with(|| by(third))
         .then_with(|| close.order("similarity", b.similarity, a.similarity))
         .then(a.id.cmp(&b.id))
 }
@@ -206,14 +273,6 @@ fn scope_exponent(centre: Point, radii: Radii, point: Point) -> f64 {
 fn distance(a: Point, b: Point) -> f64 {
     ((a.x - b.x) as f64).hypot((a.y - b.y) as f64)
 }
-
-/// The exponent at which a membership is 0.367.
-fn threshold() -> f64 {
-    -(0.367_f64.ln())
-}
-
-/// thr_c, mm (paper, Algorithm 1).
-const FURTHEST: f64 = 1500.0;
 
 /// Relative difference below which two honest implementations may decide differently.
 pub const NEAR: f64 = 1e-4;

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use match_tests::oracle::library::{Goal, Library, Point};
 use match_tests::oracle::problem::Problem;
-use match_tests::oracle::retrieve;
+use match_tests::oracle::{Rules, retrieve};
 use match_tests::random_library::{Dice, random_problem};
 
 /// Cases the issue asks for to start with.
@@ -26,7 +26,7 @@ fn every_case_in_every_symmetry_retrieves_itself_or_its_twin_from_its_own_situat
     assert!(library.cases.len() >= 4 * AUTHORED_MIN);
     for (id, case) in library.cases.iter().enumerate() {
         let problem = Problem::own_situation(case);
-        let answer = retrieve(&library, &problem);
+        let answer = retrieve(&library, &problem, &Rules::default());
         let winner = answer.winner.unwrap_or_else(|| panic!("{} blocks itself", case.name));
         let won = &library.cases[winner.id];
         assert_eq!(
@@ -52,7 +52,7 @@ fn a_robot_behind_a_ball_that_nobody_blocks_has_a_case_on_95_percent_of_the_fiel
                 let teammates = vec![(1, Point { x: x - 150 * defending.attack(), y })];
                 let problem = Problem { ball: Point { x, y }, defending, teammates, opponents: Vec::new() };
                 places += 1;
-                covered += usize::from(retrieve(&library, &problem).winner.is_some());
+                covered += usize::from(retrieve(&library, &problem, &Rules::default()).winner.is_some());
             }
         }
         assert!(covered * 100 >= places * 95, "defending {}: {covered} of {places}", defending.word());
@@ -65,7 +65,9 @@ fn every_case_wins_some_sampled_problem() {
     let mut dice = Dice::new(4);
     let mut wins: BTreeMap<&str, u32> = library.cases.iter().map(|case| (case.name.as_str(), 0)).collect();
     for _ in 0..4000 {
-        if let Some(winner) = retrieve(&library, &random_problem(&mut dice, &library)).winner {
+        if let Some(winner) =
+            retrieve(&library, &random_problem(&mut dice, &library), &Rules::default()).winner
+        {
             *wins.entry(library.cases[winner.id].name.as_str()).or_default() += 1;
         }
     }

@@ -71,7 +71,7 @@ fn with_any_ids(dice: &mut Dice, robots: Vec<Point>) -> Vec<(u8, Point)> {
 mod tests {
     use super::super::RandomLibrary;
     use super::*;
-    use crate::oracle::retrieve;
+    use crate::oracle::{Rules, retrieve};
 
     #[test]
     fn a_good_share_of_the_problems_has_several_candidates() {
@@ -80,7 +80,7 @@ mod tests {
         let mut dice = Dice::new(2);
         let (mut some, mut several) = (0, 0);
         for _ in 0..1000 {
-            let answer = retrieve(&library, &random_problem(&mut dice, &library));
+            let answer = retrieve(&library, &random_problem(&mut dice, &library), &Rules::default());
             some += usize::from(answer.candidates > 0);
             several += usize::from(answer.candidates > 1);
         }
