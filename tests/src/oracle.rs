@@ -20,7 +20,7 @@ use problem::Problem;
 use walk::Leg;
 
 /// What the agreement says to a problem.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// The case to play; `None` when nothing fits.
     pub winner: Option<Candidate>,
