@@ -1,2 +1,44 @@
-//! Placeholder: being built.
+//! Which gameplay fits this situation, who plays whom in it, and is its way free? (Ros et al. 2009, §2–§3)
+//!
+//! A case is (P, A, K): a situation, what each robot does in it, and how far it generalises. A [`CaseBase`] is a
+//! flat table in flash; [`retrieve`] finds the case for a [`Problem`]; [`explain`] says why, for every case. The
+//! four symmetric copies of an authored case are stored in full, so that a robot never flips anything.
+//!
+//! Whole millimetres, field frame (+x along the length, +y to the left of +x), as in the paper.
+//!
+//! **Invariants.** No I/O, no clock, no allocation; no bytes of a table, no problem and no setting can panic. It
+//! knows nothing of files (`case-tools` does) and of radio. Runs on robots and on the host alike.
 #![no_std]
+
+pub mod action;
+mod case;
+mod correspondence;
+mod explain;
+mod index;
+mod path;
+mod point;
+mod problem;
+mod rank;
+mod retrieve;
+pub mod settings;
+mod symmetry;
+pub mod table;
+#[cfg(test)]
+mod testing;
+pub mod walk;
+
+pub use action::{
+    Action, CaseRobot, FieldMm, Kick, KickAim, KickId, OPPONENTS_MAX, Pass, Primitive, TEAMMATES_MAX,
+    TurnTarget,
+};
+pub use case::Case;
+pub use explain::{Verdict, explain};
+pub use index::Grid;
+pub use path::{Abreast, Blocked, Leg, LegKind, blocked_leg};
+pub use point::{PointMm, Scope};
+pub use problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
+pub use rank::{Correspondence, Match, rank_order};
+pub use retrieve::{Retrieval, adapted_position, retrieve, retrieve_best};
+pub use settings::{SettingError, Settings};
+pub use symmetry::{GoalEnd, Symmetry};
+pub use table::{CaseBase, TableError};

@@ -1,0 +1,252 @@
+//! What do the robots of a case do, and what can a kick do? (Ros et al. 2009, §2.2; DESIGN §4.1, §4.4)
+//!
+//! Points are the case's own coordinates, mm; whoever plays the case adapts them with `Case::shift`.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::PointMm;
+
+/// Most robots in a case.
+pub const TEAMMATES_MAX: usize = 4;
+/// Most opponents (scopes) in a case.
+pub const OPPONENTS_MAX: usize = 4;
+/// Most kick kinds in a league.
+pub const KICKS_MAX: usize = 64;
+
+/// One of the robots of a case; counted from 0 inside, told from 1 (`tm1` … `tm4`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct CaseRobot(u8);
+
+impl CaseRobot {
+    /// `None` where no case has such a robot.
+    pub const fn new(index: usize) -> Option<Self> {
+        if index < TEAMMATES_MAX { Some(Self(index as u8)) } else { None }
+    }
+
+    /// tm1.
+    pub(crate) const FIRST: Self = Self(0);
+
+    /// From 0; always below [`TEAMMATES_MAX`], even where the value came from outside.
+    pub const fn index(self) -> usize {
+        (self.0 & 3) as usize
+    }
+
+    /// From 1, as files and people count.
+    pub const fn number(self) -> u8 {
+        self.index() as u8 + 1
+    }
+
+    /// The first `count` robots.
+    pub fn first(count: usize) -> impl Iterator<Item = Self> + Clone {
+        (0..count.min(TEAMMATES_MAX) as u8).map(Self)
+    }
+}
+
+impl fmt::Display for CaseRobot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tm{}", self.number())
+    }
+}
+
+/// A kick kind of the league.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct KickId(pub u8);
+
+/// What one robot does next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Hold the place until the next action may start.
+    Wait,
+    /// Walk to a point.
+    GoToPoint(PointMm),
+    /// Face a direction or a point.
+    Turn(TurnTarget),
+    /// Go to the ball and hold it.
+    GetBall,
+    /// Carry the ball to a point.
+    DribbleTo(PointMm),
+    /// Kick the ball to a teammate that receives it.
+    PassBall(CaseRobot),
+    /// Receive the ball from the teammate that passes it.
+    ReceiveBall(CaseRobot),
+    /// Kick the ball away.
+    Kick(KickId),
+}
+
+impl Action {
+    /// Does the ball play a part in it? (DESIGN §4.3: "ball action")
+    pub const fn concerns_ball(self) -> bool {
+        !matches!(self, Self::Wait | Self::GoToPoint(_) | Self::Turn(_))
+    }
+
+    /// The word of the case files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Wait => "wait",
+            Self::GoToPoint(_) => "go_to_point",
+            Self::Turn(_) => "turn",
+            Self::GetBall => "get_ball",
+            Self::DribbleTo(_) => "dribble_to",
+            Self::PassBall(_) => "pass_ball",
+            Self::ReceiveBall(_) => "receive_ball",
+            Self::Kick(_) => "kick",
+        }
+    }
+}
+
+/// What a `turn` turns to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TurnTarget {
+    /// A heading relative to the direction of attack, whole degrees, left > 0.
+    HeadingDeg(i32),
+    /// A point.
+    Face(PointMm),
+}
+
+/// A kick kind: where it sends the ball, how far the ball scatters and what the body does for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kick {
+    /// Where the ball goes.
+    pub aim: KickAim,
+    /// Radius of its trajectory at the foot, mm.
+    pub r_min: i32,
+    /// Radius of its trajectory at the end, mm.
+    pub r_max: i32,
+    /// The body's kick.
+    pub primitive: Primitive,
+}
+
+/// Where a kick sends the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KickAim {
+    /// Along a heading relative to the direction of attack.
+    Heading {
+        /// Whole degrees, left > 0.
+        degrees: i32,
+        /// How far the ball rolls, mm.
+        length_mm: i32,
+    },
+    /// To a point of the attacked goal line.
+    Goal {
+        /// From the goal's centre, mm, left > 0 seen in attack.
+        offset_mm: i32,
+    },
+}
+
+/// The kick a body is asked for; the league's file names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Primitive {
+    /// The body chooses.
+    #[default]
+    Unspecified,
+    /// Forward, short.
+    ForwardSoft,
+    /// Forward, long.
+    ForwardHard,
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+    /// With the strength of a pass.
+    Pass,
+}
+
+impl Primitive {
+    /// All of them, in the order of their codes in the table.
+    pub const ALL: [Self; 6] =
+        [Self::Unspecified, Self::ForwardSoft, Self::ForwardHard, Self::Left, Self::Right, Self::Pass];
+
+    /// The word of the league's file; nothing for [`Primitive::Unspecified`].
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Unspecified => "",
+            Self::ForwardSoft => "forward_soft",
+            Self::ForwardHard => "forward_hard",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Pass => "pass",
+        }
+    }
+
+    /// From the word of the league's file.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|primitive| *primitive != Self::Unspecified && primitive.word() == word)
+    }
+}
+
+/// Radii of the trajectory of a pass, mm; its length is the distance to the receiver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// At the passer's foot.
+    pub r_min: i32,
+    /// At the receiver.
+    pub r_max: i32,
+}
+
+/// Dimensions of the league's field, mm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldMm {
+    /// Along x, between the goal lines.
+    pub length: i32,
+    /// Along y, between the touch lines.
+    pub width: i32,
+    /// Carpet outside the lines.
+    pub margin: i32,
+    /// Between the posts.
+    pub goal_width: i32,
+    /// Of the penalty area, along x.
+    pub penalty_depth: i32,
+    /// Of the penalty area, along y.
+    pub penalty_width: i32,
+}
+
+impl FieldMm {
+    /// Inside the lines or on them.
+    pub const fn contains(&self, point: PointMm) -> bool {
+        2 * (point.x as i64).abs() <= self.length as i64 && 2 * (point.y as i64).abs() <= self.width as i64
+    }
+
+    /// The point inside the lines nearest to `point`; halves of odd dimensions round inwards.
+    pub fn clamp(&self, point: PointMm) -> PointMm {
+        let (x, y) = ((self.length / 2).max(0), (self.width / 2).max(0));
+        PointMm { x: point.x.clamp(-x, x), y: point.y.clamp(-y, y) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_are_told_from_one() {
+        assert_eq!(CaseRobot::first(9).map(CaseRobot::number).collect::<heapless::Vec<_, 8>>(), [1, 2, 3, 4]);
+        assert_eq!(CaseRobot::new(4), None);
+    }
+
+    #[test]
+    fn a_point_on_the_line_is_inside() {
+        let field = FieldMm {
+            length: 5400,
+            width: 3600,
+            margin: 300,
+            goal_width: 800,
+            penalty_depth: 650,
+            penalty_width: 1300,
+        };
+        assert!(field.contains(PointMm::new(-2700, 1800)));
+        assert!(!field.contains(PointMm::new(-2701, 0)) && !field.contains(PointMm::new(i32::MIN, 0)));
+        assert_eq!(field.clamp(PointMm::new(9999, -1801)), PointMm::new(2700, -1800));
+    }
+
+    #[test]
+    fn the_words_of_primitives_lead_back() {
+        for primitive in Primitive::ALL.into_iter().skip(1) {
+            assert_eq!(Primitive::from_word(primitive.word()), Some(primitive));
+        }
+        assert_eq!(Primitive::from_word(""), None);
+    }
+}

@@ -1,0 +1,238 @@
+//! What does one stored case say? (Ros et al. 2009, §2) A view into the table; mm, field frame.
+
+use protocol::CaseId;
+
+use crate::action::{Action, CaseRobot, KickId, TurnTarget};
+use crate::path::{Leg, RelativeLeg};
+use crate::point::gauss_exponent;
+use crate::settings::SCOPE_EXPONENT;
+use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, part};
+use crate::walk::{HandOver, Script, walk};
+use crate::{GoalEnd, PointMm, Scope, Symmetry};
+
+/// A stored case: case = (P, A, K). Copy it freely: it is only references.
+#[derive(Clone, Copy, Debug)]
+pub struct Case<'a> {
+    base: CaseBase<'a>,
+    id: CaseId,
+    gate: &'a Gate,
+    group: &'a Group,
+}
+
+impl<'a> Case<'a> {
+    #[inline]
+    pub(crate) fn new(base: CaseBase<'a>, id: CaseId) -> Option<Self> {
+        let gate = base.gates.get(usize::from(id.0))?;
+        let group = base.groups.get(usize::from(id.0 / 4))?;
+        Some(Self { base, id, gate, group })
+    }
+
+    /// Its number in the base: 4 × authored + symmetry.
+    pub const fn id(&self) -> CaseId {
+        self.id
+    }
+
+    /// Number of the authored case it comes from.
+    pub const fn authored(&self) -> usize {
+        self.id.0 as usize / 4
+    }
+
+    /// How it came out of the authored one.
+    pub const fn symmetry(&self) -> Symmetry {
+        Symmetry::from_bits(self.id.0)
+    }
+
+    /// The goal defended.
+    pub const fn defending(&self) -> GoalEnd {
+        let authored = if self.group.defending == 0 { GoalEnd::Negative } else { GoalEnd::Positive };
+        self.symmetry().goal(authored)
+    }
+
+    /// B_c.
+    pub const fn ball(&self) -> PointMm {
+        PointMm { x: self.gate.ball[0] as i32, y: self.gate.ball[1] as i32 }
+    }
+
+    /// The ball's scope.
+    pub fn ball_scope(&self) -> Scope {
+        scope(self.gate.inverse_scope)
+    }
+
+    /// Number of robots.
+    pub const fn teammates(&self) -> usize {
+        self.group.teammates as usize
+    }
+
+    /// Its robots, in their order.
+    pub fn robots(&self) -> impl Iterator<Item = CaseRobot> + Clone + use<> {
+        CaseRobot::first(self.teammates())
+    }
+
+    /// Where the robot stands in the case; the ball's place for a robot the case does not have.
+    pub fn position(&self, robot: CaseRobot) -> PointMm {
+        self.ball().plus(self.relative_position(robot))
+    }
+
+    /// B_p − B_c: what the case is moved by for a ball at `ball`.
+    pub const fn shift(&self, ball: PointMm) -> PointMm {
+        ball.minus(self.ball())
+    }
+
+    /// Where the robot should stand for a ball at `ball`; never clamped.
+    pub fn adapted(&self, robot: CaseRobot, ball: PointMm) -> PointMm {
+        ball.plus(self.relative_position(robot))
+    }
+
+    /// The robot's actions, in the case's own coordinates.
+    pub fn gameplay(&self, robot: CaseRobot) -> impl Iterator<Item = Action> + use<'a> {
+        let case = *self;
+        case.raw_gameplay(robot).iter().map(move |raw| case.decode(*raw))
+    }
+
+    /// One of the robot's actions.
+    pub fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
+        self.raw_gameplay(robot).get(index).map(|raw| self.decode(*raw))
+    }
+
+    /// The opponents and their scopes, in the case's own coordinates.
+    pub fn opponents(&self) -> impl Iterator<Item = (PointMm, Scope)> + use<'a> {
+        let ball = self.ball();
+        self.raw_opponents().iter().map(move |raw| (ball.plus(widen(raw.at)), scope(raw.inverse_scope)))
+    }
+
+    /// The robot whose first action is `get_ball`.
+    pub fn getter(&self) -> CaseRobot {
+        CaseRobot::new(usize::from(self.group.getter)).unwrap_or(CaseRobot::FIRST)
+    }
+
+    /// Does the ball lie in the ball's scope, at the paper's threshold?
+    pub fn ball_in_scope(&self, ball: PointMm) -> bool {
+        self.ball_exponent(ball) < SCOPE_EXPONENT
+    }
+
+    /// The legs of the ball path for a ball at `ball`, as stored: mm, field frame.
+    pub fn legs(&self, ball: PointMm) -> impl Iterator<Item = Leg> + use<'a> {
+        self.relative_legs(ball).map(move |leg| leg.at(ball))
+    }
+
+    /// The other end of a hand-over in the walk of the gameplays: `pass_ball` and the `receive_ball` that answers it
+    /// lead to each other; a later `get_ball` leads to the kick that hands the ball to it.
+    pub fn partner_of(&self, robot: CaseRobot, action: usize) -> Option<(CaseRobot, usize)> {
+        let mut partner = None;
+        let here = (robot, action);
+        // A stored case walked without an error when it was built; what came before one would still be right.
+        let _ = walk(self, &self.base, |step| {
+            if let Some(HandOver { from, to, by_pass }) = step.hand_over() {
+                if to == here {
+                    partner = Some(from);
+                } else if by_pass && from == here {
+                    partner = Some(to);
+                }
+            }
+        });
+        partner
+    }
+
+    pub(crate) const fn base(&self) -> &CaseBase<'a> {
+        &self.base
+    }
+
+    /// (Δx/τx)² + (Δy/τy)² of the ball in its scope.
+    #[inline]
+    pub(crate) fn ball_exponent(&self, ball: PointMm) -> f32 {
+        let [dx, dy] = self.shift(ball).to_f32();
+        gauss_exponent(dx, dy, self.gate.inverse_scope[0], self.gate.inverse_scope[1])
+    }
+
+    /// The robot's position relative to the case's ball.
+    #[inline]
+    pub(crate) fn relative_position(&self, robot: CaseRobot) -> PointMm {
+        self.relative_positions().get(robot.index()).copied().map_or(PointMm::new(0, 0), widen)
+    }
+
+    #[inline]
+    pub(crate) fn relative_positions(&self) -> &'a [[i16; 2]] {
+        part(self.base.positions, self.group.positions_at, self.group.teammates, self.copy())
+    }
+
+    #[inline]
+    pub(crate) fn raw_opponents(&self) -> &'a [Opponent] {
+        part(self.base.opponents, self.group.opponents_at, self.group.opponents, self.copy())
+    }
+
+    /// The stored legs relative to a ball at `ball`.
+    #[inline]
+    pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
+        let case = *self;
+        let raw = part(self.base.legs, self.group.legs_at, self.group.legs, self.copy());
+        raw.iter().scan([0.0; 2], move |at, raw| {
+            let leg = RelativeLeg::decode(&case, raw, *at, ball)?;
+            *at = leg.end();
+            Some(leg)
+        })
+    }
+
+    /// A point of the case by its number.
+    pub(crate) fn point(&self, index: u8) -> PointMm {
+        let points = part(self.base.points, self.group.points_at, self.group.points, self.copy());
+        points.get(usize::from(index)).map_or(PointMm::new(0, 0), |[x, y]| PointMm::new(*x, *y))
+    }
+
+    const fn copy(&self) -> u16 {
+        self.id.0 & 3
+    }
+
+    fn raw_gameplay(&self, robot: CaseRobot) -> &'a [RawAction] {
+        let ends = &self.group.list_ends;
+        if robot.index() >= self.teammates() {
+            return &[];
+        }
+        let count = ends[self.teammates().clamp(1, ends.len()) - 1];
+        let from = robot.index().checked_sub(1).map_or(0, |before| ends[before]);
+        part(self.base.actions, self.group.actions_at, count, self.copy())
+            .get(usize::from(from)..usize::from(ends[robot.index()]))
+            .unwrap_or(&[])
+    }
+
+    fn decode(&self, raw: RawAction) -> Action {
+        let robot = || CaseRobot::new(usize::from(raw.argument)).unwrap_or(CaseRobot::FIRST);
+        match raw.kind {
+            RawAction::GO_TO_POINT => Action::GoToPoint(self.point(raw.argument)),
+            RawAction::TURN_HEADING => Action::Turn(TurnTarget::HeadingDeg(self.point(raw.argument).x)),
+            RawAction::TURN_FACE => Action::Turn(TurnTarget::Face(self.point(raw.argument))),
+            RawAction::GET_BALL => Action::GetBall,
+            RawAction::DRIBBLE_TO => Action::DribbleTo(self.point(raw.argument)),
+            RawAction::PASS_BALL => Action::PassBall(robot()),
+            RawAction::RECEIVE_BALL => Action::ReceiveBall(robot()),
+            RawAction::KICK => Action::Kick(KickId(raw.argument)),
+            _ => Action::Wait,
+        }
+    }
+}
+
+impl Script for Case<'_> {
+    fn teammates(&self) -> usize {
+        self.teammates()
+    }
+    fn defending(&self) -> GoalEnd {
+        self.defending()
+    }
+    fn ball(&self) -> PointMm {
+        self.ball()
+    }
+    fn position(&self, robot: CaseRobot) -> PointMm {
+        self.position(robot)
+    }
+    fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
+        self.action(robot, index)
+    }
+}
+
+#[inline]
+pub(crate) fn widen([x, y]: [i16; 2]) -> PointMm {
+    PointMm { x: i32::from(x), y: i32::from(y) }
+}
+
+fn scope([x, y]: [f32; 2]) -> Scope {
+    Scope { x: geometry::math::round_to_i32(1.0 / x), y: geometry::math::round_to_i32(1.0 / y) }
+}

@@ -1,0 +1,134 @@
+//! Why is each case a candidate, or why not? (DESIGN §4.3: the first failure with its margin)
+//!
+//! Every case listed under the problem's goal is looked at, lowest id first, in the fixed order ball, robot count,
+//! field (where the settings ask), travel, free path. No index and no short cut: tests hold retrieval against this.
+
+use geometry::math;
+use protocol::{CaseId, RobotId};
+
+use crate::action::CaseRobot;
+use crate::correspondence::{assign, assign_within};
+use crate::path::{Leg, blocked_leg};
+use crate::problem::Problem;
+use crate::rank::Match;
+use crate::retrieve::Query;
+use crate::settings::Settings;
+use crate::table::CaseBase;
+
+/// What became of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// The ball lies outside the ball's scope.
+    Ball {
+        /// sim_B, at most the threshold.
+        similarity: f32,
+        /// How much is missing to the threshold.
+        margin: f32,
+    },
+    /// There are fewer robots than the case needs.
+    Robots {
+        /// Robots of the case.
+        needed: usize,
+        /// Robots of the problem.
+        present: usize,
+    },
+    /// An adapted position lies outside the field, and the settings reject that.
+    OutOfField {
+        /// Whose.
+        robot: CaseRobot,
+    },
+    /// A robot of the cheapest correspondence has too far to go; the one with the longest way is told.
+    TooFar {
+        /// Its part.
+        robot: CaseRobot,
+        /// Who would play it.
+        player: RobotId,
+        /// Its way, mm.
+        distance: f32,
+        /// How much of it is too much, mm.
+        margin: f32,
+    },
+    /// An opponent stands in the ball's way.
+    Path {
+        /// Number of the leg, from 0.
+        index: usize,
+        /// The leg, mm, field frame.
+        leg: Leg,
+        /// Number of the opponent in the problem, from 0.
+        opponent: usize,
+        /// How deep it stands inside the leg, mm.
+        inside_mm: f32,
+    },
+    /// It could be played.
+    Candidate(Match),
+}
+
+impl Verdict {
+    /// The word for it in answers.
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::Ball { .. } => "ball",
+            Self::Robots { .. } => "robots",
+            Self::OutOfField { .. } => "out_of_field",
+            Self::TooFar { .. } => "thr_c",
+            Self::Path { .. } => "path",
+            Self::Candidate(_) => "candidate",
+        }
+    }
+}
+
+/// Shows the verdict on every case listed under the problem's goal, lowest id first.
+pub fn explain(
+    base: &CaseBase<'_>,
+    problem: &Problem,
+    settings: &Settings,
+    mut sink: impl FnMut(CaseId, Verdict),
+) {
+    let query = Query::new(problem, settings);
+    for case in base.cases().filter(|case| case.defending() == problem.defending) {
+        sink(case.id(), judge(base, &query, &case));
+    }
+}
+
+fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &crate::Case<'_>) -> Verdict {
+    let (problem, settings) = (query.problem, query.settings);
+    let exponent = case.ball_exponent(problem.ball);
+    if exponent >= query.limit {
+        let similarity = math::exp(-exponent);
+        return Verdict::Ball { similarity, margin: (settings.threshold - similarity).max(0.0) };
+    }
+    if case.teammates() > problem.teammates.len() {
+        return Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
+    }
+    if let Some(robot) = query.robot_outside(case) {
+        return Verdict::OutOfField { robot };
+    }
+    let distances = query.distances(case);
+    let assigned = assign(&distances, settings).filter(|found| found.distance <= settings.travel_max_mm);
+    let Some(assignment) = assigned else {
+        // A constrained search that finds nothing tells of the cheapest correspondence without the constraint.
+        let cheapest = assign_within(&distances, settings.cost, f32::INFINITY);
+        let too_far = cheapest.and_then(|cheapest| {
+            Some(Verdict::TooFar {
+                robot: CaseRobot::new(cheapest.farthest)?,
+                player: *cheapest.players.get(cheapest.farthest)?,
+                distance: cheapest.distance,
+                margin: cheapest.distance - settings.travel_max_mm,
+            })
+        });
+        let robots = Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
+        return too_far.unwrap_or(robots);
+    };
+    match blocked_leg(case, base, problem.ball, &problem.opponents, settings) {
+        Some(blocked) => Verdict::Path {
+            index: blocked.index,
+            leg: blocked.leg,
+            opponent: blocked.opponent,
+            inside_mm: blocked.inside_mm,
+        },
+        None => {
+            let free = query.freedom(case).unwrap_or(0.0);
+            Verdict::Candidate(query.found(case, exponent, free, assignment).into_match())
+        }
+    }
+}

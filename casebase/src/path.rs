@@ -1,0 +1,299 @@
+//! Free path: is the ball's way, as the case tells it, clear of opponents? (Ros et al. 2009, §3.3.1)
+//!
+//! The ball runs through a sequence of legs; each is a fuzzy set that widens from r_min at the foot to r_max at the
+//! end: μ = exp(−(v/ρ)²), u along and v across the leg, 0 ≤ u ≤ l. One opponent above the threshold in any of them,
+//! and the case is not applicable now. Lengths in mm, axes of the field.
+
+use geometry::math;
+use serde::{Deserialize, Serialize};
+
+use crate::action::{Action, CaseRobot, KickId};
+use crate::case::{Case, widen};
+use crate::settings::{FreePathRule, OutOfField, Settings};
+use crate::table::{CaseBase, RawLeg};
+use crate::walk::{Script, Spot, Step, walk};
+use crate::{GoalEnd, PointMm};
+
+/// One stretch of the ball's way, mm, field frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Where the ball is kicked.
+    pub from: [f32; 2],
+    /// Where it comes to rest.
+    pub to: [f32; 2],
+    /// Radius at `from`.
+    pub r_min: f32,
+    /// Radius at `to`.
+    pub r_max: f32,
+    /// Who kicks.
+    pub robot: CaseRobot,
+    /// Which of the kicker's actions that is, from 0.
+    pub action: usize,
+    /// By what.
+    pub kind: LegKind,
+}
+
+/// What sends the ball along a leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LegKind {
+    /// A pass to this robot.
+    Pass(CaseRobot),
+    /// A kick of this kind.
+    Kick(KickId),
+}
+
+impl Leg {
+    /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
+    /// not abreast of the leg. A leg of length 0 has nothing abreast.
+    pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
+        let d = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
+        let q = [point[0] - self.from[0], point[1] - self.from[1]];
+        let squared = d[0] * d[0] + d[1] * d[1];
+        let along = d[0] * q[0] + d[1] * q[1];
+        if squared > 0.0 && along >= 0.0 && along <= squared {
+            let length = math::sqrt(squared);
+            let radius = self.r_min + (self.r_max - self.r_min) * (along / squared);
+            Some(Abreast { along: along / length, across: (d[0] * q[1] - d[1] * q[0]) / length, radius })
+        } else {
+            None
+        }
+    }
+
+    /// How deep an opponent stands inside the leg, mm from its edge at the settings' threshold; `None` outside.
+    pub fn blocked_by(&self, opponent: PointMm, settings: &Settings) -> Option<f32> {
+        let point = opponent.to_f32();
+        let exponent = self.exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
+        let abreast = self.abreast(point)?;
+        let edge = abreast.radius * math::sqrt(settings.limit());
+        // With its own threshold a fuzzy path may be blocked by less than the crisp trapezoid: then it is 0 deep.
+        Some(if exponent < settings.limit() { (edge - abreast.across.abs()).max(0.0) } else { 0.0 })
+    }
+
+    /// (v/ρ)², the negated exponent of μ; `None` where μ is 0 because the point is not abreast of the leg.
+    #[inline]
+    pub(crate) fn exponent(&self, point: [f32; 2]) -> Option<f32> {
+        let d = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
+        let q = [point[0] - self.from[0], point[1] - self.from[1]];
+        let squared = d[0] * d[0] + d[1] * d[1];
+        let along = d[0] * q[0] + d[1] * q[1];
+        if squared > 0.0 && along >= 0.0 && along <= squared {
+            let radius = self.r_min + (self.r_max - self.r_min) * (along / squared);
+            let cross = d[0] * q[1] - d[1] * q[0];
+            Some(cross * cross / (squared * radius * radius))
+        } else {
+            None
+        }
+    }
+}
+
+/// Where a point lies that is abreast of a leg, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Abreast {
+    /// u, from the foot.
+    pub along: f32,
+    /// v, left > 0.
+    pub across: f32,
+    /// ρ(u).
+    pub radius: f32,
+}
+
+/// What stands in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// The leg, field frame.
+    pub leg: Leg,
+    /// Its number in the ball path, from 0.
+    pub index: usize,
+    /// The opponent's number in the list.
+    pub opponent: usize,
+    /// How deep the opponent stands inside the leg, mm.
+    pub inside_mm: f32,
+}
+
+/// The first leg with an opponent inside, for a ball at `ball`.
+pub fn blocked_leg(
+    case: &Case<'_>,
+    base: &CaseBase<'_>,
+    ball: PointMm,
+    opponents: &[PointMm],
+    settings: &Settings,
+) -> Option<Blocked> {
+    let mut found = None;
+    let mut index = 0;
+    each_leg(case, base, ball, settings, |relative| {
+        if found.is_none() {
+            let blocks = |(_, opponent): &(usize, &PointMm)| {
+                let exponent = relative.0.exponent(opponent.minus(ball).to_f32());
+                exponent.is_some_and(|exponent| is_blocking(exponent, settings))
+            };
+            if let Some((opponent, place)) = opponents.iter().enumerate().find(blocks) {
+                let inside_mm = relative.0.blocked_by(place.minus(ball), settings).unwrap_or(0.0);
+                found = Some(Blocked { leg: relative.at(ball), index, opponent, inside_mm });
+            }
+        }
+        index += 1;
+    });
+    found
+}
+
+/// The least exponent of any opponent in any leg, `None` where nobody is abreast of one. Opponents relative to the
+/// ball.
+pub(crate) fn least_exponent(
+    case: &Case<'_>,
+    ball: PointMm,
+    opponents: &[[f32; 2]],
+    settings: &Settings,
+) -> Option<f32> {
+    let mut least: Option<f32> = None;
+    each_leg(case, case.base(), ball, settings, |leg| {
+        for opponent in opponents {
+            if let Some(exponent) = leg.0.exponent(*opponent) {
+                least = Some(least.map_or(exponent, |least| least.min(exponent)));
+            }
+        }
+    });
+    least
+}
+
+/// Does an opponent with this exponent in a leg block it?
+#[inline]
+pub(crate) fn is_blocking(exponent: f32, settings: &Settings) -> bool {
+    match settings.free_path {
+        FreePathRule::Crisp => exponent < settings.limit(),
+        FreePathRule::Fuzzy => freedom(Some(exponent)) < settings.free_min,
+    }
+}
+
+/// 1 − max μ.
+pub(crate) fn freedom(least_exponent: Option<f32>) -> f32 {
+    least_exponent.map_or(1.0, |exponent| 1.0 - math::exp(-exponent))
+}
+
+/// Every leg of the ball path in turn: as stored, or walked anew where adapted positions are clamped to the field.
+fn each_leg(
+    case: &Case<'_>,
+    base: &CaseBase<'_>,
+    ball: PointMm,
+    settings: &Settings,
+    mut sink: impl FnMut(RelativeLeg),
+) {
+    if settings.out_of_field != OutOfField::Clamp {
+        return case.relative_legs(ball).for_each(sink);
+    }
+    // A stored case walked without an error when it was built, and clamping moves places only.
+    let _ = walk(&Clamped { case, base, ball }, base, |step| {
+        if let Step::Leg { robot, action, from, to, radii, kind, .. } = step {
+            let relative = |spot: Spot| if spot.on_field { relative_to(ball, spot.at) } else { spot.at };
+            let [r_min, r_max] = radii.map(|radius| radius as f32);
+            sink(RelativeLeg(Leg {
+                from: relative(from),
+                to: relative(to),
+                r_min,
+                r_max,
+                robot,
+                action,
+                kind,
+            }));
+        }
+    });
+}
+
+/// A leg relative to the ball's first place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RelativeLeg(Leg);
+
+impl RelativeLeg {
+    /// From the table; `rest` is where the leg before left the ball.
+    #[inline]
+    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Option<Self> {
+        let robot = CaseRobot::new(usize::from(raw.robot))?;
+        let action = usize::from(raw.action);
+        let (kind, radii) = match case.action(robot, action)? {
+            Action::PassBall(receiver) => {
+                let pass = case.base().pass();
+                (LegKind::Pass(receiver), [pass.r_min, pass.r_max])
+            }
+            Action::Kick(id) => {
+                let kick = case.base().kick(id)?;
+                (LegKind::Kick(id), [kick.r_min, kick.r_max])
+            }
+            _ => return None,
+        };
+        let [r_min, r_max] = radii.map(|radius| radius as f32);
+        let from = match raw.carried_to {
+            RawLeg::NOT_CARRIED => rest,
+            point => case.point(point).minus(case.ball()).to_f32(),
+        };
+        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { relative_to(ball, raw.to) };
+        Some(Self(Leg { from, to, r_min, r_max, robot, action, kind }))
+    }
+
+    /// Where it ends.
+    #[inline]
+    pub(crate) fn end(&self) -> [f32; 2] {
+        self.0.to
+    }
+
+    /// On the field, for a ball that begins at `ball`.
+    pub(crate) fn at(&self, ball: PointMm) -> Leg {
+        let [x, y] = ball.to_f32();
+        let moved = |point: [f32; 2]| [point[0] + x, point[1] + y];
+        Leg { from: moved(self.0.from), to: moved(self.0.to), ..self.0 }
+    }
+}
+
+/// A point of the field seen from the ball.
+#[inline]
+fn relative_to(ball: PointMm, point: [f32; 2]) -> [f32; 2] {
+    let [x, y] = ball.to_f32();
+    [point[0] - x, point[1] - y]
+}
+
+/// A case whose adapted positions are clamped to the field.
+struct Clamped<'c, 'a> {
+    case: &'c Case<'a>,
+    base: &'c CaseBase<'a>,
+    ball: PointMm,
+}
+
+impl Script for Clamped<'_, '_> {
+    fn teammates(&self) -> usize {
+        self.case.teammates()
+    }
+    fn defending(&self) -> GoalEnd {
+        self.case.defending()
+    }
+    fn ball(&self) -> PointMm {
+        self.case.ball()
+    }
+    fn position(&self, robot: CaseRobot) -> PointMm {
+        let clamped = self.base.field().clamp(self.case.adapted(robot, self.ball));
+        clamped.minus(self.case.shift(self.ball))
+    }
+    fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
+        self.case.action(robot, index)
+    }
+}
+
+/// How many of the case's opponent scopes hold an opponent; opponents relative to the ball.
+#[inline]
+pub(crate) fn conditions(
+    case: &Case<'_>,
+    scopes_moved_by: PointMm,
+    opponents: &[[f32; 2]],
+    limit: f32,
+) -> u8 {
+    let moved = scopes_moved_by.to_f32();
+    let mut count = 0;
+    for scope in case.raw_opponents() {
+        let at = widen(scope.at).to_f32();
+        let centre = [at[0] + moved[0], at[1] + moved[1]];
+        let [inverse_x, inverse_y] = scope.inverse_scope;
+        let holds = |opponent: &[f32; 2]| {
+            let (dx, dy) = (opponent[0] - centre[0], opponent[1] - centre[1]);
+            crate::point::gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
+        };
+        count += u8::from(opponents.iter().any(holds));
+    }
+    count
+}

@@ -1,0 +1,25 @@
+//! What is the situation a case is sought for? P = (B, G, Tm, Opp) (Ros et al. 2009, §2.1), mm, field frame.
+
+use heapless::Vec;
+use protocol::RobotId;
+use serde::{Deserialize, Serialize};
+
+use crate::{GoalEnd, PointMm};
+
+/// Most teammates in a problem: the largest league's team.
+pub const PROBLEM_TEAMMATES_MAX: usize = 11;
+/// Most opponents in a problem.
+pub const PROBLEM_OPPONENTS_MAX: usize = 11;
+
+/// The situation now. Coordinates may be any `i32`, on the field or not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Problem {
+    /// B.
+    pub ball: PointMm,
+    /// G, the goal we defend.
+    pub defending: GoalEnd,
+    /// Tm: who can play, in any order, each id once.
+    pub teammates: Vec<(RobotId, PointMm), PROBLEM_TEAMMATES_MAX>,
+    /// Opp.
+    pub opponents: Vec<PointMm, PROBLEM_OPPONENTS_MAX>,
+}

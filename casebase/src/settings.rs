@@ -1,0 +1,353 @@
+//! Which readings of the paper are chosen? The named settings of retrieval (DESIGN §4.3), each declared once.
+//!
+//! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is what gets recorded with every result.
+
+use core::fmt::{self, Write as _};
+
+use geometry::math;
+use serde::{Deserialize, Serialize};
+
+/// Where a scope or a trajectory ends, as a value of its Gaussian: about e⁻¹, the ellipse with radii τx, τy; the
+/// paper's literal (Ros et al. 2009, §3.1).
+pub const SCOPE_THRESHOLD: f32 = 0.367;
+/// −ln [`SCOPE_THRESHOLD`]: exponents below it are inside.
+pub const SCOPE_EXPONENT: f32 = 1.002_393_4;
+/// thr_c, mm: how far a robot may have to travel to its adapted position (Ros et al. 2009, §3.2).
+pub const TRAVEL_MAX_MM: f32 = 1500.0;
+/// The freedom a fuzzy path needs at least: 1 − [`SCOPE_THRESHOLD`], which lets the same cases through as `crisp`.
+pub const FREE_MIN: f32 = 1.0 - SCOPE_THRESHOLD;
+
+/// Every choice retrieval leaves open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// `correspondence`: when thr_c speaks.
+    pub correspondence: CorrespondenceRule,
+    /// `cost`: what a correspondence costs.
+    pub cost: CostRule,
+    /// `ranking`: which criterion comes first.
+    pub ranking: [Criterion; 3],
+    /// `out_of_field`: what becomes of an adapted position outside the lines.
+    pub out_of_field: OutOfField,
+    /// `scopes`: do the opponents' scopes move along with the ball?
+    pub scopes: ScopeRule,
+    /// `free_path`: is a path free or not, or to a degree?
+    pub free_path: FreePathRule,
+    /// `thr_c`, mm.
+    pub travel_max_mm: f32,
+    /// `thr`: thr_b, thr_opp and thr_t.
+    pub threshold: f32,
+    /// `free_min`: least freedom of a fuzzy path.
+    pub free_min: f32,
+}
+
+/// When the limit of travel speaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CorrespondenceRule {
+    /// The cheapest correspondence is found, then tested (Algorithm 1 as printed).
+    MinThenTest,
+    /// Only correspondences within the limit are sought (the text of §3.2).
+    Constrained,
+}
+
+/// What a correspondence costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CostRule {
+    /// The sum of the distances: the paper's choice, no crossing paths.
+    Sum,
+    /// The largest distance.
+    Max,
+}
+
+/// One step of the ranking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Criterion {
+    /// More opponent scopes occupied.
+    Conditions,
+    /// More robots in the case.
+    Teammates,
+    /// Higher similarity interval, then lower cost.
+    IntervalCost,
+}
+
+/// What becomes of an adapted position outside the lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OutOfField {
+    /// It stays where it is.
+    Keep,
+    /// It moves to the nearest point of the field; costs and legs follow.
+    Clamp,
+    /// The case is no candidate.
+    Reject,
+}
+
+/// Where the opponents' scopes lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ScopeRule {
+    /// Moved with the ball, as the paper's text and Fig. 2b have it.
+    Translated,
+    /// Where the case has them, as the paper's formula has it.
+    Absolute,
+}
+
+/// How free a path must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FreePathRule {
+    /// No opponent above the threshold in any leg.
+    Crisp,
+    /// Free to the degree 1 − max μ: a candidate needs `free_min`, and among cases equal so far the freer comes
+    /// before interval and cost.
+    Fuzzy,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            correspondence: CorrespondenceRule::MinThenTest,
+            cost: CostRule::Sum,
+            ranking: [Criterion::Conditions, Criterion::Teammates, Criterion::IntervalCost],
+            out_of_field: OutOfField::Keep,
+            scopes: ScopeRule::Translated,
+            free_path: FreePathRule::Crisp,
+            travel_max_mm: TRAVEL_MAX_MM,
+            threshold: SCOPE_THRESHOLD,
+            free_min: FREE_MIN,
+        }
+    }
+}
+
+impl Settings {
+    /// Sets one choice by its name; the settings stay as they were where it fails.
+    pub fn set(&mut self, name: &str, value: &str) -> Result<(), SettingError> {
+        let setting =
+            SETTINGS.iter().find(|setting| setting.name == name).ok_or(SettingError::UnknownName)?;
+        (setting.set)(self, value.trim())
+            .ok_or(SettingError::BadValue { name: setting.name, expected: setting.expected })
+    }
+
+    /// Name and value of every setting, in a fixed order; [`Settings::set`] reads them back.
+    pub fn describe(&self) -> impl Iterator<Item = (&'static str, SettingValue)> + '_ {
+        SETTINGS.iter().map(|setting| {
+            let mut text = SettingValue::new();
+            // The longest value is a ranking of 33 letters, or an f32 of at most 50 digits: it fits.
+            let _ = (setting.get)(self, &mut text);
+            (setting.name, text)
+        })
+    }
+
+    /// The exponent at which a scope or a trajectory ends.
+    #[inline]
+    pub fn limit(&self) -> f32 {
+        if self.threshold == SCOPE_THRESHOLD { SCOPE_EXPONENT } else { -math::ln(self.threshold) }
+    }
+}
+
+/// A setting's value as text.
+pub type SettingValue = heapless::String<64>;
+
+/// Why a setting was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SettingError {
+    /// No setting has this name.
+    UnknownName,
+    /// The setting does not take this value.
+    BadValue {
+        /// The setting.
+        name: &'static str,
+        /// What it takes.
+        expected: &'static str,
+    },
+}
+
+impl fmt::Display for SettingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownName => {
+                f.write_str("no such setting; there are ")?;
+                for (i, setting) in SETTINGS.iter().enumerate() {
+                    f.write_str(if i == 0 { "" } else { ", " })?;
+                    f.write_str(setting.name)?;
+                }
+                Ok(())
+            }
+            Self::BadValue { name, expected } => write!(f, "{name} takes {expected}"),
+        }
+    }
+}
+impl core::error::Error for SettingError {}
+
+/// A setting's name, what it takes, and how it is written and read.
+struct Setting {
+    name: &'static str,
+    expected: &'static str,
+    set: fn(&mut Settings, &str) -> Option<()>,
+    get: fn(&Settings, &mut SettingValue) -> fmt::Result,
+}
+
+/// The words of a choice with two or three values.
+trait Words: Copy + PartialEq + 'static {
+    const WORDS: &'static [(&'static str, Self)];
+
+    fn parse(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(name, _)| *name == word).map(|(_, value)| *value)
+    }
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, value)| *value == self).map_or("", |(name, _)| name)
+    }
+}
+impl Words for CorrespondenceRule {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("min-then-test", Self::MinThenTest), ("constrained", Self::Constrained)];
+}
+impl Words for CostRule {
+    const WORDS: &'static [(&'static str, Self)] = &[("sum", Self::Sum), ("max", Self::Max)];
+}
+impl Words for Criterion {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("conditions", Self::Conditions),
+        ("teammates", Self::Teammates),
+        ("interval-cost", Self::IntervalCost),
+    ];
+}
+impl Words for OutOfField {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("keep", Self::Keep), ("clamp", Self::Clamp), ("reject", Self::Reject)];
+}
+impl Words for ScopeRule {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("translated", Self::Translated), ("absolute", Self::Absolute)];
+}
+impl Words for FreePathRule {
+    const WORDS: &'static [(&'static str, Self)] = &[("crisp", Self::Crisp), ("fuzzy", Self::Fuzzy)];
+}
+
+/// A permutation of the three criteria, with or without brackets.
+fn parse_ranking(value: &str) -> Option<[Criterion; 3]> {
+    let inner = value.strip_prefix('[').and_then(|v| v.strip_suffix(']')).unwrap_or(value);
+    let mut words = inner.split(',').map(|word| Criterion::parse(word.trim()));
+    let ranking = [words.next()??, words.next()??, words.next()??];
+    let all_different = ranking[0] != ranking[1] && ranking[1] != ranking[2] && ranking[0] != ranking[2];
+    (words.next().is_none() && all_different).then_some(ranking)
+}
+
+fn parse_number(value: &str, allowed: impl Fn(f32) -> bool) -> Option<f32> {
+    value.parse().ok().filter(|number: &f32| number.is_finite() && allowed(*number))
+}
+
+const SETTINGS: &[Setting] = &[
+    Setting {
+        name: "correspondence",
+        expected: "min-then-test or constrained",
+        set: |s, v| CorrespondenceRule::parse(v).map(|v| s.correspondence = v),
+        get: |s, out| out.write_str(s.correspondence.word()),
+    },
+    Setting {
+        name: "cost",
+        expected: "sum or max",
+        set: |s, v| CostRule::parse(v).map(|v| s.cost = v),
+        get: |s, out| out.write_str(s.cost.word()),
+    },
+    Setting {
+        name: "ranking",
+        expected: "conditions,teammates,interval-cost in any order",
+        set: |s, v| parse_ranking(v).map(|v| s.ranking = v),
+        get: |s, out| {
+            let [a, b, c] = s.ranking.map(Criterion::word);
+            write!(out, "{a},{b},{c}")
+        },
+    },
+    Setting {
+        name: "out_of_field",
+        expected: "keep, clamp or reject",
+        set: |s, v| OutOfField::parse(v).map(|v| s.out_of_field = v),
+        get: |s, out| out.write_str(s.out_of_field.word()),
+    },
+    Setting {
+        name: "scopes",
+        expected: "translated or absolute",
+        set: |s, v| ScopeRule::parse(v).map(|v| s.scopes = v),
+        get: |s, out| out.write_str(s.scopes.word()),
+    },
+    Setting {
+        name: "free_path",
+        expected: "crisp or fuzzy",
+        set: |s, v| FreePathRule::parse(v).map(|v| s.free_path = v),
+        get: |s, out| out.write_str(s.free_path.word()),
+    },
+    Setting {
+        name: "thr_c",
+        expected: "a distance in mm, 0 or more",
+        set: |s, v| parse_number(v, |n| n >= 0.0).map(|v| s.travel_max_mm = v),
+        get: |s, out| write!(out, "{}", s.travel_max_mm),
+    },
+    Setting {
+        name: "thr",
+        expected: "a number above 0 and below 1",
+        set: |s, v| parse_number(v, |n| n > 0.0 && n < 1.0).map(|v| s.threshold = v),
+        get: |s, out| write!(out, "{}", s.threshold),
+    },
+    Setting {
+        name: "free_min",
+        expected: "a number from 0 to 1",
+        set: |s, v| parse_number(v, |n| (0.0..=1.0).contains(&n)).map(|v| s.free_min = v),
+        get: |s, out| write!(out, "{}", s.free_min),
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn the_limit_is_the_negated_logarithm_of_the_papers_literal() {
+        assert!((f64::from(SCOPE_EXPONENT) + 0.367_f64.ln()).abs() < 1e-7);
+        assert_eq!(Settings::default().limit(), SCOPE_EXPONENT);
+        let half = Settings { threshold: 0.5, ..Settings::default() };
+        assert!((half.limit() - core::f32::consts::LN_2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_described_can_be_set_again() {
+        let mut changed = Settings::default();
+        for (name, value) in [
+            ("correspondence", "constrained"),
+            ("cost", "max"),
+            ("ranking", "[teammates, interval-cost, conditions]"),
+            ("out_of_field", "clamp"),
+            ("scopes", "absolute"),
+            ("free_path", "fuzzy"),
+            ("thr_c", "900.5"),
+            ("thr", "0.5"),
+            ("free_min", "0.25"),
+        ] {
+            changed.set(name, value).unwrap();
+        }
+        let mut copy = Settings::default();
+        for (name, value) in changed.describe() {
+            copy.set(name, &value).unwrap();
+        }
+        assert_eq!(copy, changed);
+        assert_eq!(copy.describe().count(), 9);
+    }
+
+    #[test]
+    fn a_wrong_setting_says_what_is_allowed() {
+        let mut settings = Settings::default();
+        let unknown = settings.set("thr_x", "1").unwrap_err();
+        assert!(unknown.to_string().contains("thr_c, thr, free_min"), "{unknown}");
+        for (name, value) in [
+            ("cost", "avg"),
+            ("ranking", "conditions,conditions,teammates"),
+            ("ranking", "conditions,teammates"),
+            ("thr", "0"),
+            ("thr", "nan"),
+            ("thr_c", "-1"),
+        ] {
+            let error = settings.set(name, value).unwrap_err();
+            assert!(error.to_string().starts_with(name), "{error}");
+        }
+        assert_eq!(settings, Settings::default());
+    }
+}

@@ -1,0 +1,163 @@
+//! What does a case look like in the other three quarters of the field? (Ros et al. 2009, §2.4; DESIGN §4.2)
+//!
+//! Positions and points mirror, scopes and radii keep. Headings and offsets of kicks are told relative to the
+//! direction of attack: a single reflection negates them, the double one (a turn by 180°) keeps them.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::PointMm;
+
+/// The goal we defend, by the end of the field it stands at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum GoalEnd {
+    /// At −x, the paper's "yellow": we attack towards +x.
+    Negative,
+    /// At +x, the paper's "cyan": we attack towards −x.
+    Positive,
+}
+
+impl GoalEnd {
+    /// The paper's word, as files and problems have it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Negative => "yellow",
+            Self::Positive => "cyan",
+        }
+    }
+
+    /// From the paper's word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        match word {
+            "yellow" => Some(Self::Negative),
+            "cyan" => Some(Self::Positive),
+            _ => None,
+        }
+    }
+
+    /// +1 where we attack towards +x, else −1.
+    pub const fn attack_sign(self) -> i32 {
+        match self {
+            Self::Negative => 1,
+            Self::Positive => -1,
+        }
+    }
+
+    /// The other end.
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Negative => Self::Positive,
+            Self::Positive => Self::Negative,
+        }
+    }
+}
+
+/// How a stored case came out of the authored one; the number is the case id modulo 4.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Symmetry {
+    /// As authored.
+    Identity,
+    /// (x, −y), same goal.
+    AcrossX,
+    /// (−x, y), other goal.
+    AcrossY,
+    /// (−x, −y), other goal.
+    Both,
+}
+
+impl Symmetry {
+    /// All four in the order of their ids.
+    pub const ALL: [Self; 4] = [Self::Identity, Self::AcrossX, Self::AcrossY, Self::Both];
+
+    /// From the lowest two bits of a case id.
+    pub const fn from_bits(bits: u16) -> Self {
+        match bits & 3 {
+            0 => Self::Identity,
+            1 => Self::AcrossX,
+            2 => Self::AcrossY,
+            _ => Self::Both,
+        }
+    }
+
+    /// The lowest two bits of the ids of such cases.
+    pub const fn bits(self) -> u16 {
+        self as u16
+    }
+
+    /// The word files and answers have for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Identity => "identity",
+            Self::AcrossX => "across-x",
+            Self::AcrossY => "across-y",
+            Self::Both => "both",
+        }
+    }
+
+    /// A point or position under it.
+    pub const fn point(self, point: PointMm) -> PointMm {
+        let flipped = PointMm { x: point.x.saturating_neg(), y: point.y.saturating_neg() };
+        match self {
+            Self::Identity => point,
+            Self::AcrossX => PointMm { x: point.x, y: flipped.y },
+            Self::AcrossY => PointMm { x: flipped.x, y: point.y },
+            Self::Both => flipped,
+        }
+    }
+
+    /// The goal defended in it.
+    pub const fn goal(self, goal: GoalEnd) -> GoalEnd {
+        match self {
+            Self::Identity | Self::AcrossX => goal,
+            Self::AcrossY | Self::Both => goal.opposite(),
+        }
+    }
+
+    /// Does left become right? True for the single reflections.
+    pub const fn swaps_sides(self) -> bool {
+        matches!(self, Self::AcrossX | Self::AcrossY)
+    }
+}
+
+impl fmt::Display for Symmetry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_four_situations_of_the_papers_figure_3() {
+        let p = PointMm::new(1000, 500);
+        let of = |s: Symmetry| (s.point(p), s.goal(GoalEnd::Negative).word());
+        assert_eq!(of(Symmetry::Identity), (PointMm::new(1000, 500), "yellow"));
+        assert_eq!(of(Symmetry::AcrossX), (PointMm::new(1000, -500), "yellow"));
+        assert_eq!(of(Symmetry::AcrossY), (PointMm::new(-1000, 500), "cyan"));
+        assert_eq!(of(Symmetry::Both), (PointMm::new(-1000, -500), "cyan"));
+    }
+
+    #[test]
+    fn every_symmetry_undoes_itself_and_two_make_the_third() {
+        let p = PointMm::new(-321, 77);
+        for a in Symmetry::ALL {
+            assert_eq!(a.point(a.point(p)), p);
+            for b in Symmetry::ALL {
+                let both = Symmetry::from_bits(a.bits() ^ b.bits());
+                assert_eq!(a.point(b.point(p)), both.point(p));
+                assert_eq!(a.swaps_sides() ^ b.swaps_sides(), both.swaps_sides());
+            }
+        }
+    }
+
+    #[test]
+    fn words_lead_back_to_their_goals() {
+        for goal in [GoalEnd::Negative, GoalEnd::Positive] {
+            assert_eq!(GoalEnd::from_word(goal.word()), Some(goal));
+        }
+        assert_eq!(GoalEnd::from_word("blue"), None);
+    }
+}

@@ -1,0 +1,334 @@
+//! How does a case base lie in flash? One flat table of fixed records, read in place, without a decode step.
+//!
+//! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first, native
+//! byte order. The four symmetric copies of an authored case are stored in full, one after the other in every
+//! pool; what they share (counts, where each pool begins) is their common [`Group`]. Positions and opponents are
+//! stored relative to the case's ball, legs computed to their ends: nothing is derived twice at run time. The index
+//! is a grid over the ball's position for cases that defend the negative goal; a mirrored look-up serves the rest.
+//!
+//! [`CaseBase::from_bytes`] checks everything once, so that no later access can panic or leave the table.
+
+use protocol::CaseId;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+mod validate;
+
+pub use validate::TableError;
+
+use crate::action::{FieldMm, Kick, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
+use crate::case::Case;
+
+/// A case base over a borrowed table. Copy it freely: it is only references.
+#[derive(Clone, Copy, Debug)]
+pub struct CaseBase<'a> {
+    bytes: &'a [u8],
+    pub(crate) header: &'a Header,
+    pub(crate) groups: &'a [Group],
+    pub(crate) gates: &'a [Gate],
+    pub(crate) opponents: &'a [Opponent],
+    pub(crate) legs: &'a [RawLeg],
+    pub(crate) points: &'a [[i32; 2]],
+    kicks: &'a [RawKick],
+    pub(crate) cell_starts: &'a [u32],
+    pub(crate) positions: &'a [[i16; 2]],
+    pub(crate) cell_cases: &'a [u16],
+    pub(crate) actions: &'a [RawAction],
+}
+
+impl<'a> CaseBase<'a> {
+    /// Reads a table in place and checks all of it; `bytes` must begin at a multiple of 4.
+    pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, TableError> {
+        let base = Self::split(bytes)?;
+        base.validate()?;
+        Ok(base)
+    }
+
+    /// Names the content: two bases with the same hash hold the same cases.
+    pub const fn hash(&self) -> u32 {
+        self.header.hash
+    }
+
+    /// Number of stored cases, four for each authored one.
+    pub const fn len(&self) -> usize {
+        self.gates.len()
+    }
+
+    /// No case at all?
+    pub const fn is_empty(&self) -> bool {
+        self.gates.is_empty()
+    }
+
+    /// The league's field.
+    pub const fn field(&self) -> FieldMm {
+        let [length, width, margin, goal_width, penalty_depth, penalty_width] = self.header.field;
+        FieldMm { length, width, margin, goal_width, penalty_depth, penalty_width }
+    }
+
+    /// Radii of passes.
+    pub const fn pass(&self) -> Pass {
+        let [r_min, r_max] = self.header.pass;
+        Pass { r_min, r_max }
+    }
+
+    /// A kick kind.
+    pub fn kick(&self, id: KickId) -> Option<Kick> {
+        self.kicks.get(id.0 as usize).map(RawKick::decode)
+    }
+
+    /// Number of kick kinds.
+    pub const fn kicks(&self) -> usize {
+        self.kicks.len()
+    }
+
+    /// A stored case.
+    pub fn case(&self, id: CaseId) -> Option<Case<'a>> {
+        Case::new(*self, id)
+    }
+
+    /// Every stored case, lowest id first.
+    pub fn cases(&self) -> impl Iterator<Item = Case<'a>> + use<'a> {
+        let base = *self;
+        (0..base.len() as u32).filter_map(move |id| base.case(CaseId(id as u16)))
+    }
+
+    /// The table itself.
+    pub const fn bytes(&self) -> &'a [u8] {
+        self.bytes
+    }
+
+    /// Bytes of the table for each stored case, index included.
+    pub fn bytes_per_case(&self) -> f32 {
+        if self.is_empty() { 0.0 } else { self.bytes.len() as f32 / self.len() as f32 }
+    }
+}
+
+impl Default for CaseBase<'_> {
+    /// The base without cases: every retrieval finds nothing.
+    fn default() -> Self {
+        Self {
+            bytes: &[],
+            header: &EMPTY_HEADER,
+            groups: &[],
+            gates: &[],
+            opponents: &[],
+            legs: &[],
+            points: &[],
+            kicks: &[],
+            cell_starts: &[],
+            positions: &[],
+            cell_cases: &[],
+            actions: &[],
+        }
+    }
+}
+
+/// "o12c" and the version of the layout.
+pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 1];
+/// Most cells of the index along one axis.
+pub const GRID_MAX: u16 = 256;
+
+/// What a table begins with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Header {
+    /// [`MAGIC`]; read with the wrong byte order it is another number.
+    pub magic: [u32; 2],
+    /// FNV-1a-32 over everything behind this word.
+    pub hash: u32,
+    /// Length, width, margin, goal width, penalty depth, penalty width, mm.
+    pub field: [i32; 6],
+    /// r_min, r_max of a pass, mm.
+    pub pass: [i32; 2],
+    /// Number of authored cases.
+    pub groups: u32,
+    /// Number of opponents in all stored cases.
+    pub opponents: u32,
+    /// Number of legs.
+    pub legs: u32,
+    /// Number of points of actions.
+    pub points: u32,
+    /// Number of kick kinds.
+    pub kicks: u32,
+    /// Number of positions of robots.
+    pub positions: u32,
+    /// Number of case numbers in the cells of the index.
+    pub cell_cases: u32,
+    /// Number of actions.
+    pub actions: u32,
+    /// Columns (along x) and rows (along y) of the index.
+    pub grid: [u16; 2],
+    /// Edge of a cell of the index, mm.
+    pub cell_mm: i32,
+}
+
+/// What the four copies of an authored case share: copy k begins at `start + k · count` in every pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Group {
+    /// First position.
+    pub positions_at: u32,
+    /// First opponent.
+    pub opponents_at: u32,
+    /// First leg.
+    pub legs_at: u32,
+    /// First point.
+    pub points_at: u32,
+    /// First action.
+    pub actions_at: u32,
+    /// Robots.
+    pub teammates: u8,
+    /// Opponents.
+    pub opponents: u8,
+    /// Legs.
+    pub legs: u8,
+    /// Points of actions.
+    pub points: u8,
+    /// Where each robot's list of actions ends, counted from the copy's first action.
+    pub list_ends: [u8; TEAMMATES_MAX],
+    /// 0 where the authored case defends the negative goal, 1 the positive.
+    pub defending: u8,
+    /// The robot that begins with `get_ball`.
+    pub getter: u8,
+    /// Zero.
+    pub reserved: [u8; 2],
+}
+
+/// Where the ball must lie for a stored case.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Gate {
+    /// B_c, mm.
+    pub ball: [i16; 2],
+    /// 1/τx, 1/τy, 1/mm.
+    pub inverse_scope: [f32; 2],
+}
+
+/// An opponent's scope.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Opponent {
+    /// Relative to the case's ball, mm.
+    pub at: [i16; 2],
+    /// 1/τx, 1/τy, 1/mm.
+    pub inverse_scope: [f32; 2],
+}
+
+/// A leg of the ball path. It begins where the ball lies: at the ball's first place or the end of the leg before,
+/// unless it was carried on since.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct RawLeg {
+    /// Its end, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is set.
+    pub to: [f32; 2],
+    /// The robot that kicks.
+    pub robot: u8,
+    /// Which of its actions that is.
+    pub action: u8,
+    /// [`RawLeg::NOT_CARRIED`], or the case's point the ball was dribbled to before.
+    pub carried_to: u8,
+    /// [`RawLeg::TO_FIELD`] or 0.
+    pub flags: u8,
+}
+
+impl RawLeg {
+    /// The ball was not carried since the leg before.
+    pub const NOT_CARRIED: u8 = 255;
+    /// The end is a point of the field, not moved with the ball.
+    pub const TO_FIELD: u8 = 1;
+}
+
+/// One action: its kind and what it points to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct RawAction {
+    /// One of [`RawAction`]'s constants.
+    pub kind: u8,
+    /// A robot (from 0), a kick kind, or one of the case's points; 0 where nothing is pointed to.
+    pub argument: u8,
+}
+
+#[allow(missing_docs, reason = "each is the kind of the action of its name")]
+impl RawAction {
+    pub const WAIT: u8 = 0;
+    pub const GO_TO_POINT: u8 = 1;
+    pub const TURN_HEADING: u8 = 2;
+    pub const TURN_FACE: u8 = 3;
+    pub const GET_BALL: u8 = 4;
+    pub const DRIBBLE_TO: u8 = 5;
+    pub const PASS_BALL: u8 = 6;
+    pub const RECEIVE_BALL: u8 = 7;
+    pub const KICK: u8 = 8;
+}
+
+/// A kick kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct RawKick {
+    /// Heading relative to the direction of attack, whole degrees; 0 for a kick at the goal.
+    pub degrees: i32,
+    /// Length of a kick along a heading, or the offset of a kick at the goal, mm.
+    pub length_or_offset: i32,
+    /// r_min, r_max, mm.
+    pub radii: [i32; 2],
+    /// 1 for a kick at the goal, else 0.
+    pub at_goal: u8,
+    /// Position in [`Primitive::ALL`].
+    pub primitive: u8,
+    /// Zero.
+    pub reserved: [u8; 2],
+}
+
+impl RawKick {
+    /// As a table stores it.
+    pub fn encode(kick: Kick) -> Self {
+        let (degrees, length_or_offset, at_goal) = match kick.aim {
+            KickAim::Heading { degrees, length_mm } => (degrees, length_mm, 0),
+            KickAim::Goal { offset_mm } => (0, offset_mm, 1),
+        };
+        let radii = [kick.r_min, kick.r_max];
+        Self { degrees, length_or_offset, radii, at_goal, primitive: kick.primitive as u8, reserved: [0; 2] }
+    }
+
+    fn decode(&self) -> Kick {
+        let aim = if self.at_goal == 0 {
+            KickAim::Heading { degrees: self.degrees, length_mm: self.length_or_offset }
+        } else {
+            KickAim::Goal { offset_mm: self.length_or_offset }
+        };
+        let [r_min, r_max] = self.radii;
+        let primitive = Primitive::ALL.get(self.primitive as usize).copied().unwrap_or_default();
+        Kick { aim, r_min, r_max, primitive }
+    }
+}
+
+/// FNV-1a-32, the hash a [`Header`] carries of all that follows its `hash` word.
+pub fn content_hash(behind_hash: &[u8]) -> u32 {
+    behind_hash.iter().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193))
+}
+
+/// Bytes before those that are hashed.
+pub const HASHED_FROM: usize = 12;
+
+/// The `count` records of copy `copy` in a pool; nothing where the pool ends before (a validated table's never does).
+#[inline]
+pub(crate) fn part<T>(pool: &[T], start: u32, count: u8, copy: u16) -> &[T] {
+    let from = start as usize + usize::from(copy) * usize::from(count);
+    pool.get(from..from + usize::from(count)).unwrap_or(&[])
+}
+
+static EMPTY_HEADER: Header = Header {
+    magic: MAGIC,
+    hash: 0,
+    field: [0; 6],
+    pass: [1; 2],
+    groups: 0,
+    opponents: 0,
+    legs: 0,
+    points: 0,
+    kicks: 0,
+    positions: 0,
+    cell_cases: 0,
+    actions: 0,
+    grid: [0; 2],
+    cell_mm: 1,
+};

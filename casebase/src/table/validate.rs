@@ -1,0 +1,207 @@
+//! Can these bytes be trusted as a case base? Everything is checked once, so that nothing need be checked later.
+
+use core::fmt;
+
+use zerocopy::{FromBytes, Immutable, KnownLayout};
+
+use super::{CaseBase, GRID_MAX, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, content_hash, part};
+use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
+
+/// Why bytes are no case base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableError {
+    /// They do not begin at a multiple of 4.
+    Misaligned,
+    /// They are fewer or more than the header tells.
+    Length,
+    /// They are something else, another version, or of the other byte order.
+    Magic,
+    /// The hash does not match: damaged.
+    Hash,
+    /// The field, the radii of a pass or a kick kind make no sense.
+    League,
+    /// A record points outside its pool, or holds a value no case can have.
+    Case {
+        /// Which authored case, from 0.
+        authored: u32,
+    },
+    /// The index points outside the table.
+    Index,
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Misaligned => f.write_str("the table does not begin at a multiple of 4 bytes"),
+            Self::Length => f.write_str("the table is shorter or longer than its header tells"),
+            Self::Magic => f.write_str("not a case table of this version and byte order"),
+            Self::Hash => f.write_str("the table is damaged: its hash does not match"),
+            Self::League => f.write_str("the table's field, pass or kick kinds make no sense"),
+            Self::Case { authored } => write!(f, "authored case {authored} of the table makes no sense"),
+            Self::Index => f.write_str("the table's index makes no sense"),
+        }
+    }
+}
+impl core::error::Error for TableError {}
+
+impl<'a> CaseBase<'a> {
+    /// Cuts the table into its sections; all lengths are checked, no content.
+    pub(super) fn split(bytes: &'a [u8]) -> Result<Self, TableError> {
+        if !(bytes.as_ptr() as usize).is_multiple_of(align_of::<u32>()) {
+            return Err(TableError::Misaligned);
+        }
+        let (header, rest) = Header::ref_from_prefix(bytes).map_err(|_| TableError::Length)?;
+        if header.magic != MAGIC {
+            return Err(TableError::Magic);
+        }
+        let [columns, rows] = header.grid;
+        let cells = usize::from(columns) * usize::from(rows);
+        let copies = header.groups.checked_mul(4).ok_or(TableError::Length)?;
+        let (groups, rest) = section(rest, header.groups)?;
+        let (gates, rest) = section(rest, copies)?;
+        let (opponents, rest) = section(rest, header.opponents)?;
+        let (legs, rest) = section(rest, header.legs)?;
+        let (points, rest) = section(rest, header.points)?;
+        let (kicks, rest) = section(rest, header.kicks)?;
+        let (cell_starts, rest) = section(rest, cells as u32 + 1)?;
+        let (positions, rest) = section(rest, header.positions)?;
+        let (cell_cases, rest) = section(rest, header.cell_cases)?;
+        let (actions, rest) = section(rest, header.actions)?;
+        if !rest.is_empty() {
+            return Err(TableError::Length);
+        }
+        Ok(Self {
+            bytes,
+            header,
+            groups,
+            gates,
+            opponents,
+            legs,
+            points,
+            kicks,
+            cell_starts,
+            positions,
+            cell_cases,
+            actions,
+        })
+    }
+
+    /// Checks the content of every section.
+    pub(super) fn validate(&self) -> Result<(), TableError> {
+        let hashed = self.bytes.get(HASHED_FROM..).unwrap_or(&[]);
+        if content_hash(hashed) != self.header.hash {
+            return Err(TableError::Hash);
+        }
+        if !self.league_is_sound() {
+            return Err(TableError::League);
+        }
+        if self.groups.len() > CASES_MAX {
+            return Err(TableError::Length);
+        }
+        for (authored, group) in self.groups.iter().enumerate() {
+            let sound = (0..4).all(|copy| self.copy_is_sound(authored, group, copy));
+            if !sound {
+                return Err(TableError::Case { authored: authored as u32 });
+            }
+        }
+        if self.index_is_sound() { Ok(()) } else { Err(TableError::Index) }
+    }
+
+    fn league_is_sound(&self) -> bool {
+        let field = &self.header.field;
+        let sides = [field[0], field[1]].iter().all(|side| (1..=SIDE_MAX_MM).contains(side));
+        let kicks = self.kicks.len() <= KICKS_MAX
+            && self.kicks.iter().all(|kick| {
+                kick.radii.iter().all(|radius| *radius > 0)
+                    && usize::from(kick.primitive) < Primitive::ALL.len()
+                    && kick.at_goal <= 1
+            });
+        sides && self.header.pass.iter().all(|radius| *radius > 0) && kicks
+    }
+
+    /// One of the four copies: records within their pools, values a case can have.
+    fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
+        let teammates = usize::from(group.teammates);
+        if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(group.opponents) > OPPONENTS_MAX {
+            return false;
+        }
+        let ends = &group.list_ends[..teammates];
+        let actions_count = ends[teammates - 1];
+        let opponents = part(self.opponents, group.opponents_at, group.opponents, copy);
+        let legs = part(self.legs, group.legs_at, group.legs, copy);
+        let actions = part(self.actions, group.actions_at, actions_count, copy);
+        let whole = part(self.positions, group.positions_at, group.teammates, copy).len() == teammates
+            && opponents.len() == usize::from(group.opponents)
+            && legs.len() == usize::from(group.legs)
+            && part(self.points, group.points_at, group.points, copy).len() == usize::from(group.points)
+            && actions.len() == usize::from(actions_count)
+            && ends.is_sorted()
+            && group.defending <= 1
+            && group.getter < group.teammates;
+        let scope_is_sound = |inverse: &[f32; 2]| inverse.iter().all(|i| i.is_finite() && *i > 0.0);
+        let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
+            return false;
+        };
+        let list = |robot: usize| {
+            let from = robot.checked_sub(1).map_or(0, |before| ends[before]);
+            actions.get(usize::from(from)..usize::from(ends[robot])).unwrap_or(&[])
+        };
+        let legs_are_sound = || {
+            legs.iter().all(|leg| {
+                usize::from(leg.robot) < teammates
+                    && list(usize::from(leg.robot))
+                        .get(usize::from(leg.action))
+                        .is_some_and(|action| matches!(action.kind, RawAction::PASS_BALL | RawAction::KICK))
+                    && (leg.carried_to == RawLeg::NOT_CARRIED || leg.carried_to < group.points)
+                    && leg.to.iter().all(|coordinate| coordinate.is_finite())
+            })
+        };
+        let begins_with_the_ball =
+            || list(usize::from(group.getter)).first().map(|a| a.kind) == Some(RawAction::GET_BALL);
+        whole
+            && scope_is_sound(&gate.inverse_scope)
+            && opponents.iter().all(|opponent| scope_is_sound(&opponent.inverse_scope))
+            && actions.iter().all(|action| self.action_is_sound(group, *action))
+            && legs_are_sound()
+            && begins_with_the_ball()
+    }
+
+    fn action_is_sound(&self, group: &Group, action: RawAction) -> bool {
+        let argument = action.argument;
+        match action.kind {
+            RawAction::WAIT | RawAction::GET_BALL => true,
+            RawAction::GO_TO_POINT
+            | RawAction::TURN_HEADING
+            | RawAction::TURN_FACE
+            | RawAction::DRIBBLE_TO => argument < group.points,
+            RawAction::PASS_BALL | RawAction::RECEIVE_BALL => argument < group.teammates,
+            RawAction::KICK => usize::from(argument) < self.kicks.len(),
+            _ => false,
+        }
+    }
+
+    fn index_is_sound(&self) -> bool {
+        let [columns, rows] = self.header.grid;
+        let starts_are_sound = self.cell_starts.is_sorted()
+            && self.cell_starts.first() == Some(&0)
+            && self.cell_starts.last().is_some_and(|last| *last as usize == self.cell_cases.len());
+        (1..=GRID_MAX).contains(&columns)
+            && (1..=GRID_MAX).contains(&rows)
+            && self.header.cell_mm > 0
+            && starts_are_sound
+            && self.cell_cases.iter().all(|case| usize::from(*case) < self.gates.len())
+    }
+}
+
+/// Most authored cases: their four copies are numbered by a `u16`.
+pub(crate) const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
+/// Longest side of a field, mm: positions relative to the ball then fit an `i16`.
+pub(crate) const SIDE_MAX_MM: i32 = 30_000;
+
+/// The next `count` records of `rest`.
+fn section<T: FromBytes + Immutable + KnownLayout>(
+    rest: &[u8],
+    count: u32,
+) -> Result<(&[T], &[u8]), TableError> {
+    <[T]>::ref_from_prefix_with_elems(rest, count as usize).map_err(|_| TableError::Length)
+}

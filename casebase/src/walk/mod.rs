@@ -1,0 +1,330 @@
+//! Where does the ball run when the gameplays of a case are played as written? (DESIGN §4.3, item 4; paper §3.3.1)
+//!
+//! The gameplays are walked symbolically: who holds the ball, where each robot has got to, which legs the ball
+//! runs. The same walk checks a case when a library is built, computes the legs that are stored with it, and tells
+//! the robots at run time which actions hand the ball over. Places are relative to the ball's first place, mm,
+//! axes of the field; the attacked goal is a fixed point of the field.
+
+use core::fmt;
+
+use geometry::math;
+
+use crate::action::{Action, CaseRobot, FieldMm, Kick, KickAim, KickId, Pass, TEAMMATES_MAX};
+use crate::path::LegKind;
+use crate::table::CaseBase;
+use crate::{GoalEnd, PointMm};
+
+/// A case to be walked, in its own coordinates.
+pub trait Script {
+    /// Number of robots, 1 to 4.
+    fn teammates(&self) -> usize;
+    /// The goal defended: headings are relative to the direction of attack.
+    fn defending(&self) -> GoalEnd;
+    /// The ball's first place.
+    fn ball(&self) -> PointMm;
+    /// A robot's first place.
+    fn position(&self, robot: CaseRobot) -> PointMm;
+    /// A robot's action, `None` behind the last.
+    fn action(&self, robot: CaseRobot, index: usize) -> Option<Action>;
+}
+
+/// What the league says about balls that are kicked.
+pub trait Kicks {
+    /// A kick kind.
+    fn kick(&self, id: KickId) -> Option<Kick>;
+    /// The radii of passes.
+    fn pass(&self) -> Pass;
+    /// The field.
+    fn field(&self) -> FieldMm;
+}
+
+impl Kicks for CaseBase<'_> {
+    fn kick(&self, id: KickId) -> Option<Kick> {
+        self.kick(id)
+    }
+    fn pass(&self) -> Pass {
+        self.pass()
+    }
+    fn field(&self) -> FieldMm {
+        self.field()
+    }
+}
+
+/// Walks the gameplays and shows every step to `sink`, in the order of play.
+pub fn walk(script: &impl Script, kicks: &impl Kicks, sink: impl FnMut(Step)) -> Result<(), WalkError> {
+    let getter = CaseRobot::first(script.teammates())
+        .find(|robot| script.action(*robot, 0) == Some(Action::GetBall))
+        .ok_or(WalkError::NoGetter)?;
+    let places = core::array::from_fn(|i| {
+        let position = CaseRobot::new(i).map_or(PointMm::new(0, 0), |robot| script.position(robot));
+        Spot::relative(position.minus(script.ball()))
+    });
+    let ball = Spot::relative(PointMm::new(0, 0));
+    let mut walker = Walker { script, kicks, sink, next: [0; TEAMMATES_MAX], places, ball, carried: None };
+    let mut holder = Some(getter);
+    while let Some(robot) = holder {
+        holder = walker.play(robot)?;
+    }
+    walker.leftovers()
+}
+
+/// A place the walk knows, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// x and y, axes of the field.
+    pub at: [f32; 2],
+    /// A fixed point of the field; else relative to the ball's first place.
+    pub on_field: bool,
+}
+
+impl Spot {
+    fn relative(displacement: PointMm) -> Self {
+        Self { at: displacement.to_f32(), on_field: false }
+    }
+}
+
+/// Something the ball does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// It runs along a leg.
+    Leg {
+        /// Who kicks it.
+        robot: CaseRobot,
+        /// Which of the kicker's actions that is.
+        action: usize,
+        /// Where it lies.
+        from: Spot,
+        /// Where it comes to rest.
+        to: Spot,
+        /// r_min and r_max, mm.
+        radii: [i32; 2],
+        /// By a pass or a kick.
+        kind: LegKind,
+        /// The `dribble_to` that carried it to `from` after the leg before.
+        carried_by: Option<(CaseRobot, usize)>,
+    },
+    /// It changes hands.
+    HandOver(HandOver),
+    /// Nobody's kick ever hands it to this `get_ball`.
+    NeverReached {
+        /// Who waits for it.
+        robot: CaseRobot,
+        /// The `get_ball`.
+        action: usize,
+    },
+}
+
+impl Step {
+    /// The hand-over, if it is one.
+    pub const fn hand_over(self) -> Option<HandOver> {
+        if let Self::HandOver(hand_over) = self { Some(hand_over) } else { None }
+    }
+}
+
+/// The ball changes hands: who gives and who takes, each with the number of the action.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HandOver {
+    /// The `pass_ball` or `kick`.
+    pub from: (CaseRobot, usize),
+    /// The `receive_ball` or `get_ball`.
+    pub to: (CaseRobot, usize),
+    /// By a pass, else by a kick.
+    pub by_pass: bool,
+}
+
+/// Why gameplays cannot be walked; the robot and its action (from 0) tell where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WalkError {
+    /// No robot begins with `get_ball`.
+    NoGetter,
+    /// A robot without the ball should dribble, pass or kick it.
+    NotHolding(CaseRobot, usize),
+    /// The robot that is passed to never comes to receive this pass.
+    PassUnanswered(CaseRobot, usize),
+    /// The pass a robot waits for is never played.
+    ReceiveUnanswered(CaseRobot, usize),
+    /// The league has no such kick kind.
+    UnknownKick(CaseRobot, usize),
+}
+
+impl fmt::Display for WalkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (what, robot, action) = match self {
+            Self::NoGetter => return f.write_str("no robot begins with get_ball"),
+            Self::NotHolding(robot, action) => ("does not hold the ball", robot, action),
+            Self::PassUnanswered(robot, action) => {
+                ("passes to a robot that does not receive it", robot, action)
+            }
+            Self::ReceiveUnanswered(robot, action) => ("waits for a pass nobody plays", robot, action),
+            Self::UnknownKick(robot, action) => ("kicks in a way the league does not know", robot, action),
+        };
+        write!(f, "{robot} {what} at its action {}", action + 1)
+    }
+}
+impl core::error::Error for WalkError {}
+
+/// The state of a walk: how far each robot has come in its list, where it is, and where the ball is.
+struct Walker<'s, S, K, F> {
+    script: &'s S,
+    kicks: &'s K,
+    sink: F,
+    next: [usize; TEAMMATES_MAX],
+    places: [Spot; TEAMMATES_MAX],
+    ball: Spot,
+    carried: Option<(CaseRobot, usize)>,
+}
+
+impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
+    /// Plays the holder's actions until the ball leaves it; gives the next holder, `None` where there is none.
+    fn play(&mut self, robot: CaseRobot) -> Result<Option<CaseRobot>, WalkError> {
+        let mine = robot.index();
+        while let Some(action) = self.script.action(robot, self.next[mine]) {
+            let index = self.next[mine];
+            self.next[mine] += 1;
+            match action {
+                Action::Wait | Action::Turn(_) => {}
+                Action::GoToPoint(point) => self.places[mine] = self.spot(point),
+                Action::GetBall => self.places[mine] = self.ball,
+                Action::DribbleTo(point) => {
+                    self.ball = self.spot(point);
+                    self.places[mine] = self.ball;
+                    self.carried = Some((robot, index));
+                }
+                Action::ReceiveBall(_) => return Err(WalkError::ReceiveUnanswered(robot, index)),
+                Action::PassBall(receiver) => return self.pass(robot, index, receiver).map(Some),
+                Action::Kick(id) => {
+                    let kick = self.kicks.kick(id).ok_or(WalkError::UnknownKick(robot, index))?;
+                    let end = self.kick_end(kick.aim);
+                    self.leg(robot, index, end, [kick.r_min, kick.r_max], LegKind::Kick(id));
+                    return Ok(self.chaser((robot, index)));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The receiver walks to the `receive_ball` that answers this pass; the ball runs to it.
+    fn pass(&mut self, robot: CaseRobot, index: usize, receiver: CaseRobot) -> Result<CaseRobot, WalkError> {
+        let theirs = receiver.index();
+        if receiver == robot || theirs >= self.script.teammates() {
+            return Err(WalkError::PassUnanswered(robot, index));
+        }
+        while let Some(action) = self.walk_on(receiver) {
+            let there = self.next[theirs];
+            match action {
+                Action::ReceiveBall(from) if from == robot => {
+                    let Pass { r_min, r_max } = self.kicks.pass();
+                    self.leg(robot, index, self.places[theirs], [r_min, r_max], LegKind::Pass(receiver));
+                    let to = (receiver, there);
+                    (self.sink)(Step::HandOver(HandOver { from: (robot, index), to, by_pass: true }));
+                    self.next[theirs] += 1;
+                    return Ok(receiver);
+                }
+                Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_) => {
+                    return Err(WalkError::NotHolding(receiver, there));
+                }
+                _ => break,
+            }
+        }
+        Err(WalkError::PassUnanswered(robot, index))
+    }
+
+    /// The lowest-numbered robot whose next ball action is `get_ball`, walked to it.
+    fn chaser(&mut self, from: (CaseRobot, usize)) -> Option<CaseRobot> {
+        let chases = |robot: &CaseRobot| {
+            let rest = self.next[robot.index()]..;
+            let mut actions = rest.map_while(|index| self.script.action(*robot, index));
+            actions.find(|action| action.concerns_ball()) == Some(Action::GetBall)
+        };
+        let robot = CaseRobot::first(self.script.teammates()).find(chases)?;
+        self.walk_on(robot);
+        let to = (robot, self.next[robot.index()]);
+        (self.sink)(Step::HandOver(HandOver { from, to, by_pass: false }));
+        Some(robot)
+    }
+
+    /// Lets a robot without the ball walk up to its next ball action, which is given.
+    fn walk_on(&mut self, robot: CaseRobot) -> Option<Action> {
+        let mine = robot.index();
+        loop {
+            let action = self.script.action(robot, self.next[mine])?;
+            if action.concerns_ball() {
+                return Some(action);
+            }
+            if let Action::GoToPoint(point) = action {
+                self.places[mine] = self.spot(point);
+            }
+            self.next[mine] += 1;
+        }
+    }
+
+    /// The ball runs to `to`.
+    fn leg(&mut self, robot: CaseRobot, action: usize, to: Spot, radii: [i32; 2], kind: LegKind) {
+        let (from, carried_by) = (self.ball, self.carried.take());
+        (self.sink)(Step::Leg { robot, action, from, to, radii, kind, carried_by });
+        self.ball = to;
+    }
+
+    /// Where a kick from the ball's place leaves it.
+    fn kick_end(&self, aim: KickAim) -> Spot {
+        let sign = self.script.defending().attack_sign();
+        match aim {
+            KickAim::Heading { degrees, length_mm } => {
+                let [x, y] = unit_of_degrees(degrees);
+                let forward = length_mm as f32 * sign as f32;
+                let at = [self.ball.at[0] + forward * x, self.ball.at[1] + forward * y];
+                Spot { at, on_field: self.ball.on_field }
+            }
+            KickAim::Goal { offset_mm } => {
+                let goal_line = self.kicks.field().length as f32 / 2.0;
+                Spot { at: [goal_line * sign as f32, (offset_mm as f32) * sign as f32], on_field: true }
+            }
+        }
+    }
+
+    /// What is left when the ball comes to its last rest: nobody may need it any more.
+    fn leftovers(&mut self) -> Result<(), WalkError> {
+        for robot in CaseRobot::first(self.script.teammates()) {
+            let first = self.next[robot.index()];
+            for index in first.. {
+                match self.script.action(robot, index) {
+                    None => break,
+                    Some(Action::Wait | Action::Turn(_) | Action::GoToPoint(_)) => {}
+                    Some(Action::GetBall) => (self.sink)(Step::NeverReached { robot, action: index }),
+                    Some(Action::ReceiveBall(_)) => return Err(WalkError::ReceiveUnanswered(robot, index)),
+                    Some(Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_)) => {
+                        return Err(WalkError::NotHolding(robot, index));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn spot(&self, point: PointMm) -> Spot {
+        Spot::relative(point.minus(self.script.ball()))
+    }
+}
+
+/// (cos, sin) of whole degrees, exact at quarter turns and equal in size left and right.
+fn unit_of_degrees(degrees: i32) -> [f32; 2] {
+    let turn = degrees.rem_euclid(360);
+    let (quarter, rest) = (turn / 90, turn % 90);
+    // Above 45° the complement is taken, so that mirrored headings use the same two numbers.
+    let small = |d: i32| math::sin_cos(d as f32 * (math::PI / 180.0));
+    let (sin, cos) = if rest <= 45 {
+        small(rest)
+    } else {
+        let (sin, cos) = small(90 - rest);
+        (cos, sin)
+    };
+    match quarter {
+        0 => [cos, sin],
+        1 => [-sin, cos],
+        2 => [-cos, -sin],
+        _ => [sin, -cos],
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,1 @@
+//! Does the walk follow DESIGN §4.3, step by step?
