@@ -10,7 +10,7 @@
 //! before what arrived after them. A board implements the four traits of [`ports`], declares a task for each function of
 //! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
 //!
-//! ```ignore
+//! ```text
 //! static BOXES: Mailboxes = Mailboxes::new();
 //! #[embassy_executor::task]
 //! async fn brain(config: BrainConfig, base: CaseBase<'static>) { tasks::brain(&config, base, &BOXES).await }

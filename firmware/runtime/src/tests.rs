@@ -55,7 +55,7 @@ fn the_tasks_drive_a_mind_as_a_plain_loop_does() {
     for _ in 0..2_000 {
         now += u64::from(random.below(50));
         let packets: Vec<_> = (0..random.below(4))
-            .map(|_| packet(&[random.below(200) as u8, random.below(60) as u8][..1 + random.below(2) as usize]))
+            .map(|_| packet(&[random.below(200) as u8, random.below(60) as u8][..=random.below(2) as usize]))
             .collect();
         let sight = picture(now as f32);
         robot.tick(now, &packets, &sight);
@@ -357,7 +357,7 @@ impl embassy_time_driver::Driver for Clock {
         let mut time = self.lock();
         if at <= time.now {
             waker.wake_by_ref();
-        } else {
+        } else if !time.alarms.iter().any(|(set, by)| *set == at && by.will_wake(waker)) {
             time.alarms.push((at, waker.clone()));
         }
     }

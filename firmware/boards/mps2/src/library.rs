@@ -1,0 +1,19 @@
+//! Which cases does this robot know? Those put into the slot, or else the four-legged league's, built in.
+
+use casebase::{CaseBase, TableError};
+
+use crate::slot;
+
+/// The case base to play with; a table in the slot is checked first.
+pub(crate) fn case_base() -> Result<CaseBase<'static>, TableError> {
+    table_in_slot().map_or_else(|| Ok(case_library::four_legged()), CaseBase::from_bytes)
+}
+
+/// What lies in the slot, if its header says that something does.
+fn table_in_slot() -> Option<&'static [u8]> {
+    // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
+    let slot: &'static [u8] = unsafe { core::slice::from_raw_parts(slot::ADDRESS as *const u8, slot::LEN) };
+    let (header, rest) = slot.split_first_chunk::<{ slot::HEADER_LEN }>()?;
+    let len = u32::from_le_bytes(*header.last_chunk()?) as usize;
+    (slot::header(len) == Some(*header)).then(|| rest.get(..len))?
+}
