@@ -22,15 +22,7 @@ pub struct Link {
 impl Link {
     /// A link in the life `epoch` of robot `me`; a later boot must bring a larger one.
     pub fn new(team: TeamId, me: RobotId, key: TeamKey, epoch: u32) -> Self {
-        Self {
-            team,
-            me,
-            key,
-            epoch,
-            counter: 0,
-            sessions: Sessions::default(),
-            refused: [0; Refusal::KINDS],
-        }
+        Self { team, me, key, epoch, counter: 0, sessions: Sessions::default(), refused: [0; Refusal::KINDS] }
     }
 
     /// The packet that carries `message`.

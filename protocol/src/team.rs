@@ -267,7 +267,11 @@ mod tests {
     fn knowledge_of_a_cycle_only_grows() {
         let id = |counter| CycleId { counter, proposer: robot(1) };
         let state = |counter, decision| CycleState { id: id(counter), coordinator: robot(2), decision };
-        let play = Decision::Play(Play { case: CaseId(3), ball: WirePoint::default(), robots: heapless::Vec::new() });
+        let play = Decision::Play(Play {
+            case: CaseId(3),
+            ball: WirePoint::default(),
+            robots: heapless::Vec::new(),
+        });
         let ladder = [
             state(4, Decision::Closed(Closure::Finished)),
             state(5, Decision::Undecided),

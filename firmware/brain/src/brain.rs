@@ -176,7 +176,7 @@ impl<'a> Brain<'a> {
             self.timers.clear(timer);
         }
         let Some(play) = self.cycle.play() else { return };
-        let part = play.part_of(self.config.robot).and_then(|part| CaseRobot::new(part as u8));
+        let part = play.part_of(self.config.robot).and_then(|part| CaseRobot::new(part));
         self.execution = part.map(Execution::new);
         let expected = self.scene(now).map_or(0.0, |scene| estimate::gameplay(&scene));
         self.timers.set(Timer::Reuse, now + estimate::limit(expected));

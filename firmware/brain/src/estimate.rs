@@ -6,16 +6,17 @@ use motion::legged::{CARRY_SPEED, WALK_FORWARD};
 use motion::rolling::RollingBall;
 use protocol::Duration;
 
-use crate::execution::{Scene, to_field};
+use crate::execution::Scene;
+use crate::units::{end_to_field, to_field};
 
 /// The limit for something expected to take `expected` seconds.
-pub fn limit(expected: f32) -> Duration {
+pub(crate) fn limit(expected: f32) -> Duration {
     Duration::from_secs_f32(1.5 * expected + 2.0)
 }
 
 /// Expected seconds from now until the whole gameplay is over: the way of the ball getter, then every action that the
 /// ball waits for, one after the other; walks without the ball run beside them.
-pub fn gameplay(scene: &Scene<'_>) -> f32 {
+pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
     let case = &scene.case;
     let mut walk = 0.0_f32;
     for part in case.robots() {
@@ -41,14 +42,16 @@ pub fn gameplay(scene: &Scene<'_>) -> f32 {
 }
 
 /// Expected seconds of one action, from the time it starts.
-pub fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize) -> f32 {
+pub(crate) fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize) -> f32 {
     let place = scene.place_of(part);
     match scene.case.action(part, index) {
         None | Some(Action::Wait) => 0.0,
         Some(Action::GoToPoint(p)) => walk(place, scene.adapt(p), WALK_FORWARD),
         Some(Action::DribbleTo(p)) => TURN + walk(place, scene.adapt(p), CARRY_SPEED),
         Some(Action::Turn(_)) => TURN,
-        Some(Action::GetBall) => walk(place, to_field(scene.ball_used()), WALK_FORWARD).min(LONGEST_FETCH) + GRAB,
+        Some(Action::GetBall) => {
+            walk(place, to_field(scene.ball_used()), WALK_FORWARD).min(LONGEST_FETCH) + GRAB
+        }
         Some(Action::ReceiveBall(_)) => scene
             .case
             .partner_of(part, index)
@@ -56,9 +59,7 @@ pub fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize) -> f32
                 scene.case.legs(scene.ball_used()).into_iter().find(|l| l.robot == from && l.action == action)
             })
             .map_or(GRAB, |leg| {
-                let length = Point::<Field>::new(leg.from.0, leg.from.1)
-                    .distance(Point::new(leg.to.0, leg.to.1))
-                    * 0.001;
+                let length = end_to_field(leg.from).distance(end_to_field(leg.to));
                 let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
                 ball.speed_for(length) / ball.deceleration + GRAB
             }),

@@ -17,6 +17,7 @@ use crate::estimate;
 use crate::mates::Mates;
 use crate::skills::{self, Reception, Step};
 use crate::timer::{Timer, TimerTable};
+use crate::units::{end_to_field, from_wire, to_field};
 
 /// Everything an execution looks at in one step.
 #[derive(Clone, Copy)]
@@ -51,7 +52,7 @@ impl Scene<'_> {
 
     /// The ball that all adapted positions of this cycle are relative to, mm.
     pub fn ball_used(&self) -> PointMm {
-        PointMm { x: i32::from(self.play.ball.x), y: i32::from(self.play.ball.y) }
+        from_wire(self.play.ball)
     }
 
     /// Who plays case robot `part`.
@@ -66,8 +67,9 @@ impl Scene<'_> {
 
     /// Where the ball's leg of that action leads: field point of its end, and its direction.
     fn leg_of(&self, part: CaseRobot, action: usize) -> Option<(Point<Field>, Angle)> {
-        let leg = self.case.legs(self.ball_used()).into_iter().find(|l| l.robot == part && l.action == action)?;
-        let (from, to) = (mm_to_field(leg.from), mm_to_field(leg.to));
+        let leg =
+            self.case.legs(self.ball_used()).into_iter().find(|l| l.robot == part && l.action == action)?;
+        let (from, to) = (end_to_field(leg.from), end_to_field(leg.to));
         Some((to, from.direction_to(to)))
     }
 }
@@ -183,7 +185,10 @@ impl Execution {
         };
         let receiving = matches!(scene.case.action(self.part, index), Some(Action::ReceiveBall(_)));
         let coming = receiving
-            && scene.belief.ball.is_some_and(|ball| ball.rolls_towards(scene.belief.pose.position, COMING_WITHIN))
+            && scene
+                .belief
+                .ball
+                .is_some_and(|ball| ball.rolls_towards(scene.belief.pose.position, COMING_WITHIN))
             && !scene.mates.anyone_holds_ball();
         let taken = !receiving && scene.mates.anyone_holds_ball();
         (done && !taken) || coming
@@ -362,15 +367,6 @@ fn legged_kick(primitive: Primitive, aim: KickAim) -> LeggedKick {
 
 fn attack_direction(scene: &Scene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
-}
-
-/// Millimetres of the case base to metres of the field.
-pub(crate) fn to_field(point: PointMm) -> Point<Field> {
-    Point::new(from_mm(point.x), from_mm(point.y))
-}
-
-fn mm_to_field((x, y): (f32, f32)) -> Point<Field> {
-    Point::new(x * 0.001, y * 0.001)
 }
 
 /// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.

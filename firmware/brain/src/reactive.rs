@@ -241,7 +241,9 @@ mod tests {
     #[test]
     fn a_supporter_backs_up_off_the_line_to_the_goal() {
         let b = belief((-0.5, 0.4), (0.0, 0.0));
-        let Intent::Walk { to, .. } = support(&b, &b.ball.unwrap(), GoalSide::Positive) else { panic!("walks") };
+        let Intent::Walk { to, .. } = support(&b, &b.ball.unwrap(), GoalSide::Positive) else {
+            panic!("walks")
+        };
         assert!((to.distance(Point::new(0.0, 0.0)) - SUPPORT_DISTANCE).abs() < 1e-3);
         assert!(to.y() > 0.5);
     }

@@ -22,6 +22,8 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
             walk(Twist { linear: Vector::default(), angular: turn(pose, heading, limit) })
         }
         Intent::Walk { to, face, shy_of_ball } => {
+            // Adapted positions may lie outside (they are never clamped): the body stays on the carpet.
+            let to = belief.league().field().clamp(to, CARPET);
             let way_point = around(now, belief, mates, to, shy_of_ball);
             let far = pose.position.distance(to) > FACE_END_WITHIN;
             let heading = if far { pose.position.direction_to(way_point) } else { face };
@@ -90,9 +92,7 @@ fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of
     let first = robots
         .chain(ball)
         .map(|(at, clearance)| (at, clearance, way.share_of(at)))
-        .filter(|&(at, clearance, share)| {
-            (0.0..1.0).contains(&share) && way.distance_to(at) < clearance
-        })
+        .filter(|&(at, clearance, share)| (0.0..1.0).contains(&share) && way.distance_to(at) < clearance)
         .reduce(|a, b| if b.2 < a.2 { b } else { a });
     match first {
         Some((at, clearance, _)) => beside(way, at, clearance + SIDE_STEP),
@@ -108,6 +108,8 @@ fn beside(way: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Fie
     obstacle + left * (side * offset)
 }
 
+/// How far within the lines a walk may end, m: on the carpet's edge, half a body outside.
+const CARPET: f32 = -0.1;
 /// The robot is near enough to turn to its final heading, m: the way on which it turns half about.
 const FACE_END_WITHIN: f32 = 0.4;
 /// Heading is near enough to walk ahead with the ball, rad.

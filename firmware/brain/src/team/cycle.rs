@@ -93,7 +93,8 @@ impl Cycle {
     #[must_use]
     pub fn closed(&self, closure: Closure) -> Option<CycleState> {
         let state = self.state.as_ref()?;
-        (self.closure().is_none()).then(|| CycleState { decision: Decision::Closed(closure), ..state.clone() })
+        (self.closure().is_none())
+            .then(|| CycleState { decision: Decision::Closed(closure), ..state.clone() })
     }
 
     /// The open cycle, aborted by this robot.

@@ -5,10 +5,11 @@
 //! edge of a trapezoid shall not end a gameplay by swaying.
 
 use casebase::{PointMm, Settings};
-use geometry::{Field, Point, Segment, math};
+use geometry::Segment;
 use protocol::team::AbortReason;
 
 use crate::execution::Scene;
+use crate::units::{end_to_field, to_field, to_mm};
 
 /// A doubt and how long it has lasted.
 #[derive(Clone, Debug, Default)]
@@ -54,23 +55,11 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
         return None;
     }
     let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
-        let way = Segment::new(field(leg.from), field(leg.to));
+        let way = Segment::new(end_to_field(leg.from), end_to_field(leg.to));
         way.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
     });
-    let at_start = ball.position.distance(field_mm(scene.ball_used())) < STRAY;
+    let at_start = ball.position.distance(to_field(scene.ball_used())) < STRAY;
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
-}
-
-fn to_mm(point: Point<Field>) -> PointMm {
-    PointMm { x: math::round_to_i32(point.x() * 1000.0), y: math::round_to_i32(point.y() * 1000.0) }
-}
-
-fn field((x, y): (f32, f32)) -> Point<Field> {
-    Point::new(x * 0.001, y * 0.001)
-}
-
-fn field_mm(point: PointMm) -> Point<Field> {
-    crate::execution::to_field(point)
 }
 
 /// Steps a doubt must last: at 25 steps a second a fifth of a second.

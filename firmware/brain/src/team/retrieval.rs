@@ -3,14 +3,13 @@
 //! The ball of the problem is where the ball will lie: robots that adapt to a place a rolling ball has left would only
 //! abort. For a ball at rest it is the paper's own ball position.
 
-use casebase::{CaseBase, GoalEnd, PointMm, Problem, Settings};
-use geometry::{Field, Point, math};
-use protocol::quantized::WirePoint;
+use casebase::{CaseBase, GoalEnd, Problem, Settings};
 use protocol::team::{Decision, Play};
 use protocol::{Instant, RobotId};
 
 use crate::belief::Belief;
 use crate::mates::Mates;
+use crate::units::{to_mm, to_wire};
 
 /// The problem as this robot believes it; `None` while no ball is known.
 pub fn problem(
@@ -53,13 +52,4 @@ pub fn decide(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> De
         }),
         None => Decision::NoCase,
     }
-}
-
-fn to_mm(point: Point<Field>) -> PointMm {
-    PointMm { x: math::round_to_i32(point.x() * 1000.0), y: math::round_to_i32(point.y() * 1000.0) }
-}
-
-fn to_wire(point: PointMm) -> WirePoint {
-    let saturate = |v: i32| v.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16;
-    WirePoint { x: saturate(point.x), y: saturate(point.y) }
 }

@@ -77,7 +77,8 @@ fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Executio
         if part == execution.part() {
             arrived
         } else {
-            matches!(scene.progress_of(part), Some(Progress::Adapt { arrived: true })) || executes(scene, part)
+            matches!(scene.progress_of(part), Some(Progress::Adapt { arrived: true }))
+                || executes(scene, part)
         }
     };
     let ready = match positioning {
