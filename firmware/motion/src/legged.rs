@@ -13,7 +13,7 @@ pub const TURN_RATE: f32 = 2.0;
 pub const CARRY_SPEED: f32 = 0.15;
 /// Turning with the ball, rad/s.
 pub const CARRY_TURN_RATE: f32 = 1.0;
-/// Ball within this distance of the body's centre, ahead: a grab may succeed, m (body and ball touch at 0.16).
-pub const GRAB_REACH: f32 = 0.2;
+/// Ball within this distance of the body's centre, ahead: a grab may succeed, m.
+pub const GRAB_REACH: f32 = 0.165;
 /// Half the angle of the grab's zone, rad.
 pub const GRAB_HALF_ANGLE: f32 = 0.4;

@@ -59,8 +59,8 @@ fn meeting_point(belief: &Belief, ball: &Ball) -> Point<Field> {
     ball.rest
 }
 
-/// Where the robot's centre stands to grab, behind the ball, m: body and ball touch at about 0.16.
-const STAND_OFF: f32 = 0.165;
+/// Where the robot's centre stands to grab, behind the ball, m: the ball lies between the front legs.
+const STAND_OFF: f32 = 0.14;
 /// Within this distance only the way to the ball counts, m.
 const NEAR: f32 = 0.5;
 /// Facing onwards comes for free within this angle, rad.
