@@ -3,3 +3,4 @@
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;
+pub mod workspace;

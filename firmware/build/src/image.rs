@@ -12,32 +12,49 @@ use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
 use crate::{Install, TARGET, TargetError, ensure_target};
 
-/// The image for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
+/// The robot's image for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
 ///
 /// Where the sources or cargo are gone (an installed program), an image that is already there will do.
 pub fn build_image(root: &Path) -> Result<PathBuf, BuildError> {
-    build_into(&target_dir(root), root)
+    build_program(root, Program::Robot)
 }
 
-fn build_into(target_dir: &Path, root: &Path) -> Result<PathBuf, BuildError> {
-    let image = image_in(target_dir);
+/// As [`build_image`], for any program of the board.
+pub fn build_program(root: &Path, program: Program) -> Result<PathBuf, BuildError> {
+    build_into(&target_dir(root), root, program)
+}
+
+fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBuf, BuildError> {
+    let image = target_dir.join(TARGET).join(PROFILE).join(program.name());
     if let Some(why) = cannot_build(root) {
         return if image.is_file() { Ok(image) } else { Err(BuildError::NothingToBuild { why, image }) };
     }
     let toolchain = ensure_target(root, Install::ForUser).map_err(BuildError::Target)?;
     let mut build = toolchain.cargo(root, "build");
-    build.args(["--package", PACKAGE, "--profile", PROFILE, "--target-dir"]).arg(target_dir);
+    build
+        .args(["--package", PACKAGE, "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
+        .arg(target_dir);
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
 
-/// Where the image lies once it is built.
-pub fn image_path(root: &Path) -> PathBuf {
-    image_in(&target_dir(root))
+/// What can be built for the emulated board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// A whole robot: the brain, its library and its tasks.
+    Robot,
+    /// Ends well where `geometry::math` has the bits it has on the PC.
+    MathHash,
 }
 
-fn image_in(target_dir: &Path) -> PathBuf {
-    target_dir.join(TARGET).join(PROFILE).join(PACKAGE)
+impl Program {
+    /// The name of the binary.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "onetwo-mps2",
+            Self::MathHash => "math-hash",
+        }
+    }
 }
 
 /// Where cargo puts what it builds: `CARGO_TARGET_DIR` as cargo reads it, or the workspace's own `target`.
@@ -157,7 +174,9 @@ mod tests {
     #[test]
     fn the_board_is_where_we_look_for_it() {
         let manifest = fs::read_to_string(crate::workspace_root().join(MANIFEST)).unwrap();
-        assert!(manifest.contains(&format!("name = \"{PACKAGE}\"")));
+        for name in [PACKAGE, Program::Robot.name(), Program::MathHash.name()] {
+            assert!(manifest.contains(&format!("name = \"{name}\"")), "{name}");
+        }
         let workspace = fs::read_to_string(crate::workspace_root().join("Cargo.toml")).unwrap();
         assert!(workspace.contains(&format!("[profile.{PROFILE}]")));
     }
@@ -165,12 +184,14 @@ mod tests {
     #[test]
     fn without_sources_an_image_that_is_there_will_do() {
         let root = env::temp_dir().join(format!("onetwo-no-sources-{}", std::process::id()));
-        let (target, image) = (root.join("target"), image_in(&root.join("target")));
-        let error = build_into(&target, &root).unwrap_err().to_string();
+        let target = root.join("target");
+        let Err(error) = build_into(&target, &root, Program::Robot) else { panic!("built from nothing") };
+        let BuildError::NothingToBuild { image, .. } = &error else { panic!("{error}") };
+        let (image, error) = (image.clone(), error.to_string());
         assert!(error.contains("its sources are not here") && error.contains("install rustup"), "{error}");
         fs::create_dir_all(image.parent().unwrap()).unwrap();
         fs::write(&image, b"an image").unwrap();
-        assert_eq!(build_into(&target, &root).unwrap(), image);
+        assert_eq!(build_into(&target, &root, Program::Robot).unwrap(), image);
         fs::remove_dir_all(&root).unwrap();
     }
 

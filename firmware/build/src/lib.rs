@@ -18,7 +18,7 @@ mod target;
 
 use std::path::{Path, PathBuf};
 
-pub use image::{BuildError, build_image, image_path, target_dir};
+pub use image::{BuildError, Program, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
 

@@ -1,0 +1,55 @@
+//! Which crates are there, where do they lie, and what do they depend on?
+
+use std::collections::BTreeSet;
+
+use super::{Source, root};
+
+/// Every crate of the workspace.
+pub fn members() -> Vec<Manifest> {
+    let workspace: toml::Table =
+        Source::read(&root().join("Cargo.toml")).text.parse().expect("the workspace's manifest");
+    let members = workspace["workspace"]["members"].as_array().expect("members");
+    members.iter().filter_map(|folder| folder.as_str()).map(Manifest::read).collect()
+}
+
+/// A crate of the workspace, and what it depends on, developers' dependencies apart.
+pub struct Manifest {
+    /// From the workspace's root.
+    pub folder: String,
+    /// As others depend on it.
+    pub name: String,
+    /// Crates that end up in the same program.
+    pub linked: BTreeSet<String>,
+    /// Those, and what the build script uses.
+    pub all: BTreeSet<String>,
+}
+
+impl Manifest {
+    /// Of the crate in this folder.
+    pub fn read(folder: &str) -> Self {
+        Self::from_text(folder, &Source::read(&root().join(folder).join("Cargo.toml")).text)
+    }
+
+    /// From the text of its `Cargo.toml`.
+    pub fn from_text(folder: &str, text: &str) -> Self {
+        let table: toml::Table = text.parse().unwrap_or_else(|error| panic!("{folder}/Cargo.toml: {error}"));
+        let name = table["package"]["name"].as_str().unwrap_or_default().to_string();
+        let targets =
+            table.get("target").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::values);
+        let tables: Vec<_> =
+            std::iter::once(&table).chain(targets.filter_map(toml::Value::as_table)).collect();
+        let of =
+            |kind: &str| tables.iter().flat_map(|table| dependencies(table, kind)).collect::<BTreeSet<_>>();
+        let linked = of("dependencies");
+        let all = linked.union(&of("build-dependencies")).cloned().collect();
+        Self { folder: folder.into(), name, linked, all }
+    }
+}
+
+fn dependencies(table: &toml::Table, kind: &str) -> Vec<String> {
+    let Some(entries) = table.get(kind).and_then(toml::Value::as_table) else { return vec![] };
+    let name = |(key, value): (&String, &toml::Value)| {
+        value.get("package").and_then(|p| p.as_str()).unwrap_or(key).to_string()
+    };
+    entries.iter().map(name).collect()
+}

@@ -1,0 +1,316 @@
+//! Is the source as we agreed to write it? What a reviewer would say again and again, a test says once.
+//!
+//! Walks the repository from this crate's folder upwards. Every finding names file and line, what is wrong and the mend.
+//! The rules are DESIGN §1 and §2: shared crates give the same bits everywhere, allocate nothing and do no I/O; who
+//! depends on whom has one direction; and nothing half-done stays behind.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use match_tests::workspace::{Finding, Manifest, Source, members, root, rust_sources, text_sources};
+
+#[test]
+fn every_file_opens_by_telling_which_question_it_answers() {
+    check(&rust_sources(), |source| {
+        let opens = source.text.lines().take(OPENING_LINES).any(|line| line.starts_with("//!"));
+        let finding =
+            source.at(1, "no `//!` at the top", "open with a sentence: which question does the file answer?");
+        if opens { vec![] } else { vec![finding] }
+    });
+}
+
+#[test]
+fn no_file_is_longer_than_a_reader_holds_in_mind() {
+    check(&rust_sources(), |source| {
+        let lines = source.text.lines().count();
+        let mend = "split it along its questions; 100 to 400 lines read best";
+        if lines <= LINES_MAX { vec![] } else { vec![source.at(lines, &format!("{lines} lines"), mend)] }
+    });
+}
+
+#[test]
+fn shared_arithmetic_goes_through_geometry_math() {
+    let sources = rust_sources().into_iter().filter(|source| {
+        source.is_under(&folders(&SAME_BITS)) && !source.path.starts_with("protocol/geometry/src/math")
+    });
+    check(&sources.collect::<Vec<_>>(), inexact_floats);
+}
+
+#[test]
+fn nalgebra_stays_within_geometry_and_without_its_roots_and_rotations() {
+    let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders(&SAME_BITS)));
+    check(&sources.collect::<Vec<_>>(), |source| {
+        let mend =
+            "use geometry's own `norm`, `distance` and `Angle`: nalgebra's reach for libm's √ and sine";
+        source.code_with(&NALGEBRA_INEXACT, mend)
+    });
+}
+
+#[test]
+fn nothing_half_done_stays_behind() {
+    check(&text_sources(), |source| {
+        let marks = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X:")];
+        source.text_with(&marks, "do it, or write into README what is not done yet")
+    });
+    check(&rust_sources(), |source| {
+        let stubs = ["todo", "unimplemented", "dbg"].map(|name| format!("{name}!("));
+        let stubs: Vec<_> = stubs.iter().map(String::as_str).chain([concat!("#[ig", "nore")]).collect();
+        source.text_with(&stubs, "finish it, or take it out")
+    });
+}
+
+#[test]
+fn no_file_knows_the_machine_it_was_written_on() {
+    check(&text_sources(), |source| {
+        let mend = "use a path relative to the workspace, or `std::env::temp_dir()`";
+        let roots =
+            [concat!("/wo", "rk/"), concat!("/tm", "p/"), concat!("/ho", "me/"), concat!("/ro", "ot/")];
+        let within = |line: &str, root: &str| {
+            line.match_indices(root)
+                .any(|(at, _)| !line[..at].ends_with(|before: char| before.is_alphanumeric()))
+        };
+        let lines = (1..).zip(source.text.lines());
+        let found = lines.filter_map(|(number, line)| {
+            let root = roots.into_iter().find(|root| within(line, root))?;
+            Some(source.at(number, &format!("`{root}…`"), mend))
+        });
+        found.collect()
+    });
+}
+
+#[test]
+fn robots_crates_are_no_std_and_allocate_nothing() {
+    let crates: Vec<_> = NO_STD.into_iter().map(|name| (folder_of(name), "src/lib.rs")).collect();
+    let boards = board_folders().into_iter().map(|folder| (folder, "src/main.rs"));
+    let all: Vec<_> = crates.into_iter().chain(boards).collect();
+    let heads: Vec<_> =
+        all.iter().map(|(folder, file)| Source::read(&root().join(folder).join(file))).collect();
+    check(&heads, |source| {
+        let says_so = source.code().any(|(_, line)| line.starts_with("#![") && line.contains("no_std"));
+        let finding = source.at(1, "not `no_std`", "add `#![no_std]`: the crate runs on the robot");
+        if says_so { vec![] } else { vec![finding] }
+    });
+    let folders: Vec<_> = all.into_iter().map(|(folder, _)| folder).collect();
+    let sources = rust_sources().into_iter().filter(|source| source.is_under(&folders));
+    check(&sources.collect::<Vec<_>>(), |source| {
+        source.code_with(
+            &ALLOCATES,
+            "take a capacity as a named constant and `heapless`; when full, the value comes back",
+        )
+    });
+}
+
+#[test]
+fn only_runtime_calls_the_brain_on_a_board() {
+    let boards = board_folders();
+    assert!(!boards.is_empty());
+    let sources = rust_sources().into_iter().filter(|source| source.is_under(&boards));
+    check(&sources.collect::<Vec<_>>(), |source| {
+        source.code_with(&["brain::"], "start `runtime`'s tasks; a board is pins, clocks and drivers")
+    });
+    for folder in boards {
+        let manifest = Manifest::read(&folder);
+        assert!(
+            !manifest.all.contains("brain"),
+            "{folder}/Cargo.toml: depends on brain; depend on runtime instead"
+        );
+    }
+}
+
+#[test]
+fn robots_crates_do_no_io() {
+    let mut findings = Vec::new();
+    for name in NO_STD.iter().filter(|name| **name != "runtime") {
+        let Manifest { folder, linked, .. } = Manifest::read(&folder_of(name));
+        for dependency in linked.iter().filter(|name| !is_pure(name)) {
+            let mend =
+                "is not known to be free of I/O and clocks; do without, or add it to PURE with a reason";
+            findings.push(format!("{folder}/Cargo.toml: `{dependency}` {mend}"));
+        }
+    }
+    assert!(findings.is_empty(), "\n{}", findings.join("\n"));
+}
+
+#[test]
+fn dependencies_point_one_way() {
+    let crates: BTreeMap<String, Manifest> = members().into_iter().map(|m| (m.name.clone(), m)).collect();
+    let mut findings = upward(&crates);
+    for (from, to, mend) in NEVER_LINKED {
+        // A crate of a later issue need not be there yet.
+        if crates.contains_key(from) && reachable(&crates, from).contains(to) {
+            findings.push(format!("{from} links {to}; {mend}"));
+        }
+    }
+    assert!(findings.is_empty(), "\n{}", findings.join("\n"));
+}
+
+#[test]
+fn the_rules_find_what_they_look_for() {
+    let source = |text: &str| Source { path: "x.rs".into(), text: text.into() };
+    let lines = |findings: Vec<Finding>| findings.iter().map(|finding| finding.line).collect::<Vec<_>>();
+
+    let floats = source(
+        "let a = x.sqrt();\nlet b = f32::hypot(x, y); // y.sqrt()\n// z.sin()\nlet c = math::sqrt(x);\nx.powi(2)\n",
+    );
+    assert_eq!(lines(inexact_floats(&floats)), [1, 2, 5]);
+    let tested = source("fn f() {}\n#[cfg(test)]\nmod tests {\n    let a = x.sqrt();\n}\n");
+    assert!(inexact_floats(&tested).is_empty());
+    let beside = source("#[cfg(test)]\nmod tests;\nfn f(x: f32) -> f32 { x.exp() }\n");
+    assert_eq!(lines(inexact_floats(&beside)), [3]);
+    let allocating = source("extern crate alloc;\nuse alloc::vec::Vec;\nlet my_alloc::x = 1;\n");
+    assert_eq!(lines(allocating.code_with(&ALLOCATES, "")), [1, 2]);
+
+    let manifest = |text: &str| Manifest::from_text("x", text);
+    let dependent = manifest("[package]\nname = \"geometry\"\n[dependencies]\nbrain.workspace = true\n");
+    let crates = BTreeMap::from([("geometry".to_string(), dependent)]);
+    assert_eq!(upward(&crates).len(), 1);
+    let renamed = manifest(
+        "[package]\nname = \"y\"\n[target.'cfg(unix)'.dependencies]\nmind = { package = \"brain\", path = \"b\" }\n",
+    );
+    assert!(renamed.all.contains("brain") && renamed.linked.contains("brain"));
+}
+
+// Rules
+
+fn inexact_floats(source: &Source) -> Vec<Finding> {
+    let calls = FLOAT_METHODS
+        .iter()
+        .flat_map(|name| [format!(".{name}("), format!("f32::{name}"), format!("f64::{name}")]);
+    let calls: Vec<_> = calls.collect();
+    let calls: Vec<_> = calls.iter().map(String::as_str).collect();
+    source.code_with(&calls, "call `geometry::math`: std's answer differs from the robot's")
+}
+
+/// Dependencies on a crate that stands higher, or at the same height.
+fn upward(crates: &BTreeMap<String, Manifest>) -> Vec<String> {
+    let height = |name: &str| LOWEST_FIRST.iter().position(|known| *known == name);
+    let mut findings = Vec::new();
+    for manifest in crates.values() {
+        let Some(own) = height(&manifest.name) else {
+            findings.push(format!(
+                "{}/Cargo.toml: `{}` has no place in LOWEST_FIRST; give it one",
+                manifest.folder, manifest.name
+            ));
+            continue;
+        };
+        for dependency in manifest.all.iter().filter(|name| height(name).is_some_and(|other| other >= own)) {
+            findings.push(format!(
+                "{}/Cargo.toml: `{}` depends on `{dependency}`, which stands above it; turn the dependency round (DESIGN §1)",
+                manifest.folder, manifest.name
+            ));
+        }
+    }
+    findings
+}
+
+/// Everything that ends up in the same program.
+fn reachable<'a>(crates: &'a BTreeMap<String, Manifest>, from: &'a str) -> BTreeSet<&'a str> {
+    let mut seen = BTreeSet::new();
+    let mut open: Vec<&str> = vec![from];
+    while let Some(manifest) = open.pop().and_then(|name| crates.get(name)) {
+        open.extend(
+            manifest
+                .linked
+                .iter()
+                .map(String::as_str)
+                .filter(|name| crates.contains_key(*name) && seen.insert(*name)),
+        );
+    }
+    seen
+}
+
+fn is_pure(name: &str) -> bool {
+    PURE.contains(&name) || NO_STD.contains(&name)
+}
+
+fn check(sources: &[Source], rule: impl Fn(&Source) -> Vec<Finding>) {
+    assert!(!sources.is_empty(), "nothing to look at");
+    let findings = sources.iter().flat_map(rule).map(|finding| finding.to_string());
+    let findings: Vec<_> = findings.collect();
+    assert!(findings.is_empty(), "{} findings\n{}", findings.len(), findings.join("\n"));
+}
+
+fn folder_of(name: &str) -> String {
+    let found = members().into_iter().find(|manifest| manifest.name == name);
+    found
+        .unwrap_or_else(|| {
+            panic!("no crate `{name}` in the workspace; mend the lists at the end of this file")
+        })
+        .folder
+}
+
+fn folders(names: &[&str]) -> Vec<String> {
+    names.iter().map(|name| folder_of(name)).collect()
+}
+
+fn board_folders() -> Vec<String> {
+    let folders = members().into_iter().map(|manifest| manifest.folder);
+    folders.filter(|folder| folder.starts_with("firmware/boards/")).collect()
+}
+
+// What we agreed on
+
+/// A file opens within these lines, so that a lint or a shebang may stand first.
+const OPENING_LINES: usize = 3;
+const LINES_MAX: usize = 500;
+
+/// What a robot carries.
+const NO_STD: [&str; 8] =
+    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
+/// Crates whose numbers enter a trace hash.
+const SAME_BITS: [&str; 9] =
+    ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime", "hil-sim"];
+/// Crates from outside that compute and nothing else: no files, sockets, clocks or threads.
+const PURE: [&str; 9] =
+    ["nalgebra", "libm", "micromath", "heapless", "serde", "postcard", "siphasher", "zerocopy", "defmt"];
+
+/// DESIGN §1; a crate depends on earlier ones only.
+const LOWEST_FIRST: [&str; 21] = [
+    "geometry",
+    "rules",
+    "protocol",
+    "motion",
+    "ssl",
+    "casebase",
+    "case-tools",
+    "case-library",
+    "brain",
+    "runtime",
+    "board-mps2",
+    "firmware-build",
+    "page",
+    "hil-sim",
+    "virtual-robot",
+    "host",
+    "arena",
+    "onetwo",
+    "match-tests",
+    "xtask",
+    "fuzz",
+];
+/// Who never ends up in whose program, however many crates lie between.
+const NEVER_LINKED: [(&str, &str, &str); 4] = [
+    ("host", "brain", "they know each other through `protocol` only"),
+    ("hil-sim", "host", "the simulator plays with anybody's host"),
+    ("brain", "case-library", "the brain takes a `&CaseBase`; whoever starts it picks the library"),
+    ("runtime", "case-library", "the board picks the library"),
+];
+
+/// Methods of `std` that no two platforms need to answer alike.
+const FLOAT_METHODS: [&str; 26] = [
+    "sqrt", "cbrt", "hypot", "powi", "powf", "exp", "exp2", "exp_m1", "ln", "ln_1p", "log2", "log10", "sin",
+    "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "floor", "ceil", "round",
+    "mul_add",
+];
+const NALGEBRA_INEXACT: [&str; 10] = [
+    "Rotation2",
+    "Rotation3",
+    "UnitComplex",
+    "UnitQuaternion",
+    "nalgebra::distance",
+    ".0.norm(",
+    ".0.magnitude(",
+    ".0.normalize(",
+    "coords.norm(",
+    ".metric_distance(",
+];
+const ALLOCATES: [&str; 3] = ["extern crate alloc", "alloc::", "global_allocator"];
