@@ -68,7 +68,8 @@ impl SettingsArgs {
             settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
         }
         let defaults = described(&Settings::default());
-        let changed = described(&settings).into_iter().filter(|setting| !defaults.contains(setting)).collect();
+        let changed =
+            described(&settings).into_iter().filter(|setting| !defaults.contains(setting)).collect();
         Ok(Chosen { settings, changed })
     }
 }
@@ -86,8 +87,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
 }
 
 /// The package's version and the commit it was built from.
-pub(crate) const VERSION: &str =
-    concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ONETWO_COMMIT"), ")");
+pub(crate) const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("ONETWO_COMMIT"), ")");
 
 #[cfg(test)]
 mod tests {

@@ -74,16 +74,19 @@ impl Shelf {
         }
     }
 
-    /// The case file a stored case descends from.
-    pub(crate) fn source(&self, id: CaseId) -> &str {
+    /// What the author of a stored case meant by it.
+    pub(crate) fn intent(&self, id: CaseId) -> Option<String> {
         let authored = authored(id);
-        match self {
+        let source = match self {
             Self::BuiltIn(league) => league.sources[authored],
             Self::Folder(library) => &library.sources[authored],
-        }
+        };
+        let table: toml::Table = source.parse().ok()?;
+        Some(table.get("intent")?.as_str()?.to_owned())
     }
 }
 
+/// Number of the case file that a stored case descends from.
 fn authored(id: CaseId) -> usize {
     usize::from(id.0) / Symmetry::ALL.len()
 }

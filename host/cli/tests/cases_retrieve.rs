@@ -50,11 +50,10 @@ fn the_other_three_quarters_of_the_field_are_answered_by_the_symmetric_descripti
             .replace("[-720,10]", &format!("[{},{}]", -720 * sx, 10 * sy))
             .replace("[300,910]", &format!("[{},{}]", 300 * sx, 910 * sy))
     };
-    assert_eq!(run.lines(), [
-        expected(1, "across-x", 1, -1),
-        expected(2, "across-y", -1, 1),
-        expected(3, "both", -1, -1)
-    ]);
+    assert_eq!(
+        run.lines(),
+        [expected(1, "across-x", 1, -1), expected(2, "across-y", -1, 1), expected(3, "both", -1, -1)]
+    );
 }
 
 #[test]
@@ -65,7 +64,9 @@ fn whole_numbers_are_rounded_as_all_others() {
     assert_eq!(
         run.lines(),
         // The case lies on the axis: its mirror image across x is its twin, and the lower id wins.
-        [r#"{"case":"front/shot","id":0,"symmetry":"identity","similarity":1.0,"cost":0.0,"conditions":0,"teammates":1,"match":{"1":15},"adapted":{"15":[880,0]},"candidates":2}"#]
+        [
+            r#"{"case":"front/shot","id":0,"symmetry":"identity","similarity":1.0,"cost":0.0,"conditions":0,"teammates":1,"match":{"1":15},"adapted":{"15":[880,0]},"candidates":2}"#
+        ]
     );
 }
 
@@ -81,7 +82,10 @@ fn malformed_lines_are_told_with_their_place_and_the_rest_go_on() {
         (&PROBLEM.replace("\"3\"", "\"16\""), "teammates.16: expected a robot id, 0 to 15"),
         (&PROBLEM.replace("\"3\"", "\"01\""), "teammates.01: robot 1 given twice"),
         (&PROBLEM.replace("\"3\"", "\"1\""), "teammates.1: robot 1 given twice"),
-        (&PROBLEM.replace("\"ball\"", "\"bal\""), "bal: unknown key; the keys are ball, defending, teammates and opponents"),
+        (
+            &PROBLEM.replace("\"ball\"", "\"bal\""),
+            "bal: unknown key; the keys are ball, defending, teammates and opponents",
+        ),
         (&PROBLEM.replacen('{', "{\"ball\":[0,0],", 1), "ball: given twice"),
         (
             &PROBLEM.replace(",\"opponents\":[[-150,40]]", ""),
@@ -90,7 +94,10 @@ fn malformed_lines_are_told_with_their_place_and_the_rest_go_on() {
         ("[]", "expected an object with ball, defending, teammates and opponents"),
         ("{}", "ball: missing; the keys are ball, defending, teammates and opponents"),
         ("{", "column 1: not JSON: EOF while parsing an object"),
-        (&PROBLEM[..PROBLEM.len() - 1], &format!("column {}: not JSON: EOF while parsing an object", PROBLEM.len() - 1)),
+        (
+            &PROBLEM[..PROBLEM.len() - 1],
+            &format!("column {}: not JSON: EOF while parsing an object", PROBLEM.len() - 1),
+        ),
     ];
     let mut input = String::new();
     let mut expected = Vec::new();
@@ -118,7 +125,8 @@ fn coordinates_beyond_all_fields_are_answered() {
     let far = "99999999999999999999";
     let ball = PROBLEM.replace("-600", far);
     let robot = PROBLEM.replace("-700", &format!("-{far}"));
-    let opponents = PROBLEM.replace("[[-150,40]]", &format!("[[-150,40],[{far},-{far}],[-2147483648,2147483647]]"));
+    let opponents =
+        PROBLEM.replace("[[-150,40]]", &format!("[[-150,40],[{far},-{far}],[-2147483648,2147483647]]"));
     let run = cases("retrieve", &worked_example("far"), &[], [ball, robot, opponents].join("\n"));
     assert_eq!(run.lines(), [NOTHING, NOTHING, ANSWER]);
 }
@@ -130,7 +138,9 @@ fn settings_change_the_answer_and_are_recorded_with_it() {
     let near = cases("retrieve", &folder, &["--set", "thr_c=148"], PROBLEM);
     assert_eq!(near.lines(), [r#"{"case":null,"candidates":0,"settings":{"thr_c":"148"}}"#]);
     let max = cases("retrieve", &folder, &["--set", "cost=sum", "--set=cost=max"], PROBLEM);
-    let expected = ANSWER.replace("171.02", "148.66").replace("\"candidates\":1", "\"candidates\":1,\"settings\":{\"cost\":\"max\"}");
+    let expected = ANSWER
+        .replace("171.02", "148.66")
+        .replace("\"candidates\":1", "\"candidates\":1,\"settings\":{\"cost\":\"max\"}");
     assert_eq!(max.lines(), [expected]);
     let default = cases("retrieve", &folder, &["--set", "thr_c=1500"], PROBLEM);
     assert_eq!(default.lines(), [ANSWER]);
@@ -138,7 +148,8 @@ fn settings_change_the_answer_and_are_recorded_with_it() {
 
 #[test]
 fn where_positions_are_clamped_the_answer_says_so() {
-    let folder = library("clamped", &[("center/pass-around.toml", &PASS_AROUND.replace("[300, 900]", "[300, 1790]"))]);
+    let folder =
+        library("clamped", &[("center/pass-around.toml", &PASS_AROUND.replace("[300, 900]", "[300, 1790]"))]);
     // The ball 100 mm to the left: tm2's place would be (300, 1890), beyond the touch line at 1800.
     let problem = PROBLEM.replace("[-600,10]", "[-600,100]").replace("[200,800]", "[300,1700]");
     let run = cases("retrieve", &folder, &["--set", "out_of_field=clamp"], &problem);
@@ -153,7 +164,11 @@ fn a_bad_setting_says_what_is_allowed() {
     let unknown = cases("retrieve", &folder, &["--set", "thr_x=1"], PROBLEM);
     assert_eq!((unknown.code, unknown.stdout.as_str()), (1, ""));
     assert!(unknown.stderr.contains("--set thr_x=1: no such setting"), "{}", unknown.stderr);
-    assert!(unknown.stderr.contains("out_of_field") && unknown.stderr.contains("thr_c"), "{}", unknown.stderr);
+    assert!(
+        unknown.stderr.contains("out_of_field") && unknown.stderr.contains("thr_c"),
+        "{}",
+        unknown.stderr
+    );
     let value = cases("retrieve", &folder, &["--set", "cost=average"], PROBLEM);
     assert_eq!(value.code, 1);
     assert!(value.stderr.contains("sum or max"), "{}", value.stderr);
@@ -166,13 +181,18 @@ fn a_bad_setting_says_what_is_allowed() {
 fn a_library_that_cannot_be_had_is_named_with_what_to_do() {
     let missing = onetwo(&["cases", "retrieve", "--library", "no/such/folder"]);
     assert_eq!((missing.code, missing.stdout.as_str()), (1, ""));
-    assert!(missing.stderr.contains("no/such/folder") && missing.stderr.contains("league.toml"), "{}", missing.stderr);
+    assert!(
+        missing.stderr.contains("no/such/folder") && missing.stderr.contains("league.toml"),
+        "{}",
+        missing.stderr
+    );
     let league = onetwo(&["cases", "retrieve", "--league", "cricket"]);
     assert_eq!(league.code, 1);
     assert!(league.stderr.contains("cricket") && league.stderr.contains("four-legged"), "{}", league.stderr);
     let both = onetwo(&["cases", "retrieve", "--library", ".", "--league", "four-legged"]);
     assert_eq!(both.code, 2);
-    let broken = library("broken", &[("center/pass-around.toml", &PASS_AROUND.replace("\"wait\", ", "\"wiat\", "))]);
+    let broken =
+        library("broken", &[("center/pass-around.toml", &PASS_AROUND.replace("\"wait\", ", "\"wiat\", "))]);
     let run = cases("retrieve", &broken, &[], PROBLEM);
     assert_eq!((run.code, run.stdout.as_str()), (1, ""));
     assert!(run.stderr.contains("pass-around.toml:11: error["), "{}", run.stderr);

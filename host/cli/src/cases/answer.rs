@@ -3,7 +3,8 @@
 
 use std::io::{self, Write};
 
-use casebase::{Case, CaseRobot, Match, PointMm, Problem, Retrieval};
+use casebase::{Case, CaseRobot, Match, PointMm, Problem, Retrieval, Settings, adapted_position};
+use protocol::RobotId;
 use serde::{Serialize, Serializer};
 
 use crate::args::Chosen;
@@ -53,7 +54,12 @@ pub(crate) struct Found<'a> {
 }
 
 impl<'a> Answer<'a> {
-    pub(crate) fn new(shelf: &'a Shelf, problem: &Problem, chosen: &'a Chosen, retrieval: &Retrieval) -> Self {
+    pub(crate) fn new(
+        shelf: &'a Shelf,
+        problem: &Problem,
+        chosen: &'a Chosen,
+        retrieval: &Retrieval,
+    ) -> Self {
         let best = retrieval.best.as_ref().and_then(|best| Some((best, shelf.base().case(best.case)?)));
         let Some((best, case)) = best else {
             return Self::Nothing { case: (), candidates: retrieval.candidates, settings: &chosen.changed };
@@ -67,7 +73,7 @@ impl<'a> Answer<'a> {
             conditions: best.conditions,
             teammates: best.teammates,
             roles: roles(best),
-            adapted: adapted(&case, best, problem.ball),
+            adapted: adapted(&case, best, problem.ball, &chosen.settings),
             candidates: retrieval.candidates,
             settings: &chosen.changed,
         })
@@ -80,9 +86,9 @@ pub(super) fn roles(found: &Match) -> Vec<(u8, u8)> {
 }
 
 /// Robot id to where it starts from, mm.
-fn adapted(case: &Case<'_>, found: &Match, ball: PointMm) -> Vec<(u8, [i32; 2])> {
-    let place = |(robot, player): (CaseRobot, &protocol::RobotId)| {
-        let PointMm { x, y } = case.adapted(robot, ball);
+fn adapted(case: &Case<'_>, found: &Match, ball: PointMm, settings: &Settings) -> Vec<(u8, [i32; 2])> {
+    let place = |(robot, player): (CaseRobot, &RobotId)| {
+        let PointMm { x, y } = adapted_position(case, robot, ball, settings);
         (player.number(), [x, y])
     };
     case.robots().zip(&found.correspondence).map(place).collect()

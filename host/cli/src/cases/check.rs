@@ -12,6 +12,8 @@ use clap::Args;
 use crate::Failure;
 use crate::args::FolderArgs;
 
+use super::counted;
+
 /// What `cases check` may be told.
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
@@ -25,7 +27,7 @@ pub(crate) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     let reports = match &args.folder.library {
         Some(folder) => vec![Report::of(folder)?],
-        None => built_in(),
+        None => Vec::new(),
     };
     let mut output = BufWriter::new(stdout().lock());
     let written = reports.iter().try_for_each(|report| report.write(&mut output));
@@ -33,4 +35,47 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     let fails = |finding: &Finding| args.strict || finding.severity == Severity::Error;
     let failed = reports.iter().flat_map(|report| &report.findings).any(fails);
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What the check of one library found.
+struct Report {
+    league: String,
+    /// Case files and stored cases, unless the library was refused.
+    sizes: Option<[usize; 2]>,
+    findings: Vec<Finding>,
+}
+
+impl Report {
+    fn of(folder: &Path) -> Result<Self, Failure> {
+        if !folder.is_dir() {
+            return Err(Failure::missing_folder(folder));
+        }
+        Ok(match case_tools::load(folder) {
+            Ok(library) => {
+                let sizes = Some([library.names.len(), library.base().len()]);
+                Self { league: library.league, sizes, findings: library.findings }
+            }
+            Err(findings) => {
+                let league =
+                    folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+                Self { league, sizes: None, findings }
+            }
+        })
+    }
+
+    fn write(&self, output: &mut impl Write) -> io::Result<()> {
+        for finding in &self.findings {
+            writeln!(output, "{finding}")?;
+        }
+        let of = |severity| self.findings.iter().filter(|finding| finding.severity == severity).count();
+        let counts = [(of(Severity::Error), "error"), (of(Severity::Warning), "warning")];
+        let [errors, warnings] = counts.map(|(count, what)| counted(count, what));
+        let what = match self.sizes {
+            Some([files, stored]) => {
+                format!("{}, {}", counted(files, "case file"), counted(stored, "stored case"))
+            }
+            None => "refused".to_owned(),
+        };
+        writeln!(output, "{}: {what}; {errors}, {warnings}", self.league)
+    }
 }

@@ -11,11 +11,12 @@ use casebase::Problem;
 use super::problem::{self, Malformed};
 use crate::Failure;
 
-/// Hands every line that is not blank to `answer`: the problem in it, or what is wrong as `line 7: place: reason`.
+/// Hands every line that is not blank to `answer`, with its number: the problem in it, or what is wrong as
+/// `line 7: place: reason`.
 pub(crate) fn for_each_problem<W: Write>(
     input: impl Read,
     output: &mut W,
-    mut answer: impl FnMut(&mut W, Result<Problem, String>) -> io::Result<()>,
+    mut answer: impl FnMut(&mut W, u64, Result<Problem, String>) -> io::Result<()>,
 ) -> Result<(), Failure> {
     let mut input = BufReader::new(input);
     let mut line = Vec::new();
@@ -30,7 +31,7 @@ pub(crate) fn for_each_problem<W: Write>(
             continue;
         }
         let problem = problem_in(&line).map_err(|malformed| format!("line {number}: {malformed}"));
-        answer(output, problem).map_err(Failure::Output)?;
+        answer(output, number, problem).map_err(Failure::Output)?;
     }
     output.flush().map_err(Failure::Output)
 }
@@ -68,7 +69,7 @@ mod tests {
     /// "ok" or the error, one entry a line that is answered.
     fn answers(input: &[u8]) -> Vec<String> {
         let mut output = Vec::new();
-        for_each_problem(input, &mut output, |output, problem| {
+        for_each_problem(input, &mut output, |output, _, problem| {
             writeln!(output, "{}", problem.map_or_else(|error| error, |_| "ok".to_owned()))
         })
         .unwrap();
@@ -78,11 +79,10 @@ mod tests {
     #[test]
     fn blank_lines_count_and_get_no_answer() {
         let input = format!("\n{GOOD}\n \t\r\n{{\n\n{GOOD}");
-        assert_eq!(answers(input.as_bytes()), [
-            "ok",
-            "line 4: column 1: not JSON: EOF while parsing an object",
-            "ok"
-        ]);
+        assert_eq!(
+            answers(input.as_bytes()),
+            ["ok", "line 4: column 1: not JSON: EOF while parsing an object", "ok"]
+        );
     }
 
     #[test]
@@ -103,12 +103,10 @@ mod tests {
     fn an_endless_line_spoils_only_itself() {
         let fits = format!("{GOOD}{}", " ".repeat(LINE_MAX - GOOD.len()));
         let input = format!("{fits}\n{fits} \n{}\n{GOOD}\n", "x".repeat(10 * LINE_MAX));
-        assert_eq!(answers(input.as_bytes()), [
-            "ok",
-            "line 2: longer than 65536 bytes",
-            "line 3: longer than 65536 bytes",
-            "ok"
-        ]);
+        assert_eq!(
+            answers(input.as_bytes()),
+            ["ok", "line 2: longer than 65536 bytes", "line 3: longer than 65536 bytes", "ok"]
+        );
     }
 
     #[test]
@@ -145,8 +143,10 @@ mod tests {
         }
         let flushed = std::cell::Cell::new(0);
         let mut output = Output { written: 0, flushed: &flushed };
-        for_each_problem(Dialogue { asked: 0, flushed: &flushed }, &mut output, |output, _| writeln!(output, "x"))
-            .unwrap();
+        for_each_problem(Dialogue { asked: 0, flushed: &flushed }, &mut output, |output, _, _| {
+            writeln!(output, "x")
+        })
+        .unwrap();
         assert_eq!(output.written, 3);
     }
 }

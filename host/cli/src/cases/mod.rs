@@ -25,8 +25,10 @@ pub(crate) enum CasesVerb {
     /// What does a stored case say: the situation, each robot's gameplay, the ball's path?
     Show(show::ShowArgs),
     /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
+    #[command(after_help = PROBLEM_HELP)]
     Retrieve(retrieve::RetrieveArgs),
     /// Why that case? Every case's verdict for each problem on stdin.
+    #[command(after_help = PROBLEM_HELP)]
     Explain(explain::ExplainArgs),
 }
 
@@ -39,3 +41,13 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Explain(args) => explain::run(args),
     }
 }
+
+/// `1 robot`, `2 robots`.
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+/// What a line of stdin looks like.
+const PROBLEM_HELP: &str = r#"A problem is one line of JSON; mm, field frame (origin at the centre, +x along the length):
+{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}
+"defending" is "yellow" (the goal at -x: attacks towards +x) or "cyan"; teammates go by robot id, 0 to 15."#;

@@ -86,8 +86,9 @@ fn goal_end(value: &RawValue) -> Result<GoalEnd, Malformed> {
 }
 
 fn robots(value: &RawValue) -> Result<heapless::Vec<(RobotId, PointMm), PROBLEM_TEAMMATES_MAX>, Malformed> {
-    let Members(members) = serde_json::from_str(value.get())
-        .map_err(|_| Malformed::at("teammates", "expected an object of robot ids, each with its [x, y] in mm"))?;
+    let Members(members) = serde_json::from_str(value.get()).map_err(|_| {
+        Malformed::at("teammates", "expected an object of robot ids, each with its [x, y] in mm")
+    })?;
     let mut robots = heapless::Vec::new();
     for (key, value) in members {
         let place = format!("teammates.{key}");
@@ -212,13 +213,22 @@ mod tests {
         for key in ["ball", "defending", "teammates", "opponents"] {
             let renamed = with(&format!("\"{key}\""), "\"other\"");
             assert_eq!(reason(&renamed), format!("other: unknown key; the keys are {KEYS}"));
-            let value = if key == "ball" { "[0,0]" } else if key == "defending" { "\"cyan\"" } else { "{}" };
+            let value = if key == "ball" {
+                "[0,0]"
+            } else if key == "defending" {
+                "\"cyan\""
+            } else {
+                "{}"
+            };
             let value = if key == "opponents" { "[]" } else { value };
             let twice = GOOD.replacen('{', &format!("{{\"{key}\":{value},"), 1);
             assert_eq!(reason(&twice), format!("{key}: given twice"));
         }
         assert_eq!(reason(&with("\"ball\":[-600,10],", "")), format!("ball: missing; the keys are {KEYS}"));
-        assert_eq!(reason(&with(",\"opponents\":[[-150,40]]", "")), format!("opponents: missing; the keys are {KEYS}"));
+        assert_eq!(
+            reason(&with(",\"opponents\":[[-150,40]]", "")),
+            format!("opponents: missing; the keys are {KEYS}")
+        );
     }
 
     #[test]
@@ -245,7 +255,10 @@ mod tests {
         assert_eq!(parse(&with("\"3\"", "\"000\"")).unwrap().teammates[1].0.number(), 0);
         assert_eq!(parse(&with("\"3\"", "\"15\"")).unwrap().teammates[1].0.number(), 15);
         for id in ["16", "256", "99999999999999999999", "-1", "+1", "1.0", "", " 1", "x", "٣"] {
-            assert_eq!(reason(&with("\"3\"", &format!("\"{id}\""))), format!("teammates.{id}: expected a robot id, 0 to 15"));
+            assert_eq!(
+                reason(&with("\"3\"", &format!("\"{id}\""))),
+                format!("teammates.{id}: expected a robot id, 0 to 15")
+            );
         }
     }
 
@@ -286,8 +299,19 @@ mod tests {
         }
         assert_eq!(reason("{"), "column 1: not JSON: EOF while parsing an object");
         let second = GOOD.len() + 2;
-        assert_eq!(reason(&format!("{GOOD} {GOOD}")), format!("column {second}: not JSON: trailing characters"));
-        for line in ["{]", "ball", "{\"ball\":[01,2]}", "{\"ball\":[+1,2]}", "{\"ball\":[NaN,2]}", "{'ball':1}", "{\"a\":1,}"] {
+        assert_eq!(
+            reason(&format!("{GOOD} {GOOD}")),
+            format!("column {second}: not JSON: trailing characters")
+        );
+        for line in [
+            "{]",
+            "ball",
+            "{\"ball\":[01,2]}",
+            "{\"ball\":[+1,2]}",
+            "{\"ball\":[NaN,2]}",
+            "{'ball':1}",
+            "{\"a\":1,}",
+        ] {
             assert!(reason(line).contains("not JSON"), "{line}: {}", reason(line));
         }
     }

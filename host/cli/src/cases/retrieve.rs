@@ -25,7 +25,7 @@ pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
     let shelf = Shelf::open(&args.library)?;
     let base = shelf.base();
     let mut output = BufWriter::new(stdout().lock());
-    for_each_problem(stdin().lock(), &mut output, |output, problem| match problem {
+    for_each_problem(stdin().lock(), &mut output, |output, _, problem| match problem {
         Ok(problem) => {
             let retrieval = casebase::retrieve(&base, &problem, &chosen.settings);
             write_line(output, &Answer::new(&shelf, &problem, &chosen, &retrieval))

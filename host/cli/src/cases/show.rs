@@ -4,7 +4,7 @@
 use std::io::{self, BufWriter, Write, stdout};
 use std::process::ExitCode;
 
-use casebase::{Action, Case, CaseBase, GoalEnd, Kick, KickAim, Leg, LegKind, PointMm, TurnTarget};
+use casebase::{Action, Case, CaseBase, GoalEnd, KickAim, KickId, Leg, LegKind, PointMm, TurnTarget};
 use clap::Args;
 use protocol::CaseId;
 
@@ -45,7 +45,14 @@ fn unknown(shelf: &Shelf, asked: &str) -> Failure {
 
 fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {
     let base = shelf.base();
-    writeln!(output, "{}  id {}, {}, {}", shelf.name(case.id()), case.id(), case.symmetry().word(), shelf.league())?;
+    writeln!(
+        output,
+        "{}  id {}, {}, {}",
+        shelf.name(case.id()),
+        case.id(),
+        case.symmetry().word(),
+        shelf.league()
+    )?;
     if let Some(intent) = shelf.intent(case.id()) {
         writeln!(output, "{intent}")?;
     }
@@ -55,25 +62,40 @@ fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Re
     writeln!(output, "\n{:5} {:>14}  scope {} x {}", "ball", at(ball), scope.x, scope.y)?;
     for robot in case.robots() {
         let gameplay: Vec<_> = case.gameplay(robot).map(|action| told(action, &base)).collect();
-        writeln!(output, "{:5} {:>14}  {}", robot.to_string(), at(case.position(robot)), gameplay.join("; "))?;
+        writeln!(
+            output,
+            "{:5} {:>14}  {}",
+            robot.to_string(),
+            at(case.position(robot)),
+            gameplay.join("; ")
+        )?;
     }
     for (number, (opponent, scope)) in (1..).zip(case.opponents()) {
-        writeln!(output, "{:5} {:>14}  scope {} x {}", format!("opp{number}"), at(opponent), scope.x, scope.y)?;
+        writeln!(
+            output,
+            "{:5} {:>14}  scope {} x {}",
+            format!("opp{number}"),
+            at(opponent),
+            scope.x,
+            scope.y
+        )?;
     }
     writeln!(output, "\npath of the ball")?;
     for (number, leg) in (1..).zip(case.legs(ball)) {
-        writeln!(output, "leg {number} {}", told_leg(&leg))?;
+        writeln!(output, "leg {number} {}", told_leg(&leg, &base))?;
     }
     Ok(())
 }
 
-fn told_leg(leg: &Leg) -> String {
-    let [from, to] = [leg.from, leg.to].map(|end| format!("({:.0}, {:.0})", end[0], end[1]));
+fn told_leg(leg: &Leg, base: &CaseBase<'_>) -> String {
     let kind = match leg.kind {
         LegKind::Pass(receiver) => format!("{} passes to {receiver}", leg.robot),
-        LegKind::Kick => format!("{} kicks", leg.robot),
+        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(base, kind)),
     };
-    format!("{kind}: {from} to {to}, {:.0} mm, radius {:.0} to {:.0}", leg.length(), leg.r_min, leg.r_max)
+    let ([x, y], [to_x, to_y]) = (leg.from.map(f64::from), leg.to.map(f64::from));
+    let length = (to_x - x).hypot(to_y - y);
+    let radii = format!("radius {:.0} to {:.0}", leg.r_min, leg.r_max);
+    format!("{kind}: ({x:.0}, {y:.0}) to ({to_x:.0}, {to_y:.0}), {length:.0} mm, {radii}")
 }
 
 fn told(action: Action, base: &CaseBase<'_>) -> String {
@@ -85,21 +107,28 @@ fn told(action: Action, base: &CaseBase<'_>) -> String {
         Action::Turn(TurnTarget::Face(point)) => format!("{word} to face {}", at(point)),
         Action::PassBall(other) => format!("{word} to {other}"),
         Action::ReceiveBall(other) => format!("{word} from {other}"),
-        Action::Kick(kind) => format!("{word} {}", base.kick(kind).map_or_else(String::new, told_kick)),
+        Action::Kick(kind) => format!("{word} {}", told_kick(base, kind)),
     }
 }
 
-fn told_kick(kick: Kick) -> String {
-    match kick.aim {
-        KickAim::Goal { offset_mm: 0 } => "at the goal".to_owned(),
-        KickAim::Goal { offset_mm } => format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm)),
-        KickAim::Heading { degrees, length_mm } => format!("{length_mm} mm {}", heading(degrees)),
+fn told_kick(base: &CaseBase<'_>, kind: KickId) -> String {
+    match base.kick(kind).map(|kick| kick.aim) {
+        Some(KickAim::Goal { offset_mm: 0 }) => "at the goal".to_owned(),
+        Some(KickAim::Goal { offset_mm }) => {
+            format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm))
+        }
+        Some(KickAim::Heading { degrees, length_mm }) => format!("{length_mm} mm {}", heading(degrees)),
+        None => "of an unknown kind".to_owned(),
     }
 }
 
 /// A heading relative to the direction of attack.
 fn heading(degrees: i32) -> String {
-    if degrees == 0 { "straight ahead".to_owned() } else { format!("{} deg {}", degrees.abs(), side(degrees)) }
+    if degrees == 0 {
+        "straight ahead".to_owned()
+    } else {
+        format!("{} deg {}", degrees.abs(), side(degrees))
+    }
 }
 
 /// Left is positive, seen in attack.

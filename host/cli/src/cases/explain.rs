@@ -1,0 +1,230 @@
+//! Why that case and none of the others? For each problem on stdin the verdict on every case listed under the goal:
+//! the first check it fails, in the order ball, robot count, thr_c, free path, with its margin; candidates with their
+//! rank (DESIGN §4.3, §8). Lengths in mm; robots of a case, legs and opponents are counted from 1.
+
+use std::io::{self, BufWriter, Write, stdin, stdout};
+use std::process::ExitCode;
+
+use casebase::{Case, Match, Problem, Verdict, rank_order};
+use clap::Args;
+use serde::Serialize;
+
+use super::answer::{Answer, as_object, cost, roles, rounded, similarity, write_line};
+use super::counted;
+use super::lines::for_each_problem;
+use crate::Failure;
+use crate::args::{Chosen, LibraryArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// What `cases explain` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArgs {
+    #[command(flatten)]
+    library: LibraryArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    /// One JSON object a problem instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
+    let chosen = args.settings.choose()?;
+    let shelf = Shelf::open(&args.library)?;
+    let mut output = BufWriter::new(stdout().lock());
+    for_each_problem(stdin().lock(), &mut output, |output, number, problem| match problem {
+        Ok(problem) => {
+            let explanation = Explanation::new(&shelf, &problem, &chosen);
+            if args.json { write_line(output, &explanation) } else { explanation.write_table(output, number) }
+        }
+        Err(error) if args.json => write_line(output, &Answer::Malformed { error }),
+        Err(error) => writeln!(output, "{error}\n"),
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Every case's verdict on one problem.
+#[derive(Debug, Serialize)]
+struct Explanation<'a> {
+    winner: Option<u16>,
+    candidates: usize,
+    cases: Vec<Row<'a>>,
+    /// What differs from retrieval's defaults; left out where nothing does.
+    #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
+    settings: &'a [(String, String)],
+}
+
+/// One case's verdict.
+#[derive(Debug, Serialize)]
+struct Row<'a> {
+    id: u16,
+    case: &'a str,
+    symmetry: &'static str,
+    verdict: &'static str,
+    #[serde(flatten)]
+    evidence: Evidence,
+}
+
+/// What the verdict rests on.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Evidence {
+    Candidate {
+        rank: usize,
+        similarity: f64,
+        cost: f64,
+        conditions: u8,
+        teammates: u8,
+        #[serde(rename = "match", serialize_with = "as_object")]
+        roles: Vec<(u8, u8)>,
+    },
+    Ball {
+        similarity: f64,
+        threshold: f32,
+        /// How much nearer to the case's ball it would have to lie.
+        outside_mm: f64,
+    },
+    Robots {
+        needed: usize,
+        present: usize,
+    },
+    OutOfField {
+        case_robot: u8,
+    },
+    TooFar {
+        case_robot: u8,
+        robot: u8,
+        distance_mm: f64,
+        over_mm: f64,
+    },
+    Path {
+        leg: usize,
+        opponent: usize,
+        inside_mm: f64,
+    },
+}
+
+impl<'a> Explanation<'a> {
+    fn new(shelf: &'a Shelf, problem: &Problem, chosen: &'a Chosen) -> Self {
+        let base = shelf.base();
+        let mut verdicts = Vec::new();
+        casebase::explain(&base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
+        let mut ranking: Vec<&Match> =
+            verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
+        ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));
+        let row = |(id, verdict): &(_, Verdict)| {
+            let case = base.case(*id)?;
+            let rank = ranking.iter().position(|found| found.case == *id).map_or(0, |before| before + 1);
+            Some(Row {
+                id: id.0,
+                case: shelf.name(*id),
+                symmetry: case.symmetry().word(),
+                verdict: verdict.word(),
+                evidence: Evidence::of(verdict, rank, &case, problem, chosen),
+            })
+        };
+        Self {
+            winner: ranking.first().map(|found| found.case.0),
+            candidates: ranking.len(),
+            cases: verdicts.iter().filter_map(row).collect(),
+            settings: &chosen.changed,
+        }
+    }
+
+    fn write_table(&self, output: &mut impl Write, line: u64) -> io::Result<()> {
+        let candidates = counted(self.candidates, "candidate");
+        match self.cases.iter().find(|row| Some(row.id) == self.winner) {
+            Some(row) => writeln!(
+                output,
+                "line {line}: {} ({}), id {}, of {candidates}",
+                row.case, row.symmetry, row.id
+            )?,
+            None => writeln!(output, "line {line}: no case fits")?,
+        }
+        for (name, value) in self.settings {
+            writeln!(output, "with {name}={value}")?;
+        }
+        let width = self.cases.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
+        writeln!(output, "{:>5}  {:width$}  {:8}  {:9}  why", "id", "case", "symmetry", "verdict")?;
+        for row in &self.cases {
+            let (id, case, why) = (row.id, row.case, row.evidence.told());
+            writeln!(output, "{id:>5}  {case:width$}  {:8}  {:9}  {why}", row.symmetry, row.verdict)?;
+        }
+        writeln!(output)
+    }
+}
+
+fn candidate(verdict: &Verdict) -> Option<&Match> {
+    match verdict {
+        Verdict::Candidate(found) => Some(found),
+        _ => None,
+    }
+}
+
+impl Evidence {
+    fn of(verdict: &Verdict, rank: usize, case: &Case<'_>, problem: &Problem, chosen: &Chosen) -> Self {
+        match verdict {
+            Verdict::Candidate(found) => Self::Candidate {
+                rank,
+                similarity: similarity(found),
+                cost: cost(found),
+                conditions: found.conditions,
+                teammates: found.teammates,
+                roles: roles(found),
+            },
+            Verdict::Ball { similarity, .. } => Self::Ball {
+                similarity: rounded(*similarity, 1e4),
+                threshold: chosen.settings.threshold,
+                outside_mm: ball_outside(case, problem, chosen),
+            },
+            Verdict::Robots { needed, present } => Self::Robots { needed: *needed, present: *present },
+            Verdict::OutOfField { robot } => Self::OutOfField { case_robot: robot.number() },
+            Verdict::TooFar { robot, player, distance, margin } => Self::TooFar {
+                case_robot: robot.number(),
+                robot: player.number(),
+                distance_mm: rounded(*distance, 1e2),
+                over_mm: rounded(*margin, 1e2),
+            },
+            Verdict::Path { index, opponent, inside_mm, .. } => {
+                Self::Path { leg: index + 1, opponent: opponent + 1, inside_mm: rounded(*inside_mm, 1e2) }
+            }
+        }
+    }
+
+    fn told(&self) -> String {
+        match self {
+            Self::Candidate { rank, similarity, cost, conditions, teammates, roles } => {
+                let counts =
+                    [counted((*conditions).into(), "condition"), counted((*teammates).into(), "teammate")];
+                let roles: Vec<_> =
+                    roles.iter().map(|(tm, robot)| format!("tm{tm} = robot {robot}")).collect();
+                let (counts, roles) = (counts.join(", "), roles.join(", "));
+                format!("rank {rank}: {counts}, similarity {similarity}, cost {cost} mm; {roles}")
+            }
+            Self::Ball { similarity, threshold, outside_mm } => {
+                format!(
+                    "similarity {similarity}, threshold {threshold}: the ball lies {outside_mm} mm outside the scope"
+                )
+            }
+            Self::Robots { needed, present } => {
+                format!("needs {}, present {present}", counted(*needed, "robot"))
+            }
+            Self::OutOfField { case_robot } => format!("tm{case_robot}'s place lies outside the field"),
+            Self::TooFar { case_robot, robot, distance_mm, over_mm } => {
+                format!("tm{case_robot} = robot {robot}: {distance_mm} mm to go, {over_mm} mm too far")
+            }
+            Self::Path { leg, opponent, inside_mm } => {
+                format!("opponent {opponent} stands {inside_mm} mm inside leg {leg}")
+            }
+        }
+    }
+}
+
+/// How far the ball lies outside the ball's scope, mm, on the line to its centre.
+fn ball_outside(case: &Case<'_>, problem: &Problem, chosen: &Chosen) -> f64 {
+    let from_centre = case.shift(problem.ball);
+    let exponent = f64::from(case.ball_scope().exponent(from_centre));
+    let distance = f64::from(from_centre.x).hypot(f64::from(from_centre.y));
+    let edge = (f64::from(chosen.settings.limit()) / exponent).sqrt();
+    ((1.0 - edge) * distance * 100.0).round() / 100.0
+}

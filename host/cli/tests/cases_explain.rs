@@ -1,0 +1,109 @@
+//! Does `onetwo cases explain` name for every case under the goal the first check it fails, with its margin, and for
+//! candidates the rank? (DESIGN §4.3, §8)
+
+mod common;
+
+use std::path::PathBuf;
+
+use common::{PASS_AROUND, PROBLEM, cases, library, shot_at};
+
+/// The worked example (ids 0–3) and a shot from (0, 10) (ids 4–7).
+fn folder(test: &str) -> PathBuf {
+    library(test, &[("center/pass-around.toml", PASS_AROUND), ("front/shot.toml", &shot_at(0, 10))])
+}
+
+#[test]
+fn every_case_under_the_goal_has_its_verdict_and_its_evidence() {
+    let run = cases("explain", &folder("explain-json"), &["--json"], PROBLEM);
+    let rows = [
+        r#"{"id":0,"case":"center/pass-around","symmetry":"identity","verdict":"candidate","rank":1,"similarity":0.9984,"cost":171.02,"conditions":1,"teammates":2,"match":{"1":1,"2":3}}"#,
+        // Robot 3 at (200, 800), tm2's mirrored place at (300, -890).
+        r#"{"id":1,"case":"center/pass-around","symmetry":"across-x","verdict":"thr_c","case_robot":2,"robot":3,"distance_mm":1692.96,"over_mm":192.96}"#,
+        // 600 mm beside a scope whose edge is at 450 mm · √1.002393 = 450.54 mm; exp(-(600/450)²) = 0.1690.
+        r#"{"id":4,"case":"front/shot","symmetry":"identity","verdict":"ball","similarity":0.169,"threshold":0.367,"outside_mm":149.46}"#,
+    ];
+    let start = format!("{{\"winner\":0,\"candidates\":1,\"cases\":[{},", rows.join(","));
+    assert!(run.stdout.starts_with(&start), "{}", run.stdout);
+    let read: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    let ids: Vec<_> =
+        read["cases"].as_array().unwrap().iter().map(|row| row["id"].as_u64().unwrap()).collect();
+    assert_eq!(ids, [0, 1, 4, 5], "those that defend yellow, and no others");
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+}
+
+#[test]
+fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
+    let alone = PROBLEM.replace(",\"3\":[200,800]", "");
+    // On the very line from (-600, 10) to (300, 910), half way: ρ = 200 mm, its edge at 200 mm · √1.002393.
+    let blocked = PROBLEM.replace("[-150,40]", "[2000,1700],[-150,460]");
+    let run = cases("explain", &folder("explain-verdicts"), &["--json"], format!("{alone}\n{blocked}\n"));
+    let lines = run.lines();
+    let first = r#"{"winner":null,"candidates":0,"cases":[{"id":0,"case":"center/pass-around","symmetry":"identity","verdict":"#;
+    let robots = format!("{first}\"robots\",\"needed\":2,\"present\":1}},");
+    let path = format!("{first}\"path\",\"leg\":1,\"opponent\":2,\"inside_mm\":200.24}},");
+    assert!(lines[0].starts_with(&robots), "{}", lines[0]);
+    assert!(lines[1].starts_with(&path), "{}", lines[1]);
+}
+
+#[test]
+fn candidates_are_ranked_as_retrieval_ranks_them() {
+    // Two shots whose ball scopes overlap; robot 2 stands at the second's place, so that the second costs nothing.
+    let folder = library(
+        "explain-ranks",
+        &[("front/near.toml", &shot_at(1000, 300)), ("front/nearer.toml", &shot_at(1040, 300))],
+    );
+    let problem = r#"{"ball":[1020,300],"defending":"yellow","teammates":{"2":[900,300]},"opponents":[]}"#;
+    let explained = cases("explain", &folder, &["--json"], problem).stdout;
+    let read: serde_json::Value = serde_json::from_str(&explained).unwrap();
+    let ranks: Vec<_> = read["cases"].as_array().unwrap().iter().map(|row| row["rank"].as_u64()).collect();
+    // Both are 20 mm away and cost the same: the lower id ranks first; the mirror images lie out of reach.
+    assert_eq!(ranks, [Some(1), None, Some(2), None]);
+    let retrieved: serde_json::Value =
+        serde_json::from_str(&cases("retrieve", &folder, &[], problem).stdout).unwrap();
+    assert_eq!((&read["winner"], &read["candidates"]), (&retrieved["id"], &retrieved["candidates"]));
+}
+
+#[test]
+fn settings_are_recorded_and_may_reject_what_lies_outside_the_field() {
+    let folder = folder("explain-settings");
+    let problem = PROBLEM.replace("[-600,10]", "[-600,150]").replace("[200,800]", "[300,1700]");
+    let high = PASS_AROUND.replace("[300, 900]", "[300, 1700]");
+    std::fs::write(folder.join("center/pass-around.toml"), high).unwrap();
+    let run = cases("explain", &folder, &["--json", "--set", "out_of_field=reject"], &problem);
+    let row = r#"{"id":0,"case":"center/pass-around","symmetry":"identity","verdict":"out_of_field","case_robot":2}"#;
+    assert!(run.stdout.contains(row), "{}", run.stdout);
+    assert!(run.stdout.ends_with(",\"settings\":{\"out_of_field\":\"reject\"}}\n"), "{}", run.stdout);
+}
+
+#[test]
+fn people_get_a_table() {
+    let input = format!("\n{PROBLEM}\n{{}}\n{}\n", PROBLEM.replace("yellow", "cyan"));
+    let run = cases("explain", &folder("explain-table"), &["--set", "thr_c=1400"], input);
+    let words: Vec<String> =
+        run.lines().iter().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    assert_eq!(
+        words[..5],
+        [
+            "line 2: center/pass-around (identity), id 0, of 1 candidate",
+            "with thr_c=1400",
+            "id case symmetry verdict why",
+            "0 center/pass-around identity candidate rank 1: 1 condition, 2 teammates, similarity 0.9984, cost 171.02 mm; \
+         tm1 = robot 1, tm2 = robot 3",
+            "1 center/pass-around across-x thr_c tm2 = robot 3: 1692.96 mm to go, 292.96 mm too far",
+        ]
+    );
+    assert_eq!(
+        words[5],
+        "4 front/shot identity ball similarity 0.169, threshold 0.367: the ball lies 149.46 mm outside the scope"
+    );
+    assert_eq!(words[8], "line 3: ball: missing; the keys are ball, defending, teammates and opponents");
+    assert_eq!(words[10], "line 4: no case fits");
+    assert_eq!(run.code, 0);
+}
+
+#[test]
+fn malformed_lines_are_told_as_retrieval_tells_them() {
+    let run = cases("explain", &folder("explain-malformed"), &["--json"], "x\n");
+    assert_eq!(run.stdout, "{\"error\":\"line 1: column 1: not JSON: expected value\"}\n");
+    assert_eq!(run.code, 0);
+}
