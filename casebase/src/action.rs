@@ -13,7 +13,7 @@ pub const TEAMMATES_MAX: usize = 4;
 /// Most opponents (scopes) in a case.
 pub const OPPONENTS_MAX: usize = 4;
 /// Most kick kinds in a league.
-pub const KICKS_MAX: usize = 64;
+pub const KICKS_MAX: usize = 255;
 
 /// One of the robots of a case; counted from 0 inside, told from 1 (`tm1` … `tm4`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

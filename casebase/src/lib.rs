@@ -39,6 +39,8 @@ pub use point::{PointMm, Scope};
 pub use problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 pub use rank::{Correspondence, Match, rank_order};
 pub use retrieve::{Retrieval, adapted_position, retrieve, retrieve_best};
-pub use settings::{SettingError, Settings};
+pub use settings::{
+    CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, SettingError, Settings,
+};
 pub use symmetry::{GoalEnd, Symmetry};
 pub use table::{CaseBase, TableError};

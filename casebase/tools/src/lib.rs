@@ -1,1 +1,23 @@
-//! Placeholder: being built.
+//! How do case files become what robots carry, and what is wrong with them? Runs on the host, at build and run time.
+//!
+//! [`load`] reads one league's folder: files → [`League`] and authored cases → checks → the four symmetric copies →
+//! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend (DESIGN §4.1).
+//!
+//! **Invariant.** What is stored was computed by the crate that will read it, `casebase`.
+
+mod authored;
+mod check;
+mod document;
+mod encode;
+mod files;
+mod finding;
+mod grid;
+mod league;
+mod library;
+mod warnings;
+
+pub use encode::Table;
+pub use files::{Files, SourceFile};
+pub use finding::{Finding, Severity, code};
+pub use league::League;
+pub use library::{Library, build, load};

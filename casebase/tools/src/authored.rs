@@ -1,0 +1,330 @@
+//! What does a case file say? (DESIGN §4.1) Read key by key, so that every fault names its line. mm, field frame.
+
+use std::ops::Range;
+
+use casebase::walk::Script;
+use casebase::{
+    Action, CaseRobot, GoalEnd, OPPONENTS_MAX, PointMm, Scope, Symmetry, TEAMMATES_MAX, TurnTarget,
+};
+
+use crate::document::{COORDINATES, Reader, Table, Value};
+use crate::files::SourceFile;
+use crate::finding::{Finding, Severity, code};
+use crate::league::League;
+
+/// A case as somebody wrote it. Spans are places in its file.
+#[derive(Clone, Debug)]
+pub(crate) struct Authored {
+    pub(crate) intent: String,
+    pub(crate) defending: GoalEnd,
+    pub(crate) ball: PointMm,
+    pub(crate) ball_span: Range<usize>,
+    pub(crate) ball_scope: Scope,
+    pub(crate) teammates: Vec<Teammate>,
+    pub(crate) opponents: Vec<Opponent>,
+}
+
+/// A robot of a case.
+#[derive(Clone, Debug)]
+pub(crate) struct Teammate {
+    pub(crate) at: PointMm,
+    pub(crate) at_span: Range<usize>,
+    /// Where its table begins.
+    pub(crate) span: Range<usize>,
+    pub(crate) gameplay: Vec<(Action, Range<usize>)>,
+}
+
+/// An opponent and its scope.
+#[derive(Clone, Debug)]
+pub(crate) struct Opponent {
+    pub(crate) at: PointMm,
+    pub(crate) span: Range<usize>,
+    pub(crate) scope: Scope,
+}
+
+impl Authored {
+    /// Reads a case file; without the league, kick kinds are taken on trust (the library is refused anyway).
+    pub(crate) fn read(file: &SourceFile, league: Option<&League>) -> (Option<Self>, Vec<Finding>) {
+        let mut reader = Reader::new(file);
+        let case = reader.parse().and_then(|root| read_case(&mut reader, &Table::root(&root), league));
+        let faulty = reader.findings.iter().any(|finding| finding.severity == Severity::Error);
+        (case.filter(|_| !faulty), reader.findings)
+    }
+
+    /// Seen in one of the four symmetries.
+    pub(crate) fn mirrored<'c>(&'c self, symmetry: Symmetry, league: &'c League) -> Mirrored<'c> {
+        Mirrored { case: self, symmetry, league }
+    }
+}
+
+/// A case in one of the four symmetries.
+#[derive(Clone, Copy)]
+pub(crate) struct Mirrored<'c> {
+    pub(crate) case: &'c Authored,
+    pub(crate) symmetry: Symmetry,
+    league: &'c League,
+}
+
+impl Mirrored<'_> {
+    fn action_under(&self, action: Action) -> Action {
+        let point = |point| self.symmetry.point(point);
+        let swaps = self.symmetry.swaps_sides();
+        match action {
+            Action::GoToPoint(at) => Action::GoToPoint(point(at)),
+            Action::DribbleTo(at) => Action::DribbleTo(point(at)),
+            Action::Turn(TurnTarget::Face(at)) => Action::Turn(TurnTarget::Face(point(at))),
+            Action::Turn(TurnTarget::HeadingDeg(degrees)) if swaps => {
+                Action::Turn(TurnTarget::HeadingDeg(-degrees))
+            }
+            Action::Kick(id) if swaps => Action::Kick(self.league.partner(id)),
+            other => other,
+        }
+    }
+}
+
+impl Script for Mirrored<'_> {
+    fn teammates(&self) -> usize {
+        self.case.teammates.len()
+    }
+    fn defending(&self) -> GoalEnd {
+        self.symmetry.goal(self.case.defending)
+    }
+    fn ball(&self) -> PointMm {
+        self.symmetry.point(self.case.ball)
+    }
+    fn position(&self, robot: CaseRobot) -> PointMm {
+        self.case
+            .teammates
+            .get(robot.index())
+            .map_or(self.ball(), |teammate| self.symmetry.point(teammate.at))
+    }
+    fn action(&self, robot: CaseRobot, index: usize) -> Option<Action> {
+        let (action, _) = self.case.teammates.get(robot.index())?.gameplay.get(index)?;
+        Some(self.action_under(*action))
+    }
+}
+
+fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&League>) -> Option<Authored> {
+    root.refuse_others(reader, &["intent", "defending", "ball", "teammates", "opponents"]);
+    let intent = root.required(reader, "intent").and_then(|value| reader.text(value, "intent"));
+    let defending = root.required(reader, "defending").and_then(|value| read_defending(reader, value));
+    let ball = root.required(reader, "ball").and_then(|value| {
+        let ball = reader.table(value, "ball")?;
+        ball.refuse_others(reader, &["at", "scope"]);
+        let (at, scope) = (ball.point(reader, "at"), read_scope(reader, &ball));
+        Some((at?, scope?))
+    });
+    let teammates = read_teammates(reader, root, league);
+    let opponents = read_opponents(reader, root);
+    let ((ball, ball_span), ball_scope) = ball?;
+    let (teammates, opponents) = (teammates?, opponents?);
+    Some(Authored {
+        intent: intent?.to_owned(),
+        defending: defending?,
+        ball,
+        ball_span,
+        ball_scope,
+        teammates,
+        opponents,
+    })
+}
+
+fn read_defending(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<GoalEnd> {
+    let word = reader.text(value, "defending")?;
+    let goal = GoalEnd::from_word(word);
+    if goal.is_none() {
+        let mend = "write \"yellow\" (the goal at -x) or \"cyan\" (the goal at +x)";
+        reader.error(code::BAD_DEFENDING, value.span(), format!("defending is {word:?}"), mend);
+    }
+    goal
+}
+
+fn read_scope(reader: &mut Reader<'_>, table: &Table<'_, '_>) -> Option<Scope> {
+    let (PointMm { x, y }, span) = table.point(reader, "scope")?;
+    if x > 0 && y > 0 {
+        return Some(Scope { x, y });
+    }
+    let message = format!("{} is [{x}, {y}]", table.name_of("scope"));
+    reader.error(code::BAD_SCOPE, span, message, "give both radii in mm, above 0");
+    None
+}
+
+fn read_teammates(
+    reader: &mut Reader<'_>,
+    root: &Table<'_, '_>,
+    league: Option<&League>,
+) -> Option<Vec<Teammate>> {
+    let value = root.optional("teammates");
+    let list = value.map_or(Some(Vec::new()), |value| reader.list(value, "teammates"))?;
+    if list.is_empty() {
+        let span = value.map_or(0..0, toml::Spanned::span);
+        reader.error(
+            code::NO_TEAMMATE,
+            span,
+            "the case has no teammate",
+            "add [[teammates]] with at and gameplay",
+        );
+        return None;
+    }
+    if let Some(extra) = list.get(TEAMMATES_MAX) {
+        let message = format!("{} teammates, at most {TEAMMATES_MAX} play a case", list.len());
+        reader.error(code::TOO_MANY_TEAMMATES, extra.span(), message, "leave out who only watches");
+        return None;
+    }
+    let count = list.len();
+    // Every robot is read before one fault gives up the case, so that all faults are told.
+    let read: Vec<_> = list
+        .into_iter()
+        .zip(CaseRobot::first(count))
+        .map(|(value, robot)| read_teammate(reader, value, robot, count, league))
+        .collect();
+    let teammates = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let actions: usize = teammates.iter().map(|teammate| teammate.gameplay.len()).sum();
+    if actions > ACTIONS_MAX {
+        let message = format!("{actions} actions, at most {ACTIONS_MAX} fit a case");
+        reader.error(code::TOO_MANY_ACTIONS, teammates[0].span.clone(), message, "shorten the gameplays");
+        return None;
+    }
+    Some(teammates)
+}
+
+fn read_teammate(
+    reader: &mut Reader<'_>,
+    value: Value<'_, '_>,
+    robot: CaseRobot,
+    count: usize,
+    league: Option<&League>,
+) -> Option<Teammate> {
+    let table = reader.table(value, robot.to_string())?;
+    table.refuse_others(reader, &["at", "gameplay"]);
+    let at = table.point(reader, "at");
+    let gameplay = table.required(reader, "gameplay").and_then(|value| {
+        let list = reader.list(value, &table.name_of("gameplay"))?;
+        let cast = Cast { robot, count, league };
+        let read: Vec<_> =
+            list.into_iter().map(|item| Some((read_action(reader, item, &cast)?, item.span()))).collect();
+        read.into_iter().collect::<Option<Vec<_>>>()
+    });
+    let ((at, at_span), gameplay) = (at?, gameplay?);
+    Some(Teammate { at, at_span, span: table.span(), gameplay })
+}
+
+/// Whose action is read, among how many, in which league.
+struct Cast<'l> {
+    robot: CaseRobot,
+    count: usize,
+    league: Option<&'l League>,
+}
+
+fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -> Option<Action> {
+    let whose = format!("an action of {}", cast.robot);
+    if let Some(word) = value.get_ref().as_str() {
+        return match word {
+            "wait" => Some(Action::Wait),
+            "get_ball" => Some(Action::GetBall),
+            _ => {
+                let message = format!("{whose} is {word:?}");
+                reader.error(code::UNKNOWN_KEY, value.span(), message, ACTION_MEND);
+                None
+            }
+        };
+    }
+    let table = reader.table(value, whose.as_str())?;
+    let entries = table.entries();
+    let [(word, span, argument)] = entries.as_slice() else {
+        let message = format!("{whose} has {} keys", entries.len());
+        reader.error(code::WRONG_TYPE, value.span(), message, ACTION_MEND);
+        return None;
+    };
+    let name = format!("{word} of {}", cast.robot);
+    match *word {
+        "go_to_point" => reader.point(argument, &name).map(Action::GoToPoint),
+        "dribble_to" => reader.point(argument, &name).map(Action::DribbleTo),
+        "turn" => read_turn(reader, argument, name).map(Action::Turn),
+        "pass_ball" => read_robot(reader, argument, &name, cast).map(Action::PassBall),
+        "receive_ball" => read_robot(reader, argument, &name, cast).map(Action::ReceiveBall),
+        "kick" => read_kick(reader, argument, &name, cast),
+        _ => {
+            let message = format!("unknown key {word} in {whose}");
+            reader.error(code::UNKNOWN_KEY, span.clone(), message, ACTION_MEND);
+            None
+        }
+    }
+}
+
+fn read_turn(reader: &mut Reader<'_>, value: Value<'_, '_>, name: String) -> Option<TurnTarget> {
+    let table = reader.table(value, name.as_str())?;
+    let entries = table.entries();
+    match entries.as_slice() {
+        [("heading_deg", _, degrees)] => {
+            reader.whole(degrees, &name, &COORDINATES).map(TurnTarget::HeadingDeg)
+        }
+        [("face", _, point)] => reader.point(point, &name).map(TurnTarget::Face),
+        _ => {
+            let unknown = entries.iter().find(|(key, ..)| !["heading_deg", "face"].contains(key));
+            let (code, span) = unknown
+                .map_or((code::WRONG_TYPE, value.span()), |(_, span, _)| (code::UNKNOWN_KEY, span.clone()));
+            let message = format!("{name} has {} keys", entries.len());
+            reader.error(code, span, message, "write { heading_deg = D } or { face = [x, y] }");
+            None
+        }
+    }
+}
+
+fn read_robot(
+    reader: &mut Reader<'_>,
+    value: Value<'_, '_>,
+    name: &str,
+    cast: &Cast<'_>,
+) -> Option<CaseRobot> {
+    // Any whole number is read, so that a wrong one is told to be no robot of this case.
+    let number = reader.whole(value, name, &(i32::MIN..=i32::MAX))?;
+    let robot = CaseRobot::first(cast.count).find(|robot| i32::from(robot.number()) == number);
+    let message = match robot {
+        None => format!("{name} names robot {number}, but the case has 1 to {}", cast.count),
+        Some(robot) if robot == cast.robot => format!("{name} names {robot} itself"),
+        Some(robot) => return Some(robot),
+    };
+    reader.error(code::ROBOT_NUMBER, value.span(), message, "name another robot of this case by its number");
+    None
+}
+
+fn read_kick(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, cast: &Cast<'_>) -> Option<Action> {
+    let kind = reader.text(value, name)?;
+    let league = cast.league?;
+    let id = league.kick_id(kind);
+    if id.is_none() {
+        let known: Vec<_> = league.kicks.iter().map(|(name, _)| name.as_str()).collect();
+        let message = format!("{name} is of kind {kind:?}, which league.toml does not have");
+        let mend = format!("add [kicks.{kind}] or take one of: {}", known.join(", "));
+        reader.error(code::UNKNOWN_KICK, value.span(), message, mend);
+    }
+    id.map(Action::Kick)
+}
+
+fn read_opponents(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<Vec<Opponent>> {
+    let list =
+        root.optional("opponents").map_or(Some(Vec::new()), |value| reader.list(value, "opponents"))?;
+    if let Some(extra) = list.get(OPPONENTS_MAX) {
+        let message = format!("{} opponents, at most {OPPONENTS_MAX} fit a case", list.len());
+        reader.error(code::TOO_MANY_OPPONENTS, extra.span(), message, "keep those that justify the gameplay");
+        return None;
+    }
+    let read: Vec<_> = list
+        .into_iter()
+        .enumerate()
+        .map(|(i, value)| {
+            let table = reader.table(value, format!("opp{}", i + 1))?;
+            table.refuse_others(reader, &["at", "scope"]);
+            let (at, scope) = (table.point(reader, "at"), read_scope(reader, &table));
+            let ((at, span), scope) = (at?, scope?);
+            Some(Opponent { at, span, scope })
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+/// Most actions of all robots of a case: the table counts them in a byte.
+const ACTIONS_MAX: usize = 255;
+const ACTION_MEND: &str = "write \"wait\", \"get_ball\" or one of { go_to_point = [x, y] }, { turn = … }, \
+    { dribble_to = [x, y] }, { pass_ball = N }, { receive_ball = N }, { kick = \"KIND\" }";

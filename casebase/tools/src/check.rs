@@ -1,0 +1,72 @@
+//! Can this case be played at all? What refuses a library beyond its spelling (DESIGN §4.1).
+
+use casebase::walk::{Script, WalkError, walk};
+use casebase::{Action, CaseRobot, Symmetry};
+
+use crate::authored::Authored;
+use crate::files::SourceFile;
+use crate::finding::{Finding, Severity, code};
+use crate::league::League;
+
+/// Every error of a case that reads well.
+pub(crate) fn errors(file: &SourceFile, case: &Authored, league: &League) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut error = |code, span: &std::ops::Range<usize>, message: String, mend: &str| {
+        findings.push(file.finding(Severity::Error, code, file.line(span.start), message, mend));
+    };
+
+    let balls = [("the ball".to_owned(), case.ball, &case.ball_span)];
+    let robots = CaseRobot::first(4).zip(&case.teammates);
+    let robots = robots.map(|(robot, teammate)| (robot.to_string(), teammate.at, &teammate.at_span));
+    let opponents = case.opponents.iter().enumerate();
+    let opponents = opponents.map(|(i, opponent)| (format!("opp{}", i + 1), opponent.at, &opponent.span));
+    for (who, at, span) in balls.into_iter().chain(robots).chain(opponents) {
+        if !league.field.contains(at) {
+            let message = format!("{who} at [{}, {}] is outside the lines", at.x, at.y);
+            error(code::OUTSIDE_FIELD, span, message, "move it inside the field of league.toml");
+        }
+    }
+
+    let is_getter = |robot: &CaseRobot| {
+        case.teammates[robot.index()].gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
+    };
+    let getters: Vec<_> = CaseRobot::first(case.teammates.len()).filter(is_getter).collect();
+    if getters.len() != 1 {
+        let span =
+            getters.get(1).map_or(&case.teammates[0].span, |extra| &case.teammates[extra.index()].span);
+        let message = format!("{} robots begin with get_ball", getters.len());
+        error(code::ONE_GETTER, span, message, "let exactly one robot begin with \"get_ball\"");
+        return findings;
+    }
+
+    let script = case.mirrored(Symmetry::Identity, league);
+    if let Err(problem) = walk(&script, league, |_| {}) {
+        let (code, at, mend) = match problem {
+            // The one getter was found above.
+            WalkError::NoGetter => return findings,
+            WalkError::NotHolding(robot, index) => (
+                code::NOT_HOLDING,
+                (robot, index),
+                "give it the ball first: a pass it receives, or a get_ball after a kick",
+            ),
+            WalkError::PassUnanswered(robot, index) => (
+                code::PASS_UNANSWERED,
+                (robot, index),
+                "let the other robot's next ball action be the receive_ball of this pass",
+            ),
+            WalkError::ReceiveUnanswered(robot, index) => (
+                code::RECEIVE_UNANSWERED,
+                (robot, index),
+                "let the other robot pass to it, or take the receive_ball out",
+            ),
+            WalkError::UnknownKick(robot, index) => {
+                (code::UNKNOWN_KICK, (robot, index), "add the kind to league.toml")
+            }
+        };
+        let (robot, index) = at;
+        let (_, span) = &case.teammates[robot.index()].gameplay[index];
+        let word = script.action(robot, index).map_or("", |action| action.word());
+        error(code, span, format!("{problem} ({word})"), mend);
+    }
+    findings
+}

@@ -1,0 +1,202 @@
+//! How do authored cases become the flat table that robots carry? Mirrored four ways, walked, indexed, laid out.
+//!
+//! The code that will read the table computes what is stored in it: `casebase`'s symmetry, walk and records.
+
+use casebase::table::{
+    Gate, Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, content_hash,
+};
+use casebase::walk::{Script, Step, walk};
+use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget};
+use zerocopy::IntoBytes;
+
+use crate::authored::{Authored, Mirrored};
+use crate::grid;
+use crate::league::League;
+
+/// A table that begins at a multiple of 4, as a case base must.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Table {
+    words: Vec<u32>,
+    length: usize,
+}
+
+impl Table {
+    /// From bytes that may lie anywhere.
+    pub fn aligned(bytes: &[u8]) -> Self {
+        let mut words = vec![0_u32; bytes.len().div_ceil(4)];
+        words.as_mut_bytes()[..bytes.len()].copy_from_slice(bytes);
+        Self { words, length: bytes.len() }
+    }
+
+    /// The table's bytes.
+    pub fn bytes(&self) -> &[u8] {
+        &self.words.as_bytes()[..self.length]
+    }
+}
+
+/// The table of cases that passed every check, in the order of their ids.
+pub(crate) fn encode(league: &League, cases: &[Authored]) -> Table {
+    let mut pools = Pools::default();
+    for case in cases {
+        pools.add(case, league);
+    }
+    let index = grid::build(league.field, cases);
+    let kicks: Vec<_> = league.kicks.iter().map(|(_, kick)| RawKick::encode(*kick)).collect();
+    let field = league.field;
+    let count = |length: usize| length as u32;
+    let mut header = Header {
+        magic: MAGIC,
+        hash: 0,
+        field: [
+            field.length,
+            field.width,
+            field.margin,
+            field.goal_width,
+            field.penalty_depth,
+            field.penalty_width,
+        ],
+        pass: [league.pass.r_min, league.pass.r_max],
+        groups: count(pools.groups.len()),
+        opponents: count(pools.opponents.len()),
+        legs: count(pools.legs.len()),
+        points: count(pools.points.len()),
+        kicks: count(kicks.len()),
+        positions: count(pools.positions.len()),
+        cell_cases: count(index.cases.len()),
+        actions: count(pools.actions.len()),
+        grid: [index.grid.columns, index.grid.rows],
+        cell_mm: index.grid.cell_mm,
+    };
+    let body = [
+        pools.groups.as_bytes(),
+        pools.gates.as_bytes(),
+        pools.opponents.as_bytes(),
+        pools.legs.as_bytes(),
+        pools.points.as_bytes(),
+        kicks.as_bytes(),
+        index.starts.as_bytes(),
+        pools.positions.as_bytes(),
+        index.cases.as_bytes(),
+        pools.actions.as_bytes(),
+    ]
+    .concat();
+    header.hash = content_hash(&[&header.as_bytes()[HASHED_FROM..], &body].concat());
+    Table::aligned(&[header.as_bytes(), &body].concat())
+}
+
+/// The growing sections of the table.
+#[derive(Default)]
+struct Pools {
+    groups: Vec<Group>,
+    gates: Vec<Gate>,
+    opponents: Vec<Opponent>,
+    legs: Vec<RawLeg>,
+    points: Vec<[i32; 2]>,
+    positions: Vec<[i16; 2]>,
+    actions: Vec<RawAction>,
+}
+
+impl Pools {
+    /// The four copies of a case.
+    fn add(&mut self, case: &Authored, league: &League) {
+        let (positions_at, opponents_at, legs_at) =
+            (self.positions.len(), self.opponents.len(), self.legs.len());
+        let (points_at, actions_at) = (self.points.len(), self.actions.len());
+        for symmetry in Symmetry::ALL {
+            self.add_copy(&case.mirrored(symmetry, league), league);
+        }
+        let mut list_ends = [0; 4];
+        let mut end = 0;
+        for (list_end, teammate) in list_ends.iter_mut().zip(&case.teammates) {
+            end += teammate.gameplay.len();
+            *list_end = end as u8;
+        }
+        let is_getter = |teammate: &crate::authored::Teammate| {
+            teammate.gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
+        };
+        self.groups.push(Group {
+            positions_at: positions_at as u32,
+            opponents_at: opponents_at as u32,
+            legs_at: legs_at as u32,
+            points_at: points_at as u32,
+            actions_at: actions_at as u32,
+            teammates: case.teammates.len() as u8,
+            opponents: case.opponents.len() as u8,
+            legs: ((self.legs.len() - legs_at) / 4) as u8,
+            points: ((self.points.len() - points_at) / 4) as u8,
+            list_ends,
+            defending: u8::from(case.defending == GoalEnd::Positive),
+            getter: case.teammates.iter().position(is_getter).unwrap_or(0) as u8,
+            reserved: [0; 2],
+        });
+    }
+
+    fn add_copy(&mut self, copy: &Mirrored<'_>, league: &League) {
+        let ball = copy.ball();
+        self.gates.push(Gate { ball: narrow(ball), inverse_scope: inverse(copy.case.ball_scope) });
+        let robots = CaseRobot::first(copy.teammates());
+        self.positions.extend(robots.clone().map(|robot| narrow(copy.position(robot).minus(ball))));
+        for opponent in &copy.case.opponents {
+            let at = narrow(copy.symmetry.point(opponent.at).minus(ball));
+            self.opponents.push(Opponent { at, inverse_scope: inverse(opponent.scope) });
+        }
+        let first_point = self.points.len();
+        // Which point each action with a point has, by robot and place in its list.
+        let mut point_of = Vec::new();
+        for robot in robots {
+            for index in 0.. {
+                let Some(action) = copy.action(robot, index) else { break };
+                let argument = (self.points.len() - first_point) as u8;
+                let raw = self.add_action(action, argument);
+                point_of.push(((robot, index), raw.argument));
+            }
+        }
+        let carried_to = |by: Option<(CaseRobot, usize)>| {
+            by.and_then(|by| point_of.iter().find(|(at, _)| *at == by))
+                .map_or(RawLeg::NOT_CARRIED, |(_, point)| *point)
+        };
+        let legs = &mut self.legs;
+        let walked = walk(copy, league, |step| {
+            if let Step::Leg { robot, action, to, carried_by, .. } = step {
+                legs.push(RawLeg {
+                    to: to.at,
+                    robot: robot.index() as u8,
+                    action: action as u8,
+                    carried_to: carried_to(carried_by),
+                    flags: if to.on_field { RawLeg::TO_FIELD } else { 0 },
+                });
+            }
+        });
+        debug_assert!(walked.is_ok(), "only cases that can be walked are encoded: {walked:?}");
+    }
+
+    /// An action; `next_point` is the number its point gets where it has one.
+    fn add_action(&mut self, action: Action, next_point: u8) -> RawAction {
+        let (kind, argument, point) = match action {
+            Action::Wait => (RawAction::WAIT, 0, None),
+            Action::GetBall => (RawAction::GET_BALL, 0, None),
+            Action::GoToPoint(at) => (RawAction::GO_TO_POINT, next_point, Some([at.x, at.y])),
+            Action::DribbleTo(at) => (RawAction::DRIBBLE_TO, next_point, Some([at.x, at.y])),
+            Action::Turn(TurnTarget::Face(at)) => (RawAction::TURN_FACE, next_point, Some([at.x, at.y])),
+            Action::Turn(TurnTarget::HeadingDeg(degrees)) => {
+                (RawAction::TURN_HEADING, next_point, Some([degrees, 0]))
+            }
+            Action::PassBall(robot) => (RawAction::PASS_BALL, robot.index() as u8, None),
+            Action::ReceiveBall(robot) => (RawAction::RECEIVE_BALL, robot.index() as u8, None),
+            Action::Kick(id) => (RawAction::KICK, id.0, None),
+        };
+        let raw = RawAction { kind, argument };
+        self.points.extend(point);
+        self.actions.push(raw);
+        raw
+    }
+}
+
+/// A place within a field of at most 30 m, which the checks have made sure of.
+fn narrow(point: PointMm) -> [i16; 2] {
+    [point.x as i16, point.y as i16]
+}
+
+fn inverse(scope: Scope) -> [f32; 2] {
+    [1.0 / scope.x as f32, 1.0 / scope.y as f32]
+}

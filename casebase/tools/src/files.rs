@@ -1,0 +1,147 @@
+//! Which files make up a league's library? `league.toml` and `<region>/<name>.toml` (DESIGN §4.1).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::finding::{Finding, Severity, code};
+
+/// A file of a library, read.
+#[derive(Clone, Debug)]
+pub struct SourceFile {
+    /// Where it lies, as findings name it.
+    pub path: PathBuf,
+    /// Its place in the library, with `/`, without `.toml`.
+    pub name: String,
+    /// What it says.
+    pub text: String,
+}
+
+impl SourceFile {
+    /// The line, from 1, of a byte of the text.
+    pub(crate) fn line(&self, at: usize) -> u32 {
+        let before = &self.text.as_bytes()[..at.min(self.text.len())];
+        before.iter().filter(|byte| **byte == b'\n').count() as u32 + 1
+    }
+
+    /// A finding in this file.
+    pub(crate) fn finding(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        line: u32,
+        message: impl Into<String>,
+        mend: impl Into<String>,
+    ) -> Finding {
+        Finding { code, severity, file: self.path.clone(), line, message: message.into(), mend: mend.into() }
+    }
+}
+
+/// The files of one league.
+#[derive(Clone, Debug)]
+pub struct Files {
+    /// The league's name: that of its folder.
+    pub league: String,
+    /// `league.toml`.
+    pub rules: SourceFile,
+    /// The case files, ordered by the bytes of their names: this order is their ids.
+    pub cases: Vec<SourceFile>,
+}
+
+impl Files {
+    /// Reads a league's folder.
+    pub fn read(folder: &Path) -> Result<Self, Vec<Finding>> {
+        let mut found = Found::default();
+        found.enter(folder, "", 0);
+        let at = found.cases.iter().position(|file| file.name == LEAGUE);
+        let rules = at.map(|at| found.cases.remove(at));
+        if rules.is_none() && !found.league_unreadable {
+            let message = "the library has no league.toml";
+            let mend = "add one with [field], [pass] and [kicks.KIND], and name one league's folder";
+            found.error(code::NO_LEAGUE, folder.join("league.toml"), message, mend);
+        }
+        let Some(rules) = rules.filter(|_| found.findings.is_empty()) else {
+            found.findings.sort_by(|a, b| a.file.cmp(&b.file));
+            return Err(found.findings);
+        };
+        let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let league = absolute.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        Ok(Self { league, rules, cases: found.cases }.sorted())
+    }
+
+    /// Files from memory: `cases` as pairs of `region/name` and text.
+    pub fn from_texts(league: &str, rules: &str, cases: &[(&str, &str)]) -> Self {
+        let file = |name: &str, text: &str| SourceFile {
+            path: Path::new(league).join(format!("{name}.toml")),
+            name: name.to_owned(),
+            text: text.to_owned(),
+        };
+        let cases = cases.iter().map(|(name, text)| file(name, text)).collect();
+        Self { league: league.to_owned(), rules: file(LEAGUE, rules), cases }.sorted()
+    }
+
+    fn sorted(mut self) -> Self {
+        self.cases.sort_by(|a, b| a.name.as_bytes().cmp(b.name.as_bytes()));
+        self
+    }
+}
+
+/// What has been found so far; `league.toml` among the cases.
+#[derive(Default)]
+struct Found {
+    cases: Vec<SourceFile>,
+    findings: Vec<Finding>,
+    league_unreadable: bool,
+}
+
+impl Found {
+    /// A folder, `depth` folders below the library's; `prefix` is its place with a `/` at the end.
+    fn enter(&mut self, folder: &Path, prefix: &str, depth: usize) {
+        let entries = match fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>) {
+            Ok(entries) => entries,
+            Err(error) => {
+                let message = format!("the folder cannot be read: {error}");
+                return self.error(code::UNREADABLE, folder.to_owned(), message, "make it a readable folder");
+            }
+        };
+        for entry in entries {
+            let path = entry.path();
+            let file_name = entry.file_name();
+            let name = file_name.to_string_lossy();
+            if path.is_dir() {
+                if depth < DEPTH_MAX {
+                    self.enter(&path, &format!("{prefix}{name}/"), depth + 1);
+                }
+            } else if let Some(stem) = name.strip_suffix(".toml") {
+                let is_league = depth == 0 && stem == LEAGUE;
+                if is_league || depth == 1 {
+                    self.read(path, format!("{prefix}{stem}"), is_league);
+                } else {
+                    let message = format!("{prefix}{name} is not at <region>/<name>.toml");
+                    let mend = "move it into the folder of its region, right below league.toml";
+                    self.error(code::MISPLACED, path, message, mend);
+                }
+            }
+        }
+    }
+
+    fn read(&mut self, path: PathBuf, name: String, is_league: bool) {
+        match fs::read_to_string(&path) {
+            Ok(text) => self.cases.push(SourceFile { path, name, text }),
+            Err(error) => {
+                self.league_unreadable |= is_league;
+                let message = format!("the file cannot be read: {error}");
+                self.error(code::UNREADABLE, path, message, "make it a readable text file in UTF-8");
+            }
+        }
+    }
+
+    fn error(&mut self, code: &'static str, file: PathBuf, message: impl Into<String>, mend: &str) {
+        let (message, mend) = (message.into(), mend.to_owned());
+        self.findings.push(Finding { code, severity: Severity::Error, file, line: 1, message, mend });
+    }
+}
+
+/// The league's own file, without `.toml`.
+const LEAGUE: &str = "league";
+/// How deep misplaced files are looked for; also what ends a circle of links.
+const DEPTH_MAX: usize = 8;

@@ -1,0 +1,181 @@
+//! What does `league.toml` say: the field, passes, and what each kind of kick does? (DESIGN §4.1) mm, degrees.
+
+use casebase::action::KICKS_MAX;
+use casebase::walk::Kicks;
+use casebase::{FieldMm, Kick, KickAim, KickId, Pass, Primitive};
+
+use crate::document::{COORDINATES, POSITIVE, Reader, Table, Value};
+use crate::files::SourceFile;
+use crate::finding::{Finding, code};
+
+/// A league's rules.
+#[derive(Clone, Debug)]
+pub struct League {
+    /// The field.
+    pub field: FieldMm,
+    /// Radii of passes.
+    pub pass: Pass,
+    /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
+    pub kicks: Vec<(String, Kick)>,
+    /// The kind a single reflection plays instead of each.
+    partners: Vec<KickId>,
+}
+
+impl League {
+    /// Reads `league.toml`. Findings come along; without the league they are errors.
+    pub(crate) fn read(file: &SourceFile) -> (Option<Self>, Vec<Finding>) {
+        let mut reader = Reader::new(file);
+        let league = reader.parse().and_then(|root| read_league(&mut reader, &Table::root(&root)));
+        let faulty = reader.findings.iter().any(|finding| finding.severity == crate::Severity::Error);
+        (league.filter(|_| !faulty), reader.findings)
+    }
+
+    /// A kick kind by its name.
+    pub fn kick_id(&self, name: &str) -> Option<KickId> {
+        self.kicks.iter().position(|(known, _)| known == name).map(|at| KickId(at as u8))
+    }
+
+    /// The kind that a single reflection plays instead.
+    pub(crate) fn partner(&self, id: KickId) -> KickId {
+        self.partners[usize::from(id.0)]
+    }
+}
+
+impl Kicks for League {
+    fn kick(&self, id: KickId) -> Option<Kick> {
+        self.kicks.get(usize::from(id.0)).map(|(_, kick)| *kick)
+    }
+    fn pass(&self) -> Pass {
+        self.pass
+    }
+    fn field(&self) -> FieldMm {
+        self.field
+    }
+}
+
+fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> {
+    root.refuse_others(reader, &["field", "pass", "kicks"]);
+    let field = root.required(reader, "field").and_then(|value| read_field(reader, value));
+    let pass = root.required(reader, "pass").and_then(|value| read_pass(reader, value));
+    let mut kicks = Vec::new();
+    let mut spans = Vec::new();
+    if let Some(table) = root.optional("kicks").and_then(|value| reader.table(value, "kicks")) {
+        let mut entries = table.entries();
+        entries.sort_by_key(|(name, ..)| name.as_bytes());
+        if let Some((_, span, _)) = entries.get(KICKS_MAX) {
+            let message = format!("{} kick kinds, at most {KICKS_MAX} fit", entries.len());
+            reader.error(code::TOO_MANY_KICKS, span.clone(), message, "take some out");
+        }
+        for (name, span, value) in entries {
+            if let Some(kick) = read_kick(reader, &format!("kicks.{name}"), value) {
+                kicks.push((name.to_owned(), kick));
+                spans.push(span);
+            }
+        }
+    }
+    let mut partners = Vec::new();
+    for ((name, kick), span) in kicks.iter().zip(spans) {
+        if let Some(at) = kicks.iter().position(|(_, other)| are_partners(*kick, *other)) {
+            partners.push(KickId(at as u8));
+        } else {
+            let message = format!("kicks.{name} has no partner to the other side");
+            let mend = "add a kind of opposite heading_deg or offset with equal length and radii, for the mirrored cases";
+            reader.error(code::NO_PARTNER, span, message, mend);
+        }
+    }
+    Some(League { field: field?, pass: pass?, kicks, partners })
+}
+
+fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> {
+    let table = reader.table(value, "field")?;
+    table.refuse_others(reader, &["length", "width", "margin", "goal_width", "penalty_area"]);
+    let length = table.whole(reader, "length", &SIDES);
+    let width = table.whole(reader, "width", &SIDES);
+    let margin =
+        table.optional("margin").map_or(Some(0), |value| reader.whole(value, "field.margin", &INNER));
+    let goal_width = table.whole(reader, "goal_width", &INNER);
+    let area = table.required(reader, "penalty_area").and_then(|value| {
+        let area = reader.table(value, "field.penalty_area")?;
+        area.refuse_others(reader, &["depth", "width"]);
+        let (depth, width) = (area.whole(reader, "depth", &INNER), area.whole(reader, "width", &INNER));
+        Some((depth?, width?))
+    });
+    let (penalty_depth, penalty_width) = area?;
+    let (length, width, margin, goal_width) = (length?, width?, margin?, goal_width?);
+    Some(FieldMm { length, width, margin, goal_width, penalty_depth, penalty_width })
+}
+
+fn read_pass(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Pass> {
+    let table = reader.table(value, "pass")?;
+    table.refuse_others(reader, &["r_min", "r_max"]);
+    let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
+    Some(Pass { r_min: r_min?, r_max: r_max? })
+}
+
+fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Kick> {
+    let table = reader.table(value, name)?;
+    let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
+    let primitive = table.optional("primitive").and_then(|value| read_primitive(reader, name, value));
+    let aim = if let Some(value) = table.optional("aim") {
+        table.refuse_others(reader, &["aim", "offset", "r_min", "r_max", "primitive"]);
+        let word = reader.text(value, &table.name_of("aim"))?;
+        if word != "goal" {
+            let message = format!("{name} aims at {word:?}");
+            reader.error(
+                code::BAD_VALUE,
+                value.span(),
+                message,
+                "write aim = \"goal\", or give heading_deg and length",
+            );
+            return None;
+        }
+        let offset =
+            table.optional("offset").map_or(Some(0), |value| reader.whole(value, "offset", &COORDINATES));
+        KickAim::Goal { offset_mm: offset? }
+    } else {
+        table.refuse_others(reader, &["heading_deg", "length", "r_min", "r_max", "primitive"]);
+        let degrees = table.whole(reader, "heading_deg", &DEGREES);
+        let length_mm = table.whole(reader, "length", &(0..=*POSITIVE.end()));
+        KickAim::Heading { degrees: degrees?, length_mm: length_mm? }
+    };
+    Some(Kick { aim, r_min: r_min?, r_max: r_max?, primitive: primitive.unwrap_or_default() })
+}
+
+fn read_primitive(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Option<Primitive> {
+    let word = reader.text(value, &format!("{name}.primitive"))?;
+    let primitive = Primitive::from_word(word);
+    if primitive.is_none() {
+        let known = Primitive::ALL.map(Primitive::word).join(", ");
+        let message = format!("{name} asks the body for {word:?}, which no body knows");
+        let mend = format!("take one of: {}", known.trim_start_matches(", "));
+        reader.warning(code::UNKNOWN_PRIMITIVE, value.span(), message, mend);
+    }
+    primitive
+}
+
+/// Does a mirror image of `kick` play `other`?
+fn are_partners(kick: Kick, other: Kick) -> bool {
+    let opposite = match (kick.aim, other.aim) {
+        (
+            KickAim::Heading { degrees, length_mm },
+            KickAim::Heading { degrees: other_degrees, length_mm: other_length },
+        ) => (degrees + other_degrees).rem_euclid(360) == 0 && length_mm == other_length,
+        (KickAim::Goal { offset_mm }, KickAim::Goal { offset_mm: other_offset }) => {
+            offset_mm == -other_offset
+        }
+        _ => false,
+    };
+    // A kind that is its own mirror image stays itself, however many others look like it.
+    let own_image = match kick.aim {
+        KickAim::Heading { degrees, .. } => (2 * degrees).rem_euclid(360) == 0,
+        KickAim::Goal { offset_mm } => offset_mm == 0,
+    };
+    opposite && kick.r_min == other.r_min && kick.r_max == other.r_max && (!own_image || kick == other)
+}
+
+/// Sides of a field, mm: what the table's positions can hold.
+const SIDES: std::ops::RangeInclusive<i32> = 1..=30_000;
+/// Dimensions within a field, mm.
+const INNER: std::ops::RangeInclusive<i32> = 0..=30_000;
+/// Headings: several turns either way.
+const DEGREES: std::ops::RangeInclusive<i32> = -3600..=3600;

@@ -1,0 +1,96 @@
+//! Is a league's library sound, and what do robots carry of it? From its files to a checked table (DESIGN §4.1–§4.3).
+
+use std::path::Path;
+
+use casebase::CaseBase;
+use casebase::table::TableError;
+
+use crate::authored::Authored;
+use crate::check::errors;
+use crate::encode::{Table, encode};
+use crate::files::Files;
+use crate::finding::{Finding, Severity, code};
+use crate::league::League;
+use crate::warnings::warnings;
+
+/// One league's cases, checked, mirrored and laid out. Lists go by authored case, in the order of ids.
+#[derive(Clone, Debug)]
+pub struct Library {
+    /// The league's name: that of its folder.
+    pub league: String,
+    /// What robots carry.
+    pub table: Table,
+    /// `region/name` of every authored case.
+    pub names: Vec<String>,
+    /// What each case is for, in its author's words.
+    pub intents: Vec<String>,
+    /// The text of each case file.
+    pub sources: Vec<String>,
+    /// The names of the kick kinds, by [`casebase::KickId`].
+    pub kicks: Vec<String>,
+    /// What is doubtful.
+    pub findings: Vec<Finding>,
+}
+
+/// Reads one league's folder; the findings, with at least one error among them, where it is refused.
+pub fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
+    build(&Files::read(folder)?)
+}
+
+/// The library of files that were read.
+pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
+    let (league, mut findings) = League::read(&files.rules);
+    let mut cases = Vec::new();
+    for file in &files.cases {
+        let (case, read) = Authored::read(file, league.as_ref());
+        findings.extend(read);
+        if let (Some(case), Some(league)) = (case, &league) {
+            findings.extend(errors(file, &case, league));
+            cases.push(case);
+        }
+    }
+    if files.cases.len() > CASES_MAX {
+        let message = format!("{} cases, at most {CASES_MAX} can be numbered", files.cases.len());
+        let mend = "split the league, or take cases out";
+        findings.push(files.rules.finding(Severity::Error, code::TOO_MANY_CASES, 1, message, mend));
+    }
+    let Some(league) = league.filter(|_| findings.iter().all(|finding| finding.severity != Severity::Error))
+    else {
+        return Err(in_order(findings));
+    };
+    let table = encode(&league, &cases);
+    let mut library = Library {
+        league: files.league.clone(),
+        table,
+        names: files.cases.iter().map(|file| file.name.clone()).collect(),
+        intents: cases.iter().map(|case| case.intent.clone()).collect(),
+        sources: files.cases.iter().map(|file| file.text.clone()).collect(),
+        kicks: league.kicks.iter().map(|(name, _)| name.clone()).collect(),
+        findings,
+    };
+    let doubts = warnings(files, &cases, &library.base(), &league);
+    library.findings.extend(doubts);
+    library.findings = in_order(library.findings);
+    Ok(library)
+}
+
+impl Library {
+    /// The case base over the table.
+    pub fn base(&self) -> CaseBase<'_> {
+        // The table was laid out by this crate; its reader refusing it is a defect here, and every test would see it.
+        self.read()
+            .unwrap_or_else(|error| panic!("the table built from {} cannot be read: {error}", self.league))
+    }
+
+    fn read(&self) -> Result<CaseBase<'_>, TableError> {
+        CaseBase::from_bytes(self.table.bytes())
+    }
+}
+
+fn in_order(mut findings: Vec<Finding>) -> Vec<Finding> {
+    findings.sort_by(|a, b| (&a.file, a.line, a.severity).cmp(&(&b.file, b.line, b.severity)));
+    findings
+}
+
+/// Most authored cases of a league: the ids of their copies have 16 bits.
+const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
