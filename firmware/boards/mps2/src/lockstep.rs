@@ -1,8 +1,8 @@
 //! What does the board do with a tick? It lets the robot live up to that moment and tells what came of it (DESIGN §7).
 //!
 //! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets one by one, its picture of the
-//! world, and after each of them the tasks run until all of them wait. The first tick is the robot's birth, at that tick's
-//! time. A message that makes no sense where it comes is counted and gets no answer; another life needs another process.
+//! world, and after each of them the tasks run until all of them wait. The robot is born with its set-up, at time zero.
+//! A message that makes no sense where it comes is counted and gets no answer; another life needs another process.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -30,16 +30,15 @@ pub(crate) fn run() -> ! {
     let (mut inlet, mut outlet) = eth::start().expect("the machine has a LAN9118: mps2-an386");
     let clock = Clock::new();
     tell(&mut outlet, &FromRobot::Hello);
-    let mut unborn = Some(wait_for_setup(&mut inlet, &mut outlet));
+    let (config, base) = wait_for_setup(&mut inlet, &mut outlet);
+    start_tasks(clock.spawner(), config, base).expect("every task is started once");
+    clock.settle();
+    tell(&mut outlet, &FromRobot::Ready);
     loop {
         let Some(ToRobot::Tick(tick)) = read(inlet.receive()) else {
             STRANGE.fetch_add(1, Ordering::Relaxed);
             continue;
         };
-        if let Some((config, base)) = unborn.take() {
-            clock.advance(tick.now);
-            start_tasks(clock.spawner(), config, base).expect("every task is started once");
-        }
         let ((), instructions) = instructions::counted(|| live(&clock, &tick));
         let done = critical_section::with(|cs| DONE.borrow(cs).take());
         let air = done.air.iter().map(|packet| &packet[..]).collect();
@@ -56,7 +55,6 @@ fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseB
             continue;
         };
         if let (Ok(config), Ok(base)) = (setup::read(config), library::case_base()) {
-            tell(outlet, &FromRobot::Ready);
             return (config, base);
         }
         tell(outlet, &FromRobot::Unusable);
