@@ -1,0 +1,284 @@
+//! Which packet reaches whom, and when? A broadcast radio in steps of a tick: loss, delay, duplication, reordering, partition.
+//!
+//! Every fate is drawn per receiver from the air's own stream; packets that come in the same tick keep the order they were sent
+//! in unless reordering says otherwise. What does not fit into a tick ([`AIR_IN_MAX`]) waits for the next.
+
+use protocol::RobotId;
+use protocol::link::Packet;
+use protocol::lockstep::AIR_IN_MAX;
+
+use crate::rng::Stream;
+
+/// How the air treats packets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AirSettings {
+    /// Probability that a receiver does not hear a packet.
+    pub loss: f32,
+    /// Fewest and most ticks of 40 ms on the way; at least 1: nobody hears in the tick of sending.
+    pub delay: [u32; 2],
+    /// Probability that a receiver hears a packet twice, the copy with a delay of its own.
+    pub duplication: f32,
+    /// Probability that a packet changes places with the one sent before it to the same receiver, if that is still on its way.
+    pub reordering: f32,
+    /// Which part of the field a robot's radio reaches, by id; packets pass within a part only.
+    pub groups: [u8; RobotId::COUNT],
+    /// Links that lose more or less than `loss`.
+    pub links: Vec<LinkLoss>,
+}
+
+/// One direction between two robots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkLoss {
+    /// Who speaks.
+    pub from: RobotId,
+    /// Who may hear it.
+    pub to: RobotId,
+    /// Probability that it does not.
+    pub loss: f32,
+}
+
+impl Default for AirSettings {
+    /// Every packet is heard one tick later.
+    fn default() -> Self {
+        Self {
+            loss: 0.0,
+            delay: [1, 1],
+            duplication: 0.0,
+            reordering: 0.0,
+            groups: [0; RobotId::COUNT],
+            links: Vec::new(),
+        }
+    }
+}
+
+impl AirSettings {
+    /// The default with this loss.
+    pub fn with_loss(loss: f32) -> Self {
+        Self { loss, ..Self::default() }
+    }
+
+    fn loss_between(&self, from: RobotId, to: RobotId) -> f32 {
+        let link = self.links.iter().find(|link| link.from == from && link.to == to);
+        link.map_or(self.loss, |link| link.loss)
+    }
+}
+
+/// What became of packets so far, per receiver and packet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AirCounts {
+    /// Sent to a receiver in reach.
+    pub sent: u64,
+    /// Lost on the way, or out of reach.
+    pub lost: u64,
+    /// Doubled.
+    pub doubled: u64,
+    /// Handed over.
+    pub delivered: u64,
+}
+
+/// The air between the robots of a team.
+#[derive(Clone, Debug)]
+pub struct Air {
+    settings: AirSettings,
+    chance: Stream,
+    /// Packets on their way, by receiver, sorted by `(due, order)`.
+    inbound: Vec<(RobotId, Vec<InFlight>)>,
+    order: u64,
+    counts: AirCounts,
+}
+
+#[derive(Clone, Debug)]
+struct InFlight {
+    due: u32,
+    /// Rises with every packet.
+    order: u64,
+    packet: Packet,
+}
+
+impl Air {
+    /// Silent air between `robots`.
+    pub fn new(settings: AirSettings, seed: u64, robots: &[RobotId]) -> Self {
+        let mut receivers = robots.to_vec();
+        receivers.sort_unstable();
+        Self {
+            settings,
+            chance: Stream::new(seed, "air"),
+            inbound: receivers.into_iter().map(|robot| (robot, Vec::new())).collect(),
+            order: 0,
+            counts: AirCounts::default(),
+        }
+    }
+
+    /// How it treats packets from now on; those on their way keep their fate.
+    pub fn set(&mut self, settings: AirSettings) {
+        self.settings = settings;
+    }
+
+    /// How it treats packets now.
+    pub fn settings(&self) -> &AirSettings {
+        &self.settings
+    }
+
+    /// What became of packets so far.
+    pub fn counts(&self) -> AirCounts {
+        self.counts
+    }
+
+    /// A robot speaks in tick `now`; the others hear it later, or not.
+    pub fn send(&mut self, now: u32, from: RobotId, packet: &Packet) {
+        let Self { settings, chance, inbound, order, counts } = self;
+        for (to, queue) in inbound.iter_mut().filter(|(to, _)| *to != from) {
+            counts.sent += 1;
+            let apart = settings.groups[from.index()] != settings.groups[to.index()];
+            if apart || chance.chance(settings.loss_between(from, *to)) {
+                counts.lost += 1;
+                continue;
+            }
+            let doubled = chance.chance(settings.duplication);
+            counts.doubled += u64::from(doubled);
+            for _ in 0..=u8::from(doubled) {
+                *order += 1;
+                let delay = chance.whole(settings.delay[0].max(1), settings.delay[1]);
+                let mut arriving = InFlight { due: now + delay, order: *order, packet: packet.clone() };
+                if chance.chance(settings.reordering) {
+                    overtake(queue, &mut arriving);
+                }
+                enqueue(queue, arriving);
+            }
+        }
+    }
+
+    /// What robot `to` hears in tick `now`, in order.
+    pub fn deliver(&mut self, now: u32, to: RobotId) -> heapless::Vec<Packet, AIR_IN_MAX> {
+        let Some((_, queue)) = self.inbound.iter_mut().find(|(robot, _)| *robot == to) else {
+            return heapless::Vec::new();
+        };
+        let due = queue.iter().take_while(|packet| packet.due <= now).count().min(AIR_IN_MAX);
+        self.counts.delivered += due as u64;
+        queue.drain(..due).map(|arrived| arrived.packet).collect()
+    }
+
+    /// A robot's radio is off: what is due for it by `now` is lost.
+    pub fn discard(&mut self, now: u32, to: RobotId) {
+        if let Some((_, queue)) = self.inbound.iter_mut().find(|(robot, _)| *robot == to) {
+            let before = queue.len();
+            queue.retain(|packet| packet.due > now);
+            self.counts.lost += (before - queue.len()) as u64;
+        }
+    }
+}
+
+/// The newcomer takes the place of the youngest packet on its way, which takes the newcomer's.
+fn overtake(queue: &mut Vec<InFlight>, newcomer: &mut InFlight) {
+    let youngest = queue.iter().enumerate().max_by_key(|(_, packet)| packet.order).map(|(i, _)| i);
+    if let Some(i) = youngest {
+        let mut overtaken = queue.remove(i);
+        std::mem::swap(&mut overtaken.due, &mut newcomer.due);
+        std::mem::swap(&mut overtaken.order, &mut newcomer.order);
+        enqueue(queue, overtaken);
+    }
+}
+
+fn enqueue(queue: &mut Vec<InFlight>, packet: InFlight) {
+    let place = queue.partition_point(|other| (other.due, other.order) < (packet.due, packet.order));
+    queue.insert(place, packet);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn id(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn air(settings: AirSettings) -> Air {
+        Air::new(settings, 9, &[id(2), id(1), id(3)])
+    }
+
+    fn packet(n: u32) -> Packet {
+        Packet::from_slice(&n.to_le_bytes()).unwrap()
+    }
+
+    /// Robot 1 sends `n` numbered packets, one a tick; gives what robot 2 heard, with its ticks.
+    fn heard(settings: AirSettings, n: u32) -> (Vec<(u32, u32)>, AirCounts) {
+        let mut air = air(settings);
+        let mut heard = Vec::new();
+        for tick in 0..n + 20 {
+            for p in air.deliver(tick, id(2)) {
+                heard.push((tick, u32::from_le_bytes(p[..4].try_into().unwrap())));
+            }
+            if tick < n {
+                air.send(tick, id(1), &packet(tick));
+            }
+        }
+        (heard, air.counts())
+    }
+
+    #[test]
+    fn by_default_everybody_but_the_speaker_hears_it_a_tick_later() {
+        let mut air = air(AirSettings::default());
+        air.send(5, id(2), &packet(1));
+        assert!(air.deliver(5, id(1)).is_empty());
+        assert_eq!(air.deliver(6, id(1))[..], [packet(1)]);
+        assert!(air.deliver(6, id(2)).is_empty());
+        assert_eq!(air.deliver(9, id(3))[..], [packet(1)], "what was not fetched waits");
+        assert!(air.deliver(9, id(7)).is_empty());
+    }
+
+    #[test]
+    fn thirty_in_a_hundred_are_lost_and_ten_come_twice() {
+        let settings = AirSettings { duplication: 0.1, ..AirSettings::with_loss(0.3) };
+        let (heard, counts) = heard(settings, 4_000);
+        let once = 4_000.0 * 0.7;
+        // Deviations: √(4000·0.3·0.7) = 29 losses, and about √(2800·0.1·0.9) = 16 copies; four of each.
+        assert!((heard.len() as f32 - once * 1.1).abs() < 4.0 * (29.0 + 16.0), "{}", heard.len());
+        assert_eq!(counts.sent, 8_000);
+        assert!(counts.lost.abs_diff(2_400) < 4 * 41 && counts.doubled.abs_diff(560) < 4 * 23, "{counts:?}");
+    }
+
+    #[test]
+    fn delays_stay_within_their_bounds_and_reach_both() {
+        let (heard, _) = heard(AirSettings { delay: [1, 3], ..AirSettings::default() }, 300);
+        let delays: Vec<u32> = heard.iter().map(|(tick, sent)| tick - sent).collect();
+        assert!(delays.iter().all(|d| (1..=3).contains(d)) && [1, 2, 3].iter().all(|d| delays.contains(d)));
+        assert_eq!(heard.len(), 300);
+    }
+
+    #[test]
+    fn reordering_swaps_and_loses_nothing() {
+        let settings = AirSettings { reordering: 0.5, delay: [2, 2], ..AirSettings::default() };
+        let (heard, _) = heard(settings, 300);
+        let mut numbers: Vec<u32> = heard.iter().map(|(_, n)| *n).collect();
+        assert!(numbers.windows(2).any(|pair| pair[0] > pair[1]));
+        numbers.sort_unstable();
+        assert_eq!(numbers, (0..300).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_partition_and_a_bad_link_cut_only_what_they_name() {
+        let mut settings = AirSettings::default();
+        settings.groups[3] = 1;
+        settings.links.push(LinkLoss { from: id(1), to: id(2), loss: 1.0 });
+        let mut air = air(settings);
+        for robot in [1, 2, 3] {
+            air.send(0, id(robot), &packet(u32::from(robot)));
+        }
+        assert_eq!(air.deliver(1, id(1))[..], [packet(2)]);
+        assert!(air.deliver(1, id(2)).is_empty());
+        assert!(air.deliver(1, id(3)).is_empty());
+    }
+
+    #[test]
+    fn what_does_not_fit_into_a_tick_waits_and_what_a_dead_radio_misses_is_lost() {
+        let mut air = air(AirSettings::default());
+        for n in 0..15 {
+            air.send(0, id(1), &packet(n));
+        }
+        assert_eq!(air.deliver(1, id(2)).len(), AIR_IN_MAX);
+        assert_eq!(air.deliver(2, id(2)).len(), 15 - AIR_IN_MAX);
+        air.discard(2, id(3));
+        assert!(air.deliver(3, id(3)).is_empty());
+        assert_eq!(air.counts().lost, 15);
+    }
+}

@@ -1,0 +1,108 @@
+//! How do grabs and kicks come out? They take their time, grabs fail, kicks scatter (Ros et al. 2009 §5.2); m, s, rad.
+
+use geometry::{Angle, Vector, math};
+use protocol::robot_io::LeggedKick;
+
+use super::{Hold, PrimitiveKind, STEP, World, WorldEvent};
+
+/// How a ball was struck.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strike {
+    /// One of the body's kicks, with the ball in its grip.
+    Kick(LeggedKick),
+    /// An opponent's kick, without a grip.
+    Clear,
+}
+
+impl World {
+    /// A step of the robot's primitive, if one is under way.
+    pub(super) fn progress(&mut self, robot: usize) {
+        let Some(mut action) = self.walkers[robot].action else { return };
+        action.left -= STEP;
+        let ends = action.left < 0.5 * STEP;
+        self.walkers[robot].action = (!ends).then_some(action);
+        match action.what {
+            PrimitiveKind::Grab => {
+                if self.hold.is_none() && self.in_grasp(robot) {
+                    self.hold = Some(Hold { robot, firm: false });
+                }
+                if ends {
+                    self.end_grab(robot);
+                }
+            }
+            PrimitiveKind::Kick(kick) if ends => {
+                if self.holder() == Some(robot) {
+                    self.kick(robot, kick);
+                } else {
+                    self.events.push(WorldEvent::KickedNothing { robot });
+                }
+            }
+            PrimitiveKind::Kick(_) => {}
+        }
+    }
+
+    /// Kicks the ball away in direction `to` without a grip on it, as opponents do.
+    pub fn clear_ball(&mut self, robot: usize, to: Angle) {
+        let distance = self.parameters.opponent.clear;
+        self.strike(robot, Strike::Clear, to, distance);
+    }
+
+    /// The three directions a body can kick in, from a heading: ahead, left, right.
+    pub fn kick_directions(&self, heading: Angle) -> [Angle; 3] {
+        let side = Angle::degrees(self.parameters.kick.side_angle_deg);
+        [heading, heading + side, heading - side]
+    }
+
+    /// The legs have closed: upon the ball or not, and did they keep it?
+    fn end_grab(&mut self, robot: usize) {
+        match self.hold {
+            Some(hold) if hold.robot == robot && hold.firm => {}
+            Some(hold) if hold.robot == robot && self.grabs.chance(self.parameters.grab.success) => {
+                self.hold = Some(Hold { robot, firm: true });
+                self.events.push(WorldEvent::Grabbed { robot });
+            }
+            Some(hold) if hold.robot == robot => {
+                let aside = Angle::new(self.grabs.between(-math::FRAC_PI_2, math::FRAC_PI_2));
+                let direction = self.walkers[robot].pose.heading + aside;
+                self.hold = None;
+                self.leaving = Some(robot);
+                let away = Vector::polar(self.parameters.grab.fumble, direction);
+                self.ball.send(self.parameters.ball.deceleration, away);
+                self.events.push(WorldEvent::GrabFailed { robot });
+            }
+            _ => self.events.push(WorldEvent::GrabFailed { robot }),
+        }
+    }
+
+    /// The robot that holds the ball kicks it.
+    fn kick(&mut self, robot: usize, kick: LeggedKick) {
+        let (p, heading) = (&self.parameters.kick, self.walkers[robot].pose.heading);
+        let side = Angle::degrees(p.side_angle_deg);
+        let (direction, distance) = match kick {
+            LeggedKick::ForwardSoft => (heading, p.forward_soft),
+            LeggedKick::ForwardHard => (heading, p.forward_hard),
+            LeggedKick::Left => (heading + side, p.side),
+            LeggedKick::Right => (heading - side, p.side),
+            // `max` first: a distance that is no number becomes the shortest pass.
+            LeggedKick::Pass(distance) => (heading, distance.max(p.pass_min).min(p.pass_max)),
+        };
+        self.strike(robot, Strike::Kick(kick), direction, distance);
+    }
+
+    /// The ball leaves, with the scatter of every kick; whoever else had it has lost it.
+    fn strike(&mut self, robot: usize, strike: Strike, direction: Angle, distance: f32) {
+        let p = &self.parameters.kick;
+        let stretch = 1.0 + p.distance_sd * self.kicks.normal_within(p.scatter_limit);
+        let aside = Angle::degrees(p.angle_sd_deg * self.kicks.normal_within(p.scatter_limit));
+        if let Some(Hold { robot: from, .. }) = self.hold.filter(|hold| hold.robot != robot) {
+            self.events.push(WorldEvent::Stolen { by: robot, from });
+        }
+        self.hold = None;
+        self.leaving = Some(robot);
+        let from = self.ball.position;
+        let deceleration = self.parameters.ball.deceleration;
+        self.ball.send(deceleration, Vector::polar(distance * stretch, direction + aside));
+        let rest = self.ball.rest(deceleration);
+        self.events.push(WorldEvent::Kicked { robot, strike, from, rest });
+    }
+}
