@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use protocol::team::{Beacon, CycleState, Decision, Play, Progress};
+use protocol::team::{Beacon, CycleState, Decision, Play, Progress, Status};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 /// Something seen from outside.
@@ -45,7 +45,7 @@ pub enum Air {
 pub struct Watcher {
     air: Air,
     robots: BTreeMap<RobotId, Watched>,
-    contents: BTreeMap<CycleId, (RobotId, Option<Play>)>,
+    contents: BTreeMap<CycleId, Content>,
     overlap_since: Option<Instant>,
     pending: Option<Pending>,
     /// Times at which two gameplays ran at once.
@@ -64,6 +64,14 @@ struct Watched {
     beacon: Option<Beacon>,
     /// The newest cycle it has heard of, and since when.
     told: Option<(CycleState, Instant)>,
+}
+
+/// What all the beacons of a cycle say together.
+#[derive(Clone, Debug)]
+struct Content {
+    coordinator: RobotId,
+    play: Option<Play>,
+    closed: bool,
 }
 
 /// A fault that obliges the team to start a new cycle.
@@ -100,6 +108,11 @@ impl Watcher {
         &self.violations
     }
 
+    /// The newest cycle of every robot that lives; `None` for one that knows of none.
+    pub fn newest_by_robot(&self) -> Vec<Option<CycleId>> {
+        self.robots.values().map(|w| w.beacon.as_ref()?.cycle.as_ref().map(|c| c.id)).collect()
+    }
+
     /// Takes in what was seen at `now`, in order.
     pub fn see(&mut self, now: Instant, seen: &Seen) {
         match seen {
@@ -126,7 +139,13 @@ impl Watcher {
             self.overlap_since = Some(now);
             self.overlaps += 1;
         }
-        let Some(pending) = self.pending else { return };
+        let Some(pending) = &mut self.pending else { return };
+        let retrieves = |w: &Watched| w.beacon.as_ref().is_some_and(|b| b.status.has(Status::RETRIEVER));
+        if !self.robots.values().any(retrieves) {
+            // Nobody is left who could be named coordinator: the team's time starts when somebody comes back.
+            pending.since = now;
+        }
+        let pending = *pending;
         if self.newest().is_some_and(|id| id > pending.newer_than) {
             self.slowest_recovery = self.slowest_recovery.max(now.since(pending.since));
             self.pending = None;
@@ -139,11 +158,12 @@ impl Watcher {
     fn crashed(&mut self, now: Instant, id: RobotId) {
         let newest = self.newest();
         self.robots.remove(&id);
-        // Whoever is left must start anew if the lost robot took part in the newest cycle.
-        let took_part = newest.and_then(|n| self.contents.get(&n)).is_some_and(|(coordinator, play)| {
-            *coordinator == id || play.as_ref().is_some_and(|play| play.part_of(id).is_some())
+        // Whoever is left must start anew, unless a gameplay goes on that the lost robot had no part in.
+        let goes_on = newest.and_then(|n| self.contents.get(&n)).is_some_and(|content| {
+            let play = content.play.as_ref().filter(|_| !content.closed);
+            content.coordinator != id && play.is_some_and(|play| play.part_of(id).is_none())
         });
-        if let (Some(newer_than), true, false) = (newest, took_part, self.robots.is_empty()) {
+        if let (Some(newer_than), false, false) = (newest, goes_on, self.robots.is_empty()) {
             self.pending = Some(Pending { since: now, newer_than });
         }
     }
@@ -182,15 +202,20 @@ impl Watcher {
     /// One cycle, one coordinator, one gameplay.
     fn agree(&mut self, now: Instant, cycle: &CycleState) {
         let new = !self.contents.contains_key(&cycle.id);
-        let entry = self.contents.entry(cycle.id).or_insert((cycle.coordinator, None));
+        let entry = self.contents.entry(cycle.id).or_insert(Content {
+            coordinator: cycle.coordinator,
+            play: None,
+            closed: false,
+        });
         let mut complaint = None;
-        if entry.0 != cycle.coordinator {
+        if entry.coordinator != cycle.coordinator {
             complaint = Some(format!("cycle {} has two coordinators", cycle.id));
         }
+        entry.closed |= matches!(cycle.decision, Decision::Closed(_));
         if let Some(play) = cycle.play() {
-            match &entry.1 {
+            match &entry.play {
                 None => {
-                    entry.1 = Some(play.clone());
+                    entry.play = Some(play.clone());
                     self.gameplays += 1;
                 }
                 Some(known) if known != play => {
@@ -228,7 +253,7 @@ mod tests {
     use super::*;
     use protocol::CaseId;
     use protocol::quantized::{WirePoint, WirePose};
-    use protocol::team::{AbortReason, Closure, Role, Status};
+    use protocol::team::{AbortReason, Closure, Role};
 
     fn robot(n: u8) -> RobotId {
         RobotId::new(n).unwrap()
@@ -239,7 +264,7 @@ mod tests {
         Beacon {
             pose: WirePose::default(),
             ball: None,
-            status: Status::AVAILABLE,
+            status: Status::AVAILABLE.with(Status::RETRIEVER),
             case_base: 1,
             cycle: Some(CycleState { id, coordinator: robot(1), decision }),
             progress,

@@ -1,0 +1,246 @@
+//! Does a team of brains keep its promises when packets are lost and robots die? (DESIGN §5, watched from outside)
+//!
+//! Every seed is a trial of its own on the simulator's carpet: its team size, its retrievers, its scenario and its faults are drawn
+//! from the seed. A failure prints the seed; `ONETWO_SEED=N cargo test -p match-tests --test coordination` repeats it alone.
+
+use brain::BrainConfig;
+use hil_sim::{
+    AirSettings, Configuration, Fault, NativeBackend, Noise, Parameters, Scenario, ScheduledFault, Simulation,
+    SimulationConfig, Stream, TICK_US,
+};
+use match_tests::invariants::{Air, RECOVER_WITHIN, Seen, Watcher};
+use protocol::frame::TeamKey;
+use protocol::link::overhear;
+use protocol::team::TeamMessage;
+use protocol::{CycleId, Instant, RobotId, TeamId};
+
+/// Whose air it is.
+const TEAM: TeamId = TeamId(0);
+const SEEDS: u64 = 200;
+/// Ticks of a trial: 12 s.
+const TICKS: u32 = 300;
+
+#[test]
+fn without_loss_gameplays_do_not_overlap() {
+    let tally = for_each_seed(|seed| {
+        let team = Team::drawn(seed);
+        watch(&team, AirSettings::default(), vec![], Air::Lossless)
+    });
+    assert!(tally.gameplays > SEEDS as u32, "{tally:?}");
+}
+
+#[test]
+fn under_loss_robots_leave_an_old_gameplay_when_they_hear_of_a_newer_one() {
+    let tally = for_each_seed(|seed| {
+        let air = AirSettings {
+            loss: 0.3,
+            delay: [1, 2],
+            duplication: 0.05,
+            reordering: 0.05,
+            ..AirSettings::default()
+        };
+        watch(&Team::drawn(seed), air, vec![], Air::Lossy)
+    });
+    println!("30 % loss, {SEEDS} seeds: {tally:?}");
+    assert!(tally.gameplays > SEEDS as u32, "{tally:?}");
+}
+
+#[test]
+fn a_robot_may_crash_and_return_at_any_time() {
+    let tally = for_each_seed(|seed| {
+        let team = Team::drawn(seed);
+        let mut chance = Stream::new(seed, "crash");
+        let at = chance.whole(30, 200);
+        // A third each: any robot, the lowest id (the elector), the coordinator of that very moment.
+        let victim = match seed % 3 {
+            0 => team.ids[chance.whole(0, team.ids.len() as u32 - 1) as usize],
+            1 => team.ids[0],
+            _ => coordinator_at(&team, at).unwrap_or(team.ids[0]),
+        };
+        let away = chance.whole(1, 75);
+        let faults = vec![
+            ScheduledFault { tick: at, fault: Fault::Crash(victim) },
+            ScheduledFault { tick: at + away, fault: Fault::Return(victim) },
+        ];
+        watch(&team, AirSettings::default(), faults, Air::Lossless)
+    });
+    println!("crash and return, {SEEDS} seeds: {tally:?}");
+    assert!(tally.slowest_ms > 0, "{tally:?}");
+}
+
+#[test]
+fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
+    for_each_seed(|seed| {
+        let team = Team::drawn(seed);
+        let mut chance = Stream::new(seed, "partition");
+        let (cut, heal) = (chance.whole(20, 80), chance.whole(100, 180));
+        let mut groups = [0; RobotId::COUNT];
+        for (i, id) in team.ids.iter().enumerate() {
+            groups[id.index()] = u8::from(i % 2 == 1);
+        }
+        let faults = vec![
+            ScheduledFault { tick: cut, fault: Fault::Air(AirSettings { groups, ..AirSettings::default() }) },
+            ScheduledFault { tick: heal, fault: Fault::Air(AirSettings::default()) },
+        ];
+        let mut simulation = team.simulation(AirSettings::default(), faults);
+        let mut watcher = Watcher::new(Air::Lossy);
+        let mut united = None;
+        for tick in 0..TICKS {
+            step(&team, &mut simulation, &mut watcher);
+            let newest = watcher.newest_by_robot();
+            let same = newest.windows(2).all(|pair| pair[0] == pair[1]);
+            if tick > heal && same && united.is_none() {
+                united = Some(u64::from(tick - heal) * TICK_US);
+            }
+        }
+        let united = united.unwrap_or(u64::MAX);
+        if united > RECOVER_WITHIN.0 {
+            return Err(format!("not one team {} ms after healing", united / 1000));
+        }
+        report(&watcher)
+    });
+}
+
+/// A team drawn from a seed.
+struct Team {
+    seed: u64,
+    ids: Vec<RobotId>,
+    retrievers: Vec<bool>,
+}
+
+impl Team {
+    fn drawn(seed: u64) -> Self {
+        let mut chance = Stream::new(seed, "team");
+        let size = 2 + (seed % 3) as usize;
+        let ids: Vec<RobotId> = [1, 2, 5, 9][..size].iter().filter_map(|&n| RobotId::new(n)).collect();
+        // k = n or k = 1; the lone retriever may be any robot.
+        let lone = (seed / 3 % 2 == 1).then(|| chance.whole(0, size as u32 - 1) as usize);
+        let retrievers = (0..size).map(|i| lone.is_none_or(|lone| lone == i)).collect();
+        Self { seed, ids, retrievers }
+    }
+
+    fn simulation(&self, air: AirSettings, faults: Vec<ScheduledFault>) -> Simulation<'static> {
+        let parameters = Parameters::four_legged();
+        let configuration = if self.seed % 2 == 0 {
+            Configuration::DefenderGoalie
+        } else {
+            Configuration::TwoDefenders
+        };
+        let scenario = Scenario::PAPER[(self.seed / 2 % 4) as usize];
+        let brains = self.ids.iter().zip(&self.retrievers);
+        let brains = brains
+            .map(|(&id, &retriever)| BrainConfig { retriever, ..BrainConfig::new(id, TEAM) })
+            .collect();
+        let config = SimulationConfig {
+            seed: self.seed,
+            layout: scenario.layout(configuration, parameters, self.seed),
+            configuration,
+            brains,
+            air,
+            noise: Noise::NONE,
+            parameters: parameters.clone(),
+            faults,
+        };
+        let backend = Box::new(NativeBackend::new(case_library::four_legged()));
+        Simulation::new(config, backend).expect("the simulation starts")
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+#[allow(dead_code, reason = "read by Debug in the printed line")]
+struct Tally {
+    cycles: u32,
+    gameplays: u32,
+    overlaps: u32,
+    slowest_ms: u64,
+}
+
+/// Runs every seed, or the one that ONETWO_SEED names; panics with the first seed that fails.
+fn for_each_seed(trial: impl Fn(u64) -> Result<Tally, String>) -> Tally {
+    let one = std::env::var("ONETWO_SEED").ok().and_then(|seed| seed.parse::<u64>().ok());
+    let seeds = one.map_or(0..SEEDS, |seed| seed..seed + 1);
+    let mut sum = Tally::default();
+    for seed in seeds {
+        match trial(seed) {
+            Ok(tally) => {
+                sum.cycles += tally.cycles;
+                sum.gameplays += tally.gameplays;
+                sum.overlaps += tally.overlaps;
+                sum.slowest_ms = sum.slowest_ms.max(tally.slowest_ms);
+            }
+            Err(what) => panic!(
+                "seed {seed}: {what}\nrepeat: ONETWO_SEED={seed} cargo test -p match-tests --test coordination"
+            ),
+        }
+    }
+    sum
+}
+
+fn watch(team: &Team, air: AirSettings, faults: Vec<ScheduledFault>, kind: Air) -> Result<Tally, String> {
+    let mut simulation = team.simulation(air, faults);
+    let mut watcher = Watcher::new(kind);
+    for _ in 0..TICKS {
+        step(team, &mut simulation, &mut watcher);
+    }
+    report(&watcher)
+}
+
+fn report(watcher: &Watcher) -> Result<Tally, String> {
+    if let Some(violation) = watcher.violations().first() {
+        let all = watcher.violations().len();
+        return Err(format!("at {} ms: {} ({all} in all)", violation.at.0 / 1000, violation.what));
+    }
+    Ok(Tally {
+        cycles: watcher.cycles,
+        gameplays: watcher.gameplays,
+        overlaps: watcher.overlaps,
+        slowest_ms: watcher.slowest_recovery.0 / 1000,
+    })
+}
+
+/// One tick of the trial, shown to the watcher.
+fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
+    let tick = simulation.step().expect("native computers do not fail");
+    let now = Instant(u64::from(tick.number) * TICK_US);
+    if tick.number == 0 {
+        for id in &team.ids {
+            watcher.see(now, &Seen::Booted(*id));
+        }
+    }
+    for fault in &tick.faults {
+        match fault {
+            Fault::Crash(id) => watcher.see(now, &Seen::Crashed(*id)),
+            Fault::Return(id) => watcher.see(now, &Seen::Booted(*id)),
+            Fault::Air(_) | Fault::FlipOrderBit { .. } => {}
+        }
+    }
+    for heard in &tick.heard {
+        if let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&heard.packet, TEAM, &TeamKey::ZERO) {
+            watcher.see(now, &Seen::Heard(heard.to, from, beacon));
+        }
+    }
+    for sent in &tick.sent {
+        if let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO) {
+            watcher.see(now, &Seen::Sent(from, beacon));
+        }
+    }
+    watcher.end_of_step(now);
+}
+
+/// Who coordinates the newest cycle at that tick, found by running the same trial up to it.
+fn coordinator_at(team: &Team, tick: u32) -> Option<RobotId> {
+    let mut simulation = team.simulation(AirSettings::default(), vec![]);
+    let mut newest: Option<(CycleId, RobotId)> = None;
+    for _ in 0..tick {
+        let seen = simulation.step().expect("native computers do not fail");
+        for sent in &seen.sent {
+            if let Ok((_, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO)
+                && let Some(cycle) = beacon.cycle
+                && newest.is_none_or(|(id, _)| cycle.id > id)
+            {
+                newest = Some((cycle.id, cycle.coordinator));
+            }
+        }
+    }
+    newest.map(|(_, coordinator)| coordinator)
+}
