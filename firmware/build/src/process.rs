@@ -1,7 +1,7 @@
 //! How do we run other programs without waiting for ever, and say what went wrong in one line?
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -47,9 +47,10 @@ pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), S
     }
 }
 
-/// The command as a person would type it.
+/// The command as a person would type it: by the program's name, not by where it lies.
 pub(crate) fn line_of(command: &Command) -> String {
-    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    let program = Path::new(command.get_program());
+    let words = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
