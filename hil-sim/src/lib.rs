@@ -34,7 +34,7 @@ pub use native::NativeBackend;
 pub use opponents::{Opponent, Role};
 pub use parameters::{FOUR_LEGGED_TOML, Noise, ParameterError, Parameters, Region};
 pub use qemu::QemuBackend;
-pub use referee::{Configuration, Outcome, Party, Referee};
+pub use referee::{Configuration, Outcome, Party, Referee, Verdict};
 pub use rng::Stream;
 pub use scenario::{Layout, Scenario, TEAM};
 pub use simulation::{Heard, Sent, Simulation, SimulationConfig, SimulationError, TICK_US, Tick};

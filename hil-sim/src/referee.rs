@@ -67,6 +67,15 @@ impl Outcome {
     }
 }
 
+/// The referee's last word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Verdict {
+    /// How the trial ended.
+    pub outcome: Outcome,
+    /// Seconds from kick-off.
+    pub time: f32,
+}
+
 /// Who touched the ball last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Party {
@@ -98,7 +107,7 @@ pub struct Referee {
     contacts: Vec<Contact>,
     last: Option<(usize, Party)>,
     before: Point<Field>,
-    outcome: Option<Outcome>,
+    verdict: Option<Verdict>,
 }
 
 /// An opponent's dealings with the ball.
@@ -128,12 +137,15 @@ impl Referee {
             roles,
             last: None,
             before: ball,
-            outcome: None,
+            verdict: None,
         }
     }
 
-    /// Looks at the world after a step that ended at `time` seconds; the first outcome stands.
+    /// Looks at the world after a step that ended at `time` seconds. The first verdict stands, and so does every count.
     pub fn observe(&mut self, time: f32, world: &World, events: &[WorldEvent]) {
+        if self.verdict.is_some() {
+            return;
+        }
         let attackers = world.walkers.iter().filter(|walker| walker.side == Side::Attackers).count();
         let mut goalie_touched = false;
         for event in events {
@@ -148,12 +160,18 @@ impl Referee {
         }
         let (before, now) = (self.before, world.ball.position);
         self.before = now;
-        self.outcome = self.outcome.or_else(|| self.judge(time, before, now, goalie_touched));
+        let outcome = self.judge(time, before, now, goalie_touched);
+        self.verdict = outcome.map(|outcome| Verdict { outcome, time });
+    }
+
+    /// How and when the trial ended, if it has.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.verdict
     }
 
     /// How the trial ended, if it has.
     pub fn outcome(&self) -> Option<Outcome> {
-        self.outcome
+        self.verdict.map(|verdict| verdict.outcome)
     }
 
     /// Who touched the ball last.
@@ -286,9 +304,9 @@ mod tests {
     fn the_goalies_touch_ends_a_trial_and_the_defenders_does_not() {
         let mut game = kick_off(Configuration::DefenderGoalie);
         game.touch(1.0, 1);
-        assert_eq!(game.referee.outcome(), None);
+        assert_eq!(game.referee.verdict(), None);
         game.touch(1.1, 2);
-        assert_eq!(game.referee.outcome(), Some(Outcome::Block));
+        assert_eq!(game.referee.verdict(), Some(Verdict { outcome: Outcome::Block, time: 1.1 }));
     }
 
     #[test]

@@ -176,6 +176,11 @@ impl<'a> Simulation<'a> {
         Ok(&self.tick)
     }
 
+    /// What happened in the last tick.
+    pub fn tick(&self) -> &Tick {
+        &self.tick
+    }
+
     /// The truth, as it is now: at the end of the last tick.
     pub fn world(&self) -> &World {
         &self.world
