@@ -4,7 +4,7 @@ use std::path::Path;
 
 use case_library::{LEAGUES, League};
 use case_tools::Library;
-use casebase::{CaseBase, Symmetry};
+use casebase::{CaseBase, KickId, Symmetry};
 use protocol::CaseId;
 
 use crate::Failure;
@@ -50,6 +50,7 @@ impl Shelf {
         }
     }
 
+    /// The case base over the table, checked anew by every call: once is enough.
     pub(crate) fn base(&self) -> CaseBase<'_> {
         match self {
             Self::BuiltIn(league) => league.base(),
@@ -71,6 +72,15 @@ impl Shelf {
         match self {
             Self::BuiltIn(league) => league.names[authored],
             Self::Folder(library) => &library.names[authored],
+        }
+    }
+
+    /// What the league calls a kind of kick.
+    pub(crate) fn kick(&self, kind: KickId) -> &str {
+        let kind = usize::from(kind.0);
+        match self {
+            Self::BuiltIn(league) => league.kicks[kind],
+            Self::Folder(library) => &library.kicks[kind],
         }
     }
 

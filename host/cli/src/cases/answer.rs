@@ -3,7 +3,7 @@
 
 use std::io::{self, Write};
 
-use casebase::{Case, CaseRobot, Match, PointMm, Problem, Retrieval, Settings, adapted_position};
+use casebase::{Case, CaseBase, CaseRobot, Match, PointMm, Problem, Retrieval, Settings, adapted_position};
 use protocol::RobotId;
 use serde::{Serialize, Serializer};
 
@@ -56,11 +56,12 @@ pub(crate) struct Found<'a> {
 impl<'a> Answer<'a> {
     pub(crate) fn new(
         shelf: &'a Shelf,
+        base: &CaseBase<'_>,
         problem: &Problem,
         chosen: &'a Chosen,
         retrieval: &Retrieval,
     ) -> Self {
-        let best = retrieval.best.as_ref().and_then(|best| Some((best, shelf.base().case(best.case)?)));
+        let best = retrieval.best.as_ref().and_then(|best| Some((best, base.case(best.case)?)));
         let Some((best, case)) = best else {
             return Self::Nothing { case: (), candidates: retrieval.candidates, settings: &chosen.changed };
         };

@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Write, stdout};
 use std::path::Path;
 use std::process::ExitCode;
 
-use case_library::LEAGUES;
-use case_tools::{Finding, Severity};
+use case_library::{LEAGUES, League};
+use case_tools::{Files, Finding, Library, Severity};
 use clap::Args;
 
 use crate::Failure;
@@ -27,7 +27,7 @@ pub(crate) struct CheckArgs {
 pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     let reports = match &args.folder.library {
         Some(folder) => vec![Report::of(folder)?],
-        None => Vec::new(),
+        None => LEAGUES.iter().map(Report::built_in).collect(),
     };
     let mut output = BufWriter::new(stdout().lock());
     let written = reports.iter().try_for_each(|report| report.write(&mut output));
@@ -50,17 +50,26 @@ impl Report {
         if !folder.is_dir() {
             return Err(Failure::missing_folder(folder));
         }
-        Ok(match case_tools::load(folder) {
+        let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        let league = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self::new(league, case_tools::load(folder)))
+    }
+
+    /// From the texts this program carries; the build refused errors, so what is left are warnings.
+    fn built_in(league: &League) -> Self {
+        let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
+        let files = Files::from_texts(league.name, league.rules, &cases);
+        Self::new(league.name.to_owned(), case_tools::build(&files))
+    }
+
+    fn new(league: String, outcome: Result<Library, Vec<Finding>>) -> Self {
+        match outcome {
             Ok(library) => {
                 let sizes = Some([library.names.len(), library.base().len()]);
                 Self { league: library.league, sizes, findings: library.findings }
             }
-            Err(findings) => {
-                let league =
-                    folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-                Self { league, sizes: None, findings }
-            }
-        })
+            Err(findings) => Self { league, sizes: None, findings },
+        }
     }
 
     fn write(&self, output: &mut impl Write) -> io::Result<()> {

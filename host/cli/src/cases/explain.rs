@@ -5,7 +5,7 @@
 use std::io::{self, BufWriter, Write, stdin, stdout};
 use std::process::ExitCode;
 
-use casebase::{Case, Match, Problem, Verdict, rank_order};
+use casebase::{Case, CaseBase, Match, Problem, Verdict, rank_order};
 use clap::Args;
 use serde::Serialize;
 
@@ -31,10 +31,11 @@ pub(crate) struct ExplainArgs {
 pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
     let shelf = Shelf::open(&args.library)?;
+    let base = shelf.base();
     let mut output = BufWriter::new(stdout().lock());
     for_each_problem(stdin().lock(), &mut output, |output, number, problem| match problem {
         Ok(problem) => {
-            let explanation = Explanation::new(&shelf, &problem, &chosen);
+            let explanation = Explanation::new(&shelf, &base, &problem, &chosen);
             if args.json { write_line(output, &explanation) } else { explanation.write_table(output, number) }
         }
         Err(error) if args.json => write_line(output, &Answer::Malformed { error }),
@@ -105,10 +106,9 @@ enum Evidence {
 }
 
 impl<'a> Explanation<'a> {
-    fn new(shelf: &'a Shelf, problem: &Problem, chosen: &'a Chosen) -> Self {
-        let base = shelf.base();
+    fn new(shelf: &'a Shelf, base: &CaseBase<'_>, problem: &Problem, chosen: &'a Chosen) -> Self {
         let mut verdicts = Vec::new();
-        casebase::explain(&base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
+        casebase::explain(base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
         let mut ranking: Vec<&Match> =
             verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
         ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));

@@ -28,7 +28,7 @@ pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
     for_each_problem(stdin().lock(), &mut output, |output, _, problem| match problem {
         Ok(problem) => {
             let retrieval = casebase::retrieve(&base, &problem, &chosen.settings);
-            write_line(output, &Answer::new(&shelf, &problem, &chosen, &retrieval))
+            write_line(output, &Answer::new(&shelf, &base, &problem, &chosen, &retrieval))
         }
         Err(error) => write_line(output, &Answer::Malformed { error }),
     })?;

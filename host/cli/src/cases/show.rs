@@ -61,7 +61,7 @@ fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Re
     writeln!(output, "defending {}: attacks towards {towards}; mm and degrees, field frame", side.word())?;
     writeln!(output, "\n{:5} {:>14}  scope {} x {}", "ball", at(ball), scope.x, scope.y)?;
     for robot in case.robots() {
-        let gameplay: Vec<_> = case.gameplay(robot).map(|action| told(action, &base)).collect();
+        let gameplay: Vec<_> = case.gameplay(robot).map(|action| told(action, shelf, &base)).collect();
         writeln!(
             output,
             "{:5} {:>14}  {}",
@@ -82,15 +82,15 @@ fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Re
     }
     writeln!(output, "\npath of the ball")?;
     for (number, leg) in (1..).zip(case.legs(ball)) {
-        writeln!(output, "leg {number} {}", told_leg(&leg, &base))?;
+        writeln!(output, "leg {number} {}", told_leg(&leg, shelf, &base))?;
     }
     Ok(())
 }
 
-fn told_leg(leg: &Leg, base: &CaseBase<'_>) -> String {
+fn told_leg(leg: &Leg, shelf: &Shelf, base: &CaseBase<'_>) -> String {
     let kind = match leg.kind {
         LegKind::Pass(receiver) => format!("{} passes to {receiver}", leg.robot),
-        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(base, kind)),
+        LegKind::Kick(kind) => format!("{} kicks {}", leg.robot, told_kick(shelf, base, kind)),
     };
     let ([x, y], [to_x, to_y]) = (leg.from.map(f64::from), leg.to.map(f64::from));
     let length = (to_x - x).hypot(to_y - y);
@@ -98,7 +98,7 @@ fn told_leg(leg: &Leg, base: &CaseBase<'_>) -> String {
     format!("{kind}: ({x:.0}, {y:.0}) to ({to_x:.0}, {to_y:.0}), {length:.0} mm, {radii}")
 }
 
-fn told(action: Action, base: &CaseBase<'_>) -> String {
+fn told(action: Action, shelf: &Shelf, base: &CaseBase<'_>) -> String {
     let word = action.word();
     match action {
         Action::Wait | Action::GetBall => word.to_owned(),
@@ -107,19 +107,18 @@ fn told(action: Action, base: &CaseBase<'_>) -> String {
         Action::Turn(TurnTarget::Face(point)) => format!("{word} to face {}", at(point)),
         Action::PassBall(other) => format!("{word} to {other}"),
         Action::ReceiveBall(other) => format!("{word} from {other}"),
-        Action::Kick(kind) => format!("{word} {}", told_kick(base, kind)),
+        Action::Kick(kind) => format!("{word} {}", told_kick(shelf, base, kind)),
     }
 }
 
-fn told_kick(base: &CaseBase<'_>, kind: KickId) -> String {
-    match base.kick(kind).map(|kick| kick.aim) {
-        Some(KickAim::Goal { offset_mm: 0 }) => "at the goal".to_owned(),
-        Some(KickAim::Goal { offset_mm }) => {
-            format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm))
-        }
-        Some(KickAim::Heading { degrees, length_mm }) => format!("{length_mm} mm {}", heading(degrees)),
-        None => "of an unknown kind".to_owned(),
-    }
+/// The kind's name in the league and what it does in this case: a mirrored case plays the kind's partner.
+fn told_kick(shelf: &Shelf, base: &CaseBase<'_>, kind: KickId) -> String {
+    let does = base.kick(kind).map(|kick| match kick.aim {
+        KickAim::Goal { offset_mm: 0 } => "at the goal".to_owned(),
+        KickAim::Goal { offset_mm } => format!("at the goal, {} mm {}", offset_mm.abs(), side(offset_mm)),
+        KickAim::Heading { degrees, length_mm } => format!("{length_mm} mm {}", heading(degrees)),
+    });
+    format!("{} ({})", shelf.kick(kind), does.unwrap_or_default())
 }
 
 /// A heading relative to the direction of attack.

@@ -1,11 +1,9 @@
 //! Does `onetwo cases explain` name for every case under the goal the first check it fails, with its margin, and for
 //! candidates the rank? (DESIGN §4.3, §8)
 
-mod common;
-
 use std::path::PathBuf;
 
-use common::{PASS_AROUND, PROBLEM, cases, library, shot_at};
+use crate::common::{PASS_AROUND, PROBLEM, cases, library, shot_at};
 
 /// The worked example (ids 0–3) and a shot from (0, 10) (ids 4–7).
 fn folder(test: &str) -> PathBuf {

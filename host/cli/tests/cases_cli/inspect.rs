@@ -1,8 +1,6 @@
 //! Do `onetwo cases check`, `list` and `show` tell what a library holds and what is wrong with it? (DESIGN §4.1, §8)
 
-mod common;
-
-use common::{PASS_AROUND, cases, library, onetwo, shot_at, worked_example};
+use crate::common::{PASS_AROUND, cases, command, library, onetwo, shot_at, worked_example};
 
 #[test]
 fn the_list_is_one_json_list_of_every_stored_case() {
@@ -67,12 +65,12 @@ fn a_case_is_shown_with_its_intent_its_gameplays_and_the_balls_path() {
          \n\
          ball       (-600, 0)  scope 450 x 250\n\
          tm1        (-720, 0)  get_ball; pass_ball to tm2\n\
-         tm2       (300, 900)  wait; receive_ball from tm1; kick at the goal\n\
+         tm2       (300, 900)  wait; receive_ball from tm1; kick goal (at the goal)\n\
          opp1      (-150, 40)  scope 300 x 300\n\
          \n\
          path of the ball\n\
          leg 1 tm1 passes to tm2: (-600, 0) to (300, 900), 1273 mm, radius 100 to 300\n\
-         leg 2 tm2 kicks at the goal: (300, 900) to (2700, 0), 2563 mm, radius 100 to 300\n"
+         leg 2 tm2 kicks goal (at the goal): (300, 900) to (2700, 0), 2563 mm, radius 100 to 300\n"
     );
     let both = cases("show", &folder, &["3"], "");
     for part in [
@@ -99,10 +97,10 @@ fn kicks_and_turns_are_told_by_side_and_mirrored() {
         authored.contains("get_ball; turn to 30 deg left; dribble_to (-500, 100); pass_ball to tm2\n"),
         "{authored}"
     );
-    assert!(authored.contains("turn to face (2700, 0); kick 1200 mm 45 deg left\n"), "{authored}");
+    assert!(authored.contains("turn to face (2700, 0); kick left (1200 mm 45 deg left)\n"), "{authored}");
     let mirrored = cases("show", &folder, &["1"], "").stdout;
     assert!(mirrored.contains("turn to 30 deg right; dribble_to (-500, -100)"), "{mirrored}");
-    assert!(mirrored.contains("turn to face (2700, 0); kick 1200 mm 45 deg right\n"), "{mirrored}");
+    assert!(mirrored.contains("turn to face (2700, 0); kick right (1200 mm 45 deg right)\n"), "{mirrored}");
 }
 
 #[test]
@@ -145,6 +143,14 @@ fn an_error_fails_the_check_with_file_line_code_and_mend() {
         let (_, words) = at(place).split_once("]: ").unwrap();
         assert!(words.contains("; "), "no mend: {words}");
     }
+}
+
+#[test]
+fn a_refused_library_is_named_by_its_folder_even_where_that_is_told_as_a_dot() {
+    let folder = library("dotted", &[("front/shot.toml", "")]);
+    let output = command(&["cases", "check", "--library", "."]).current_dir(folder).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("front/shot.toml:1: error[") && text.contains("\ndotted: refused; "), "{text}");
 }
 
 #[test]

@@ -1,0 +1,6 @@
+//! Does the built `onetwo cases` do what DESIGN §4 and §8 say, seen from outside?
+
+mod common;
+mod explain;
+mod inspect;
+mod retrieve;
