@@ -125,7 +125,14 @@ impl Qemu {
         socket.set_read_timeout(Some(LOOK_ROUND)).map_err(McuError::Io)?;
         command.stdin(OwnedFd::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped());
         let child = command.spawn().map_err(McuError::Start)?;
-        Ok(Self { child, socket, seq: 0, patience, worst: Arc::default(), frame: Box::new([0; FRAME_LEN_MAX]) })
+        Ok(Self {
+            child,
+            socket,
+            seq: 0,
+            patience,
+            worst: Arc::default(),
+            frame: Box::new([0; FRAME_LEN_MAX]),
+        })
     }
 
     fn set_up(&mut self, config: &BrainConfig) -> Result<(), McuError> {
@@ -175,14 +182,17 @@ impl Qemu {
                 return Err(McuError::Silent { asked, waited_ms: started.elapsed().as_millis() as u64 });
             }
         };
-        message_in(&self.frame[..len]).ok_or_else(|| McuError::Malformed { what: format!("a frame of {len} bytes") })
+        message_in(&self.frame[..len])
+            .ok_or_else(|| McuError::Malformed { what: format!("a frame of {len} bytes") })
     }
 
     /// How the process ended, if it did.
     fn ended(&mut self) -> Option<McuError> {
         let status = self.child.try_wait().ok()??;
         let mut said = String::new();
-        for pipe in [self.child.stderr.take().map(boxed), self.child.stdout.take().map(boxed)].into_iter().flatten() {
+        for pipe in
+            [self.child.stderr.take().map(boxed), self.child.stdout.take().map(boxed)].into_iter().flatten()
+        {
             // What cannot be read is not there; the status is told anyway.
             let _ = pipe.take(SAID_LEN_MAX).read_to_string(&mut said);
         }
@@ -423,7 +433,10 @@ mod tests {
     fn an_answer_to_another_tick_and_a_broken_frame_are_malformed() {
         let (mut robot, board) = quiet("sleep", &["30"]);
         robot.post(&tick(7)).unwrap();
-        says(&board, &FromRobot::Tick(TickOut { seq: 6, actuators: None, air: heapless::Vec::new(), instructions: 0 }));
+        says(
+            &board,
+            &FromRobot::Tick(TickOut { seq: 6, actuators: None, air: heapless::Vec::new(), instructions: 0 }),
+        );
         assert!(matches!(robot.collect(), Err(McuError::Malformed { .. })));
         for len in [0, 1, 13, 15, 16, 60] {
             board.send(&vec![0x88; len]).unwrap();
@@ -458,12 +471,18 @@ mod tests {
         let error = |backend: &mut QemuBackend| backend.boot(&config()).err().unwrap().to_string();
         let mut backend = QemuBackend::new("no/such/image");
         let text = error(&mut backend);
-        assert!(text.contains("no/such/image is missing") && text.contains("onetwo firmware build"), "{text}");
+        assert!(
+            text.contains("no/such/image is missing") && text.contains("onetwo firmware build"),
+            "{text}"
+        );
         // Any file is an image for as long as nobody looks into it.
         backend.image = env::current_exe().unwrap();
         backend.program = "no-such-emulator".into();
         let text = error(&mut backend);
-        assert!(text.contains("no-such-emulator is missing: install QEMU") && text.contains("apt-get"), "{text}");
+        assert!(
+            text.contains("no-such-emulator is missing: install QEMU") && text.contains("apt-get"),
+            "{text}"
+        );
     }
 
     #[test]

@@ -15,7 +15,10 @@ pub const INBOX_LEN: usize = 8;
 pub const OUTBOX_LEN: usize = 8;
 
 /// Something for the brain.
-#[allow(clippy::large_enum_variant, reason = "a packet is hardly smaller than a picture, and there is no heap to box it on")]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a packet is hardly smaller than a picture, and there is no heap to box it on"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
     /// A packet of the air.
@@ -36,7 +39,12 @@ pub struct Mailboxes {
 impl Mailboxes {
     /// All empty.
     pub const fn new() -> Self {
-        Self { inbox: Channel::new(), outbox: Channel::new(), orders: Signal::new(), unsent: AtomicU32::new(0) }
+        Self {
+            inbox: Channel::new(),
+            outbox: Channel::new(),
+            orders: Signal::new(),
+            unsent: AtomicU32::new(0),
+        }
     }
 
     /// How many packets the brain said that found the outbox full.

@@ -1,7 +1,10 @@
 //! What must a board be able to do? Hear and speak on the air, sense, and move.
 //!
 //! Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
-#![allow(async_fn_in_trait, reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send")]
+#![allow(
+    async_fn_in_trait,
+    reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send"
+)]
 
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};

@@ -88,7 +88,10 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
         assert_eq!(robot.sent.borrow()[..], twin.sent[..], "tick {tick}");
         assert_eq!(robot.done.borrow()[..], twin.done[..], "tick {tick}");
     }
-    assert!(twin.sent.len() >= 500 && twin.done.len() >= 490, "a robot that hardly speaks or moves proves nothing");
+    assert!(
+        twin.sent.len() >= 500 && twin.done.len() >= 490,
+        "a robot that hardly speaks or moves proves nothing"
+    );
 }
 
 #[test]

@@ -88,7 +88,9 @@ pub(crate) struct Outlet {
 impl Outlet {
     /// Sends the message that `write` puts into the buffer it is given; `write` says how long it is.
     pub(crate) fn send(&mut self, write: impl FnOnce(&mut [u8]) -> usize) {
-        let Some((header, rest)) = self.frame.as_mut_bytes().split_first_chunk_mut::<HEADER_LEN>() else { return };
+        let Some((header, rest)) = self.frame.as_mut_bytes().split_first_chunk_mut::<HEADER_LEN>() else {
+            return;
+        };
         let Some((len, message)) = rest.split_first_chunk_mut::<2>() else { return };
         let written = write(message).min(MESSAGE_LEN_MAX);
         *header = HEADER;
