@@ -100,7 +100,7 @@ fn malformed_lines_are_told_with_their_place_and_the_rest_go_on() {
     let mut input = String::new();
     let mut expected = Vec::new();
     for (number, (line, error)) in (1..).step_by(2).zip(table) {
-        input += &format!("{line}\n{PROBLEM}\n");
+        input.extend([line, "\n", PROBLEM, "\n"]);
         let error = format!("line {number}: {error}").replace('"', "\\\"");
         expected.extend([format!("{{\"error\":\"{error}\"}}"), ANSWER.to_owned()]);
     }
