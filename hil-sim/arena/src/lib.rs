@@ -1,1 +1,24 @@
-//! Placeholder: being built.
+//! How does a team play? Simulator and brains put together: trials, their reports, stories and pictures. Runs on the PC.
+//!
+//! [`run`] plays one trial of Ros et al. 2009 and gives its [`TrialReport`] (DESIGN §8). Whoever wants to see more than the report
+//! watches: a [`Watcher`] is shown every tick, as somebody at the field's edge with a radio receiver would see it; [`Story`]
+//! tells it in words, [`Recording`] keeps what [`picture()`] draws.
+//!
+//! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
+
+mod backups;
+mod cycles;
+mod names;
+
+mod recording;
+mod report;
+mod story;
+mod trial;
+
+pub use cycles::{CycleEnd, CycleLog, CycleSeen, News};
+pub use names::{CaseNames, Cast, letter};
+
+pub use recording::{Kick, Recording, Sample, Start};
+pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
+pub use story::Story;
+pub use trial::{Moment, TEAM, TrialConfig, Watcher, approach_from_word, approach_word, run};

@@ -1,0 +1,200 @@
+//! Which retrieve–reuse cycles did a team go through? Put together from overheard beacons alone (paper §4; DESIGN §5).
+
+use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
+use protocol::{CycleId, RobotId};
+
+/// A cycle as seen from outside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CycleSeen {
+    /// Which.
+    pub id: CycleId,
+    /// Who coordinated it.
+    pub coordinator: RobotId,
+    /// What was played, if a case was found.
+    pub play: Option<Play>,
+    /// The coordinator said that no case fits.
+    pub no_case: bool,
+    /// Seconds from kick-off: first heard of.
+    pub start: f32,
+    /// When and how it ended, once it has.
+    pub end: Option<(f32, CycleEnd)>,
+}
+
+/// How a cycle ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CycleEnd {
+    /// Its robots said so.
+    Closed(Closure),
+    /// A newer one began before anybody closed it.
+    Superseded,
+    /// The trial was over first.
+    TrialOver,
+}
+
+impl CycleEnd {
+    /// Its word in reports.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Closed(Closure::Finished) => "finished",
+            Self::Closed(Closure::NoCase) => "no-case",
+            Self::Closed(Closure::Aborted { reason, .. }) => abort_word(reason),
+            Self::Superseded => "superseded",
+            Self::TrialOver => "trial-over",
+        }
+    }
+}
+
+/// The word for why a cycle was aborted.
+const fn abort_word(reason: AbortReason) -> &'static str {
+    match reason {
+        AbortReason::BallOutOfScope => "ball-out-of-scope",
+        AbortReason::PathBlocked => "path-blocked",
+        AbortReason::RobotLost => "robot-lost",
+        AbortReason::ActionFailed => "action-failed",
+        AbortReason::OpponentOnBall => "opponent-on-ball",
+        AbortReason::BallAtRest => "ball-at-rest",
+        AbortReason::Timeout => "timeout",
+        AbortReason::NoDecision => "no-decision",
+        AbortReason::UnknownCase => "unknown-case",
+    }
+}
+
+/// All cycles of a team, in the order of their ids.
+#[derive(Clone, Debug, Default)]
+pub struct CycleLog {
+    cycles: Vec<CycleSeen>,
+}
+
+/// What a beacon added to the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News {
+    /// Nothing.
+    Nothing,
+    /// A cycle began.
+    Began(usize),
+    /// Its coordinator decided, by its place in [`CycleLog::cycles`].
+    Decided(usize),
+    /// It ended.
+    Ended(usize),
+}
+
+impl CycleLog {
+    /// A robot said at `time` seconds that it knows this of its newest cycle.
+    pub fn hear(&mut self, time: f32, state: &CycleState) -> News {
+        let place = self.cycles.binary_search_by_key(&state.id, |cycle| cycle.id);
+        let (place, began) = match place {
+            Ok(place) => (place, false),
+            Err(place) => {
+                // A straggler of an older cycle nobody had heard of before is over already.
+                let end = (place < self.cycles.len()).then_some((time, CycleEnd::Superseded));
+                let CycleState { id, coordinator, .. } = *state;
+                let cycle = CycleSeen { id, coordinator, play: None, no_case: false, start: time, end };
+                self.cycles.insert(place, cycle);
+                for older in &mut self.cycles[..place] {
+                    older.end = older.end.or(Some((time, CycleEnd::Superseded)));
+                }
+                (place, true)
+            }
+        };
+        let cycle = &mut self.cycles[place];
+        let decided_before = cycle.play.is_some() || cycle.no_case;
+        let mut ended = false;
+        match &state.decision {
+            Decision::Undecided => {}
+            Decision::NoCase => cycle.no_case = true,
+            Decision::Play(play) if cycle.play.is_none() => cycle.play = Some(play.clone()),
+            Decision::Play(_) => {}
+            Decision::Closed(closure) => {
+                ended = !matches!(cycle.end, Some((_, CycleEnd::Closed(_))));
+                cycle.no_case |= *closure == Closure::NoCase;
+                if ended {
+                    cycle.end = Some((cycle.end.map_or(time, |(at, _)| at), CycleEnd::Closed(*closure)));
+                }
+            }
+        }
+        match () {
+            () if ended => News::Ended(place),
+            () if !decided_before && (cycle.play.is_some() || cycle.no_case) => News::Decided(place),
+            () if began => News::Began(place),
+            () => News::Nothing,
+        }
+    }
+
+    /// The trial is over; what still ran ends with it.
+    pub fn finish(&mut self, time: f32) {
+        for cycle in &mut self.cycles {
+            cycle.end = cycle.end.or(Some((time, CycleEnd::TrialOver)));
+        }
+    }
+
+    /// What is known, in the order of ids.
+    pub fn cycles(&self) -> &[CycleSeen] {
+        &self.cycles
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::CaseId;
+    use protocol::quantized::WirePoint;
+
+    use super::*;
+
+    fn robot(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn state(counter: u32, decision: Decision) -> CycleState {
+        CycleState { id: CycleId { counter, proposer: robot(1) }, coordinator: robot(2), decision }
+    }
+
+    fn play() -> Decision {
+        let robots = [robot(2), robot(1)].into_iter().collect();
+        Decision::Play(Play { case: CaseId(9), ball: WirePoint::default(), robots })
+    }
+
+    #[test]
+    fn a_cycle_begins_is_decided_and_ends() {
+        let mut log = CycleLog::default();
+        assert_eq!(log.hear(0.4, &state(1, Decision::Undecided)), News::Began(0));
+        assert_eq!(log.hear(0.44, &state(1, play())), News::Decided(0));
+        assert_eq!(log.hear(0.48, &state(1, play())), News::Nothing);
+        assert_eq!(log.hear(5.0, &state(1, Decision::Closed(Closure::Finished))), News::Ended(0));
+        assert_eq!(log.hear(5.04, &state(1, Decision::Closed(Closure::Finished))), News::Nothing);
+        let cycle = &log.cycles()[0];
+        assert_eq!((cycle.start, cycle.end.unwrap().0), (0.4, 5.0));
+        assert_eq!(cycle.end.unwrap().1.word(), "finished");
+        assert_eq!(cycle.play.as_ref().unwrap().case, CaseId(9));
+    }
+
+    #[test]
+    fn a_newer_cycle_ends_an_older_one_and_a_late_closure_still_says_why() {
+        let mut log = CycleLog::default();
+        log.hear(0.0, &state(1, play()));
+        log.hear(2.0, &state(2, Decision::Undecided));
+        assert_eq!(log.cycles()[0].end, Some((2.0, CycleEnd::Superseded)));
+        let closure = Closure::Aborted { by: robot(2), reason: AbortReason::OpponentOnBall };
+        assert_eq!(log.hear(2.1, &state(1, Decision::Closed(closure))), News::Ended(0));
+        assert_eq!(log.cycles()[0].end.map(|(at, end)| (at, end.word())), Some((2.0, "opponent-on-ball")));
+        log.finish(3.0);
+        assert_eq!(log.cycles()[1].end, Some((3.0, CycleEnd::TrialOver)));
+    }
+
+    #[test]
+    fn a_closure_for_want_of_a_case_counts_as_no_case() {
+        let mut log = CycleLog::default();
+        log.hear(0.0, &state(1, Decision::Closed(Closure::NoCase)));
+        assert!(log.cycles()[0].no_case && log.cycles()[0].play.is_none());
+        assert_eq!(log.cycles()[0].end.unwrap().1.word(), "no-case");
+    }
+
+    #[test]
+    fn a_straggler_of_an_unknown_older_cycle_is_filed_before_the_newer() {
+        let mut log = CycleLog::default();
+        log.hear(1.0, &state(5, Decision::Undecided));
+        log.hear(1.1, &state(4, play()));
+        assert_eq!(log.cycles().iter().map(|c| c.id.counter).collect::<Vec<_>>(), [4, 5]);
+        assert_eq!(log.cycles()[0].end, Some((1.1, CycleEnd::Superseded)));
+        assert_eq!(log.cycles()[1].end, None);
+    }
+}

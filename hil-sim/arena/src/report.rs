@@ -1,0 +1,144 @@
+//! What does a trial come to? The fields of `onetwo trial --json` in their order (DESIGN §8); s, counts.
+
+use std::collections::BTreeMap;
+
+use hil_sim::{Configuration, Outcome, Scenario};
+use serde::{Serialize, Serializer};
+
+use crate::cycles::CycleSeen;
+use crate::names::{CaseNames, letter, symmetry};
+
+/// A trial's result. Fields may be added at the end, never renamed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TrialReport {
+    /// 1 to 4, or `random`.
+    #[serde(serialize_with = "scenario")]
+    pub scenario: Scenario,
+    /// `dg` or `2d`.
+    pub opponents: Configuration,
+    /// `cbr` or `reactive`.
+    pub approach: &'static str,
+    /// `native` or `qemu`.
+    pub backend: &'static str,
+    /// Where all chance came from.
+    pub seed: u64,
+    /// How it ended. Against two defenders `goal` is a ball in the penalty area (paper §5.2.2: "to goal").
+    pub outcome: Outcome,
+    /// Seconds from kick-off to that.
+    pub time_s: f64,
+    /// How often the opponents had the ball.
+    pub possession: Possession,
+    /// How often each attacker backed up.
+    pub backups: Backups,
+    /// Who touched a ball last that went out: `attackers`, `defender`, `midfield` or `goalie`; null for every other outcome.
+    pub out_by: Option<&'static str>,
+    /// What the retrievals came to.
+    pub cases: CaseCounts,
+    /// Every retrieve–reuse cycle, in order.
+    pub cycles: Vec<CycleReport>,
+    /// Equal for equal trials (DESIGN §2).
+    pub trace_hash: String,
+    /// The named settings of retrieval (DESIGN §4.3).
+    pub settings: BTreeMap<&'static str, String>,
+    /// `dependent` or `independent`.
+    pub positioning: &'static str,
+    /// Hash of the case base, 8 hexadecimal digits.
+    pub case_base: String,
+}
+
+/// How often each opponent had the ball (paper §5.1.4; checklist R33); 0 where it does not play.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Possession {
+    /// The defender.
+    pub defender: u32,
+    /// The midfield defender.
+    pub midfield: u32,
+}
+
+/// Backing up by attacker: `{"A": 3, "B": 16}`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Backups(pub Vec<u32>);
+
+impl Serialize for Backups {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        s.collect_map(self.0.iter().enumerate().map(|(i, count)| (letter(i), count)))
+    }
+}
+
+/// What the retrievals came to (checklist R37).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct CaseCounts {
+    /// Cases for one robot.
+    pub individual: u32,
+    /// Cases for several.
+    pub cooperative: u32,
+    /// Cycles in which no case fitted.
+    pub none: u32,
+}
+
+impl CaseCounts {
+    /// Of these cycles.
+    pub fn of(cycles: &[CycleSeen]) -> Self {
+        let mut counts = Self::default();
+        for cycle in cycles {
+            match &cycle.play {
+                Some(play) if play.robots.len() > 1 => counts.cooperative += 1,
+                Some(_) => counts.individual += 1,
+                None => counts.none += u32::from(cycle.no_case),
+            }
+        }
+        counts
+    }
+}
+
+/// A retrieve–reuse cycle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CycleReport {
+    /// `counter.proposer`.
+    pub cycle: String,
+    /// Who coordinated.
+    pub coordinator: u8,
+    /// `region/name`; null where no case was found.
+    pub case: Option<String>,
+    /// Which copy of it.
+    pub symmetry: Option<&'static str>,
+    /// Case robot (from 1) to robot id.
+    pub r#match: Option<BTreeMap<usize, u8>>,
+    /// Seconds from kick-off: first heard of.
+    pub start_s: f64,
+    /// Seconds from kick-off: over.
+    pub end_s: f64,
+    /// `finished`, `no-case`, why it was aborted (`ball-out-of-scope`, …), `superseded` or `trial-over`.
+    pub end: &'static str,
+}
+
+impl CycleReport {
+    /// Of a cycle of a trial that lasted until `time` seconds.
+    pub(crate) fn new(cycle: &CycleSeen, names: &CaseNames, time: f32) -> Self {
+        let play = cycle.play.as_ref();
+        let (end_s, end) = cycle.end.map_or((time, "trial-over"), |(at, end)| (at, end.word()));
+        Self {
+            cycle: cycle.id.to_string(),
+            coordinator: cycle.coordinator.number(),
+            case: play.map(|play| names.of(play.case)),
+            symmetry: play.map(|play| symmetry(play.case)),
+            r#match: play.map(|play| play.robots.iter().zip(1..).map(|(id, i)| (i, id.number())).collect()),
+            start_s: in_seconds(cycle.start),
+            end_s: in_seconds(end_s),
+            end,
+        }
+    }
+}
+
+/// Whole milliseconds as a number that prints as such.
+pub(crate) fn in_seconds(time: f32) -> f64 {
+    f64::from(geometry::math::round_to_i32(time * 1000.0)) / 1000.0
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
+    match scenario.word().parse::<u8>() {
+        Ok(number) => s.serialize_u8(number),
+        Err(_) => s.serialize_str(scenario.word()),
+    }
+}

@@ -1,0 +1,257 @@
+//! How is a trial of the paper played? (Ros et al. 2009 §5.1; DESIGN §7, §8) Robots 1, 2, … are A, B, … and attack +x.
+
+use brain::{Approach, BrainConfig, Positioning};
+use casebase::{CaseBase, Settings};
+use hil_sim::{
+    AirSettings, Backend, Configuration, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
+    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, world::World,
+};
+use protocol::frame::TeamKey;
+use protocol::link::overhear;
+use protocol::team::{Beacon, TeamMessage};
+use protocol::{Duration, RobotId, TeamId};
+
+use crate::backups::BackupCount;
+use crate::cycles::{CycleLog, News};
+use crate::names::{CaseNames, Cast};
+use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
+
+/// Everything that decides a trial but its back end.
+#[derive(Clone, Debug)]
+pub struct TrialConfig<'a> {
+    /// Where everybody stands.
+    pub scenario: Scenario,
+    /// Which opponents play.
+    pub opponents: Configuration,
+    /// What leads the attackers.
+    pub approach: Approach,
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// How robots retrieve.
+    pub settings: Settings,
+    /// When a case's actions begin.
+    pub positioning: Positioning,
+    /// Attackers, 1 to 4; the paper has 2.
+    pub robots: usize,
+    /// How many of them may retrieve: those with the highest ids, so that the elector need not be one (paper §4.1).
+    pub retrievers: usize,
+    /// How the air treats packets.
+    pub air: AirSettings,
+    /// How perception is blurred.
+    pub noise: Noise,
+    /// How long robots stand still after every cycle.
+    pub pause_after_cycle: Duration,
+    /// What goes wrong, and when.
+    pub faults: Vec<ScheduledFault>,
+    /// How the world behaves.
+    pub parameters: Parameters,
+    /// The case base in every robot.
+    pub base: CaseBase<'a>,
+    /// What its cases are called.
+    pub names: CaseNames,
+}
+
+impl TrialConfig<'static> {
+    /// As in the paper's simulated experiments, with the built-in library of the four-legged league.
+    pub fn new(scenario: Scenario, opponents: Configuration, approach: Approach, seed: u64) -> Self {
+        let league = case_library::LEAGUES.iter().find(|league| league.name == LEAGUE);
+        Self {
+            scenario,
+            opponents,
+            approach,
+            seed,
+            settings: Settings::default(),
+            positioning: Positioning::default(),
+            robots: 2,
+            retrievers: 2,
+            air: AirSettings::default(),
+            noise: Noise::NONE,
+            pause_after_cycle: Duration(0),
+            faults: Vec::new(),
+            parameters: Parameters::four_legged().clone(),
+            base: case_library::four_legged(),
+            names: CaseNames::new(league.map_or(&[][..], |league| league.names).iter().copied()),
+        }
+    }
+}
+
+impl<'a> TrialConfig<'a> {
+    /// The same trial with another library.
+    pub fn with_library<'b>(self, base: CaseBase<'b>, names: CaseNames) -> TrialConfig<'b> {
+        TrialConfig {
+            scenario: self.scenario,
+            opponents: self.opponents,
+            approach: self.approach,
+            seed: self.seed,
+            settings: self.settings,
+            positioning: self.positioning,
+            robots: self.robots,
+            retrievers: self.retrievers,
+            air: self.air,
+            noise: self.noise,
+            pause_after_cycle: self.pause_after_cycle,
+            faults: self.faults,
+            parameters: self.parameters,
+            base,
+            names,
+        }
+    }
+
+    /// What the simulator needs to know.
+    pub fn simulation(&self) -> SimulationConfig {
+        let ids = (1..=self.robots).filter_map(|n| RobotId::new(u8::try_from(n).ok()?));
+        let brains = ids.enumerate().map(|(i, robot)| BrainConfig {
+            retriever: self.robots - i <= self.retrievers,
+            positioning: self.positioning,
+            approach: self.approach,
+            settings: self.settings.clone(),
+            pause_after_cycle: self.pause_after_cycle,
+            ..BrainConfig::new(robot, TEAM)
+        });
+        SimulationConfig {
+            seed: self.seed,
+            layout: self.scenario.layout(self.opponents, &self.parameters, self.seed),
+            configuration: self.opponents,
+            brains: brains.collect(),
+            air: self.air.clone(),
+            noise: self.noise,
+            parameters: self.parameters.clone(),
+            faults: self.faults.clone(),
+        }
+    }
+}
+
+/// Somebody at the edge of the field, with eyes and a radio receiver.
+pub trait Watcher {
+    /// A tick has passed.
+    fn watch(&mut self, moment: &Moment<'_>);
+
+    /// The trial is over.
+    fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
+}
+
+/// What a watcher is shown.
+pub struct Moment<'a> {
+    /// The trial's configuration.
+    pub config: &'a TrialConfig<'a>,
+    /// Who is who.
+    pub cast: &'a Cast,
+    /// The carpet, as it is at the end of the tick.
+    pub world: &'a World,
+    /// The tick.
+    pub tick: &'a Tick,
+    /// The referee, who counts.
+    pub referee: &'a Referee,
+    /// What robots said in the tick, in order; packets that are no beacons of this team are left out.
+    pub beacons: &'a [(RobotId, Beacon)],
+    /// The cycles so far, these beacons included.
+    pub cycles: &'a CycleLog,
+    /// What these beacons added to them.
+    pub news: &'a [News],
+}
+
+/// Plays a trial to its end.
+pub fn run<'a>(
+    config: &TrialConfig<'a>,
+    backend: Box<dyn Backend<'a> + 'a>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<TrialReport, SimulationError> {
+    let backend_name = backend.name();
+    let mut simulation = Simulation::new(config.simulation(), backend)?;
+    let cast = Cast {
+        attackers: simulation.attackers().map(|(id, _)| id).collect(),
+        opponents: simulation.opponents().collect(),
+    };
+    let mut backups = BackupCount::new(cast.attackers.iter().copied());
+    let mut cycles = CycleLog::default();
+    let (mut beacons, mut news) = (Vec::new(), Vec::new());
+    let verdict = loop {
+        let tick = simulation.step()?;
+        beacons.clear();
+        news.clear();
+        for sent in &tick.sent {
+            let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO) else {
+                continue;
+            };
+            backups.hear(tick.time, from, beacon.role);
+            if let Some(state) = &beacon.cycle {
+                news.push(cycles.hear(tick.time, state));
+            }
+            beacons.push((from, beacon));
+        }
+        let moment = moment(config, &cast, &simulation, &beacons, &cycles, &news);
+        for watcher in watchers.iter_mut() {
+            watcher.watch(&moment);
+        }
+        if let Some(verdict) = simulation.referee().verdict() {
+            break verdict;
+        }
+    };
+    cycles.finish(verdict.time);
+    let referee = simulation.referee();
+    let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::word);
+    let report = TrialReport {
+        scenario: config.scenario,
+        opponents: config.opponents,
+        approach: approach_word(config.approach),
+        backend: backend_name,
+        seed: config.seed,
+        outcome: verdict.outcome,
+        time_s: in_seconds(verdict.time),
+        possession: Possession {
+            defender: referee.possessions(Role::Defender),
+            midfield: referee.possessions(Role::Midfield),
+        },
+        backups: Backups(backups.counts()),
+        out_by,
+        cases: CaseCounts::of(cycles.cycles()),
+        cycles: (cycles.cycles().iter())
+            .map(|cycle| CycleReport::new(cycle, &config.names, verdict.time))
+            .collect(),
+        trace_hash: simulation.trace().digits(),
+        settings: config.settings.describe().map(|(name, value)| (name, value.as_str().to_owned())).collect(),
+        positioning: match config.positioning {
+            Positioning::Dependent => "dependent",
+            Positioning::Independent => "independent",
+        },
+        case_base: format!("{:08x}", config.base.hash()),
+    };
+    let moment = moment(config, &cast, &simulation, &beacons, &cycles, &news);
+    for watcher in watchers.iter_mut() {
+        watcher.end(&moment, &report);
+    }
+    Ok(report)
+}
+
+fn moment<'a>(
+    config: &'a TrialConfig<'a>,
+    cast: &'a Cast,
+    simulation: &'a Simulation<'_>,
+    beacons: &'a [(RobotId, Beacon)],
+    cycles: &'a CycleLog,
+    news: &'a [News],
+) -> Moment<'a> {
+    let (world, tick, referee) = (simulation.world(), simulation.tick(), simulation.referee());
+    Moment { config, cast, world, tick, referee, beacons, cycles, news }
+}
+
+/// The word of an approach in options and reports.
+pub const fn approach_word(approach: Approach) -> &'static str {
+    match approach {
+        Approach::Cases => "cbr",
+        Approach::Reactive => "reactive",
+    }
+}
+
+/// The approach of that word.
+pub fn approach_from_word(word: &str) -> Option<Approach> {
+    [Approach::Cases, Approach::Reactive].into_iter().find(|approach| approach_word(*approach) == word)
+}
+
+/// The attackers' team on the air.
+pub const TEAM: TeamId = TeamId(1);
+/// The league trials are played in.
+const LEAGUE: &str = "four-legged";
+
+#[cfg(test)]
+mod tests;

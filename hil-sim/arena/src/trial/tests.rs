@@ -1,0 +1,99 @@
+//! Are trials repeatable, reported as DESIGN §8 says, and sensitive to a single bit? With full brains, in process.
+
+use hil_sim::{Fault, NativeBackend};
+
+use super::*;
+use crate::story::Story;
+
+fn play(config: &TrialConfig<'static>) -> TrialReport {
+    run(config, Box::new(NativeBackend::new(config.base)), &mut []).unwrap()
+}
+
+fn config(seed: u64) -> TrialConfig<'static> {
+    TrialConfig::new(Scenario::DefenderAhead, Configuration::TwoDefenders, Approach::Cases, seed)
+}
+
+#[test]
+fn the_same_seed_plays_the_same_trial_and_another_another() {
+    let (one, again, other) = (play(&config(1)), play(&config(1)), play(&config(2)));
+    assert_eq!(one, again);
+    assert_ne!(one.trace_hash, other.trace_hash);
+}
+
+#[test]
+fn one_flipped_bit_of_one_order_changes_the_hash() {
+    let mut flipped = config(1);
+    let fault = Fault::FlipOrderBit { robot: RobotId::new(1).unwrap(), bit: 0 };
+    flipped.faults.push(ScheduledFault { tick: 20, fault });
+    assert_ne!(play(&flipped).trace_hash, play(&config(1)).trace_hash);
+}
+
+#[test]
+fn watching_changes_nothing() {
+    let config = config(3);
+    let (mut story, mut recording) = (Story::default(), crate::Recording::default());
+    let backend = Box::new(NativeBackend::new(config.base));
+    let watched = run(&config, backend, &mut [&mut story, &mut recording]).unwrap();
+    assert_eq!(watched, play(&config));
+    assert!(story.take_lines().len() > 3);
+    // Ticks of 40 ms; the verdict falls into the last.
+    let ticks = (watched.time_s / 0.04).ceil() as usize;
+    assert!(recording.samples.len().abs_diff(ticks) <= 1);
+}
+
+#[test]
+fn every_scenario_against_both_configurations_ends_in_both_approaches() {
+    for scenario in Scenario::PAPER.into_iter().chain([Scenario::Random]) {
+        for opponents in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
+            for approach in [Approach::Cases, Approach::Reactive] {
+                let report = play(&TrialConfig::new(scenario, opponents, approach, 5));
+                assert!(report.time_s > 0.0 && report.time_s <= 600.0, "{report:?}");
+                if approach == Approach::Reactive {
+                    assert_eq!(report.cases, CaseCounts::default());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_report_has_the_fields_of_the_agreement_in_their_order() {
+    let text = serde_json::to_string(&play(&config(1))).unwrap();
+    let order = [
+        "{\"scenario\":3,",
+        "\"opponents\":\"2d\",",
+        "\"approach\":\"cbr\",",
+        "\"backend\":\"native\",",
+        "\"seed\":1,",
+        "\"outcome\":\"",
+        "\"time_s\":",
+        "\"possession\":{\"defender\":",
+        "\"midfield\":",
+        "\"backups\":{\"A\":",
+        "\"B\":",
+        "\"out_by\":",
+        "\"cases\":{\"individual\":",
+        "\"cooperative\":",
+        "\"none\":",
+        "\"cycles\":[{\"cycle\":\"",
+        "\"coordinator\":",
+        "\"case\":",
+        "\"symmetry\":",
+        "\"match\":",
+        "\"start_s\":",
+        "\"end_s\":",
+        "\"end\":\"",
+        "\"trace_hash\":\"",
+    ];
+    let places: Vec<_> =
+        order.iter().map(|key| text.find(key).unwrap_or_else(|| panic!("{key} in {text}"))).collect();
+    assert!(places.is_sorted(), "{text}");
+}
+
+#[test]
+fn the_retrievers_are_those_with_the_highest_ids() {
+    let mut config = config(1);
+    (config.robots, config.retrievers) = (4, 1);
+    let retrievers: Vec<_> = config.simulation().brains.iter().map(|brain| brain.retriever).collect();
+    assert_eq!(retrievers, [false, false, false, true]);
+}
