@@ -10,7 +10,6 @@ use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, fs};
@@ -32,30 +31,18 @@ pub struct QemuBackend {
     image: PathBuf,
     library: Option<LibraryFile>,
     patience: Patience,
-    worst: Arc<AtomicU32>,
 }
 
 impl QemuBackend {
     /// With the image at this path and the case base that is built into it.
     pub fn new(image: impl Into<PathBuf>) -> Self {
-        Self {
-            program: PROGRAM.into(),
-            image: image.into(),
-            library: None,
-            patience: Patience::default(),
-            worst: Arc::default(),
-        }
+        Self { program: PROGRAM.into(), image: image.into(), library: None, patience: Patience::default() }
     }
 
     /// With this case table in every robot's flash, instead of the one built in.
     pub fn with_library(mut self, table: &[u8]) -> Result<Self, McuError> {
         self.library = Some(LibraryFile::write(table)?);
         Ok(self)
-    }
-
-    /// Most guest instructions any robot of this back end has taken for one tick; 0 before the first.
-    pub fn worst_instructions(&self) -> u32 {
-        self.worst.load(Ordering::Relaxed)
     }
 
     /// What there must be on this machine.
@@ -97,7 +84,6 @@ impl<'a> Backend<'a> for QemuBackend {
         self.check()?;
         let (socket, theirs) = UnixDatagram::pair().map_err(McuError::Io)?;
         let mut robot = Qemu::start(self.command(), socket, theirs, self.patience)?;
-        robot.worst = self.worst.clone();
         robot.set_up(config)?;
         Ok(Box::new(robot))
     }
@@ -110,7 +96,6 @@ struct Qemu {
     /// The tick posted last.
     seq: u32,
     patience: Patience,
-    worst: Arc<AtomicU32>,
     frame: Box<[u8; FRAME_LEN_MAX]>,
 }
 
@@ -125,14 +110,7 @@ impl Qemu {
         socket.set_read_timeout(Some(LOOK_ROUND)).map_err(McuError::Io)?;
         command.stdin(OwnedFd::from(theirs)).stdout(Stdio::piped()).stderr(Stdio::piped());
         let child = command.spawn().map_err(McuError::Start)?;
-        Ok(Self {
-            child,
-            socket,
-            seq: 0,
-            patience,
-            worst: Arc::default(),
-            frame: Box::new([0; FRAME_LEN_MAX]),
-        })
+        Ok(Self { child, socket, seq: 0, patience, frame: Box::new([0; FRAME_LEN_MAX]) })
     }
 
     fn set_up(&mut self, config: &BrainConfig) -> Result<(), McuError> {
@@ -209,12 +187,10 @@ impl Mcu for Qemu {
 
     fn collect(&mut self) -> Result<Reply, McuError> {
         let (seq, patience) = (self.seq, self.patience.tick);
-        let reply = match self.receive("a tick", patience)? {
-            FromRobot::Tick(answer) if answer.seq == seq => owned(&answer)?,
-            other => return Err(unexpected("the answer to the tick", &other)),
-        };
-        self.worst.fetch_max(reply.instructions, Ordering::Relaxed);
-        Ok(reply)
+        match self.receive("a tick", patience)? {
+            FromRobot::Tick(answer) if answer.seq == seq => owned(&answer),
+            other => Err(unexpected("the answer to the tick", &other)),
+        }
     }
 }
 
@@ -426,7 +402,6 @@ mod tests {
         let reply = robot.collect().unwrap();
         assert_eq!((reply.actuators, reply.instructions), (Some(order), 4_711));
         assert_eq!((reply.packets.len(), &reply.packets[0][..]), (1, &b"three"[..]));
-        assert_eq!(robot.worst.load(Ordering::Relaxed), 4_711);
     }
 
     #[test]

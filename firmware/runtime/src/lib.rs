@@ -6,8 +6,7 @@
 //! senses ─► sensors ─────┘              └─► orders ─► body ────────► wheels, legs, kicker
 //! ```
 //!
-//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival; deadlines due run
-//! before what arrived after them. A board implements the four traits of [`ports`], declares a task for each function of
+//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival. A board implements the four traits of [`ports`], declares a task for each function of
 //! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
 //!
 //! ```text

@@ -1,13 +1,14 @@
 //! In which order does a robot's computer do what there is to do? The five tasks a board starts.
 //!
-//! The brain's task sleeps until something arrives or its own deadline comes. Deadlines that are due run first, each
-//! when its time has come; then what arrived. After each of them everything the brain has to say is taken from it. The
-//! simulator's native robots keep the same order, therefore a trial has the same bits there and here (DESIGN §7).
+//! The brain's task sleeps until something arrives or its own deadline comes, does that one thing, and takes from the
+//! brain everything it has to say about it. Each deadline is handled at its own time, and one that is due when it is set
+//! as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's native robots
+//! keep the same order, therefore a trial has the same bits there and here (DESIGN §7).
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use embassy_time::with_deadline;
-use protocol::Instant;
+use protocol::{Duration, Instant};
 
 use crate::mailboxes::{Arrival, Mailboxes};
 use crate::mind::Mind;
@@ -52,28 +53,35 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 
 /// The brain's task, for any mind.
 pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
+    let mut last = now();
     loop {
-        let arrival = next_arrival(&mind, boxes).await;
-        let now = now();
-        while mind.poll_timeout().is_some_and(|due| due <= now) {
-            mind.handle_timeout(now);
-            empty(&mut mind, now, boxes);
+        let (at, event) = next_event(&mind, last, boxes).await;
+        match event {
+            None => mind.handle_timeout(at),
+            Some(Arrival::Packet(packet)) => mind.handle_packet(at, &packet),
+            Some(Arrival::Sensors(picture)) => mind.handle_sensors(at, &picture),
         }
-        match arrival {
-            None => continue,
-            Some(Arrival::Packet(packet)) => mind.handle_packet(now, &packet),
-            Some(Arrival::Sensors(picture)) => mind.handle_sensors(now, &picture),
-        }
-        empty(&mut mind, now, boxes);
+        empty(&mut mind, at, boxes);
+        last = at;
     }
 }
 
-/// What arrives next; `None` if the mind's deadline comes before.
-async fn next_arrival(mind: &impl Mind, boxes: &Mailboxes) -> Option<Arrival> {
-    let Some(Instant(deadline)) = mind.poll_timeout() else {
-        return Some(boxes.inbox.receive().await);
+/// What comes next, and when: something that arrives, or (`None`) the mind's deadline.
+async fn next_event(mind: &impl Mind, last: Instant, boxes: &Mailboxes) -> (Instant, Option<Arrival>) {
+    let Some(due) = mind.poll_timeout() else {
+        let arrival = boxes.inbox.receive().await;
+        return (now(), Some(arrival));
     };
-    with_deadline(embassy_time::Instant::from_ticks(deadline), boxes.inbox.receive()).await.ok()
+    let due = due.max(last);
+    // However much arrives, a missed deadline waits for one arrival at most.
+    if due < now() {
+        return (due, None);
+    }
+    let Instant(alarm) = due.max(last + CLOCK_STEP);
+    match with_deadline(embassy_time::Instant::from_ticks(alarm), boxes.inbox.receive()).await {
+        Ok(arrival) => (now(), Some(arrival)),
+        Err(_) => (due, None),
+    }
 }
 
 /// Takes from the mind whatever it has to say.
@@ -90,6 +98,9 @@ fn empty(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) {
 fn now() -> Instant {
     Instant(embassy_time::Instant::now().as_ticks())
 }
+
+/// The least by which a clock moves.
+const CLOCK_STEP: Duration = Duration(1);
 
 // Both clocks count microseconds, so an instant is copied, not converted.
 const _: () = assert!(embassy_time::TICK_HZ == 1_000_000);

@@ -38,11 +38,27 @@ fn deadlines_run_at_their_own_times_before_the_packet_that_came_later() {
 }
 
 #[test]
-fn a_deadline_that_is_due_at_once_runs_before_the_next_packet() {
+fn a_deadline_that_is_due_when_it_is_set_runs_as_soon_as_the_clock_moves() {
     let diary = Diary::default();
     let mut robot = Robot::new(Clerk::new(&diary, &[]));
     robot.tick(10, &[packet(&[1, 0]), packet(&[2])], &picture(0.0));
-    assert_eq!(*diary.borrow(), ["10 packet 1", "10 timeout", "10 packet 2", "10 sensors"]);
+    assert_eq!(*diary.borrow(), ["10 packet 1", "10 packet 2", "10 sensors"]);
+    robot.tick(20, &[packet(&[3])], &picture(0.0));
+    assert_eq!(diary.borrow()[3..], ["10 timeout", "20 packet 3", "20 sensors"]);
+}
+
+#[test]
+fn a_deadline_that_was_missed_runs_before_what_waits_in_the_inbox() {
+    let diary = Diary::default();
+    let boxes: &'static Mailboxes = Box::leak(Box::default());
+    let mut world = World::new();
+    let slow = Clerk { packet_takes: 4, ..Clerk::new(&diary, &[]) };
+    world.spawn(tasks::think(slow, boxes));
+    for bytes in [&[1, 5][..], &[2], &[3]] {
+        boxes.inbox.try_send(Arrival::Packet(packet(bytes))).unwrap();
+    }
+    world.settle();
+    assert_eq!(*diary.borrow(), ["0 packet 1", "4 packet 2", "5 timeout", "8 packet 3"]);
 }
 
 #[test]
@@ -181,11 +197,9 @@ impl<M: Mind> Plain<M> {
         for packet in packets {
             self.mind.handle_packet(now, packet);
             self.drain(now);
-            self.deadlines(now);
         }
         self.mind.handle_sensors(now, sight);
         self.drain(now);
-        self.deadlines(now);
     }
 
     fn deadlines(&mut self, now: Instant) {
@@ -210,13 +224,21 @@ type Diary = Rc<RefCell<Vec<String>>>;
 struct Clerk {
     diary: Diary,
     deadlines: Vec<u64>,
+    /// How far the clock goes while it works on one.
+    packet_takes: u64,
     answers: Vec<Packet>,
     order: Option<ActuatorFrame>,
 }
 
 impl Clerk {
     fn new(diary: &Diary, deadlines: &[u64]) -> Self {
-        Self { diary: diary.clone(), deadlines: deadlines.to_vec(), answers: vec![], order: None }
+        Self {
+            diary: diary.clone(),
+            deadlines: deadlines.to_vec(),
+            packet_takes: 0,
+            answers: vec![],
+            order: None,
+        }
     }
 }
 
@@ -225,6 +247,7 @@ impl Mind for Clerk {
         self.diary.borrow_mut().push(format!("{} packet {}", now.0, packet[0]));
         self.answers.push(self::packet(&[packet[0], 1]));
         self.deadlines.extend(packet.get(1).map(|after| now.0 + u64::from(*after)));
+        CLOCK.lock().now += self.packet_takes;
     }
 
     fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {

@@ -36,18 +36,21 @@ impl Clock {
     pub(crate) fn advance(&self, to: Instant) {
         loop {
             self.settle();
-            let alarm = TIME.next_alarm();
-            if alarm > to.0 {
+            let next = TIME.ring();
+            if WORK.load(Ordering::Acquire) {
+                continue;
+            }
+            if next > to.0 {
                 break;
             }
-            TIME.set(alarm);
+            TIME.set(next);
         }
         TIME.set(to.0);
     }
 
-    /// Runs the tasks until all of them wait for something that lies ahead.
+    /// Runs the tasks until all of them wait. Alarms that are due ring with the next [`Clock::advance`].
     pub(crate) fn settle(&self) {
-        while WORK.swap(false, Ordering::Acquire) || TIME.ring() {
+        while WORK.swap(false, Ordering::Acquire) {
             // SAFETY: nobody else polls this executor, and no task calls this function.
             unsafe { self.executor.poll() }
         }
@@ -70,14 +73,8 @@ impl Time {
     }
 
     /// Rings the alarms that are due and says when the next is; `u64::MAX` if there is none.
-    fn next_alarm(&self) -> u64 {
+    fn ring(&self) -> u64 {
         critical_section::with(|cs| self.alarms.borrow_ref_mut(cs).next_expiration(self.now.borrow(cs).get()))
-    }
-
-    /// Rings the alarms that are due; whether that woke anybody.
-    fn ring(&self) -> bool {
-        self.next_alarm();
-        WORK.swap(false, Ordering::Acquire)
     }
 }
 
