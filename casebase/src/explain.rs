@@ -119,16 +119,14 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &crate::Case<'_>) -> Verd
         let robots = Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
         return too_far.unwrap_or(robots);
     };
-    match blocked_leg(case, base, problem.ball, &problem.opponents, settings) {
-        Some(blocked) => Verdict::Path {
+    if let Some(blocked) = blocked_leg(case, base, problem.ball, &problem.opponents, settings) {
+        return Verdict::Path {
             index: blocked.index,
             leg: blocked.leg,
             opponent: blocked.opponent,
             inside_mm: blocked.inside_mm,
-        },
-        None => {
-            let free = query.freedom(case).unwrap_or(0.0);
-            Verdict::Candidate(query.found(case, exponent, free, assignment).into_match())
-        }
+        };
     }
+    let free = query.freedom(case).unwrap_or(0.0);
+    Verdict::Candidate(query.found(case, exponent, free, assignment).into_match())
 }

@@ -209,24 +209,21 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
         if receiver == robot || theirs >= self.script.teammates() {
             return Err(WalkError::PassUnanswered(robot, index));
         }
-        while let Some(action) = self.walk_on(receiver) {
-            let there = self.next[theirs];
-            match action {
-                Action::ReceiveBall(from) if from == robot => {
-                    let Pass { r_min, r_max } = self.kicks.pass();
-                    self.leg(robot, index, self.places[theirs], [r_min, r_max], LegKind::Pass(receiver));
-                    let to = (receiver, there);
-                    (self.sink)(Step::HandOver(HandOver { from: (robot, index), to, by_pass: true }));
-                    self.next[theirs] += 1;
-                    return Ok(receiver);
-                }
-                Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_) => {
-                    return Err(WalkError::NotHolding(receiver, there));
-                }
-                _ => break,
+        let action = self.walk_on(receiver);
+        let there = self.next[theirs];
+        match action {
+            Some(Action::ReceiveBall(from)) if from == robot => {}
+            Some(Action::DribbleTo(_) | Action::PassBall(_) | Action::Kick(_)) => {
+                return Err(WalkError::NotHolding(receiver, there));
             }
+            _ => return Err(WalkError::PassUnanswered(robot, index)),
         }
-        Err(WalkError::PassUnanswered(robot, index))
+        let Pass { r_min, r_max } = self.kicks.pass();
+        self.leg(robot, index, self.places[theirs], [r_min, r_max], LegKind::Pass(receiver));
+        let (from, to) = ((robot, index), (receiver, there));
+        (self.sink)(Step::HandOver(HandOver { from, to, by_pass: true }));
+        self.next[theirs] += 1;
+        Ok(receiver)
     }
 
     /// The lowest-numbered robot whose next ball action is `get_ball`, walked to it.
@@ -310,13 +307,15 @@ impl<S: Script, K: Kicks, F: FnMut(Step)> Walker<'_, S, K, F> {
 fn unit_of_degrees(degrees: i32) -> [f32; 2] {
     let turn = degrees.rem_euclid(360);
     let (quarter, rest) = (turn / 90, turn % 90);
-    // Above 45° the complement is taken, so that mirrored headings use the same two numbers.
+    // From 45° on the complement is taken, so that mirrored headings use the same two numbers.
     let small = |d: i32| math::sin_cos(d as f32 * (math::PI / 180.0));
-    let (sin, cos) = if rest <= 45 {
-        small(rest)
-    } else {
-        let (sin, cos) = small(90 - rest);
-        (cos, sin)
+    let (sin, cos) = match rest {
+        45 => (core::f32::consts::FRAC_1_SQRT_2, core::f32::consts::FRAC_1_SQRT_2),
+        0..45 => small(rest),
+        _ => {
+            let (sin, cos) = small(90 - rest);
+            (cos, sin)
+        }
     };
     match quarter {
         0 => [cos, sin],
