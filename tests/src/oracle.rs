@@ -147,14 +147,14 @@ fn candidate(
     }
     let shift = Point { x: problem.ball.x - case.ball.x, y: problem.ball.y - case.ball.y };
     let shifted = |p: Point| Point { x: p.x + shift.x, y: p.y + shift.y };
-    let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
-    let (correspondence, cost) = correspondence(&adapted, &problem.teammates, rules, close)?;
-
     let legs = walk::legs(library, case, problem.ball).ok()?;
     let blocked = |leg: &Leg| problem.opponents.iter().any(|&opponent| inside(leg, opponent, rules, close));
     if legs.iter().any(blocked) {
         return None;
     }
+    // After the free path, which is cheaper; which of the two rejects a case is not asked.
+    let adapted: Vec<Point> = case.robots.iter().map(|robot| shifted(robot.at)).collect();
+    let (correspondence, cost) = correspondence(&adapted, &problem.teammates, rules, close)?;
     let occupied = |&&(centre, radii): &&(Point, Radii)| {
         let centre = if rules.scopes_absolute { centre } else { shifted(centre) };
         let within = |&opponent: &Point| {
@@ -179,21 +179,21 @@ fn correspondence(
     rules: &Rules,
     close: &Close,
 ) -> Option<(Vec<u8>, f64)> {
-    let ways = |chosen: &[usize]| -> Vec<f64> {
-        chosen.iter().zip(adapted).map(|(&r, &place)| distance(present[r].1, place)).collect()
-    };
-    let reachable = |ways: &[f64]| ways.iter().all(|&way| !close.less("thr_c", rules.furthest, way));
+    let ways: Vec<Vec<f64>> =
+        adapted.iter().map(|&place| present.iter().map(|&(_, at)| distance(at, place)).collect()).collect();
+    let all = |chosen: &[usize]| chosen.iter().zip(&ways).map(|(&robot, ways)| ways[robot]).collect();
+    let reachable = |ways: &Vec<f64>| ways.iter().all(|&way| !close.less("thr_c", rules.furthest, way));
     let mut best: Option<(Vec<usize>, f64)> = None;
     let mut second = f64::INFINITY;
     // In ascending order, so that among equals the lexicographically smallest list of ids stays.
     injections(adapted.len(), present.len(), &mut Vec::new(), &mut |chosen| {
-        let ways = ways(chosen);
-        if rules.constrained && !reachable(&ways) {
+        let ways = chosen.iter().zip(&ways).map(|(&robot, ways)| ways[robot]);
+        let cost = if rules.longest { ways.fold(0.0, f64::max) } else { ways.sum() };
+        if rules.constrained && !reachable(&all(chosen)) {
             return;
         }
-        let cost = if rules.longest { ways.iter().copied().fold(0.0, f64::max) } else { ways.iter().sum() };
         match &best {
-            Some((_, least)) if cost >= *least => second = second.min(cost),
+            Some((_, least)) if cost >= least * (1.0 - ROUNDING) => second = second.min(cost),
             _ => {
                 second = best.as_ref().map_or(second, |(_, least)| *least);
                 best = Some((chosen.to_vec(), cost));
@@ -204,8 +204,7 @@ fn correspondence(
     if second.is_finite() {
         close.less("correspondence", cost, second);
     }
-    let accepted = reachable(&ways(&chosen));
-    accepted.then(|| (chosen.iter().map(|&r| present[r].0).collect(), cost))
+    reachable(&all(&chosen)).then(|| (chosen.iter().map(|&robot| present[robot].0).collect(), cost))
 }
 
 /// Calls `visit` with every way to choose `places` different robots among `present`, lexicographically.
@@ -273,6 +272,9 @@ fn scope_exponent(centre: Point, radii: Radii, point: Point) -> f64 {
 fn distance(a: Point, b: Point) -> f64 {
     ((a.x - b.x) as f64).hypot((a.y - b.y) as f64)
 }
+
+/// Relative difference of sums of the same numbers in another order: those are equal.
+const ROUNDING: f64 = 1e-13;
 
 /// Relative difference below which two honest implementations may decide differently.
 pub const NEAR: f64 = 1e-4;

@@ -22,9 +22,13 @@ pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
         y: dice.between(-library.width, library.width) * 11 / 20,
     };
 
-    let ball = Point {
-        x: case.ball.x + dice.scatter(0.4 * case.scope.x as f64),
-        y: case.ball.y + dice.scatter(0.4 * case.scope.y as f64),
+    let ball = if dice.chance(0.01) {
+        Point { x: far(dice), y: far(dice) }
+    } else {
+        Point {
+            x: case.ball.x + dice.scatter(0.4 * case.scope.x as f64),
+            y: case.ball.y + dice.scatter(0.4 * case.scope.y as f64),
+        }
     };
     let shift = Point { x: ball.x - case.ball.x, y: ball.y - case.ball.y };
     let shifted = |p: Point| Point { x: p.x + shift.x, y: p.y + shift.y };
@@ -38,6 +42,10 @@ pub fn random_problem(dice: &mut Dice, library: &Library) -> Problem {
     let extra = dice.between(0, 11 - teammates.len() as i64) * i64::from(dice.chance(0.6));
     for _ in 0..extra {
         teammates.push(if dice.chance(0.5) { near(dice, ball, 900.0) } else { anywhere(dice) });
+    }
+    // Two robots in one place make exact ties, which the ids decide.
+    if dice.chance(0.1) && teammates.len() < 11 {
+        teammates.extend(teammates.first().copied());
     }
     let mut opponents = Vec::new();
     for (centre, _) in &case.opponents {
