@@ -13,6 +13,10 @@ use crate::mates::Mates;
 
 /// Own sight older than this counts as none.
 const SIGHT_LEASE: Duration = Duration::millis(400);
+/// A sight this sharp needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
+const SHARP: f32 = 0.004;
+/// A ball slower than this may be grabbed, m/s.
+const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
 pub const REST_SPEED: f32 = 0.05;
 /// An opponent whose centre is this near the ball has it: radii of body and ball and a hand's breadth, m.
@@ -57,6 +61,8 @@ pub struct Belief {
     /// Its body is in the middle of a grab or kick.
     pub busy: bool,
     sight: Option<Sight>,
+    /// Sights in a row of a loose ball slow enough to grab.
+    slow_sights: u8,
     league: League,
 }
 
@@ -77,6 +83,7 @@ impl Belief {
             holds_ball: false,
             busy: false,
             sight: None,
+            slow_sights: 0,
             league,
         }
     }
@@ -95,6 +102,8 @@ impl Belief {
         if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
             self.see(now - ball.age, ball.position, ball.sigma);
         }
+        let slow = self.sight.is_some_and(|s| s.velocity.norm() < GRAB_SPEED) && !self.holds_ball;
+        self.slow_sights = if slow { self.slow_sights.saturating_add(1) } else { 0 };
         self.ball = self.own_ball(now).or_else(|| Self::reported_ball(now, me, mates, self.league));
     }
 
@@ -111,12 +120,17 @@ impl Belief {
             && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < OPPONENT_HOLDS_WITHIN)
     }
 
+    /// The ball lies still enough to be grabbed; a ball that has just left the legs does not, though its speed is unknown.
+    pub fn may_grab(&self) -> bool {
+        self.slow_sights >= 2
+    }
+
     /// The league played.
     pub fn league(&self) -> League {
         self.league
     }
 
-    /// Velocity by an alpha–beta filter; without noise (σ = 0) it is the plain difference.
+    /// Velocity by an alpha–beta filter; a sharp sight (σ ≤ [`SHARP`]) is taken as it is.
     fn see(&mut self, at: Instant, position: Point<Field>, sigma: f32) {
         let Some(before) = self.sight else {
             self.sight = Some(Sight { position, velocity: Vector::default(), at });
@@ -126,7 +140,7 @@ impl Belief {
         if dt <= 0.0 {
             return;
         }
-        let (alpha, beta) = if sigma > 0.0 { (0.5, 0.2) } else { (1.0, 1.0) };
+        let (alpha, beta) = if sigma > SHARP { (0.5, 0.2) } else { (1.0, 1.0) };
         let predicted = before.position + before.velocity * dt;
         let miss = position - predicted;
         let velocity = before.velocity + miss * (beta / dt);

@@ -190,6 +190,7 @@ impl<'a> Brain<'a> {
             }
             self.awake = true;
             self.beacon_due = true;
+            self.timers.set(Timer::Settle, now + SETTLE_FOR);
         }
         if self.config.approach == Approach::Reactive {
             return;
@@ -217,7 +218,8 @@ impl<'a> Brain<'a> {
         match self.cycle.state().map(|s| &s.decision) {
             None | Some(Decision::Closed(_)) => {
                 let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
-                if elects && !paused { self.propose(now) } else { None }
+                let settled = self.timers.has_fired(Timer::Settle);
+                if elects && settled && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
                 let problem =
@@ -387,6 +389,9 @@ impl<'a> Brain<'a> {
     }
 }
 
+/// Between being present and proposing: three steps of a walking robot, in which those who booted at the same moment
+/// hear of each other.
+const SETTLE_FOR: Duration = Duration::millis(120);
 /// How long the coordinator may keep its decision to itself: one lease.
 const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
 /// How soon the coordinator tries again after "no case": six steps of a walking robot.

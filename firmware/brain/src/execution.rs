@@ -121,8 +121,11 @@ impl Execution {
                     return Outcome::Running(self.hold(scene));
                 }
                 self.started = true;
-                let after = estimate::limit(estimate::action(scene, self.part, self.done));
-                timers.set(Timer::Action, scene.now + after);
+                // Waiting has no limit of its own (DESIGN §4.4): the gameplay's is enough.
+                if action != Action::Wait {
+                    let after = estimate::limit(estimate::action(scene, self.part, self.done));
+                    timers.set(Timer::Action, scene.now + after);
+                }
             }
             match self.run(scene, timers, action) {
                 Verdict::Running(intent) => {

@@ -11,7 +11,7 @@ use protocol::{Duration, Instant, RobotId};
 use rules::GoalSide;
 
 use crate::belief::{Ball, Belief};
-use crate::body::Intent;
+use crate::body::{Intent, legged};
 use crate::execution::face_ball;
 use crate::mates::Mates;
 use crate::skills::{self, Step};
@@ -102,7 +102,14 @@ impl Reactive {
                 return Intent::Carry { to: belief.league().field().clamp(to, KEEP_INSIDE) };
             }
         }
-        skills::shoot(belief, self.dodge.unwrap_or(to_goal), LeggedKick::ForwardSoft)
+        match (self.dodge, blocker(belief, ball, to_goal)) {
+            // Still blocked after the dodge: with the head, to the side it dodged to.
+            (Some(side), Some(_)) => {
+                let kick = if (side - to_goal).radians() > 0.0 { LeggedKick::Left } else { LeggedKick::Right };
+                skills::shoot(belief, to_goal + legged::nominal(kick).0, kick)
+            }
+            (dodged, _) => skills::shoot(belief, dodged.unwrap_or(to_goal), LeggedKick::ForwardSoft),
+        }
     }
 }
 

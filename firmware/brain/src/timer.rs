@@ -7,6 +7,8 @@ use protocol::{Duration, Instant};
 pub enum Timer {
     /// A booting robot has listened long enough to be present (one lease).
     Boot,
+    /// Robots that booted together have heard that each other are present: now they may propose.
+    Settle,
     /// The coordinator has been silent about its decision for too long: propose anew.
     NoDecision,
     /// There was no case; close the cycle and try again.

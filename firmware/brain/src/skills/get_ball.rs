@@ -20,7 +20,7 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     let seen = pose.to_body(ball.position);
     let distance = math::hypot(seen.x(), seen.y());
     let off = math::atan2(seen.y(), seen.x()).abs();
-    if distance < GRAB_REACH && off < GRAB_HALF_ANGLE && ball.velocity.norm() < GRAB_BALL_SPEED {
+    if distance < GRAB_REACH && off < GRAB_HALF_ANGLE && belief.may_grab() {
         return Step::Running(Intent::Grab);
     }
     let meeting = meeting_point(belief, &ball);
@@ -67,15 +67,16 @@ const NEAR: f32 = 0.5;
 const DIRECT_WITHIN: f32 = 1.0;
 /// An opponent this near the ball makes it a race, m.
 const CONTESTED_WITHIN: f32 = 0.9;
-/// A ball faster than this slips through the grab, m/s.
-const GRAB_BALL_SPEED: f32 = 0.4;
 /// Places tried on the ball's way.
 const MEETING_STEPS: u32 = 16;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::Pose;
+    use crate::mates::Mates;
+    use geometry::{Pose, Twist};
+    use protocol::robot_io::{BallSight, SensorFrame};
+    use protocol::{Duration, Instant, RobotId};
     use rules::League;
 
     fn belief(ball: (f32, f32), velocity: (f32, f32), rest: (f32, f32)) -> Belief {
@@ -89,9 +90,25 @@ mod tests {
         belief
     }
 
+    fn see_twice(b: &mut Belief, x: f32) {
+        for ms in [40, 80] {
+            let sensors = SensorFrame {
+                pose: b.pose,
+                ball: Some(BallSight { position: Point::new(x, 0.0), sigma: 0.0, age: Duration(0) }),
+                opponents: heapless::Vec::new(),
+                ball_contact: false,
+                busy: false,
+                odometry: Twist::default(),
+            };
+            b.update(Instant(ms * 1000), RobotId::new(1).unwrap(), &sensors, &Mates::default());
+        }
+    }
+
     #[test]
     fn a_ball_in_reach_is_grabbed_and_one_held_is_done() {
         let mut b = belief((0.16, 0.0), (0.0, 0.0), (0.16, 0.0));
+        assert!(!matches!(get_ball(&b, None), Step::Running(Intent::Grab)), "one look is not enough");
+        see_twice(&mut b, 0.16);
         assert_eq!(get_ball(&b, None), Step::Running(Intent::Grab));
         b.holds_ball = true;
         assert_eq!(get_ball(&b, None), Step::Done);
