@@ -19,8 +19,10 @@ const SHARP: f32 = 0.004;
 const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
 pub const REST_SPEED: f32 = 0.05;
-/// An opponent whose centre is this near the ball has it: radii of body and ball and a hand's breadth, m.
-pub const OPPONENT_HOLDS_WITHIN: f32 = 0.2;
+/// An opponent whose centre is this near the ball touches it: radii of body (0.12) and ball (0.0425) and a centimetre, m.
+pub const OPPONENT_HOLDS_WITHIN: f32 = 0.1725;
+/// One of us this near the ball disputes it: an arm's length more than touching, m.
+const DISPUTED_WITHIN: f32 = 0.25;
 
 /// The ball as believed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +31,7 @@ pub struct Ball {
     pub position: Point<Field>,
     /// Where it goes.
     pub velocity: Vector<Field>,
-    /// Where it will come to rest if nobody touches it, cut at the lines of the field.
+    /// Where it will come to rest: cut at the first opponent in its way and at the lines of the field.
     pub rest: Point<Field>,
 }
 
@@ -112,11 +114,12 @@ impl Belief {
         nearest(self.opponents.iter().copied(), point)
     }
 
-    /// Whether an opponent is on the ball while neither this robot nor a mate holds it.
-    pub fn opponent_on_ball(&self, mates: &Mates) -> bool {
+    /// Whether an opponent is on the ball and none of us disputes it.
+    pub fn opponent_on_ball(&self, now: Instant, mates: &Mates) -> bool {
         let Some(ball) = self.ball else { return false };
-        !self.holds_ball
-            && !mates.anyone_holds_ball()
+        let ours = |at: Point<Field>| at.distance(ball.position) < DISPUTED_WITHIN;
+        !ours(self.pose.position)
+            && !mates.present(now).any(|(_, mate)| ours(mate.pose().position))
             && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < OPPONENT_HOLDS_WITHIN)
     }
 
@@ -149,7 +152,19 @@ impl Belief {
 
     fn own_ball(&self, now: Instant) -> Option<Ball> {
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
-        Some(rolling(sight.position, sight.velocity, self.league))
+        let mut ball = rolling(sight.position, sight.velocity, self.league);
+        // An opponent in its way stops it.
+        let way = geometry::Segment::new(ball.position, ball.rest);
+        let stops = |o: &Point<Field>| {
+            way.distance_to(*o) < OPPONENT_HOLDS_WITHIN && (*o - ball.position).dot(way.vector()) > 0.0
+        };
+        let first = self.opponents.iter().filter(|o| stops(o)).map(|o| way.share_of(*o)).reduce(f32::min);
+        if let Some(share) = first {
+            let length = way.vector().norm();
+            let free = (share * length - OPPONENT_HOLDS_WITHIN).clamp(0.0, length);
+            ball.rest = ball.position + way.vector() * (free / length.max(f32::MIN_POSITIVE));
+        }
+        Some(ball)
     }
 
     fn reported_ball(now: Instant, me: RobotId, mates: &Mates, league: League) -> Option<Ball> {

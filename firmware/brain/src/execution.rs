@@ -277,7 +277,7 @@ impl Execution {
 
     /// Going for the ball fails when an opponent has had it for too long.
     fn take(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
-        if scene.belief.opponent_on_ball(scene.mates) {
+        if scene.belief.opponent_on_ball(scene.now, scene.mates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
         } else {
             timers.clear(Timer::OpponentHolds);

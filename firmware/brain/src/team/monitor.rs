@@ -46,7 +46,7 @@ fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
 }
 
 fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
-    if scene.belief.opponent_on_ball(scene.mates) {
+    if scene.belief.opponent_on_ball(scene.now, scene.mates) {
         return Some(AbortReason::OpponentOnBall);
     }
     let ball = scene.belief.ball?;
