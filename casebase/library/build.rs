@@ -52,6 +52,7 @@ fn read(folder: &Path) -> (Library, String) {
 /// The table as one static (all that firmware links), names and texts as another.
 fn write_league(code: &mut String, constant: &str, blob: &Path, library: &Library, rules: &str) {
     let Library { league, names, sources, kicks, .. } = library;
+    let blob = blob.to_str().expect("a path in UTF-8");
     writeln!(
         code,
         "static {constant}_TABLE: &Aligned<[u8]> = &Aligned(*include_bytes!({blob:?}));\n\

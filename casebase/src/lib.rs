@@ -1,7 +1,7 @@
 //! Which gameplay fits this situation, who plays whom in it, and is its way free? (Ros et al. 2009, §2–§3)
 //!
 //! A case is (P, A, K): a situation, what each robot does in it, and how far it generalises. A [`CaseBase`] is a
-//! flat table in flash; [`retrieve`] finds the case for a [`Problem`]; [`explain`] says why, for every case. The
+//! flat table in flash; [`retrieve()`] finds the case for a [`Problem`]; [`explain()`] says why, for every case. The
 //! four symmetric copies of an authored case are stored in full, so that a robot never flips anything.
 //!
 //! Whole millimetres, field frame (+x along the length, +y to the left of +x), as in the paper.

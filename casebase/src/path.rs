@@ -46,17 +46,9 @@ impl Leg {
     /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
     /// not abreast of the leg. A leg of length 0 has nothing abreast.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
-        let d = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
-        let q = [point[0] - self.from[0], point[1] - self.from[1]];
-        let squared = d[0] * d[0] + d[1] * d[1];
-        let along = d[0] * q[0] + d[1] * q[1];
-        if squared > 0.0 && along >= 0.0 && along <= squared {
-            let length = math::sqrt(squared);
-            let radius = self.r_min + (self.r_max - self.r_min) * (along / squared);
-            Some(Abreast { along: along / length, across: (d[0] * q[1] - d[1] * q[0]) / length, radius })
-        } else {
-            None
-        }
+        let Products { squared, along, cross, radius } = self.products(point)?;
+        let length = math::sqrt(squared);
+        Some(Abreast { along: along / length, across: cross / length, radius })
     }
 
     /// How deep an opponent stands inside the leg, mm from its edge at the settings' threshold; `None` outside.
@@ -72,18 +64,33 @@ impl Leg {
     /// (v/ρ)², the negated exponent of μ; `None` where μ is 0 because the point is not abreast of the leg.
     #[inline]
     pub(crate) fn exponent(&self, point: [f32; 2]) -> Option<f32> {
+        let Products { squared, cross, radius, .. } = self.products(point)?;
+        Some(cross * cross / (squared * radius * radius))
+    }
+
+    /// What a point abreast of the leg is judged by, without a square root.
+    #[inline]
+    fn products(&self, point: [f32; 2]) -> Option<Products> {
         let d = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
         let q = [point[0] - self.from[0], point[1] - self.from[1]];
         let squared = d[0] * d[0] + d[1] * d[1];
         let along = d[0] * q[0] + d[1] * q[1];
-        if squared > 0.0 && along >= 0.0 && along <= squared {
-            let radius = self.r_min + (self.r_max - self.r_min) * (along / squared);
-            let cross = d[0] * q[1] - d[1] * q[0];
-            Some(cross * cross / (squared * radius * radius))
-        } else {
-            None
-        }
+        (squared > 0.0 && along >= 0.0 && along <= squared).then(|| Products {
+            squared,
+            along,
+            cross: d[0] * q[1] - d[1] * q[0],
+            radius: self.r_min + (self.r_max - self.r_min) * (along / squared),
+        })
     }
+}
+
+/// Products of the leg's vector with itself and with that to a point (`along`: scalar, `cross`: z of the vector
+/// product), mm², and the leg's radius abreast of the point, mm.
+struct Products {
+    squared: f32,
+    along: f32,
+    cross: f32,
+    radius: f32,
 }
 
 /// Where a point lies that is abreast of a leg, mm.

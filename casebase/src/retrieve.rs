@@ -159,14 +159,16 @@ pub(crate) struct Query<'p> {
 
 impl<'p> Query<'p> {
     pub(crate) fn new(problem: &'p Problem, settings: &'p Settings) -> Self {
-        let relative = |place: &PointMm| place.minus(problem.ball).to_f32();
-        Self {
-            problem,
-            settings,
-            limit: settings.limit(),
-            teammates: problem.teammates.iter().map(|(_, place)| relative(place)).collect(),
-            opponents: problem.opponents.iter().map(relative).collect(),
+        let mut query =
+            Self { problem, settings, limit: settings.limit(), teammates: Vec::new(), opponents: Vec::new() };
+        // Both lists have the capacity of the problem's: every push fits.
+        for (_, place) in &problem.teammates {
+            let _ = query.teammates.push(place.minus(problem.ball).to_f32());
         }
+        for place in &problem.opponents {
+            let _ = query.opponents.push(place.minus(problem.ball).to_f32());
+        }
+        query
     }
 
     /// A case whose ball scope holds the ball: is it a candidate, and how does it rank?
@@ -229,11 +231,13 @@ impl<'p> Query<'p> {
         for (place, robot) in places.iter_mut().zip(case.robots()) {
             *place = adapted_position(case, robot, ball, self.settings).minus(ball).to_f32();
         }
-        let columns =
-            self.problem.teammates.iter().zip(&self.teammates).map(|((id, _), at)| {
-                (*id, places.map(|place| math::hypot(at[0] - place[0], at[1] - place[1])))
-            });
-        Distances { columns: columns.collect(), parts: case.teammates() }
+        let mut distances = Distances { columns: Vec::new(), parts: case.teammates() };
+        for ((id, _), at) in self.problem.teammates.iter().zip(&self.teammates) {
+            let column = places.map(|place| math::hypot(at[0] - place[0], at[1] - place[1]));
+            // There is room for every teammate a problem can have.
+            let _ = distances.columns.push((*id, column));
+        }
+        distances
     }
 }
 

@@ -312,8 +312,9 @@ pub const HASHED_FROM: usize = 12;
 /// The `count` records of copy `copy` in a pool; nothing where the pool ends before (a validated table's never does).
 #[inline]
 pub(crate) fn part<T>(pool: &[T], start: u32, count: u8, copy: u16) -> &[T] {
-    let from = start as usize + usize::from(copy) * usize::from(count);
-    pool.get(from..from + usize::from(count)).unwrap_or(&[])
+    let count = usize::from(count);
+    let from = (start as usize).saturating_add(usize::from(copy) * count);
+    pool.get(from..from.saturating_add(count)).unwrap_or(&[])
 }
 
 static EMPTY_HEADER: Header = Header {

@@ -50,7 +50,8 @@ impl<'a> CaseBase<'a> {
         if !(bytes.as_ptr() as usize).is_multiple_of(align_of::<u32>()) {
             return Err(TableError::Misaligned);
         }
-        let (header, rest) = Header::ref_from_prefix(bytes).map_err(|_| TableError::Length)?;
+        let (header, rest) = bytes.split_at_checked(size_of::<Header>()).ok_or(TableError::Length)?;
+        let header = Header::ref_from_bytes(header).map_err(|_| TableError::Length)?;
         if header.magic != MAGIC {
             return Err(TableError::Magic);
         }
@@ -125,8 +126,9 @@ impl<'a> CaseBase<'a> {
         if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(group.opponents) > OPPONENTS_MAX {
             return false;
         }
-        let ends = &group.list_ends[..teammates];
-        let actions_count = ends[teammates - 1];
+        let ends = group.list_ends.get(..teammates).unwrap_or(&[]);
+        let end = |robot: usize| ends.get(robot).copied().unwrap_or(0);
+        let actions_count = end(teammates - 1);
         let opponents = part(self.opponents, group.opponents_at, group.opponents, copy);
         let legs = part(self.legs, group.legs_at, group.legs, copy);
         let actions = part(self.actions, group.actions_at, actions_count, copy);
@@ -135,7 +137,7 @@ impl<'a> CaseBase<'a> {
             && legs.len() == usize::from(group.legs)
             && part(self.points, group.points_at, group.points, copy).len() == usize::from(group.points)
             && actions.len() == usize::from(actions_count)
-            && ends.is_sorted()
+            && never_falls(ends)
             && group.defending <= 1
             && group.getter < group.teammates;
         let scope_is_sound = |inverse: &[f32; 2]| inverse.iter().all(|i| i.is_finite() && *i > 0.0);
@@ -143,8 +145,8 @@ impl<'a> CaseBase<'a> {
             return false;
         };
         let list = |robot: usize| {
-            let from = robot.checked_sub(1).map_or(0, |before| ends[before]);
-            actions.get(usize::from(from)..usize::from(ends[robot])).unwrap_or(&[])
+            let from = robot.checked_sub(1).map_or(0, end);
+            actions.get(usize::from(from)..usize::from(end(robot))).unwrap_or(&[])
         };
         let legs_are_sound = || {
             legs.iter().all(|leg| {
@@ -182,7 +184,7 @@ impl<'a> CaseBase<'a> {
 
     fn index_is_sound(&self) -> bool {
         let [columns, rows] = self.header.grid;
-        let starts_are_sound = self.cell_starts.is_sorted()
+        let starts_are_sound = never_falls(self.cell_starts)
             && self.cell_starts.first() == Some(&0)
             && self.cell_starts.last().is_some_and(|last| *last as usize == self.cell_cases.len());
         (1..=GRID_MAX).contains(&columns)
@@ -198,10 +200,17 @@ pub(crate) const CASES_MAX: usize = (u16::MAX as usize + 1) / 4;
 /// Longest side of a field, mm: positions relative to the ball then fit an `i16`.
 pub(crate) const SIDE_MAX_MM: i32 = 30_000;
 
+/// Like `is_sorted`, whose cutting into chunks leaves a panic site behind.
+fn never_falls<T: PartialOrd>(list: &[T]) -> bool {
+    list.iter().zip(list.iter().skip(1)).all(|(before, after)| before <= after)
+}
+
 /// The next `count` records of `rest`.
 fn section<T: FromBytes + Immutable + KnownLayout>(
     rest: &[u8],
     count: u32,
 ) -> Result<(&[T], &[u8]), TableError> {
-    <[T]>::ref_from_prefix_with_elems(rest, count as usize).map_err(|_| TableError::Length)
+    let size = (count as usize).checked_mul(size_of::<T>()).ok_or(TableError::Length)?;
+    let (section, rest) = rest.split_at_checked(size).ok_or(TableError::Length)?;
+    Ok((<[T]>::ref_from_bytes(section).map_err(|_| TableError::Length)?, rest))
 }

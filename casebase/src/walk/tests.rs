@@ -70,7 +70,10 @@ fn point(x: i32, y: i32) -> PointMm {
     PointMm::new(x, y)
 }
 
-fn written(robots: &[((i32, i32), &[Action])]) -> Written {
+/// Where a robot stands and what it does.
+type Part<'a> = ((i32, i32), &'a [Action]);
+
+fn written(robots: &[Part<'_>]) -> Written {
     let robots = robots.iter().map(|((x, y), actions)| (point(*x, *y), actions.to_vec())).collect();
     Written { defending: GoalEnd::Negative, robots }
 }
@@ -187,7 +190,7 @@ fn the_place_of_who_got_the_ball_is_the_ball_s() {
 #[test]
 fn what_cannot_be_walked_names_the_robot_and_its_action() {
     let get: &[Action] = &[Action::GetBall];
-    let cases: &[(&[((i32, i32), &[Action])], WalkError)] = &[
+    let cases: &[(&[Part<'_>], WalkError)] = &[
         (&[((0, 0), &[Action::Wait])], WalkError::NoGetter),
         (&[((0, 0), get), ((0, 0), &[AHEAD])], WalkError::NotHolding(tm(2), 0)),
         (&[((0, 0), &[Action::GetBall, AHEAD, AHEAD])], WalkError::NotHolding(tm(1), 2)),

@@ -240,7 +240,7 @@ fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -
     match *word {
         "go_to_point" => reader.point(argument, &name).map(Action::GoToPoint),
         "dribble_to" => reader.point(argument, &name).map(Action::DribbleTo),
-        "turn" => read_turn(reader, argument, name).map(Action::Turn),
+        "turn" => read_turn(reader, argument, &name).map(Action::Turn),
         "pass_ball" => read_robot(reader, argument, &name, cast).map(Action::PassBall),
         "receive_ball" => read_robot(reader, argument, &name, cast).map(Action::ReceiveBall),
         "kick" => read_kick(reader, argument, &name, cast),
@@ -252,14 +252,14 @@ fn read_action(reader: &mut Reader<'_>, value: Value<'_, '_>, cast: &Cast<'_>) -
     }
 }
 
-fn read_turn(reader: &mut Reader<'_>, value: Value<'_, '_>, name: String) -> Option<TurnTarget> {
-    let table = reader.table(value, name.as_str())?;
+fn read_turn(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str) -> Option<TurnTarget> {
+    let table = reader.table(value, name)?;
     let entries = table.entries();
     match entries.as_slice() {
         [("heading_deg", _, degrees)] => {
-            reader.whole(degrees, &name, &COORDINATES).map(TurnTarget::HeadingDeg)
+            reader.whole(degrees, name, &COORDINATES).map(TurnTarget::HeadingDeg)
         }
-        [("face", _, point)] => reader.point(point, &name).map(TurnTarget::Face),
+        [("face", _, point)] => reader.point(point, name).map(TurnTarget::Face),
         _ => {
             let unknown = entries.iter().find(|(key, ..)| !["heading_deg", "face"].contains(key));
             let (code, span) = unknown

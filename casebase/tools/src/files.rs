@@ -19,8 +19,7 @@ pub struct SourceFile {
 impl SourceFile {
     /// The line, from 1, of a byte of the text.
     pub(crate) fn line(&self, at: usize) -> u32 {
-        let before = &self.text.as_bytes()[..at.min(self.text.len())];
-        before.iter().filter(|byte| **byte == b'\n').count() as u32 + 1
+        self.text.bytes().take(at).filter(|byte| *byte == b'\n').count() as u32 + 1
     }
 
     /// A finding in this file.

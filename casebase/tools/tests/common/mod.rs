@@ -7,7 +7,7 @@ use case_tools::{Files, Library, build};
 use casebase::{Case, GoalEnd, PointMm, Problem};
 use protocol::RobotId;
 
-pub const LEAGUE: &str = r#"
+pub(crate) const LEAGUE: &str = r#"
 [field]
 length = 5400
 width = 3600
@@ -57,7 +57,7 @@ r_max = 200
 "#;
 
 /// The example of DESIGN §4.1.
-pub const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
+pub(crate) const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"
 ball = { at = [-600, 0], scope = [450, 250] }
 
@@ -75,7 +75,7 @@ scope = [300, 300]
 "#;
 
 /// A library from memory; its faults end the test.
-pub fn library(cases: &[(&str, &str)]) -> Library {
+pub(crate) fn library(cases: &[(&str, &str)]) -> Library {
     build(&Files::from_texts("test", LEAGUE, cases)).unwrap_or_else(|findings| {
         let words: Vec<_> = findings.iter().map(ToString::to_string).collect();
         panic!("{}", words.join("\n"))
@@ -83,14 +83,14 @@ pub fn library(cases: &[(&str, &str)]) -> Library {
 }
 
 /// One robot that gets the ball and does what `rest` says, at the ball's place.
-pub fn single(ball: &str, scope: &str, rest: &str) -> String {
+pub(crate) fn single(ball: &str, scope: &str, rest: &str) -> String {
     format!(
         "intent = \"one\"\ndefending = \"yellow\"\nball = {{ at = {ball}, scope = {scope} }}\n\
          [[teammates]]\nat = {ball}\ngameplay = [\"get_ball\"{rest}]\n"
     )
 }
 
-pub fn problem(ball: (i32, i32), teammates: &[(u8, (i32, i32))], opponents: &[(i32, i32)]) -> Problem {
+pub(crate) fn problem(ball: (i32, i32), teammates: &[(u8, (i32, i32))], opponents: &[(i32, i32)]) -> Problem {
     let point = |(x, y): (i32, i32)| PointMm::new(x, y);
     Problem {
         ball: point(ball),
@@ -101,22 +101,22 @@ pub fn problem(ball: (i32, i32), teammates: &[(u8, (i32, i32))], opponents: &[(i
 }
 
 /// xorshift64*: enough for drawing test situations.
-pub struct Dice(u64);
+pub(crate) struct Dice(u64);
 
 impl Dice {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
 
     /// From 0 to `end` − 1.
-    pub fn below(&mut self, end: u64) -> u64 {
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
         (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % end
     }
 
-    pub fn between(&mut self, low: i32, high: i32) -> i32 {
+    pub(crate) fn between(&mut self, low: i32, high: i32) -> i32 {
         low + self.below((high - low + 1) as u64) as i32
     }
 
@@ -134,7 +134,7 @@ impl Dice {
     }
 
     /// The text of a random case that passes every check. Robots and opponents stand around the ball.
-    pub fn case(&mut self) -> String {
+    pub(crate) fn case(&mut self) -> String {
         let robots = self.between(1, 4);
         let ball = self.place();
         let (sx, sy) = (self.between(100, 900), self.between(100, 700));
@@ -185,14 +185,14 @@ impl Dice {
     }
 
     /// A random library.
-    pub fn library(&mut self, cases: usize) -> Library {
+    pub(crate) fn library(&mut self, cases: usize) -> Library {
         let texts: Vec<_> = (0..cases).map(|i| (format!("drawn/{i:04}"), self.case())).collect();
         let borrowed: Vec<_> = texts.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
         library(&borrowed)
     }
 
     /// A random problem near a random case of the base, so that a good share have several candidates.
-    pub fn problem(&mut self, base: &casebase::CaseBase<'_>) -> Problem {
+    pub(crate) fn problem(&mut self, base: &casebase::CaseBase<'_>) -> Problem {
         let id = self.below(base.len() as u64) as u16;
         let case = base.case(protocol::CaseId(id)).expect("an id of the base");
         let scope = case.ball_scope();

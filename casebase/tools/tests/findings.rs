@@ -1,0 +1,242 @@
+//! Is every fault of a library told with its code and its line? (DESIGN §4.1)
+
+mod common;
+
+use case_tools::{Files, Finding, Severity, build, code, load};
+use common::{LEAGUE, PASS_AROUND, single};
+
+/// Code and line of every finding, and whether the library is refused.
+fn findings(league: &str, cases: &[(&str, &str)]) -> (Vec<(&'static str, u32)>, bool) {
+    let result = build(&Files::from_texts("test", league, cases));
+    let refused = result.is_err();
+    let list = result.map_or_else(|findings| findings, |library| library.findings);
+    let short = |finding: &Finding| {
+        assert!(!finding.message.is_empty() && !finding.mend.is_empty(), "{finding}");
+        (finding.code, finding.line)
+    };
+    (list.iter().map(short).collect(), refused)
+}
+
+/// The one error of a case: PASS_AROUND with `old` replaced by `new`.
+#[track_caller]
+fn expect_error(old: &str, new: &str, code: &'static str, line: u32) {
+    assert!(PASS_AROUND.contains(old), "{old} is not in the case");
+    let text = PASS_AROUND.replacen(old, new, 1);
+    assert_eq!(findings(LEAGUE, &[("center/a", &text)]), (vec![(code, line)], true), "{new}");
+}
+
+/// The one error of the league: LEAGUE with `old` replaced by `new`.
+#[track_caller]
+fn expect_league_error(old: &str, new: &str, code: &'static str, line: u32) {
+    assert!(LEAGUE.contains(old), "{old} is not in the league");
+    let text = LEAGUE.replacen(old, new, 1);
+    assert_eq!(findings(&text, &[]), (vec![(code, line)], true), "{new}");
+}
+
+/// The one warning of a case alone.
+#[track_caller]
+fn expect_warning(text: &str, code: &'static str, line: u32) {
+    assert_eq!(findings(LEAGUE, &[("center/a", text)]), (vec![(code, line)], false), "{text}");
+}
+
+#[test]
+fn the_example_is_sound() {
+    assert_eq!(findings(LEAGUE, &[("center/pass-around", PASS_AROUND)]), (vec![], false));
+}
+
+#[test]
+fn spelling() {
+    expect_error("ball = {", "ball = {{", code::SYNTAX, 3);
+    expect_error("defending", "defending = \"yellow\"\ndefending", code::SYNTAX, 3);
+    expect_error("intent", "purpose = 1\nintent", code::UNKNOWN_KEY, 1);
+    expect_error("at = [-720, 0]", "at = [-720, 0]\nspeed = 3", code::UNKNOWN_KEY, 7);
+    expect_error("[450, 250] }", "[450, 250], color = 1 }", code::UNKNOWN_KEY, 3);
+    expect_error("defending = \"yellow\"\n", "", code::MISSING_KEY, 1);
+    expect_error("at = [-720, 0]\n", "", code::MISSING_KEY, 5);
+    expect_error("scope = [300, 300]", "", code::MISSING_KEY, 13);
+    expect_error("at = [-600, 0], ", "", code::MISSING_KEY, 3);
+    expect_error("\"yellow\"", "\"blue\"", code::BAD_DEFENDING, 2);
+    expect_error("\"yellow\"", "1", code::WRONG_TYPE, 2);
+    expect_error("[-600, 0]", "[-600.0, 0]", code::WRONG_TYPE, 3);
+    expect_error("[-720, 0]", "[-720, 0, 0]", code::WRONG_TYPE, 6);
+    expect_error("[-720, 0]", "[-720, 99999999999]", code::BAD_VALUE, 6);
+    expect_error("{ pass_ball = 2 }", "{ pass_ball = \"2\" }", code::WRONG_TYPE, 7);
+    expect_error("{ pass_ball = 2 }", "{ pass = 2 }", code::UNKNOWN_KEY, 7);
+    expect_error("{ pass_ball = 2 }", "{ pass_ball = 2, kick = \"goal\" }", code::WRONG_TYPE, 7);
+    expect_error("\"wait\"", "\"sleep\"", code::UNKNOWN_KEY, 11);
+    expect_error("\"wait\"", "{ turn = { left = 90 } }", code::UNKNOWN_KEY, 11);
+    expect_error("\"wait\"", "{ turn = { heading_deg = 90.5 } }", code::WRONG_TYPE, 11);
+}
+
+#[test]
+fn who_and_how_many() {
+    expect_error("pass_ball = 2", "pass_ball = 3", code::ROBOT_NUMBER, 7);
+    expect_error("pass_ball = 2", "pass_ball = 0", code::ROBOT_NUMBER, 7);
+    expect_error("pass_ball = 2", "pass_ball = 1", code::ROBOT_NUMBER, 7);
+    expect_error("receive_ball = 1", "receive_ball = 2", code::ROBOT_NUMBER, 11);
+    expect_error("\"get_ball\"", "\"wait\"", code::ONE_GETTER, 5);
+    expect_error("\"wait\"", "\"get_ball\"", code::ONE_GETTER, 9);
+    let bystander = "\n[[teammates]]\nat = [0, 0]\ngameplay = [\"wait\"]\n";
+    let five = format!("{PASS_AROUND}{}", bystander.repeat(3));
+    assert_eq!(findings(LEAGUE, &[("a/a", &five)]), (vec![(code::TOO_MANY_TEAMMATES, 25)], true));
+    let opponents = format!("{PASS_AROUND}{}", "\n[[opponents]]\nat = [0, 1500]\nscope = [9, 9]\n".repeat(4));
+    assert_eq!(findings(LEAGUE, &[("a/a", &opponents)]), (vec![(code::TOO_MANY_OPPONENTS, 29)], true));
+    let nobody = "intent = \"x\"\ndefending = \"cyan\"\nball = { at = [0, 0], scope = [9, 9] }\n";
+    assert_eq!(findings(LEAGUE, &[("a/a", nobody)]), (vec![(code::NO_TEAMMATE, 1)], true));
+    let many = single("[0, 0]", "[9, 9]", &", \"wait\"".repeat(255));
+    assert_eq!(findings(LEAGUE, &[("a/a", &many)]), (vec![(code::TOO_MANY_ACTIONS, 4)], true));
+}
+
+#[test]
+fn what_cannot_be_played() {
+    expect_error("\"wait\", { receive", "{ kick = \"goal\" }, { receive", code::NOT_HOLDING, 11);
+    expect_error("\"wait\", { receive", "{ dribble_to = [0, 0] }, { receive", code::NOT_HOLDING, 11);
+    expect_error("{ pass_ball = 2 }", "{ kick = \"goal\" }, { pass_ball = 2 }", code::NOT_HOLDING, 7);
+    expect_error(", { receive_ball = 1 }, { kick = \"goal\" }", "", code::PASS_UNANSWERED, 7);
+    expect_error(", { pass_ball = 2 }", "", code::RECEIVE_UNANSWERED, 11);
+    expect_error("kick = \"goal\"", "kick = \"header\"", code::UNKNOWN_KICK, 11);
+}
+
+#[test]
+fn places_and_scopes() {
+    expect_error("at = [-600, 0]", "at = [-2701, 0]", code::OUTSIDE_FIELD, 3);
+    expect_error("at = [300, 900]", "at = [300, 1801]", code::OUTSIDE_FIELD, 10);
+    expect_error("at = [-150, 40]", "at = [-150, -1801]", code::OUTSIDE_FIELD, 14);
+    expect_error("scope = [450, 250]", "scope = [0, 250]", code::BAD_SCOPE, 3);
+    expect_error("scope = [300, 300]", "scope = [300, -1]", code::BAD_SCOPE, 15);
+    // On the line is inside; far outside is only doubtful for a point of an action.
+    let on_line = PASS_AROUND.replace("at = [300, 900]", "at = [300, 1800]");
+    assert_eq!(findings(LEAGUE, &[("a/a", &on_line)]), (vec![], false));
+}
+
+#[test]
+fn the_league() {
+    expect_league_error("[field]", "[field", code::SYNTAX, 2);
+    expect_league_error("[field]", "name = 1\n[field]", code::UNKNOWN_KEY, 2);
+    expect_league_error("width = 3600\n", "", code::MISSING_KEY, 2);
+    expect_league_error("length = 5400", "length = 0", code::BAD_VALUE, 3);
+    expect_league_error("length = 5400", "length = \"5400\"", code::WRONG_TYPE, 3);
+    expect_league_error("depth = 650, ", "", code::MISSING_KEY, 7);
+    expect_league_error("r_min = 100", "r_min = 0", code::BAD_VALUE, 10);
+    expect_league_error("[pass]\nr_min = 100\nr_max = 300\n", "", code::MISSING_KEY, 1);
+    expect_league_error("length = 1000\n", "", code::MISSING_KEY, 13);
+    expect_league_error("aim = \"goal\"", "aim = \"corner\"", code::BAD_VALUE, 33);
+    expect_league_error("offset = 250\n", "", code::NO_PARTNER, 42);
+    expect_league_error("primitive = \"forward_soft\"", "primitive = 3", code::WRONG_TYPE, 18);
+    // A partner has equal length and radii: both sides lose it.
+    let text = LEAGUE.replacen("length = 900", "length = 901", 1);
+    assert_eq!(findings(&text, &[]), (vec![(code::NO_PARTNER, 20), (code::NO_PARTNER, 26)], true));
+    // Margin and offset may be left out.
+    let text = LEAGUE.replace("margin = 300\n", "");
+    assert_eq!(findings(&text, &[("center/a", PASS_AROUND)]), (vec![], false));
+}
+
+#[test]
+fn every_fault_is_told_at_once() {
+    let text = PASS_AROUND
+        .replace("\"yellow\"", "\"blue\"")
+        .replace("[300, 300]", "[0, 0]")
+        .replace("[-720, 0]", "1");
+    let (list, refused) = findings(LEAGUE, &[("center/a", &text), ("center/b", "x")]);
+    let codes = [(code::BAD_DEFENDING, 2), (code::WRONG_TYPE, 6), (code::BAD_SCOPE, 15), (code::SYNTAX, 1)];
+    assert!(refused);
+    assert_eq!(list, codes);
+}
+
+#[test]
+fn doubts_do_not_refuse() {
+    let with = |old: &str, new: &str| PASS_AROUND.replacen(old, new, 1);
+    expect_warning(&with("scope = [450, 250]", "scope = [901, 250]"), code::BIG_SCOPE, 3);
+    expect_warning(&with("at = [-150, 40]", "at = [-150, 440]"), code::SCOPE_IN_PATH, 14);
+    expect_warning(
+        &with("\"wait\", { receive", "{ go_to_point = [0, 1801] }, { receive"),
+        code::POINT_OUTSIDE,
+        11,
+    );
+    expect_warning(&with("\"get_ball\", ", "\"get_ball\", { go_to_point = [0, 0] }, "), code::LEAVES_BALL, 7);
+    expect_warning(
+        &format!("{PASS_AROUND}[[teammates]]\nat = [0, 0]\ngameplay = [\"wait\"]\n"),
+        code::BYSTANDER,
+        16,
+    );
+    let waits_for_ever = "[[teammates]]\nat = [0, 500]\ngameplay = [\"wait\", \"get_ball\"]\n";
+    expect_warning(&(single("[0, 0]", "[400, 400]", "") + waits_for_ever), code::NEVER_REACHED, 9);
+    let league = LEAGUE.replace("forward_soft", "bicycle");
+    assert_eq!(findings(&league, &[("a/a", PASS_AROUND)]), (vec![(code::UNKNOWN_PRIMITIVE, 18)], false));
+    assert_eq!(findings(LEAGUE, &[]), (vec![(code::EMPTY, 1)], false));
+}
+
+#[test]
+fn twins_and_beaten_cases_are_doubtful() {
+    let list = findings(LEAGUE, &[("center/a", PASS_AROUND), ("center/b", PASS_AROUND)]);
+    assert_eq!(list, (vec![(code::TWIN, 1)], false));
+    // A mirrored copy is a twin as well.
+    let mirrored = "intent = \"the same below\"\ndefending = \"yellow\"\nball = { at = [-600, 0], scope = [450, 250] }\n\
+        [[teammates]]\nat = [-720, 0]\ngameplay = [\"get_ball\", { pass_ball = 2 }]\n\
+        [[teammates]]\nat = [300, -900]\ngameplay = [{ receive_ball = 1 }, { kick = \"goal\" }]\n\
+        [[opponents]]\nat = [-150, -40]\nscope = [300, 300]\n";
+    assert_eq!(findings(LEAGUE, &[("center/a", PASS_AROUND), ("center/b", mirrored)]).0, [(code::TWIN, 1)]);
+    // One robot alone at the same place: never retrieved before the pass where both could be... it has fewer robots,
+    // but in its own situation there is only one. Beaten is who has the same robots and the lower similarity.
+    let near = single("[0, 0]", "[400, 400]", ", { kick = \"forward\" }");
+    let wide = single("[100, 0]", "[800, 600]", ", { kick = \"goal\" }")
+        .replace("[[teammates]]\nat = [100, 0]", "[[teammates]]\nat = [90, 0]");
+    // In the situation of `wide` (ball at [100, 0], robot at [90, 0]) `near` costs 10 mm; `wide` costs nothing.
+    assert_eq!(findings(LEAGUE, &[("a/near", &near), ("a/wide", &wide)]), (vec![], false));
+    let scoped = wide.clone() + "[[opponents]]\nat = [100, 900]\nscope = [300, 300]\n";
+    let third = near.clone()
+        + "[[opponents]]\nat = [0, 900]\nscope = [300, 300]\n[[opponents]]\nat = [0, 950]\nscope = [300, 300]\n";
+    // With its one opponent at [100, 900], both scopes of `third` are occupied: two conditions beat one.
+    assert_eq!(findings(LEAGUE, &[("a/scoped", &scoped), ("a/third", &third)]).0, [(code::BEATEN, 1)]);
+}
+
+#[test]
+fn files_out_of_place_or_missing_are_told() {
+    let root = std::env::temp_dir().join(format!("case-tools-{}", std::process::id()));
+    let write = |name: &str, text: &[u8]| {
+        let path = root.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    let codes = || {
+        let findings = load(&root).expect_err("refused");
+        findings.into_iter().map(|finding| (finding.code, finding.file)).collect::<Vec<_>>()
+    };
+    let at = |name: &str| root.join(name);
+
+    assert_eq!(codes(), [(code::UNREADABLE, root.clone()), (code::NO_LEAGUE, at("league.toml"))]);
+    write("center/pass-around.toml", PASS_AROUND.as_bytes());
+    assert_eq!(codes(), [(code::NO_LEAGUE, at("league.toml"))]);
+    write("league.toml", LEAGUE.as_bytes());
+    write("center/notes.txt", b"not a case");
+    let library = load(&root).expect("sound");
+    assert_eq!(library.names, ["center/pass-around"]);
+    assert_eq!(Some(library.league.as_str()), root.file_name().and_then(|name| name.to_str()));
+    assert_eq!(library.findings, []);
+    assert_eq!(library.sources, [PASS_AROUND]);
+
+    write("stray.toml", PASS_AROUND.as_bytes());
+    write("center/deep/case.toml", PASS_AROUND.as_bytes());
+    write("center/latin.toml", b"intent = \"\xe9\"");
+    let mut found = codes();
+    found.sort();
+    let expected = [
+        (code::MISPLACED, at("center/deep/case.toml")),
+        (code::MISPLACED, at("stray.toml")),
+        (code::UNREADABLE, at("center/latin.toml")),
+    ];
+    assert_eq!(found, expected);
+    std::fs::remove_dir_all(&root).unwrap();
+}
+
+#[test]
+fn ids_follow_the_bytes_of_region_and_name() {
+    let texts = [("front/a", 100), ("front-side/a", 200), ("back/z", 300), ("back/Z", 400)]
+        .map(|(name, x)| (name, single(&format!("[{x}, 0]"), "[100, 100]", "")));
+    let borrowed: Vec<_> = texts.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let library = common::library(&borrowed);
+    assert_eq!(library.names, ["back/Z", "back/z", "front-side/a", "front/a"]);
+    let balls: Vec<_> = library.base().cases().step_by(4).map(|case| case.ball().x).collect();
+    assert_eq!(balls, [400, 300, 200, 100]);
+    assert!(library.findings.iter().all(|finding| finding.severity == Severity::Warning));
+}
