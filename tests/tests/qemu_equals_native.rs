@@ -1,0 +1,182 @@
+//! Does the firmware image play the very trial that the same brain plays on the PC, bit for bit? (DESIGN §2, §7)
+//!
+//! Each robot runs in a QEMU of its own; trace hashes are taken by the simulator, so by the same code for both. Needs QEMU
+//! and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
+
+use std::cell::RefCell;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::LazyLock;
+
+use arena::{CaseNames, TrialConfig, TrialReport, run};
+use brain::{Approach, BrainConfig};
+use hil_sim::{
+    AirSettings, Backend, Configuration, Fault, Mcu, McuError, NativeBackend, QemuBackend, Reply, Scenario,
+    ScheduledFault,
+};
+use protocol::lockstep::TickIn;
+use protocol::{RobotId, TeamId};
+
+/// Of each scenario and configuration of the paper.
+const SEEDS: u64 = 3;
+/// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
+const STEP_BUDGET: u32 = 40_000;
+
+#[test]
+fn native_equals_qemu() {
+    let mut meter = Meter::default();
+    for (number, (scenario, opponents)) in paper().enumerate() {
+        for seed in 1..=SEEDS {
+            let config = TrialConfig::new(scenario, opponents, Approach::Cases, 100 * number as u64 + seed);
+            both(&config, QemuBackend::new(&*IMAGE), &mut meter);
+        }
+    }
+    assert_eq!(meter.trials, 8 * SEEDS);
+    assert!(meter.gameplays > meter.trials, "trials without cases prove little: {meter:?}");
+    meter.check();
+}
+
+#[test]
+fn native_equals_qemu_when_packets_are_lost_and_a_robot_dies_and_returns() {
+    let mut meter = Meter::default();
+    let robot = RobotId::new(1).expect("an id");
+    for seed in 1..=3 {
+        let mut config =
+            TrialConfig::new(Scenario::Random, Configuration::DefenderGoalie, Approach::Cases, seed);
+        config.robots = 3;
+        config.air =
+            AirSettings { delay: [1, 2], duplication: 0.1, reordering: 0.1, ..AirSettings::with_loss(0.3) };
+        config.faults = vec![
+            ScheduledFault { tick: 40, fault: Fault::Crash(robot) },
+            ScheduledFault { tick: 70, fault: Fault::Return(robot) },
+        ];
+        both(&config, QemuBackend::new(&*IMAGE), &mut meter);
+    }
+    meter.check();
+}
+
+#[test]
+fn a_library_put_into_flash_is_the_one_that_is_played() {
+    let folder = Folder::with(&["league.toml", "center/pass-around.toml", "front/shot.toml"]);
+    let library = case_tools::load(&folder.0).unwrap_or_else(|findings| panic!("{findings:?}"));
+    let built_in = TrialConfig::new(Scenario::MiddleBack, Configuration::TwoDefenders, Approach::Cases, 5);
+    let names = CaseNames::new(library.names.iter().cloned());
+    let config = built_in.clone().with_library(library.base(), names);
+    let backend = QemuBackend::new(&*IMAGE).with_library(library.base().bytes()).expect("room for it");
+    let hash = both(&config, backend, &mut Meter::default());
+    let other = run(&built_in, Box::new(NativeBackend::new(built_in.base)), &mut []).expect("a trial");
+    assert_ne!(hash, other.trace_hash, "the library makes no difference");
+}
+
+#[test]
+fn a_library_that_is_none_is_refused() {
+    let mut backend = QemuBackend::new(&*IMAGE).with_library(&[7; 100]).expect("room for it");
+    let config = BrainConfig::new(RobotId::new(1).expect("an id"), TeamId(0));
+    assert!(matches!(backend.boot(&config), Err(McuError::Unusable)));
+}
+
+/// Plays a trial on both back ends; gives the hash they have in common.
+fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> String {
+    let play = |backend: Box<dyn Backend<'a> + 'a>| -> TrialReport {
+        let name = backend.name();
+        run(config, backend, &mut []).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    let native = play(Box::new(NativeBackend::new(config.base)));
+    let emulated = play(Box::new(Metered { qemu, steps: meter.steps.clone() }));
+    let which = format!("scenario {} {} seed {}", config.scenario, config.opponents.word(), config.seed);
+    assert_eq!(native.trace_hash, emulated.trace_hash, "{which}");
+    meter.trials += 1;
+    meter.gameplays += emulated.cycles.iter().filter(|cycle| cycle.case.is_some()).count() as u64;
+    native.trace_hash
+}
+
+/// What the emulated trials took.
+#[derive(Debug, Default)]
+struct Meter {
+    trials: u64,
+    gameplays: u64,
+    steps: Rc<RefCell<Vec<u32>>>,
+}
+
+impl Meter {
+    /// The worst step is within its budget; tells it, and the median.
+    fn check(&self) {
+        let mut steps = self.steps.borrow_mut();
+        steps.sort_unstable();
+        let (median, worst) = (steps[steps.len() / 2], steps[steps.len() - 1]);
+        let (trials, gameplays, count) = (self.trials, self.gameplays, steps.len());
+        println!(
+            "{trials} trials, {gameplays} gameplays, {count} steps: median {median}, worst {worst} instructions"
+        );
+        assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
+    }
+}
+
+/// The QEMU back end with an eye on the instructions of every step.
+struct Metered {
+    qemu: QemuBackend,
+    steps: Rc<RefCell<Vec<u32>>>,
+}
+
+impl<'a> Backend<'a> for Metered {
+    fn name(&self) -> &'static str {
+        self.qemu.name()
+    }
+
+    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
+        let robot = self.qemu.boot(config)?;
+        Ok(Box::new(MeteredRobot { robot, steps: self.steps.clone() }))
+    }
+}
+
+struct MeteredRobot<'a> {
+    robot: Box<dyn Mcu + 'a>,
+    steps: Rc<RefCell<Vec<u32>>>,
+}
+
+impl Mcu for MeteredRobot<'_> {
+    fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
+        self.robot.post(tick)
+    }
+
+    fn collect(&mut self) -> Result<Reply, McuError> {
+        let reply = self.robot.collect()?;
+        self.steps.borrow_mut().push(reply.instructions);
+        Ok(reply)
+    }
+}
+
+/// The paper's scenarios with both of its configurations.
+fn paper() -> impl Iterator<Item = (Scenario, Configuration)> {
+    let both = |scenario| [Configuration::DefenderGoalie, Configuration::TwoDefenders].map(|c| (scenario, c));
+    Scenario::PAPER.into_iter().flat_map(both)
+}
+
+/// The image, built where it is missing or old.
+static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
+    firmware_build::build_image(&firmware_build::workspace_root()).unwrap_or_else(|error| panic!("{error}"))
+});
+
+/// A folder with some files of the built-in library; gone with this value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn with(files: &[&str]) -> Self {
+        let folder = std::env::temp_dir().join(format!("onetwo-some-cases-{}", std::process::id()));
+        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged");
+        for file in files {
+            let to = folder.join(file);
+            fs::create_dir_all(to.parent().expect("a file in a folder")).expect("a temporary folder");
+            fs::copy(from.join(file), to).expect("a case of the built-in library");
+        }
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A temporary folder that stays is a pity, not an error.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
