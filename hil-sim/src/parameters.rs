@@ -151,6 +151,8 @@ pub struct RefereeParameters {
     pub close: f32,
     /// s without contact before a touch counts anew.
     pub possession_gap: f32,
+    /// s without contact before a touch counts anew when another robot touched the ball meanwhile.
+    pub contact_end: f32,
     /// s, against defender and goalie.
     pub time_limit_dg: f32,
     /// s, against two defenders.
@@ -227,6 +229,7 @@ impl Parameters {
             ("opponent.delay", opponent.delay),
             ("referee.close", referee.close),
             ("referee.possession_gap", referee.possession_gap),
+            ("referee.contact_end", referee.contact_end),
             ("noise.pose", noise.pose),
             ("noise.heading_deg", noise.heading_deg),
             ("noise.ball_share", noise.ball_share),

@@ -149,11 +149,11 @@ impl Referee {
         let attackers = world.walkers.iter().filter(|walker| walker.side == Side::Attackers).count();
         let mut goalie_touched = false;
         for event in events {
-            let robot = match *event {
-                WorldEvent::Touched { robot }
-                | WorldEvent::Grabbed { robot }
-                | WorldEvent::Kicked { robot, .. } => robot,
-                _ => continue,
+            let (WorldEvent::Touched { robot }
+            | WorldEvent::Grabbed { robot }
+            | WorldEvent::Kicked { robot, .. }) = *event
+            else {
+                continue;
             };
             self.touched(time, robot, attackers);
             goalie_touched |= self.last.is_some_and(|(_, party)| party == Party::Opponent(Role::Goalie));
@@ -185,15 +185,16 @@ impl Referee {
     }
 
     fn touched(&mut self, time: f32, robot: usize, attackers: usize) {
-        let since_another = self.last.is_none_or(|(last, _)| last != robot);
+        let another = self.last.is_none_or(|(last, _)| last != robot);
         let opponent = robot.checked_sub(attackers).filter(|&i| i < self.roles.len());
         let Some(i) = opponent else {
             self.last = Some((robot, Party::Attackers));
             return;
         };
         let contact = &mut self.contacts[i];
-        let rested = contact.at.is_none_or(|at| time - at >= self.parameters.possession_gap);
-        contact.possessions += u32::from(rested || since_another);
+        // A scrum around the ball is one possession, though its bodies touch in turns: the own contact must have ended.
+        let needed = if another { self.parameters.contact_end } else { self.parameters.possession_gap };
+        contact.possessions += u32::from(contact.at.is_none_or(|at| time - at >= needed));
         contact.at = Some(time);
         self.last = Some((robot, Party::Opponent(self.roles[i])));
     }
@@ -323,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_possession_counts_again_after_half_a_second_or_somebody_elses_touch() {
+    fn a_possession_counts_again_after_half_a_second_or_a_contacts_end_and_somebody_elses_touch() {
         let mut game = kick_off(Configuration::TwoDefenders);
         let had = |game: &Match| {
             (game.referee.possessions(Role::Midfield), game.referee.possessions(Role::Defender))
@@ -334,9 +335,11 @@ mod tests {
             (1.49, 1, (1, 0)),
             (1.99, 1, (2, 0)),
             (2.00, 0, (2, 0)),
-            (2.01, 1, (3, 0)),
-            (2.02, 2, (3, 1)),
-            (2.03, 1, (4, 1)),
+            (2.01, 1, (2, 0)),
+            (2.02, 0, (2, 0)),
+            (2.12, 1, (3, 0)),
+            (2.13, 2, (3, 1)),
+            (2.23, 1, (4, 1)),
         ] {
             game.touch(time, robot);
             assert_eq!(had(&game), expected, "at {time}");

@@ -367,7 +367,7 @@ pub const TICK_US: u64 = TICK_MS as u64 * 1000;
 const TICK: f32 = 0.04;
 /// Steps of physics in a tick.
 const STEPS_PER_TICK: u32 = 4;
-const _: () = assert!(TICK == STEPS_PER_TICK as f32 * STEP && TICK_MS % STEPS_PER_TICK == 0);
+const _: () = assert!(TICK == STEPS_PER_TICK as f32 * STEP && TICK_MS.is_multiple_of(STEPS_PER_TICK));
 
 #[cfg(test)]
 mod tests;

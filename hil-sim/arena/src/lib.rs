@@ -9,7 +9,7 @@
 mod backups;
 mod cycles;
 mod names;
-
+mod picture;
 mod recording;
 mod report;
 mod story;
@@ -17,7 +17,7 @@ mod trial;
 
 pub use cycles::{CycleEnd, CycleLog, CycleSeen, News};
 pub use names::{CaseNames, Cast, letter};
-
+pub use picture::picture;
 pub use recording::{Kick, Recording, Sample, Start};
 pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
 pub use story::Story;

@@ -1,6 +1,7 @@
 //! What must be kept of a trial to draw it afterwards? Places by tick, kicks, and where gameplays began; m, s, field frame.
 
 use geometry::{Field, Point, Pose};
+use hil_sim::TICK_US;
 use hil_sim::world::{Strike, WorldEvent};
 
 use crate::cycles::News;
@@ -93,7 +94,7 @@ impl Watcher for Recording {
             }
         }
         self.samples.push(Sample {
-            time: moment.tick.time,
+            time: moment.tick.time + TICK_US as f32 * 1e-6,
             ball: moment.world.ball.position,
             holder: moment.world.holder(),
             robots: moment.world.walkers.iter().map(|walker| walker.pose).collect(),

@@ -175,7 +175,7 @@ pub fn run<'a>(
             };
             backups.hear(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
-                news.push(cycles.hear(tick.time, state));
+                news.push(cycles.hear(tick.time, from, state, beacon.progress));
             }
             beacons.push((from, beacon));
         }

@@ -1,0 +1,326 @@
+//! What does a whole trial look like on one sheet? An SVG: field, tracks, the ball's path and who sent it, kicks, gameplays, outcome.
+//!
+//! Attackers are circles and opponents squares, as in the paper's figures; hollow where they began, filled where they ended.
+//! The ball's path is thick where it was carried and dotted where it rolled, in the colour of whoever carried or last kicked
+//! it. Numbers stand where the ball was when a gameplay began; the list below says which. Colours are Okabe and Ito's, told
+//! apart by every eye.
+
+mod canvas;
+mod field;
+mod legend;
+
+use geometry::{Field, Point, Pose};
+use hil_sim::{Configuration, Role, Scenario};
+use rules::League;
+
+use crate::names::letter;
+use crate::recording::{Recording, Sample, Start};
+use crate::report::TrialReport;
+use canvas::{Canvas, Px, SCALE};
+
+/// The picture of a trial that has ended; an empty field for a recording of nothing.
+pub fn picture(recording: &Recording) -> String {
+    let mut canvas = Canvas::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
+    field::draw(&mut canvas);
+    let starts = shown_starts(recording);
+    let Some((first, last)) = recording.samples.first().zip(recording.samples.last()) else {
+        return canvas.finish(WIDTH, HEADER + 2.0 * HALF_HEIGHT, "a trial");
+    };
+    let attackers = recording.cast.attackers.len();
+    for robot in 0..first.robots.len() {
+        track(&mut canvas, recording, robot);
+    }
+    ball_path(&mut canvas, recording);
+    let mut taken = Vec::new();
+    for (robot, (start, end)) in first.robots.iter().zip(&last.robots).enumerate() {
+        let actor = Actor { robot, attackers, recording };
+        taken.extend([canvas.place(start.position), canvas.place(end.position)]);
+        actor.draw(&mut canvas, start, false);
+        actor.draw(&mut canvas, end, true);
+    }
+    ball(&mut canvas, first.ball, false);
+    ball(&mut canvas, last.ball, true);
+    taken.extend([canvas.place(first.ball), canvas.place(last.ball)]);
+    seconds(&mut canvas, &recording.samples, &mut taken);
+    for (number, start) in starts.iter().enumerate() {
+        let at = canvas.place(start.ball);
+        badge(&mut canvas, number + 1, at, &mut taken);
+    }
+    let bottom = HEADER + 2.0 * HALF_HEIGHT;
+    let height = legend::draw(&mut canvas, recording, &starts, WIDTH, bottom);
+    let title = recording.report.as_ref().map_or_else(|| "a trial".to_owned(), title);
+    if let Some(report) = &recording.report {
+        header(&mut canvas, report);
+    }
+    canvas.finish(WIDTH, height, &title)
+}
+
+/// The gameplays that lived long enough to be seen.
+fn shown_starts(recording: &Recording) -> Vec<&Start> {
+    let lived = |start: &&Start| {
+        let cycles = recording.report.as_ref().map(|report| &report.cycles);
+        cycles.and_then(|cycles| cycles.get(start.cycle)).is_none_or(|c| c.end_s - c.start_s >= SHORTEST)
+    };
+    recording.starts.iter().filter(lived).collect()
+}
+
+fn title(report: &TrialReport) -> String {
+    match report.scenario {
+        Scenario::Random => "A random scenario".to_owned(),
+        scenario => format!("Scenario {scenario}: {}", scenario.title()),
+    }
+}
+
+fn header(canvas: &mut Canvas, report: &TrialReport) {
+    let opponents = match report.opponents {
+        Configuration::DefenderGoalie => "a defender and a goalie",
+        Configuration::TwoDefenders => "two defenders",
+    };
+    let approach = if report.approach == "cbr" { "Case-based" } else { "Reactive" };
+    let below =
+        format!("{approach} attackers, playing to the right, against {opponents} · seed {}", report.seed);
+    let outcome = format!("{} after {:.1} s", report.outcome.word(), report.time_s);
+    let (left, right) = (SIDE, WIDTH - SIDE);
+    canvas.text(
+        Px::new(left, 34.0),
+        &title(report),
+        format!(r#"font-size="21" font-weight="bold" fill="{INK}""#),
+    );
+    canvas.text(Px::new(left, 56.0), &below, format!(r#"font-size="14" fill="{FAINT}""#));
+    let style = format!(r#"font-size="21" font-weight="bold" fill="{INK}" text-anchor="end""#);
+    canvas.text(Px::new(right, 34.0), &outcome, style);
+    if let Some(by) = report.out_by {
+        let style = format!(r#"font-size="14" fill="{FAINT}" text-anchor="end""#);
+        canvas.text(Px::new(right, 56.0), &format!("last touched by the {by}"), style);
+    }
+}
+
+/// Where a robot went.
+fn track(canvas: &mut Canvas, recording: &Recording, robot: usize) {
+    let places =
+        recording.samples.iter().filter_map(|sample| sample.robots.get(robot)).map(|pose| pose.position);
+    let points = thinned(canvas, places);
+    let color = color(robot, recording.cast.attackers.len());
+    let style = format!(r#"stroke="{color}" stroke-width="2" stroke-opacity="0.45" stroke-linejoin="round""#);
+    canvas.path(&points, style);
+}
+
+/// The ball's path in stretches of one carrier or one sender each.
+fn ball_path(canvas: &mut Canvas, recording: &Recording) {
+    let attackers = recording.cast.attackers.len();
+    let mut kicks = recording.kicks.iter().peekable();
+    let mut sender = None;
+    let mut stretches: Vec<(Control, Vec<Point<Field>>)> = Vec::new();
+    for sample in &recording.samples {
+        let mut kicked_from = None;
+        while let Some(kick) = kicks.next_if(|kick| kick.time <= sample.time) {
+            (sender, kicked_from) = (Some(kick.robot), Some(kick.from));
+        }
+        let control = sample.holder.map_or(Control::Rolls(sender), Control::Carried);
+        match stretches.last_mut() {
+            Some((now, points)) if *now == control && kicked_from.is_none() => points.push(sample.ball),
+            before => {
+                let joint = kicked_from.or(before.and_then(|(_, points)| points.last().copied()));
+                stretches.push((control, joint.into_iter().chain([sample.ball]).collect()));
+            }
+        }
+    }
+    for (control, places) in &stretches {
+        let points = thinned(canvas, places.iter().copied());
+        match *control {
+            Control::Carried(robot) => {
+                let color = color(robot, attackers);
+                let style = format!(
+                    r#"stroke="{color}" stroke-width="6" stroke-linecap="round" stroke-linejoin="round""#
+                );
+                canvas.path(&points, style);
+            }
+            Control::Rolls(sender) => {
+                let color = sender.map_or(INK, |robot| color(robot, attackers));
+                let style = format!(
+                    r#"stroke="{color}" stroke-width="4.5" stroke-linecap="round" stroke-dasharray="0.1 9" stroke-linejoin="round""#
+                );
+                canvas.path(&points, style);
+                arrow_on(canvas, &points, color);
+            }
+        }
+    }
+}
+
+/// Who has the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Control {
+    Carried(usize),
+    /// After this robot's kick, if anybody has kicked yet.
+    Rolls(Option<usize>),
+}
+
+/// An arrowhead half way along a path that is long enough for one.
+fn arrow_on(canvas: &mut Canvas, points: &[Px], color: &str) {
+    let length: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    if length < SHORTEST_ARROW {
+        return;
+    }
+    let mut gone = 0.0;
+    for pair in points.windows(2) {
+        gone += pair[0].distance(pair[1]);
+        if gone >= length * 0.5 {
+            return canvas.arrowhead(pair[1], (pair[1].x - pair[0].x, pair[1].y - pair[0].y), 15.0, color);
+        }
+    }
+}
+
+/// A robot on the picture.
+struct Actor<'a> {
+    robot: usize,
+    attackers: usize,
+    recording: &'a Recording,
+}
+
+impl Actor<'_> {
+    fn draw(&self, canvas: &mut Canvas, pose: &Pose<Field>, filled: bool) {
+        let at = canvas.place(pose.position);
+        let color = color(self.robot, self.attackers);
+        let radius = League::FourLegged.robot().radius * SCALE;
+        let (fill, ink) = if filled { (color, "white") } else { ("white", color) };
+        let style = format!(r#"fill="{fill}" stroke="{color}" stroke-width="2.5""#);
+        let (sin, cos) = pose.heading.sin_cos();
+        let nose = at.moved(cos * (radius + 8.0), -sin * (radius + 8.0));
+        canvas.line(at, nose, format!(r#"stroke="{color}" stroke-width="4" stroke-linecap="round""#));
+        if self.robot < self.attackers {
+            canvas.circle(at, radius, style);
+        } else {
+            let half = radius * 0.9;
+            canvas.rect(at.moved(-half, -half), 2.0 * half, 2.0 * half, format!(r#"{style} rx="3""#));
+        }
+        let style = format!(r#"font-size="17" font-weight="bold" text-anchor="middle" fill="{ink}""#);
+        canvas.text(at.moved(0.0, 6.0), &self.letter(), style);
+    }
+
+    fn letter(&self) -> String {
+        let role = self.robot.checked_sub(self.attackers).and_then(|i| self.recording.cast.opponents.get(i));
+        match role {
+            None => letter(self.robot).to_string(),
+            Some(Role::Defender) => "D".to_owned(),
+            Some(Role::Midfield) => "M".to_owned(),
+            Some(Role::Goalie) => "G".to_owned(),
+        }
+    }
+}
+
+fn ball(canvas: &mut Canvas, at: Point<Field>, filled: bool) {
+    let fill = if filled { BALL } else { "white" };
+    let style = format!(r#"fill="{fill}" stroke="{INK}" stroke-width="2""#);
+    let at = canvas.place(at);
+    canvas.circle(at, League::FourLegged.ball().radius * SCALE, style);
+}
+
+/// Small times along the ball's path, where the ball has moved since the last.
+fn seconds(canvas: &mut Canvas, samples: &[Sample], taken: &mut Vec<Px>) {
+    let mut last: Option<Px> = None;
+    let mut next = EVERY;
+    for sample in samples {
+        if sample.time < next {
+            continue;
+        }
+        let at = canvas.place(sample.ball);
+        if last.is_none_or(|last| last.distance(at) > 40.0) {
+            let spot = free_spot(at, 22.0, taken);
+            let halo = r#"stroke="white" stroke-opacity="0.8" stroke-width="4" paint-order="stroke""#;
+            let style = format!(r#"font-size="12" fill="{INK}" text-anchor="middle" {halo}"#);
+            canvas.circle(at, 2.6, format!(r#"fill="{INK}""#));
+            canvas.text(spot.moved(0.0, 4.0), &format!("{next:.0} s"), style);
+            taken.push(spot);
+            last = Some(at);
+        }
+        next += EVERY;
+    }
+}
+
+/// A numbered disc near `at`, tied to it.
+fn badge(canvas: &mut Canvas, number: usize, at: Px, taken: &mut Vec<Px>) {
+    let spot = free_spot(at, 34.0, taken);
+    canvas.line(at, spot, format!(r#"stroke="{INK}" stroke-width="1""#));
+    legend::number(canvas, spot, number);
+    taken.push(spot);
+}
+
+/// A spot `away` from `at`, or farther, clear of everything taken; upwards first.
+fn free_spot(at: Px, away: f32, taken: &[Px]) -> Px {
+    let mut best = (f32::MIN, at);
+    for ring in 0..3 {
+        let radius = away + 16.0 * ring as f32;
+        for (dx, dy) in DIRECTIONS {
+            let spot = at.moved(dx * radius, dy * radius);
+            let clear = taken.iter().map(|other| other.distance(spot)).fold(CLEAR, f32::min);
+            if clear >= CLEAR {
+                return spot;
+            }
+            if clear > best.0 {
+                best = (clear, spot);
+            }
+        }
+    }
+    best.1
+}
+
+/// Places with at least two centimetres between them, the last one always kept.
+fn thinned(canvas: &Canvas, places: impl Iterator<Item = Point<Field>>) -> Vec<Px> {
+    let mut points: Vec<Px> = Vec::new();
+    let mut skipped = None;
+    for place in places {
+        let point = canvas.place(place);
+        skipped = points.last().is_some_and(|last| last.distance(point) < 0.02 * SCALE).then_some(point);
+        if skipped.is_none() {
+            points.push(point);
+        }
+    }
+    points.extend(skipped);
+    points
+}
+
+/// A robot's colour: the attackers' tell them apart, the opponents' are grey.
+fn color(robot: usize, attackers: usize) -> &'static str {
+    match robot.checked_sub(attackers) {
+        None => ATTACKERS[robot % ATTACKERS.len()],
+        Some(i) => OPPONENTS[i % OPPONENTS.len()],
+    }
+}
+
+/// Blue, vermilion, bluish green, reddish purple (Okabe and Ito).
+const ATTACKERS: [&str; 4] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
+const OPPONENTS: [&str; 2] = ["#5f6368", "#303336"];
+const INK: &str = "#202124";
+const FAINT: &str = "#5f6368";
+/// Orange (Okabe and Ito), as the league's ball.
+const BALL: &str = "#E69F00";
+/// Width of the picture, px.
+const WIDTH: f32 = 1000.0;
+/// White to the left and right, px.
+const SIDE: f32 = 18.0;
+/// Height of the title, px.
+const HEADER: f32 = 72.0;
+/// Half the height of the carpet shown, px.
+const HALF_HEIGHT: f32 = 2.0 * SCALE;
+/// Seconds between times along the ball's path.
+const EVERY: f32 = 5.0;
+/// A gameplay superseded sooner than this left nothing to see, s.
+const SHORTEST: f64 = 0.1;
+/// Path length that bears an arrowhead, px.
+const SHORTEST_ARROW: f32 = 40.0;
+/// Distance that keeps labels from touching, px.
+const CLEAR: f32 = 30.0;
+/// Where labels go, the best first: up, then around.
+const DIRECTIONS: [(f32, f32); 8] = [
+    (0.0, -1.0),
+    (0.71, -0.71),
+    (-0.71, -0.71),
+    (0.0, 1.0),
+    (0.71, 0.71),
+    (-0.71, 0.71),
+    (1.0, 0.0),
+    (-1.0, 0.0),
+];
+
+#[cfg(test)]
+mod tests;

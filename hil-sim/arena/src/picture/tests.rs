@@ -1,0 +1,73 @@
+//! Does the picture show what was recorded? Counted shapes and hand-made recordings.
+
+use hil_sim::NativeBackend;
+
+use super::*;
+use crate::names::Cast;
+use crate::recording::Kick;
+use crate::trial::{TrialConfig, run};
+use brain::Approach;
+use hil_sim::world::Strike;
+use protocol::RobotId;
+
+fn sample(time: f32, x: f32, holder: Option<usize>) -> Sample {
+    Sample {
+        time,
+        ball: Point::new(x, 0.0),
+        holder,
+        robots: vec![Pose::from_mm_deg(1000.0 * x - 130.0, 0.0, 0.0), Pose::from_mm_deg(900.0, 0.0, 180.0)],
+    }
+}
+
+#[test]
+fn a_carried_and_kicked_ball_is_a_thick_and_then_a_dotted_line() {
+    let mut recording = Recording {
+        cast: Cast { attackers: vec![RobotId::new(1).unwrap()], opponents: vec![Role::Defender] },
+        ..Recording::default()
+    };
+    let held = (0..20).map(|i| sample(i as f32 * 0.04, i as f32 * 0.01, Some(0)));
+    let rolling = (20..60).map(|i| sample(i as f32 * 0.04, i as f32 * 0.03 - 0.4, None));
+    recording.samples = held.chain(rolling).collect();
+    let kick = LEGGED_KICK;
+    recording.kicks.push(Kick {
+        time: 0.79,
+        robot: 0,
+        strike: kick,
+        from: Point::new(0.19, 0.0),
+        rest: Point::default(),
+    });
+    let svg = picture(&recording);
+    let thick = format!(r#"stroke="{}" stroke-width="6""#, ATTACKERS[0]);
+    assert_eq!(svg.matches(&thick).count(), 1 + 1, "with the legend's");
+    assert_eq!(svg.matches("stroke-dasharray").count(), 1 + 1, "with the legend's");
+    assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+}
+
+const LEGGED_KICK: Strike = Strike::Kick(protocol::robot_io::LeggedKick::ForwardSoft);
+
+#[test]
+fn a_trial_with_gameplays_lists_each_that_could_be_seen() {
+    let config = TrialConfig::new(Scenario::MiddleBack, Configuration::DefenderGoalie, Approach::Cases, 2);
+    let mut recording = Recording::default();
+    let report = run(&config, Box::new(NativeBackend::new(config.base)), &mut [&mut recording]).unwrap();
+    let svg = picture(&recording);
+    let starts = shown_starts(&recording);
+    assert!(!starts.is_empty());
+    for start in starts {
+        assert!(svg.contains(&start.case), "{}", start.case);
+    }
+    assert!(svg.contains(&format!("{} after", report.outcome.word())));
+}
+
+#[test]
+fn nothing_recorded_is_an_empty_field() {
+    assert!(picture(&Recording::default()).contains("<svg"));
+}
+
+#[test]
+fn labels_avoid_what_is_there() {
+    let at = Px::new(0.0, 0.0);
+    assert_eq!(free_spot(at, 34.0, &[]), Px::new(0.0, -34.0));
+    let spot = free_spot(at, 34.0, &[Px::new(0.0, -34.0)]);
+    assert!(spot.distance(Px::new(0.0, -34.0)) >= CLEAR);
+}
