@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::Failure;
 use crate::cases::CasesVerb;
+use crate::trial::TrialArgs;
 
 /// Case-based robot soccer: robots that choose a gameplay together and play it.
 #[derive(Debug, Parser)]
@@ -19,6 +20,10 @@ pub(crate) struct Cli {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
+    /// See robots play: for now one trial of the paper, with its story and its picture.
+    Play(TrialArgs),
+    /// One trial of the paper.
+    Trial(TrialArgs),
     /// Check, list, show, retrieve and explain cases.
     Cases {
         #[command(subcommand)]
@@ -61,6 +66,11 @@ pub(crate) struct Chosen {
 }
 
 impl SettingsArgs {
+    /// As the command line gave them.
+    pub(crate) fn given(&self) -> &[(String, String)] {
+        &self.assignments
+    }
+
     /// The defaults, changed as the command line says; the later of two assignments to a name stands.
     pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
         let mut settings = Settings::default();

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use case_tools::{Finding, Severity};
 use casebase::SettingError;
+use hil_sim::SimulationError;
 
 /// One variant per thing the person can do something about.
 #[derive(Debug)]
@@ -38,6 +39,19 @@ pub(crate) enum Failure {
         /// What retrieval says to it.
         error: SettingError,
     },
+    /// A trial could not be played.
+    Trial(SimulationError),
+    /// The robots' image or its emulator cannot be had.
+    Firmware(String),
+    /// A picture could not be written.
+    Picture {
+        /// Where to.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// Announced, but not built yet.
+    NotBuilt(&'static str),
     /// Stdin could not be read.
     Input(io::Error),
     /// Stdout could not be written.
@@ -91,6 +105,10 @@ impl fmt::Display for Failure {
                 None => write!(f, "no case {asked:?} in {league}; the library holds no case"),
             },
             Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
+            Self::Trial(error) => write!(f, "{error}"),
+            Self::Firmware(words) => f.write_str(words),
+            Self::Picture { file, error } => write!(f, "cannot write the picture {}: {error}", file.display()),
+            Self::NotBuilt(what) => write!(f, "{what} is not built yet; README says what is"),
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),
         }

@@ -66,6 +66,14 @@ impl Shelf {
         }
     }
 
+    /// `region/name` of every authored case, in order.
+    pub(crate) fn names(&self) -> Vec<String> {
+        match self {
+            Self::BuiltIn(league) => league.names.iter().map(ToString::to_string).collect(),
+            Self::Folder(library) => library.names.clone(),
+        }
+    }
+
     /// `region/name` of the authored case that a stored one descends from.
     pub(crate) fn name(&self, id: CaseId) -> &str {
         let authored = authored(id);

@@ -8,6 +8,7 @@ mod args;
 mod cases;
 mod failure;
 mod library;
+mod trial;
 
 use std::process::ExitCode;
 
@@ -18,6 +19,8 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
+        Verb::Play(args) => trial::run_with_picture(&args),
+        Verb::Trial(args) => trial::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
     };
     outcome.unwrap_or_else(|failure| failure.report())
