@@ -3,10 +3,10 @@
 use protocol::CaseId;
 
 use crate::action::{Action, CaseRobot, KickId, TurnTarget};
-use crate::path::{Leg, RelativeLeg};
+use crate::path::{Leg, RelativeLeg, Tube};
 use crate::point::gauss_exponent;
 use crate::settings::SCOPE_EXPONENT;
-use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, part};
+use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, RawLeg, part};
 use crate::walk::{HandOver, Script, walk};
 use crate::{GoalEnd, PointMm, Scope, Symmetry};
 
@@ -161,15 +161,19 @@ impl<'a> Case<'a> {
     }
 
     /// The stored legs relative to a ball at `ball`.
-    #[inline]
     pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
         let case = *self;
-        let raw = part(self.base.legs, self.group.legs_at, self.group.legs, self.copy());
-        raw.iter().scan([0.0; 2], move |at, raw| {
-            let leg = RelativeLeg::decode(&case, raw, *at, ball)?;
-            *at = leg.end();
-            Some(leg)
+        self.raw_legs().iter().scan([0.0; 2], move |rest, raw| {
+            let tube = Tube::decode(&case, raw, *rest, ball);
+            *rest = tube.to;
+            RelativeLeg::decode(&case, raw, tube)
         })
+    }
+
+    /// The stored legs as records; each begins where the one before ends.
+    #[inline]
+    pub(crate) fn raw_legs(&self) -> &'a [RawLeg] {
+        part(self.base.legs, self.group.legs_at, self.group.legs, self.copy())
     }
 
     /// A point of the case by its number.

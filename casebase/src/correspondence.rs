@@ -22,6 +22,16 @@ pub(crate) struct Distances {
     pub(crate) parts: usize,
 }
 
+impl Distances {
+    /// Is there a part that nobody can reach within `limit`? Then every correspondence exceeds it.
+    #[inline]
+    pub(crate) fn leave_a_part_alone(&self, limit: f32) -> bool {
+        let within =
+            |part: usize| self.columns.iter().any(|(_, column)| column[part & (TEAMMATES_MAX - 1)] <= limit);
+        !(0..self.parts).all(within)
+    }
+}
+
 /// A correspondence and what it costs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Assignment {

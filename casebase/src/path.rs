@@ -46,7 +46,7 @@ impl Leg {
     /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
     /// not abreast of the leg. A leg of length 0 has nothing abreast.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
-        let Products { squared, along, cross, radius } = self.products(point)?;
+        let Products { squared, along, cross, radius } = self.tube().products(point)?;
         let length = math::sqrt(squared);
         Some(Abreast { along: along / length, across: cross / length, radius })
     }
@@ -54,16 +54,43 @@ impl Leg {
     /// How deep an opponent stands inside the leg, mm from its edge at the settings' threshold; `None` outside.
     pub fn blocked_by(&self, opponent: PointMm, settings: &Settings) -> Option<f32> {
         let point = opponent.to_f32();
-        let exponent = self.exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
+        let exponent = self.tube().exponent(point).filter(|exponent| is_blocking(*exponent, settings))?;
         let abreast = self.abreast(point)?;
         let edge = abreast.radius * math::sqrt(settings.limit());
         // With its own threshold a fuzzy path may be blocked by less than the crisp trapezoid: then it is 0 deep.
         Some(if exponent < settings.limit() { (edge - abreast.across.abs()).max(0.0) } else { 0.0 })
     }
 
+    fn tube(&self) -> Tube {
+        Tube { from: self.from, to: self.to, r_min: self.r_min, r_max: self.r_max }
+    }
+}
+
+/// The fuzzy set around a leg, without its story: what retrieval looks at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tube {
+    pub(crate) from: [f32; 2],
+    pub(crate) to: [f32; 2],
+    r_min: f32,
+    r_max: f32,
+}
+
+impl Tube {
+    /// From the table, relative to a ball at `ball`; `rest` is where the leg before left the ball.
+    #[inline]
+    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Self {
+        let from = match raw.carried_to {
+            RawLeg::NOT_CARRIED => rest,
+            point => case.point(point).minus(case.ball()).to_f32(),
+        };
+        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { relative_to(ball, raw.to) };
+        let [r_min, r_max] = raw.radii;
+        Self { from, to, r_min, r_max }
+    }
+
     /// (v/ρ)², the negated exponent of μ; `None` where μ is 0 because the point is not abreast of the leg.
     #[inline]
-    pub(crate) fn exponent(&self, point: [f32; 2]) -> Option<f32> {
+    fn exponent(&self, point: [f32; 2]) -> Option<f32> {
         let Products { squared, cross, radius, .. } = self.products(point)?;
         Some(cross * cross / (squared * radius * radius))
     }
@@ -130,7 +157,7 @@ pub fn blocked_leg(
     each_leg(case, base, ball, settings, |relative| {
         if found.is_none() {
             let blocks = |(_, opponent): &(usize, &PointMm)| {
-                let exponent = relative.0.exponent(opponent.minus(ball).to_f32());
+                let exponent = relative.0.tube().exponent(opponent.minus(ball).to_f32());
                 exponent.is_some_and(|exponent| is_blocking(exponent, settings))
             };
             if let Some((opponent, place)) = opponents.iter().enumerate().find(blocks) {
@@ -143,8 +170,9 @@ pub fn blocked_leg(
     found
 }
 
-/// The least exponent of any opponent in any leg, `None` where nobody is abreast of one. Opponents relative to the
-/// ball.
+/// The least exponent of any opponent in any leg, `None` where nobody is abreast of one; any blocking one where the
+/// path is blocked. Opponents relative to the ball.
+#[inline]
 pub(crate) fn least_exponent(
     case: &Case<'_>,
     ball: PointMm,
@@ -152,13 +180,28 @@ pub(crate) fn least_exponent(
     settings: &Settings,
 ) -> Option<f32> {
     let mut least: Option<f32> = None;
-    each_leg(case, case.base(), ball, settings, |leg| {
+    let mut look = |tube: &Tube| {
         for opponent in opponents {
-            if let Some(exponent) = leg.0.exponent(*opponent) {
+            if let Some(exponent) = tube.exponent(*opponent) {
                 least = Some(least.map_or(exponent, |least| least.min(exponent)));
             }
         }
-    });
+        least.is_some_and(|exponent| is_blocking(exponent, settings))
+    };
+    if settings.out_of_field == OutOfField::Clamp {
+        each_leg(case, case.base(), ball, settings, |leg| {
+            look(&leg.0.tube());
+        });
+        return least;
+    }
+    let mut rest = [0.0; 2];
+    for raw in case.raw_legs() {
+        let tube = Tube::decode(case, raw, rest, ball);
+        if look(&tube) {
+            break;
+        }
+        rest = tube.to;
+    }
     least
 }
 
@@ -210,35 +253,17 @@ fn each_leg(
 pub(crate) struct RelativeLeg(Leg);
 
 impl RelativeLeg {
-    /// From the table; `rest` is where the leg before left the ball.
-    #[inline]
-    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Option<Self> {
+    /// From the table: a stored leg's tube with its story.
+    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, tube: Tube) -> Option<Self> {
         let robot = CaseRobot::new(usize::from(raw.robot))?;
         let action = usize::from(raw.action);
-        let (kind, radii) = match case.action(robot, action)? {
-            Action::PassBall(receiver) => {
-                let pass = case.base().pass();
-                (LegKind::Pass(receiver), [pass.r_min, pass.r_max])
-            }
-            Action::Kick(id) => {
-                let kick = case.base().kick(id)?;
-                (LegKind::Kick(id), [kick.r_min, kick.r_max])
-            }
+        let kind = match case.action(robot, action)? {
+            Action::PassBall(receiver) => LegKind::Pass(receiver),
+            Action::Kick(id) => LegKind::Kick(id),
             _ => return None,
         };
-        let [r_min, r_max] = radii.map(|radius| radius as f32);
-        let from = match raw.carried_to {
-            RawLeg::NOT_CARRIED => rest,
-            point => case.point(point).minus(case.ball()).to_f32(),
-        };
-        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { relative_to(ball, raw.to) };
+        let Tube { from, to, r_min, r_max } = tube;
         Some(Self(Leg { from, to, r_min, r_max, robot, action, kind }))
-    }
-
-    /// Where it ends.
-    #[inline]
-    pub(crate) fn end(&self) -> [f32; 2] {
-        self.0.to
     }
 
     /// On the field, for a ball that begins at `ball`.

@@ -10,6 +10,7 @@ use geometry::math;
 use heapless::Vec;
 use protocol::CaseId;
 
+use crate::action::TEAMMATES_MAX;
 use crate::case::Case;
 use crate::correspondence::{Assignment, Distances, assign};
 use crate::path::{conditions, freedom, is_blocking, least_exponent};
@@ -35,7 +36,7 @@ pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> 
     let mut best: Option<Found> = None;
     let mut candidates = 0;
     each_gated(base, &query, |case, exponent| {
-        if let Some(found) = query.candidate(&case, exponent) {
+        if let Some(found) = query.candidate(case, exponent) {
             candidates += 1;
             keep_better(&mut best, found, settings);
         }
@@ -67,12 +68,12 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
             if key_order(&key, &found.key, settings).is_gt() {
                 return ControlFlow::Continue(());
             }
-            key.conditions = query.conditions(&case);
+            key.conditions = query.conditions(case);
             if key_order(&key, &found.key, settings).is_gt() {
                 return ControlFlow::Continue(());
             }
         }
-        if let Some(found) = query.candidate(&case, exponent) {
+        if let Some(found) = query.candidate(case, exponent) {
             keep_better(&mut best, found, settings);
         }
         ControlFlow::Continue(())
@@ -86,7 +87,7 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
 fn each_gated<'a>(
     base: &CaseBase<'a>,
     query: &Query<'_>,
-    mut visit: impl FnMut(Case<'a>, f32) -> ControlFlow<()>,
+    mut visit: impl FnMut(&Case<'a>, f32) -> ControlFlow<()>,
 ) {
     let (ball, goal) = (query.problem.ball, query.problem.defending);
     if CaseBase::index_serves(query.limit) {
@@ -95,7 +96,7 @@ fn each_gated<'a>(
                 let id = CaseId(id ^ flip);
                 let Some(exponent) = gated(base, id, query) else { continue };
                 let Some(case) = base.case(id) else { continue };
-                if visit(case, exponent).is_break() {
+                if visit(&case, exponent).is_break() {
                     break;
                 }
             }
@@ -103,7 +104,7 @@ fn each_gated<'a>(
     } else {
         for case in base.cases().filter(|case| case.defending() == goal) {
             if let Some(exponent) = gated(base, case.id(), query) {
-                let _ = visit(case, exponent);
+                let _ = visit(&case, exponent);
             }
         }
     }
@@ -177,8 +178,12 @@ impl<'p> Query<'p> {
             return None;
         }
         let free = self.freedom(case)?;
-        let assignment = assign(&self.distances(case), self.settings)
-            .filter(|a| a.distance <= self.settings.travel_max_mm)?;
+        let distances = self.distances(case);
+        let limit = self.settings.travel_max_mm;
+        if distances.leave_a_part_alone(limit) {
+            return None;
+        }
+        let assignment = assign(&distances, self.settings).filter(|found| found.distance <= limit)?;
         Some(self.found(case, exponent, free, assignment))
     }
 
@@ -227,15 +232,16 @@ impl<'p> Query<'p> {
     /// How far every present robot is from every adapted position.
     pub(crate) fn distances(&self, case: &Case<'_>) -> Distances {
         let ball = self.problem.ball;
-        let mut places = [[0.0; 2]; crate::action::TEAMMATES_MAX];
-        for (place, robot) in places.iter_mut().zip(case.robots()) {
-            *place = adapted_position(case, robot, ball, self.settings).minus(ball).to_f32();
-        }
         let mut distances = Distances { columns: Vec::new(), parts: case.teammates() };
-        for ((id, _), at) in self.problem.teammates.iter().zip(&self.teammates) {
-            let column = places.map(|place| math::hypot(at[0] - place[0], at[1] - place[1]));
+        for (id, _) in &self.problem.teammates {
             // There is room for every teammate a problem can have.
-            let _ = distances.columns.push((*id, column));
+            let _ = distances.columns.push((*id, [0.0; TEAMMATES_MAX]));
+        }
+        for robot in case.robots() {
+            let place = adapted_position(case, robot, ball, self.settings).minus(ball).to_f32();
+            for ((_, column), at) in distances.columns.iter_mut().zip(&self.teammates) {
+                column[robot.index()] = math::hypot(at[0] - place[0], at[1] - place[1]);
+            }
         }
         distances
     }

@@ -123,7 +123,7 @@ impl Default for CaseBase<'_> {
 }
 
 /// "o12c" and the version of the layout.
-pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 1];
+pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 2];
 /// Most cells of the index along one axis.
 pub const GRID_MAX: u16 = 256;
 
@@ -220,6 +220,8 @@ pub struct Opponent {
 pub struct RawLeg {
     /// Its end, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is set.
     pub to: [f32; 2],
+    /// r_min and r_max, mm.
+    pub radii: [f32; 2],
     /// The robot that kicks.
     pub robot: u8,
     /// Which of its actions that is.

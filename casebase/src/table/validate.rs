@@ -156,6 +156,7 @@ impl<'a> CaseBase<'a> {
                         .is_some_and(|action| matches!(action.kind, RawAction::PASS_BALL | RawAction::KICK))
                     && (leg.carried_to == RawLeg::NOT_CARRIED || leg.carried_to < group.points)
                     && leg.to.iter().all(|coordinate| coordinate.is_finite())
+                    && leg.radii.iter().all(|radius| radius.is_finite() && *radius > 0.0)
             })
         };
         let begins_with_the_ball =

@@ -157,9 +157,10 @@ impl Pools {
         };
         let legs = &mut self.legs;
         let walked = walk(copy, league, |step| {
-            if let Step::Leg { robot, action, to, carried_by, .. } = step {
+            if let Step::Leg { robot, action, to, radii, carried_by, .. } = step {
                 legs.push(RawLeg {
                     to: to.at,
+                    radii: radii.map(|radius| radius as f32),
                     robot: robot.index() as u8,
                     action: action as u8,
                     carried_to: carried_to(carried_by),
