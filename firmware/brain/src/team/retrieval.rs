@@ -44,7 +44,7 @@ pub fn problem(
 
 /// What the coordinator announces about `problem`.
 pub fn decide(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Decision {
-    match casebase::retrieve(base, problem, settings).best {
+    match casebase::retrieve_best(base, problem, settings) {
         Some(best) => Decision::Play(Play {
             case: best.case,
             ball: to_wire(problem.ball),
