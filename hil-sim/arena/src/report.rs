@@ -142,3 +142,23 @@ fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error>
         Err(_) => s.serialize_str(scenario.word()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_people_write_them() {
+        assert_eq!(serde_json::to_string(&in_seconds(23.44)).unwrap(), "23.44");
+        assert_eq!(serde_json::to_string(&Backups(vec![3, 16])).unwrap(), r#"{"A":3,"B":16}"#);
+        let words = |s| serde_json::to_string(&Word(s)).unwrap();
+        assert_eq!(
+            (words(Scenario::LeftSide), words(Scenario::Random)),
+            ("2".to_owned(), "\"random\"".to_owned())
+        );
+    }
+
+    /// A scenario as a report writes it.
+    #[derive(Serialize)]
+    struct Word(#[serde(serialize_with = "scenario")] Scenario);
+}

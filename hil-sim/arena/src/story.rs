@@ -102,13 +102,12 @@ impl Story {
     }
 
     fn progress(&mut self, moment: &Moment<'_>, id: RobotId, now: Progress, play: Option<&Play>) {
-        let before = match self.progress.iter_mut().find(|(robot, _)| *robot == id) {
-            Some((_, before)) => std::mem::replace(before, now),
-            None => {
-                self.progress.push((id, now));
-                Progress::Idle
-            }
-        };
+        let known = self.progress.iter().position(|(robot, _)| *robot == id);
+        let place = known.unwrap_or_else(|| {
+            self.progress.push((id, Progress::Idle));
+            self.progress.len() - 1
+        });
+        let before = std::mem::replace(&mut self.progress[place].1, now);
         if before == now {
             return;
         }
@@ -232,5 +231,46 @@ fn action_words(moment: &Moment<'_>, play: &Play, action: Action) -> String {
         Action::PassBall(to) => format!("pass to {}", mate(to)),
         Action::ReceiveBall(from) => format!("receive from {}", mate(from)),
         Action::Kick(_) => "kick".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brain::Approach;
+    use hil_sim::{NativeBackend, Scenario, ScheduledFault};
+
+    use super::*;
+    use crate::trial::{TrialConfig, run};
+
+    fn told(config: &TrialConfig<'static>) -> (Vec<String>, TrialReport) {
+        let mut story = Story::default();
+        let report = run(config, Box::new(NativeBackend::new(config.base)), &mut [&mut story]).unwrap();
+        (story.take_lines(), report)
+    }
+
+    #[test]
+    fn it_names_who_is_who_the_coordinator_the_case_its_phases_and_the_outcome() {
+        let mut config =
+            TrialConfig::new(Scenario::DefenderClose, Configuration::DefenderGoalie, Approach::Cases, 1);
+        let robot = RobotId::new(2).unwrap();
+        config.faults.push(ScheduledFault { tick: 100, fault: Fault::Crash(robot) });
+        let (lines, report) = told(&config);
+        assert!(lines[0].contains("scenario 4") && lines[0].contains("A is robot 1, B is robot 2"));
+        let played = report.cycles.iter().find_map(|cycle| cycle.case.clone()).unwrap();
+        let retrieval = lines.iter().find(|line| line.contains("coordinates and retrieves")).unwrap();
+        assert!(retrieval.contains(&played) && retrieval.contains("plays: get the ball"), "{retrieval}");
+        for words in ["goes to its place", ": get the ball", "   4.00 s  B crashes"] {
+            assert!(lines.iter().any(|line| line.contains(words)), "{words}");
+        }
+        let end = &lines[lines.len() - 2];
+        assert!(end.starts_with(&format!("{:7.2} s", report.time_s)), "{end}");
+    }
+
+    #[test]
+    fn a_reactive_team_has_a_story_without_cases() {
+        let config = TrialConfig::new(Scenario::Random, Configuration::TwoDefenders, Approach::Reactive, 1);
+        let (lines, _) = told(&config);
+        assert!(lines[0].contains("random scenario 1 against a midfield defender and a defender"));
+        assert!(lines.iter().all(|line| !line.contains("retrieves")));
     }
 }

@@ -77,24 +77,8 @@ impl TrialConfig<'static> {
 
 impl<'a> TrialConfig<'a> {
     /// The same trial with another library.
-    pub fn with_library<'b>(self, base: CaseBase<'b>, names: CaseNames) -> TrialConfig<'b> {
-        TrialConfig {
-            scenario: self.scenario,
-            opponents: self.opponents,
-            approach: self.approach,
-            seed: self.seed,
-            settings: self.settings,
-            positioning: self.positioning,
-            robots: self.robots,
-            retrievers: self.retrievers,
-            air: self.air,
-            noise: self.noise,
-            pause_after_cycle: self.pause_after_cycle,
-            faults: self.faults,
-            parameters: self.parameters,
-            base,
-            names,
-        }
+    pub fn with_library(self, base: CaseBase<'a>, names: CaseNames) -> Self {
+        Self { base, names, ..self }
     }
 
     /// What the simulator needs to know.

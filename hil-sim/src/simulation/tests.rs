@@ -266,7 +266,7 @@ fn every_number_of_the_file_is_used() {
         let hashes = games.map(|(layout, configuration, seed)| {
             let noise = if seed == 0 { Noise::NONE } else { parameters.noise };
             let (parameters, layout) = (parameters.clone(), layout.clone());
-            let config = SimulationConfig { parameters, layout, configuration, noise, seed, ..simple(seed) };
+            let config = SimulationConfig { seed, layout, configuration, noise, parameters, ..simple(seed) };
             run(config, 1_500).0.trace().digits()
         });
         hashes.concat()

@@ -31,7 +31,7 @@ fn run(world: &mut World, seconds: f32) -> Vec<WorldEvent> {
 
 /// A world whose first robot holds the ball.
 fn holding(others: &[Walker]) -> World {
-    (0..)
+    (0..100)
         .map(|seed| {
             let mut world = world(seed, others);
             order(&mut world, LeggedPrimitive::Grab);

@@ -35,7 +35,7 @@ fn goal(canvas: &mut Canvas, field: &FieldSpec, sign: f32) {
     let (line, half) = (sign * field.length * 0.5, field.goal_width * 0.5);
     let back = line + sign * field.goal_depth;
     let fill = if sign < 0.0 { YELLOW } else { CYAN };
-    let style = format!(r##"fill="{fill}" stroke="{LINE}" stroke-width="3""##);
+    let style = format!(r#"fill="{fill}" stroke="{LINE}" stroke-width="3""#);
     rectangle(canvas, (line.min(back), half), (line.max(back), -half), &style);
 }
 

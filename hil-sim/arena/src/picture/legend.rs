@@ -44,14 +44,14 @@ fn entry(canvas: &mut Canvas, recording: &Recording, start: &Start, n: usize, at
     let end = cycle.map_or("", |cycle| cycle.end).replace('-', " ");
     let until = cycle.map_or(start.time, |cycle| cycle.end_s as f32);
     let players = start.players.join(" + ");
-    let what = if start.symmetry == "identity" {
-        start.case.clone()
-    } else {
-        format!("{} ({})", start.case, start.symmetry)
-    };
-    canvas.text(at.moved(18.0, 4.5), &what, format!(r#"font-size="12.5" font-weight="bold" fill="{INK}""#));
-    let details = format!("{players} · {:.1}–{until:.1} s · {end}", start.time);
-    canvas.text(at.moved(222.0, 4.5), &details, format!(r#"font-size="12" fill="{FAINT}""#));
+    let copy = if start.symmetry == "identity" { String::new() } else { format!(" · {}", start.symmetry) };
+    canvas.text(
+        at.moved(18.0, 4.5),
+        &start.case,
+        format!(r#"font-size="12.5" font-weight="bold" fill="{INK}""#),
+    );
+    let details = format!("{players}{copy} · {:.1}–{until:.1} s · {end}", start.time);
+    canvas.text(at.moved(200.0, 4.5), &details, format!(r#"font-size="12" fill="{FAINT}""#));
 }
 
 /// One line of signs.

@@ -97,3 +97,11 @@ fn the_retrievers_are_those_with_the_highest_ids() {
     let retrievers: Vec<_> = config.simulation().brains.iter().map(|brain| brain.retriever).collect();
     assert_eq!(retrievers, [false, false, false, true]);
 }
+
+#[test]
+fn without_cases_the_team_plays_reactively_and_says_so() {
+    let empty = config(1).with_library(CaseBase::default(), CaseNames::default());
+    let report = run(&empty, Box::new(NativeBackend::new(empty.base)), &mut []).unwrap();
+    assert_eq!((report.cases.individual, report.cases.cooperative), (0, 0));
+    assert!(report.cases.none > 0 && report.cycles.iter().all(|cycle| cycle.case.is_none()));
+}
