@@ -107,7 +107,9 @@ impl fmt::Display for Failure {
             Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
-            Self::Picture { file, error } => write!(f, "cannot write the picture {}: {error}", file.display()),
+            Self::Picture { file, error } => {
+                write!(f, "cannot write the picture {}: {error}", file.display())
+            }
             Self::NotBuilt(what) => write!(f, "{what} is not built yet; README says what is"),
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),
