@@ -29,14 +29,16 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
         let ours: Value = serde_json::from_str(answer).expect("an answer is JSON");
         let theirs = answer_line(&library, number, line).expect("a line has an answer");
         winners += usize::from(!ours["case"].is_null());
-        if retrieve(&library, problem, &Rules::default()).near_tie.is_some() {
-            excused += 1;
-        } else {
-            assert!(
-                agree(&ours, &theirs),
-                "library seed 21, problem seed 22, line {number}: {line}\nours {ours}\ntheirs {theirs}"
-            );
+        if agree(&ours, &theirs) {
+            continue;
         }
+        // Where a decision hangs on less than a ten-thousandth, two honest answers may differ.
+        let near = retrieve(&library, problem, &Rules::default()).near_tie;
+        assert!(
+            near.is_some(),
+            "library seed 21, problem seed 22, line {number}: {line}\nours {ours}\ntheirs {theirs}"
+        );
+        excused += 1;
     }
     assert!(excused * 100 < PROBLEMS, "{excused} near-ties");
     assert!(winners * 4 > PROBLEMS, "only {winners} problems have an answer");
