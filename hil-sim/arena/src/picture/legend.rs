@@ -51,7 +51,7 @@ fn entry(canvas: &mut Canvas, recording: &Recording, start: &Start, n: usize, at
         format!(r#"font-size="12.5" font-weight="bold" fill="{INK}""#),
     );
     let details = format!("{players}{copy} · {:.1}–{until:.1} s · {end}", start.time);
-    canvas.text(at.moved(200.0, 4.5), &details, format!(r#"font-size="12" fill="{FAINT}""#));
+    canvas.text(at.moved(220.0, 4.5), &details, format!(r#"font-size="12" fill="{FAINT}""#));
 }
 
 /// One line of signs.
