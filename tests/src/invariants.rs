@@ -192,7 +192,8 @@ impl Watcher {
         }
         // Told of a newer cycle, or of the end of this one: out, from this step on.
         if let (Some(active), Some((told, _))) = (active, told) {
-            let over = told.id > active || (told.id == active && matches!(told.decision, Decision::Closed(_)));
+            let over =
+                told.id > active || (told.id == active && matches!(told.decision, Decision::Closed(_)));
             if over {
                 self.violate(now, format!("robot {id} plays on in {active} after hearing of {told:?}"));
             }

@@ -5,8 +5,8 @@
 
 use brain::BrainConfig;
 use hil_sim::{
-    AirSettings, Configuration, Fault, NativeBackend, Noise, Parameters, Scenario, ScheduledFault, Simulation,
-    SimulationConfig, Stream, TICK_US,
+    AirSettings, Configuration, Fault, NativeBackend, Noise, Parameters, Scenario, ScheduledFault,
+    Simulation, SimulationConfig, Stream, TICK_US,
 };
 use match_tests::invariants::{Air, RECOVER_WITHIN, Seen, Watcher};
 use protocol::frame::TeamKey;
@@ -121,16 +121,12 @@ impl Team {
 
     fn simulation(&self, air: AirSettings, faults: Vec<ScheduledFault>) -> Simulation<'static> {
         let parameters = Parameters::four_legged();
-        let configuration = if self.seed % 2 == 0 {
-            Configuration::DefenderGoalie
-        } else {
-            Configuration::TwoDefenders
-        };
+        let configuration =
+            if self.seed % 2 == 0 { Configuration::DefenderGoalie } else { Configuration::TwoDefenders };
         let scenario = Scenario::PAPER[(self.seed / 2 % 4) as usize];
         let brains = self.ids.iter().zip(&self.retrievers);
-        let brains = brains
-            .map(|(&id, &retriever)| BrainConfig { retriever, ..BrainConfig::new(id, TEAM) })
-            .collect();
+        let brains =
+            brains.map(|(&id, &retriever)| BrainConfig { retriever, ..BrainConfig::new(id, TEAM) }).collect();
         let config = SimulationConfig {
             seed: self.seed,
             layout: scenario.layout(configuration, parameters, self.seed),
