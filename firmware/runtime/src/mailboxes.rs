@@ -1,5 +1,6 @@
 //! Where do a robot's tasks meet? One inbox to the brain, one outbox and one slip of orders from it.
 
+use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
@@ -34,6 +35,7 @@ pub struct Mailboxes {
     /// The latest word counts: a body never works off old orders.
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
     unsent: AtomicU32,
+    undelivered: AtomicU32,
 }
 
 impl Mailboxes {
@@ -44,12 +46,30 @@ impl Mailboxes {
             outbox: Channel::new(),
             orders: Signal::new(),
             unsent: AtomicU32::new(0),
+            undelivered: AtomicU32::new(0),
         }
     }
 
     /// How many packets the brain said that found the outbox full.
     pub fn unsent(&self) -> u32 {
         self.unsent.load(Ordering::Relaxed)
+    }
+
+    /// How many arrivals found the inbox full: none, as long as all tasks of a robot run on one executor.
+    pub fn undelivered(&self) -> u32 {
+        self.undelivered.load(Ordering::Relaxed)
+    }
+
+    /// Waits until [`Mailboxes::deliver`] has room for one arrival.
+    pub(crate) async fn room_for_arrival(&self) {
+        poll_fn(|context| self.inbox.poll_ready_to_send(context)).await;
+    }
+
+    /// Something for the brain. Call when there is room and nothing was awaited since; else it is lost, and counted.
+    pub(crate) fn deliver(&self, arrival: Arrival) {
+        if self.inbox.try_send(arrival).is_err() {
+            self.undelivered.fetch_add(1, Ordering::Relaxed);
+        }
     }
 
     /// A packet for the air, or one more that is lost.

@@ -18,7 +18,7 @@ pub trait RadioReceiver {
 /// The mouth of a radio.
 pub trait RadioSender {
     /// Puts a packet on the air; returns when the next may follow. Whether anybody hears it is not known.
-    async fn send(&mut self, packet: &Packet);
+    async fn send(&mut self, packet: Packet);
 }
 
 /// What a robot perceives with.

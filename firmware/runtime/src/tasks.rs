@@ -7,6 +7,7 @@
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
+use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
 use protocol::{Duration, Instant};
 
@@ -23,7 +24,8 @@ pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) 
 pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
     loop {
         let packet = radio.receive().await;
-        boxes.inbox.send(Arrival::Packet(packet)).await;
+        boxes.room_for_arrival().await;
+        boxes.deliver(Arrival::Packet(packet));
     }
 }
 
@@ -31,7 +33,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
 pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
     loop {
         let packet = boxes.outbox.receive().await;
-        radio.send(&packet).await;
+        radio.send(packet).await;
     }
 }
 
@@ -39,7 +41,8 @@ pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
 pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     loop {
         let picture = senses.sense().await;
-        boxes.inbox.send(Arrival::Sensors(picture)).await;
+        boxes.room_for_arrival().await;
+        boxes.deliver(Arrival::Sensors(picture));
     }
 }
 
@@ -55,33 +58,41 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
-        let (at, event) = next_event(&mind, last, boxes).await;
-        match event {
-            None => mind.handle_timeout(at),
-            Some(Arrival::Packet(packet)) => mind.handle_packet(at, &packet),
-            Some(Arrival::Sensors(picture)) => mind.handle_sensors(at, &picture),
-        }
-        empty(&mut mind, at, boxes);
-        last = at;
+        // An arrival is looked at where it lies taken out: it is large, and every hand it goes through copies it.
+        last = match deadline_before_arrival(&mind, last, boxes).await {
+            Some(due) => {
+                mind.handle_timeout(due);
+                due
+            }
+            None => {
+                let now = now();
+                match boxes.inbox.try_receive() {
+                    Ok(Arrival::Packet(packet)) => mind.handle_packet(now, &packet),
+                    Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, &picture),
+                    // Nobody else takes from the inbox.
+                    Err(TryReceiveError::Empty) => continue,
+                }
+                now
+            }
+        };
+        empty(&mut mind, last, boxes);
     }
 }
 
-/// What comes next, and when: something that arrives, or (`None`) the mind's deadline.
-async fn next_event(mind: &impl Mind, last: Instant, boxes: &Mailboxes) -> (Instant, Option<Arrival>) {
+/// Waits for what comes next: the mind's deadline, or (`None`) something that arrives.
+async fn deadline_before_arrival(mind: &impl Mind, last: Instant, boxes: &Mailboxes) -> Option<Instant> {
     let Some(due) = mind.poll_timeout() else {
-        let arrival = boxes.inbox.receive().await;
-        return (now(), Some(arrival));
+        boxes.inbox.ready_to_receive().await;
+        return None;
     };
     let due = due.max(last);
     // However much arrives, a missed deadline waits for one arrival at most.
     if due < now() {
-        return (due, None);
+        return Some(due);
     }
     let Instant(alarm) = due.max(last + CLOCK_STEP);
-    match with_deadline(embassy_time::Instant::from_ticks(alarm), boxes.inbox.receive()).await {
-        Ok(arrival) => (now(), Some(arrival)),
-        Err(_) => (due, None),
-    }
+    let alarm = embassy_time::Instant::from_ticks(alarm);
+    with_deadline(alarm, boxes.inbox.ready_to_receive()).await.err().map(|_| due)
 }
 
 /// Takes from the mind whatever it has to say.

@@ -291,8 +291,8 @@ impl Senses for Eyes {
     }
 }
 impl RadioSender for Mouth {
-    async fn send(&mut self, packet: &Packet) {
-        self.0.borrow_mut().push(packet.clone());
+    async fn send(&mut self, packet: Packet) {
+        self.0.borrow_mut().push(packet);
     }
 }
 impl Body for Limbs {

@@ -39,10 +39,11 @@ pub(crate) fn run() -> ! {
             STRANGE.fetch_add(1, Ordering::Relaxed);
             continue;
         };
-        let ((), instructions) = instructions::counted(|| live(&clock, &tick));
+        let seq = tick.seq;
+        let ((), instructions) = instructions::counted(|| live(&clock, tick));
         let done = critical_section::with(|cs| DONE.borrow(cs).take());
         let air = done.air.iter().map(|packet| &packet[..]).collect();
-        let answer = TickOut { seq: tick.seq, actuators: done.actuators, air, instructions };
+        let answer = TickOut { seq, actuators: done.actuators, air, instructions };
         tell(&mut outlet, &FromRobot::Tick(answer));
     }
 }
@@ -62,7 +63,7 @@ fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseB
 }
 
 /// One tick: time, then packets, then the picture, each worked off before the next.
-fn live(clock: &Clock, tick: &TickIn<'_>) {
+fn live(clock: &Clock, tick: TickIn<'_>) {
     clock.advance(tick.now);
     for packet in &tick.air {
         // A packet longer than any frame is none of ours; a radio would not have taken it either.
@@ -72,7 +73,7 @@ fn live(clock: &Clock, tick: &TickIn<'_>) {
         }
         clock.settle();
     }
-    if SEEN.try_send(tick.sensors.clone()).is_err() {
+    if SEEN.try_send(tick.sensors).is_err() {
         STRANGE.fetch_add(1, Ordering::Relaxed);
     }
     clock.settle();
@@ -123,9 +124,9 @@ impl Senses for Eyes {
 
 struct Mouth;
 impl RadioSender for Mouth {
-    async fn send(&mut self, packet: &Packet) {
+    async fn send(&mut self, packet: Packet) {
         critical_section::with(|cs| {
-            if DONE.borrow_ref_mut(cs).air.push(packet.clone()).is_err() {
+            if DONE.borrow_ref_mut(cs).air.push(packet).is_err() {
                 UNHEARD.fetch_add(1, Ordering::Relaxed);
             }
         });
