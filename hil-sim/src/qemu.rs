@@ -227,6 +227,7 @@ fn unexpected(wanted: &str, got: &FromRobot<'_>) -> McuError {
     McuError::Malformed { what: format!("{wanted} was due, not {got:?}") }
 }
 
+#[allow(clippy::needless_pass_by_value, reason = "`map_err` hands it over")]
 fn unwritable(error: postcard::Error) -> McuError {
     McuError::Malformed { what: format!("the question does not fit a frame: {error}") }
 }

@@ -58,23 +58,19 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
-        // An arrival is looked at where it lies taken out: it is large, and every hand it goes through copies it.
-        last = match deadline_before_arrival(&mind, last, boxes).await {
-            Some(due) => {
-                mind.handle_timeout(due);
-                due
+        if let Some(due) = deadline_before_arrival(&mind, last, boxes).await {
+            mind.handle_timeout(due);
+            last = due;
+        } else {
+            last = now();
+            // An arrival is not handed around: it is large, and every hand would copy it.
+            match &boxes.inbox.try_receive() {
+                Ok(Arrival::Packet(packet)) => mind.handle_packet(last, packet),
+                Ok(Arrival::Sensors(picture)) => mind.handle_sensors(last, picture),
+                // Nobody else takes from the inbox.
+                Err(TryReceiveError::Empty) => continue,
             }
-            None => {
-                let now = now();
-                match boxes.inbox.try_receive() {
-                    Ok(Arrival::Packet(packet)) => mind.handle_packet(now, &packet),
-                    Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, &picture),
-                    // Nobody else takes from the inbox.
-                    Err(TryReceiveError::Empty) => continue,
-                }
-                now
-            }
-        };
+        }
         empty(&mut mind, last, boxes);
     }
 }
