@@ -1,11 +1,13 @@
 //! What do the opponents do? Ros et al. 2009 §5.1.2: each has a home region that it never leaves; a ball inside it is gone
-//! for and cleared, else the robot stands at the region's border nearest the ball and faces it. m, s, field frame.
+//! for and cleared, else the robot stands at the region's border nearest the ball and faces it; a ball pushed against it
+//! there is cleared as well. m, s, field frame.
 //!
 //! They need no grip: a ball that has been in reach for the file's delay is kicked with whichever of the body's three
 //! directions (ahead, left, right) points most upfield. They see the truth, as the paper's simulator lets them.
 
 use geometry::{Body, Field, Point, Pose, Twist, Vector, math};
 use protocol::robot_io::{ActuatorFrame, LeggedPrimitive};
+use rules::League;
 use serde::Deserialize;
 
 use crate::parameters::{Parameters, Region};
@@ -65,8 +67,10 @@ impl Opponent {
     pub fn act(&mut self, world: &mut World, parameters: &Parameters, dt: f32) {
         let (ball, pose) = (world.ball.position, world.walkers[self.robot].pose);
         let p = &parameters.opponent;
-        let ours = self.home.contains(ball);
-        let reached = ours && world.ball_within(self.robot, p.reach, p.half_angle);
+        // A ball pushed against the robot at its border is in nobody's way but its own: that one it clears too.
+        let touching = League::FourLegged.robot().radius + League::FourLegged.ball().radius;
+        let reach = if self.home.contains(ball) { p.reach } else { touching };
+        let reached = world.ball_within(self.robot, reach, p.half_angle);
         self.in_reach = if reached { self.in_reach + dt } else { 0.0 };
         if reached && self.in_reach >= p.delay {
             self.in_reach = 0.0;

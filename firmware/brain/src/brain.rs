@@ -9,7 +9,7 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::{
     AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage,
 };
-use protocol::{Duration, Instant, RobotId};
+use protocol::{CycleId, Duration, Instant, RobotId};
 use rules::{GoalSide, League};
 
 use crate::belief::Belief;
@@ -39,6 +39,8 @@ pub struct Brain<'a> {
     awake: bool,
     /// How far the first proposal of this life jumps ahead.
     skip: u32,
+    /// The closed cycle whose end this robot has told its mates.
+    told_end_of: Option<CycleId>,
     actuators: Option<ActuatorFrame>,
     beacon_due: bool,
 }
@@ -60,6 +62,7 @@ impl<'a> Brain<'a> {
             timers,
             awake: false,
             skip: config.epoch.saturating_sub(1) % BOOT_SKIP,
+            told_end_of: None,
             actuators: None,
             beacon_due: false,
         }
@@ -97,7 +100,16 @@ impl<'a> Brain<'a> {
 
     /// The next message to teammates.
     pub fn poll_message(&mut self, now: Instant) -> Option<TeamMessage> {
-        core::mem::take(&mut self.beacon_due).then(|| TeamMessage::Beacon(self.beacon(now)))
+        if !core::mem::take(&mut self.beacon_due) {
+            return None;
+        }
+        let beacon = self.beacon(now);
+        if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
+            // The end is told before the next cycle begins: who hears only the beginning would not know why.
+            self.told_end_of = self.cycle.id();
+            self.coordinate(now);
+        }
+        Some(TeamMessage::Beacon(beacon))
     }
 
     /// What the body shall do, once per step.
@@ -176,7 +188,7 @@ impl<'a> Brain<'a> {
             self.timers.clear(timer);
         }
         let Some(play) = self.cycle.play() else { return };
-        let part = play.part_of(self.config.robot).and_then(|part| CaseRobot::new(part));
+        let part = play.part_of(self.config.robot).and_then(CaseRobot::new);
         self.execution = part.map(Execution::new);
         let expected = self.scene(now).map_or(0.0, |scene| estimate::gameplay(&scene));
         self.timers.set(Timer::Reuse, now + estimate::limit(expected));
@@ -219,13 +231,15 @@ impl<'a> Brain<'a> {
             None | Some(Decision::Closed(_)) => {
                 let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
                 let settled = self.timers.has_fired(Timer::Settle);
-                if elects && settled && !paused { self.propose(now) } else { None }
+                let told = self.cycle.closure().is_none() || self.told_end_of == self.cycle.id();
+                if elects && settled && told && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
                 let problem =
                     retrieval::problem(now, me, &self.base, self.config.defending, &self.belief, &self.mates);
+                let holder = self.holder(now);
                 let decision = problem.map_or(Decision::NoCase, |problem| {
-                    retrieval::decide(&self.base, &problem, &self.config.settings)
+                    retrieval::decide(&self.base, &problem, &self.config.settings, holder)
                 });
                 self.cycle.decided(decision)
             }
@@ -239,6 +253,15 @@ impl<'a> Brain<'a> {
                 if over { self.cycle.closed(Closure::Finished) } else { None }
             }
         }
+    }
+
+    /// The robot of ours that has the ball in its grip, as far as this one knows.
+    fn holder(&self, now: Instant) -> Option<RobotId> {
+        if self.belief.holds_ball {
+            return Some(self.config.robot);
+        }
+        let holds = |beacon: &Beacon| beacon.status.has(Status::HOLDS_BALL);
+        self.mates.present(now).find(|(_, mate)| holds(&mate.beacon)).map(|(id, _)| id)
     }
 
     fn propose(&mut self, now: Instant) -> Option<CycleState> {
@@ -348,12 +371,11 @@ impl<'a> Brain<'a> {
                     });
                 let playing = !matches!(progress, Progress::WaitEnd { .. });
                 let doubt = monitor.step(&scene, touched, &self.config.settings).filter(|_| playing);
-                match doubt {
-                    Some(reason) => Wish::Abort(reason),
-                    None => {
-                        let how = self.config.positioning;
-                        reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
-                    }
+                if let Some(reason) = doubt {
+                    Wish::Abort(reason)
+                } else {
+                    let how = self.config.positioning;
+                    reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
                 }
             }
         };

@@ -243,9 +243,9 @@ impl Execution {
                 }
                 Verdict::Running(Intent::Turn { heading })
             }
-            Action::GetBall => self.take(scene, timers, skills::get_ball(belief, self.onwards(scene))),
+            Action::GetBall => Self::take(scene, timers, skills::get_ball(belief, self.onwards(scene))),
             Action::ReceiveBall(_) => match skills::receive(belief) {
-                Reception::Going(step) => self.take(scene, timers, step),
+                Reception::Going(step) => Self::take(scene, timers, step),
                 Reception::Missed => Verdict::Failed(AbortReason::ActionFailed),
             },
             Action::DribbleTo(point) => {
@@ -276,7 +276,7 @@ impl Execution {
     }
 
     /// Going for the ball fails when an opponent has had it for too long.
-    fn take(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
+    fn take(scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
         if scene.belief.opponent_on_ball(scene.now, scene.mates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
         } else {

@@ -105,7 +105,8 @@ impl Reactive {
         match (self.dodge, blocker(belief, ball, to_goal)) {
             // Still blocked after the dodge: with the head, to the side it dodged to.
             (Some(side), Some(_)) => {
-                let kick = if (side - to_goal).radians() > 0.0 { LeggedKick::Left } else { LeggedKick::Right };
+                let kick =
+                    if (side - to_goal).radians() > 0.0 { LeggedKick::Left } else { LeggedKick::Right };
                 skills::shoot(belief, to_goal + legged::nominal(kick).0, kick)
             }
             (dodged, _) => skills::shoot(belief, dodged.unwrap_or(to_goal), LeggedKick::ForwardSoft),

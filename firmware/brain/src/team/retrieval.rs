@@ -43,13 +43,24 @@ pub fn problem(
 }
 
 /// What the coordinator announces about `problem`.
-pub fn decide(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Decision {
-    match casebase::retrieve_best(base, problem, settings) {
-        Some(best) => Decision::Play(Play {
-            case: best.case,
-            ball: to_wire(problem.ball),
-            robots: best.correspondence.into_iter().collect(),
-        }),
-        None => Decision::NoCase,
+///
+/// A robot that holds the ball can give it away only by a kick: a case that wants another robot to get the ball first
+/// cannot begin, and counts as none.
+pub fn decide(
+    base: &CaseBase<'_>,
+    problem: &Problem,
+    settings: &Settings,
+    holder: Option<RobotId>,
+) -> Decision {
+    let Some(best) = casebase::retrieve_best(base, problem, settings) else { return Decision::NoCase };
+    let getter =
+        base.case(best.case).and_then(|case| best.correspondence.get(case.getter().index()).copied());
+    if holder.is_some() && holder != getter {
+        return Decision::NoCase;
     }
+    Decision::Play(Play {
+        case: best.case,
+        ball: to_wire(problem.ball),
+        robots: best.correspondence.into_iter().collect(),
+    })
 }
