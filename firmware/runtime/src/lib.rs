@@ -21,6 +21,8 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(all(target_arch = "arm", target_os = "none"))]
+mod copy;
 mod mailboxes;
 mod mind;
 pub mod ports;

@@ -1,20 +1,83 @@
-//! Does this processor's mathematics give the PC's bits? Exit code 0 if the golden hash is the PC's, else 1. (DESIGN §2)
+//! Does this processor compute and copy as the PC does? Prints the golden hash of `geometry::math` (DESIGN §2); exit code 0
+//! if it is the PC's and the runtime's copying moves exactly the bytes it shall, else 1.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-use panic_semihosting as _;
+mod check {
+    use core::ffi::c_void;
 
-#[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
     use cortex_m_semihosting::{debug, hprintln};
     use geometry::math::{GOLDEN_HASH, GOLDEN_ROUNDS, golden_hash};
+    use panic_semihosting as _;
+    // For its functions of the run-time ABI.
+    use runtime as _;
 
-    let hash = golden_hash(GOLDEN_ROUNDS);
-    hprintln!("{:#018x}", hash);
-    loop {
-        debug::exit(if hash == GOLDEN_HASH { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        let hash = golden_hash(GOLDEN_ROUNDS);
+        hprintln!("{:#018x}", hash);
+        let copies = copies_are_exact();
+        if !copies {
+            hprintln!("a copy moved other bytes than it should");
+        }
+        let right = hash == GOLDEN_HASH && copies;
+        loop {
+            debug::exit(if right { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+        }
     }
+
+    type Memcpy = unsafe extern "C" fn(*mut c_void, *const c_void, usize) -> *mut c_void;
+
+    unsafe extern "C" {
+        fn __aeabi_memcpy(to: *mut c_void, from: *const c_void, len: usize);
+        fn __aeabi_memcpy4(to: *mut c_void, from: *const c_void, len: usize);
+        fn memcpy(to: *mut c_void, from: *const c_void, len: usize) -> *mut c_void;
+    }
+
+    /// Every length up to a few rounds of the loop, at every alignment: the bytes arrive, and their neighbours stay.
+    fn copies_are_exact() -> bool {
+        let any = |to, from, len| unsafe { __aeabi_memcpy(to, from, len) };
+        let words = |to, from, len| unsafe { __aeabi_memcpy4(to, from, len) };
+        // The compiler knows what `memcpy` returns and would not look; what it cannot see through, it has to call.
+        let memcpy = core::hint::black_box(memcpy as Memcpy);
+        let returning = |to, from, len| {
+            let returned = unsafe { memcpy(to, from, len) };
+            assert_eq!(returned, to, "memcpy gives back where it copied to");
+        };
+        let everywhere = (0..4).flat_map(|to| (0..4).map(move |from| (to, from)));
+        (0..LEN_MAX).all(|len| {
+            is_exact(words, 0, 0, len)
+                && everywhere
+                    .clone()
+                    .all(|(to, from)| is_exact(any, to, from, len) && is_exact(returning, to, from, len))
+        })
+    }
+
+    fn is_exact(
+        copy: impl Fn(*mut c_void, *const c_void, usize),
+        to: usize,
+        from: usize,
+        len: usize,
+    ) -> bool {
+        let (mut target, mut source) = (Aligned([0xee; BUFFER_LEN]), Aligned([0; BUFFER_LEN]));
+        for (i, byte) in source.0.iter_mut().enumerate() {
+            *byte = i as u8 + 1;
+        }
+        let (to, from) = (MARGIN + to, MARGIN + from);
+        // SAFETY (of the functions handed in): both ranges lie within buffers of their own, the margins cover all offsets.
+        copy(target.0[to..].as_mut_ptr().cast(), source.0[from..].as_ptr().cast(), len);
+        (0..BUFFER_LEN).all(|i| {
+            let moved = (to..to + len).contains(&i);
+            target.0[i] == if moved { (from + i - to) as u8 + 1 } else { 0xee }
+        })
+    }
+
+    #[repr(align(8))]
+    struct Aligned([u8; BUFFER_LEN]);
+
+    const LEN_MAX: usize = 70;
+    const MARGIN: usize = 8;
+    const BUFFER_LEN: usize = LEN_MAX + 2 * MARGIN;
 }
 
 #[cfg(not(target_os = "none"))]
