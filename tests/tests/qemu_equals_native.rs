@@ -19,7 +19,7 @@ use protocol::lockstep::TickIn;
 use protocol::{RobotId, TeamId};
 
 /// Of each scenario and configuration of the paper.
-const SEEDS: u64 = 3;
+const SEEDS: u64 = 5;
 /// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
 const STEP_BUDGET: u32 = 40_000;
 
