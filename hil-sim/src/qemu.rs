@@ -59,7 +59,8 @@ impl QemuBackend {
     }
 
     fn command(&self) -> Command {
-        // Where the simulator is killed, its emulators shall go with it: the kernel sees to that on Linux.
+        // Where the simulator is killed, its emulators shall go with it: the kernel sees to that on Linux. It takes the
+        // thread that started one for its parent, so a robot must not outlive the thread that booted it.
         let mut command = if find(Path::new("setpriv")).is_some() {
             let mut guarded = Command::new("setpriv");
             guarded.args(["--pdeathsig", "KILL"]).arg(&self.program);
