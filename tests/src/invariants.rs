@@ -77,6 +77,7 @@ struct Content {
 /// A fault that obliges the team to start a new cycle.
 #[derive(Clone, Copy, Debug)]
 struct Pending {
+    lost: RobotId,
     since: Instant,
     newer_than: CycleId,
 }
@@ -128,6 +129,21 @@ impl Watcher {
     /// To be called after everything of one moment was seen.
     pub fn end_of_step(&mut self, now: Instant) {
         let running: Vec<CycleId> = self.robots.iter().filter_map(|(id, w)| active_in(*id, w)).collect();
+        // Told of a newer cycle, or of the end of this one: out, from the step on in which it was told. A robot may have
+        // spoken in this step before it heard; what its body does is decided last.
+        let stubborn: Vec<String> = self
+            .robots
+            .iter()
+            .filter_map(|(id, watched)| {
+                let (active, (told, _)) = (active_in(*id, watched)?, watched.told.as_ref()?);
+                let closed = told.id == active && matches!(told.decision, Decision::Closed(_));
+                (told.id > active || closed)
+                    .then(|| format!("robot {id} plays on in {active} after hearing of {told:?}"))
+            })
+            .collect();
+        for what in stubborn {
+            self.violate(now, what);
+        }
         let overlapping = running.windows(2).any(|pair| pair[0] != pair[1]);
         if !overlapping {
             self.overlap_since = None;
@@ -146,7 +162,8 @@ impl Watcher {
             pending.since = now;
         }
         let pending = *pending;
-        if self.newest().is_some_and(|id| id > pending.newer_than) {
+        let newer = self.newest().is_some_and(|id| id > pending.newer_than);
+        if newer || self.plays_on_without(pending.lost) {
             self.slowest_recovery = self.slowest_recovery.max(now.since(pending.since));
             self.pending = None;
         } else if now.since(pending.since) > RECOVER_WITHIN {
@@ -158,14 +175,19 @@ impl Watcher {
     fn crashed(&mut self, now: Instant, id: RobotId) {
         let newest = self.newest();
         self.robots.remove(&id);
-        // Whoever is left must start anew, unless a gameplay goes on that the lost robot had no part in.
-        let goes_on = newest.and_then(|n| self.contents.get(&n)).is_some_and(|content| {
-            let play = content.play.as_ref().filter(|_| !content.closed);
-            content.coordinator != id && play.is_some_and(|play| play.part_of(id).is_none())
-        });
+        // Whoever is left must start anew, unless a gameplay goes on that the lost robot has no part in.
+        let goes_on = self.plays_on_without(id);
         if let (Some(newer_than), false, false) = (newest, goes_on, self.robots.is_empty()) {
-            self.pending = Some(Pending { since: now, newer_than });
+            self.pending = Some(Pending { lost: id, since: now, newer_than });
         }
+    }
+
+    /// A gameplay runs in the newest cycle, and the lost robot neither plays in it nor coordinates it.
+    fn plays_on_without(&self, lost: RobotId) -> bool {
+        self.newest().and_then(|newest| self.contents.get(&newest)).is_some_and(|content| {
+            let play = content.play.as_ref().filter(|_| !content.closed);
+            content.coordinator != lost && play.is_some_and(|play| play.part_of(lost).is_none())
+        })
     }
 
     fn heard(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
@@ -181,22 +203,12 @@ impl Watcher {
         }
         let Some(watched) = self.robots.get_mut(&id) else { return };
         let before = watched.beacon.as_ref().and_then(|b| b.cycle.as_ref());
-        let told = watched.told.clone();
         let backwards = before.is_some_and(|before| {
             beacon.cycle.as_ref().is_none_or(|cycle| before.is_newer_than(Some(cycle)))
         });
         watched.beacon = Some(beacon.clone());
-        let active = active_in(id, watched);
         if backwards {
             self.violate(now, format!("robot {id} went back to an older state of its cycle"));
-        }
-        // Told of a newer cycle, or of the end of this one: out, from this step on.
-        if let (Some(active), Some((told, _))) = (active, told) {
-            let over =
-                told.id > active || (told.id == active && matches!(told.decision, Decision::Closed(_)));
-            if over {
-                self.violate(now, format!("robot {id} plays on in {active} after hearing of {told:?}"));
-            }
         }
     }
 
@@ -311,6 +323,7 @@ mod tests {
         let end = beacon(1, Decision::Closed(abort), Progress::Idle);
         watcher.see(Instant(40_000), &Seen::Heard(robot(1), robot(2), end));
         watcher.see(Instant(40_000), &Seen::Sent(robot(1), beacon(1, play(&[1]), BUSY)));
+        watcher.end_of_step(Instant(40_000));
         assert_eq!(watcher.violations().len(), 1);
     }
 

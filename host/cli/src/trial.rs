@@ -167,6 +167,7 @@ fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
 impl TrialArgs {
     /// The command that shows the same trial again.
     fn again(&self, report: &TrialReport) -> String {
+        use std::fmt::Write as _;
         let mut words = format!(
             "onetwo trial --scenario {} --opponents {} --approach {} --seed {}",
             self.scenario.word(),
@@ -182,14 +183,14 @@ impl TrialArgs {
             ("--league", self.library.league.clone(), "four-legged"),
         ] {
             if value != default {
-                words += &format!(" {flag} {value}");
+                let _ = write!(words, " {flag} {value}");
             }
         }
         if let Some(folder) = &self.library.folder.library {
-            words += &format!(" --library {}", folder.display());
+            let _ = write!(words, " --library {}", folder.display());
         }
         for (name, value) in self.settings.given() {
-            words += &format!(" --set {name}={value}");
+            let _ = write!(words, " --set {name}={value}");
         }
         words
     }
