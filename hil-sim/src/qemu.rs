@@ -17,12 +17,9 @@ use std::{env, fs};
 use brain::BrainConfig;
 use protocol::link::Packet;
 use protocol::lockstep::{ETHERTYPE, FromRobot, MESSAGE_LEN_MAX, TickIn, TickOut, ToRobot};
+use protocol::slot;
 
 use crate::mcu::{Backend, Mcu, McuError, Reply};
-
-// One truth for the image and for whoever fills its slot; the board's crate itself is none a PC can link.
-#[path = "../../firmware/boards/mps2/src/slot.rs"]
-mod slot;
 
 /// Robots' computers as processes, all with one image.
 #[derive(Debug)]

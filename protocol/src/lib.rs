@@ -2,7 +2,8 @@
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
 //! [`frame`] is the radio's envelope (who, when, genuine?); [`team`] is what robots tell each other; [`robot_io`] is
-//! what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer.
+//! what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer,
+//! [`slot`] is where a computer finds a case table that was not built into it.
 //! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
@@ -14,6 +15,7 @@ pub mod link;
 pub mod lockstep;
 pub mod quantized;
 pub mod robot_io;
+pub mod slot;
 pub mod team;
 pub mod time;
 

@@ -5,6 +5,8 @@
 
 mod context;
 mod determinism;
+mod pictures;
+mod readme;
 mod report;
 mod steps;
 
@@ -24,6 +26,13 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
+        Ok(Request::Pictures) => match pictures::draw(&Context::new()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => {
+                eprintln!("xtask: {failure}");
+                ExitCode::FAILURE
+            }
+        },
         Ok(Request::Help) => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -51,6 +60,7 @@ fn test(steps: &[&'static Step]) -> ExitCode {
 enum Request {
     Test(Vec<&'static Step>),
     List,
+    Pictures,
     Help,
 }
 
@@ -60,6 +70,12 @@ impl Request {
         match words.next() {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
+            Some("pictures") => {
+                return match words.next() {
+                    None => Ok(Self::Pictures),
+                    Some(word) => Err(format!("unknown argument `{word}`")),
+                };
+            }
             Some(verb) => return Err(format!("no verb `{verb}`")),
         }
         let mut chosen = Vec::new();
@@ -82,10 +98,11 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list]
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
-    --list       name the steps";
+    --list       name the steps
+  pictures       draw the documentation's pictures anew";
 
 #[cfg(test)]
 mod tests {
@@ -116,5 +133,7 @@ mod tests {
         assert!(ask("deploy").unwrap_err().contains("deploy"));
         assert!(matches!(ask(""), Ok(Request::Help)));
         assert!(matches!(ask("test --list"), Ok(Request::List)));
+        assert!(matches!(ask("pictures"), Ok(Request::Pictures)));
+        assert!(ask("pictures now").is_err());
     }
 }

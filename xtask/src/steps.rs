@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::determinism;
+use crate::{determinism, readme};
 
 /// One thing that is checked.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub(crate) const STEPS: [Step; 11] = [
     Step { name: "image", what: "the firmware image for QEMU links, without an allocator", run: image },
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
-    Step { name: "play", what: "README's first command plays", run: play },
+    Step { name: "readme", what: readme::WHAT, run: readme::check },
 ];
 
 fn fmt(context: &Context) -> Result<(), Failure> {
@@ -87,10 +87,6 @@ fn qemu(context: &Context) -> Result<(), Failure> {
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     let line = "test --release --no-fail-fast --features match-tests/qemu --test qemu_*";
     run(&mut context.cargo(line))
-}
-
-fn play(context: &Context) -> Result<(), Failure> {
-    run(&mut context.cargo("run --release -- play"))
 }
 
 fn packages(names: &[&str]) -> String {

@@ -52,7 +52,7 @@ impl fmt::Display for QemuError {
             Self::Missing { why: None } => write!(f, "{QEMU} is not installed; {HOW_TO_INSTALL}"),
             Self::Broken { why } => write!(f, "{QEMU} does not run: {why}; {HOW_TO_INSTALL}"),
             Self::UnknownMachine { program } => {
-                write!(f, "{} has no machine {MACHINE}; QEMU 4.0 or newer is needed", program.display())
+                write!(f, "{} has no machine {MACHINE}; QEMU 7.2 or newer is needed", program.display())
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use casebase::{CaseBase, TableError};
 
-use crate::slot;
+use protocol::slot;
 
 /// The case base to play with; a table in the slot is checked first.
 pub(crate) fn case_base() -> Result<CaseBase<'static>, TableError> {

@@ -1,17 +1,17 @@
 //! Where does a case library lie that was not built into the image? In a slot of the flash, behind a header of its own.
 //!
 //! `magic 4 | length 4 LE | table`, at a fixed place above the image; QEMU puts it there with `-device loader`. An empty
-//! slot has no magic. The image and the simulator's QEMU back end share this very file.
+//! slot has no magic. The board reads it, the simulator's QEMU back end fills it.
 
 /// Address of the slot; a multiple of 8, and so is the table's behind the header.
-pub(crate) const ADDRESS: usize = 0x0030_0000;
+pub const ADDRESS: usize = 0x0030_0000;
 /// Bytes of the slot: the last of the board's 4 MiB.
-pub(crate) const LEN: usize = 0x0010_0000;
+pub const LEN: usize = 0x0010_0000;
 /// Bytes before the table.
-pub(crate) const HEADER_LEN: usize = 8;
+pub const HEADER_LEN: usize = 8;
 
 /// The header of a table of this many bytes; `None` if it does not fit.
-pub(crate) fn header(table_len: usize) -> Option<[u8; HEADER_LEN]> {
+pub fn header(table_len: usize) -> Option<[u8; HEADER_LEN]> {
     if table_len > LEN - HEADER_LEN {
         return None;
     }

@@ -1,0 +1,40 @@
+//! Do the commands that README shows do what they say? Those that run the program are run, in order, as they stand there.
+
+use std::fs;
+
+use crate::context::{Context, Failure, run};
+
+/// What holds when the step passes.
+pub(crate) const WHAT: &str = "README's commands run, its first one among them";
+
+/// Runs every `cargo run` of README's shell blocks; the chores beside them are this very program.
+pub(crate) fn check(context: &Context) -> Result<(), Failure> {
+    let file = context.root().join("README.md");
+    let text = fs::read_to_string(&file)
+        .map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
+    for command in commands(&text) {
+        run(&mut context.cargo(command))?;
+    }
+    Ok(())
+}
+
+/// What follows `cargo ` in the lines of README's shell blocks that run the program.
+fn commands(readme: &str) -> Vec<&str> {
+    let shell = readme.split("```").filter_map(|block| block.strip_prefix("sh\n"));
+    shell
+        .flat_map(str::lines)
+        .filter_map(|line| line.strip_prefix("cargo "))
+        .filter(|command| command.starts_with("run "))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_run_and_chores_are_not() {
+        let readme = "text `cargo run x`\n```sh\ncargo run --release -- play\ncargo xtask test\n```\n```text\ncargo run no\n```\n";
+        assert_eq!(commands(readme), ["run --release -- play"]);
+    }
+}
