@@ -3,4 +3,5 @@
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;
+pub mod tabletop;
 pub mod workspace;

@@ -1,0 +1,169 @@
+//! What do brains do when nothing goes wrong by itself? Bodies that obey at once, grabs that succeed, kicks that hit, air
+//! that carries every beacon to the next step: whatever then fails was made to fail by the test.
+//!
+//! SI units, field frame; a step is 40 ms. The simulator proper has physics and chance; here a test places everything.
+
+use brain::{Brain, BrainConfig};
+use casebase::CaseBase;
+use geometry::{Field, Point, Pose, Twist, Vector};
+use protocol::robot_io::{ActuatorFrame, BallSight, LeggedKick, LeggedPrimitive, SensorFrame};
+use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
+use protocol::{CycleId, Duration, Instant, RobotId};
+
+/// Robots and a ball on a table.
+pub struct Tabletop<'a> {
+    /// Steps taken.
+    pub steps: u64,
+    /// The robots, in rising order of their ids.
+    pub robots: Vec<Robot<'a>>,
+    /// Where the ball lies or rolls.
+    pub ball: Point<Field>,
+    /// How it rolls.
+    pub velocity: Vector<Field>,
+    /// Opponents stand where the test puts them.
+    pub opponents: Vec<Point<Field>>,
+    /// Every kick so far: who, how, where to.
+    pub kicks: Vec<(RobotId, LeggedKick, Vector<Field>)>,
+    /// How cycles ended, as somebody said.
+    pub ends: Vec<(CycleId, Closure)>,
+    air: Vec<(RobotId, TeamMessage)>,
+}
+
+/// One of ours.
+pub struct Robot<'a> {
+    /// Who.
+    pub id: RobotId,
+    /// Its brain.
+    pub brain: Brain<'a>,
+    /// Where it is.
+    pub pose: Pose<Field>,
+    /// It has the ball.
+    pub holds: bool,
+    /// Its newest word.
+    pub beacon: Option<Beacon>,
+    /// Switched off: it neither moves nor speaks.
+    pub dead: bool,
+}
+
+impl<'a> Tabletop<'a> {
+    /// With these robots at rest, booting now.
+    pub fn new(base: CaseBase<'a>, ball: (f32, f32), robots: &[(BrainConfig, Pose<Field>)]) -> Self {
+        let robots = robots.iter().map(|(config, pose)| Robot {
+            id: config.robot,
+            brain: Brain::new(Instant(0), config, base),
+            pose: *pose,
+            holds: false,
+            beacon: None,
+            dead: false,
+        });
+        Self {
+            steps: 0,
+            robots: robots.collect(),
+            ball: Point::new(ball.0, ball.1),
+            velocity: Vector::default(),
+            opponents: Vec::new(),
+            kicks: Vec::new(),
+            ends: Vec::new(),
+            air: Vec::new(),
+        }
+    }
+
+    /// The time.
+    pub fn now(&self) -> Instant {
+        Instant(self.steps * STEP.0)
+    }
+
+    /// The robot of that number.
+    pub fn robot(&mut self, number: u8) -> &mut Robot<'a> {
+        self.robots.iter_mut().find(|robot| robot.id.number() == number).expect("a robot on the table")
+    }
+
+    /// One step of everything.
+    pub fn step(&mut self) {
+        self.steps += 1;
+        let now = self.now();
+        let heard = std::mem::take(&mut self.air);
+        let (ball, opponents) = (self.ball, self.opponents.clone());
+        let mut orders = Vec::new();
+        for robot in self.robots.iter_mut().filter(|robot| !robot.dead) {
+            while let Some(due) = robot.brain.poll_timeout().filter(|due| *due <= now) {
+                robot.brain.handle_timeout(due);
+            }
+            for (from, message) in heard.iter().filter(|(from, _)| *from != robot.id) {
+                robot.brain.handle_team_message(now, *from, message);
+            }
+            let sensors = SensorFrame {
+                pose: robot.pose,
+                ball: Some(BallSight { position: ball, sigma: 0.0, age: Duration(0) }),
+                opponents: opponents.iter().copied().collect(),
+                ball_contact: robot.holds,
+                busy: false,
+                odometry: Twist::default(),
+            };
+            robot.brain.handle_sensors(now, &sensors);
+            while let Some(message) = robot.brain.poll_message(now) {
+                let TeamMessage::Beacon(beacon) = &message;
+                robot.beacon = Some(beacon.clone());
+                if let Some(CycleState { id, decision: Decision::Closed(end), .. }) = &beacon.cycle
+                    && !self.ends.contains(&(*id, *end))
+                {
+                    self.ends.push((*id, *end));
+                }
+                self.air.push((robot.id, message));
+            }
+            orders.push((robot.id, robot.brain.poll_actuators(now)));
+        }
+        for (id, order) in orders {
+            if let Some(ActuatorFrame::Legged { walk, primitive }) = order {
+                self.obey(id, walk, primitive);
+            }
+        }
+        let speed = (self.velocity.norm() - DECELERATION * DT).max(0.0);
+        self.velocity = self.velocity.unit().map_or(Vector::default(), |direction| direction * speed);
+        self.ball += self.velocity * DT;
+    }
+
+    /// Steps until `done`, at most for `seconds`; whether it came.
+    pub fn until(&mut self, seconds: f32, mut done: impl FnMut(&mut Self) -> bool) -> bool {
+        let last = self.steps + (seconds / DT) as u64;
+        while self.steps < last {
+            self.step();
+            if done(self) {
+                return true;
+            }
+        }
+        false
+    }
+
+    fn obey(&mut self, id: RobotId, walk: Twist<geometry::Body>, primitive: LeggedPrimitive) {
+        let Some(robot) = self.robots.iter_mut().find(|robot| robot.id == id) else { return };
+        robot.pose.position += robot.pose.vector_to_field(walk.linear) * DT;
+        robot.pose.heading = robot.pose.heading + geometry::Angle::new(walk.angular * DT);
+        match primitive {
+            LeggedPrimitive::Grab => {
+                robot.holds = true;
+                self.velocity = Vector::default();
+            }
+            LeggedPrimitive::Kick(kick) if robot.holds => {
+                robot.holds = false;
+                let (angle, distance) = brain::body::legged::nominal(kick);
+                let speed = geometry::math::sqrt(2.0 * DECELERATION * distance);
+                self.velocity = Vector::polar(speed, robot.pose.heading + angle);
+                self.kicks.push((id, kick, self.velocity));
+            }
+            LeggedPrimitive::Kick(_) | LeggedPrimitive::None => {}
+        }
+        if robot.holds {
+            self.ball = robot.pose.position + Vector::polar(HOLD_AHEAD, robot.pose.heading);
+        }
+    }
+}
+
+/// A brain's step.
+pub const STEP: Duration = Duration::millis(40);
+/// The same, s.
+const DT: f32 = 0.04;
+/// The league's ball on carpet, m/s².
+const DECELERATION: f32 = 0.35;
+/// A held ball is this far ahead of the body's centre, m.
+const HOLD_AHEAD: f32 = 0.13;

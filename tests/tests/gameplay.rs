@@ -1,0 +1,246 @@
+//! Do robots play a case as the paper tells it, and leave it for the reasons it gives? (Ros et al. 2009 §4.2; DESIGN §4.4, §5)
+//!
+//! Brains on a table where nothing goes wrong by itself; the library is DESIGN's worked example alone.
+
+use brain::{BrainConfig, Positioning};
+use case_tools::{Files, Library};
+use geometry::{Point, Pose};
+use match_tests::tabletop::Tabletop;
+use protocol::robot_io::LeggedKick;
+use protocol::team::{AbortReason, Closure, Decision, Progress, Role};
+use protocol::{RobotId, TeamId};
+
+#[test]
+fn a_booting_robot_listens_for_one_lease_before_it_proposes() {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    assert!(table.until(1.0, |t| cycle(t, 1).is_some()));
+    assert!(table.now().0 > 400_000, "proposed after {} us", table.now().0);
+    let proposed = cycle(&mut table, 1).unwrap();
+    assert_eq!(proposed.id.proposer.number(), 1, "the lowest id present proposes");
+    assert_eq!(proposed.coordinator.number(), 1, "robot 1 is nearest the ball");
+}
+
+#[test]
+fn a_pass_is_played_from_its_election_to_its_end() {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    assert!(
+        table.until(2.0, |t| play(t, 3).is_some_and(|robots| robots == [1, 3])),
+        "robot 3 is told its part"
+    );
+    assert!(table.until(3.0, |t| matches!(progress(t, 1), Progress::Execute { .. })), "the getter arrives");
+    assert!(table.until(0.2, |t| matches!(progress(t, 3), Progress::Execute { .. })), "and all execute");
+    assert!(table.until(10.0, |t| t.kicks.len() == 1), "the pass");
+    let (passer, kick, velocity) = table.kicks[0];
+    assert_eq!(passer.number(), 1);
+    let LeggedKick::Pass(distance) = kick else { panic!("{kick:?}") };
+    // From about (−600, 0) to robot 3's place (300, 900): 1.27 m at 45°.
+    assert!((1.1..1.5).contains(&distance), "{distance}");
+    assert!((35.0..55.0).contains(&velocity.angle().to_degrees()), "{velocity:?}");
+    let done = |t: &mut Tabletop| progress(t, 1) == Progress::WaitEnd { finished: true };
+    assert!(table.until(0.2, done), "the passer has done its part and waits for the end");
+    assert!(table.until(10.0, |t| t.kicks.len() == 2), "the receiver shoots");
+    assert_eq!(table.kicks[1].0.number(), 3);
+    let ended = |t: &mut Tabletop| closure(t) == Some(Closure::Finished);
+    assert!(table.until(0.2, ended), "the coordinator closes the cycle when all have finished");
+    assert!(table.until(0.4, |t| cycle(t, 3).is_some_and(|c| c.id.counter == 2)), "and the next begins");
+}
+
+#[test]
+fn independent_positioning_waits_for_everybody() {
+    let library = library();
+    for (positioning, waits) in [(Positioning::Dependent, false), (Positioning::Independent, true)] {
+        let mut table = table(&library, &[1, 3], positioning);
+        // Robot 3 starts a metre from its place.
+        table.robot(3).pose.position = Point::new(0.3, -0.1);
+        let arrived =
+            |t: &mut Tabletop| !matches!(progress(t, 1), Progress::Idle | Progress::Adapt { arrived: false });
+        assert!(table.until(4.0, arrived), "the getter arrives");
+        table.until(0.2, |_| false);
+        let still_there = progress(&mut table, 1) == Progress::Adapt { arrived: true };
+        assert_eq!(still_there, waits, "{positioning:?}");
+        assert!(table.until(8.0, |t| matches!(progress(t, 3), Progress::Execute { .. })), "{positioning:?}");
+    }
+}
+
+#[test]
+fn a_ball_that_leaves_the_scope_before_the_first_touch_ends_the_cycle() {
+    assert_eq!(aborted_after(|table| table.ball = Point::new(-0.6, 0.6)), AbortReason::BallOutOfScope);
+}
+
+#[test]
+fn an_opponent_in_the_balls_path_before_the_first_touch_ends_the_cycle() {
+    assert_eq!(aborted_after(|table| table.opponents.push(Point::new(-0.2, 0.45))), AbortReason::PathBlocked);
+}
+
+#[test]
+fn a_robot_that_falls_silent_ends_the_cycle_after_its_lease() {
+    assert_eq!(aborted_after(|table| table.robot(3).dead = true), AbortReason::RobotLost);
+}
+
+#[test]
+fn a_passer_robbed_of_the_ball_ends_the_cycle() {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    assert!(table.until(8.0, |t| t.robot(1).holds));
+    table.until(0.1, |_| false);
+    table.robot(1).holds = false;
+    table.ball = Point::new(-0.3, -0.3);
+    let end = |t: &mut Tabletop| {
+        matches!(closure(t), Some(Closure::Aborted { reason: AbortReason::ActionFailed, .. }))
+    };
+    assert!(table.until(0.2, end), "{:?}", cycle(&mut table, 3));
+}
+
+#[test]
+fn a_gameplay_that_cannot_go_on_times_out() {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    assert!(table.until(1.0, |t| play(t, 1).is_some()));
+    // The getter's legs are tied; everything else stays as it should be.
+    let place = Pose::from_mm_deg(-1100.0, 0.0, 0.0);
+    let timeout = |t: &mut Tabletop| {
+        t.robot(1).pose = place;
+        matches!(closure(t), Some(Closure::Aborted { reason: AbortReason::Timeout, .. }))
+    };
+    assert!(table.until(30.0, timeout));
+}
+
+#[test]
+fn without_a_case_robots_play_reactively_and_try_again() {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    table.ball = Point::new(1.5, -1.0);
+    assert!(table.until(1.0, |t| cycle(t, 3).is_some_and(|c| c.decision == Decision::NoCase)));
+    table.until(0.1, |_| false);
+    let roles = [3, 1].map(|n| table.robot(n).beacon.as_ref().unwrap().role);
+    assert_eq!(roles, [Role::Attacker, Role::Supporter], "robot 3 is nearer to the ball there");
+    assert!(
+        table.until(1.0, |t| cycle(t, 1).is_some_and(|c| c.id.counter >= 3)),
+        "a new try every few steps"
+    );
+    table.ball = Point::new(-0.6, 0.0);
+    table.robot(1).pose = Pose::from_mm_deg(-900.0, 0.0, 0.0);
+    table.robot(3).pose = Pose::from_mm_deg(200.0, 800.0, 0.0);
+    assert!(table.until(1.0, |t| play(t, 1).is_some()), "and a case as soon as one fits");
+}
+
+#[test]
+fn a_robot_that_is_not_involved_waits_for_the_end() {
+    let library = library();
+    let mut table = table(&library, &[1, 3, 5], Positioning::Dependent);
+    assert!(table.until(2.0, |t| play(t, 5).is_some()));
+    assert_eq!(progress(&mut table, 5), Progress::WaitEnd { finished: false });
+    table.until(3.0, |_| false);
+    let keeps_off = table.robot(5).pose.position.distance(table.ball);
+    assert!(keeps_off > 0.5, "near the ball, but not after it: {keeps_off} m");
+}
+
+#[test]
+fn a_robot_without_the_coordinators_case_base_is_not_asked_to_play() {
+    let (library, other) = (library(), other_library());
+    let mut table = table(&library, &[1, 3, 5], Positioning::Dependent);
+    let config = config(3, Positioning::Dependent);
+    table.robot(3).brain = brain::Brain::new(table.now(), &config, other.base());
+    assert!(table.until(2.0, |t| play(t, 1).is_some()));
+    assert_eq!(play(&mut table, 1).unwrap(), [1, 5], "robot 5 is farther away, but knows the case");
+}
+
+/// Lets a gameplay begin, does the harm while its robots adapt, and tells for which reason the cycle ends.
+fn aborted_after(harm: impl FnOnce(&mut Tabletop<'_>)) -> AbortReason {
+    let library = library();
+    let mut table = table(&library, &[1, 3], Positioning::Dependent);
+    assert!(table.until(1.0, |t| play(t, 1).is_some()));
+    harm(&mut table);
+    let mut reason = None;
+    table.until(1.0, |t| {
+        if let Some(Closure::Aborted { reason: why, .. }) = closure(t) {
+            reason = Some(why);
+        }
+        reason.is_some()
+    });
+    reason.expect("the cycle is aborted within a second")
+}
+
+fn library() -> Library {
+    case_tools::build(&Files::from_texts("table", LEAGUE, &[("center/pass-around", PASS_AROUND)]))
+        .expect("valid")
+}
+
+/// The same case with a larger scope: another hash.
+fn other_library() -> Library {
+    let text = PASS_AROUND.replace("[450, 250]", "[460, 250]");
+    case_tools::build(&Files::from_texts("table", LEAGUE, &[("center/pass-around", &text)])).expect("valid")
+}
+
+fn config(id: u8, positioning: Positioning) -> BrainConfig {
+    BrainConfig { positioning, ..BrainConfig::new(RobotId::new(id).unwrap(), TeamId(1)) }
+}
+
+/// Robot 1 half a metre behind its place, robot 3 near its own, others at the back.
+fn table<'a>(library: &'a Library, ids: &[u8], positioning: Positioning) -> Tabletop<'a> {
+    let pose = |id| match id {
+        1 => Pose::from_mm_deg(-1200.0, 0.0, 0.0),
+        3 => Pose::from_mm_deg(200.0, 800.0, -135.0),
+        _ => Pose::from_mm_deg(-600.0, 1200.0, 0.0),
+    };
+    let robots: Vec<_> = ids.iter().map(|&id| (config(id, positioning), pose(id))).collect();
+    let mut table = Tabletop::new(library.base(), (-0.6, 0.0), &robots);
+    table.opponents.push(Point::new(-0.15, -0.1));
+    table
+}
+
+fn cycle(table: &mut Tabletop<'_>, robot: u8) -> Option<protocol::team::CycleState> {
+    table.robot(robot).beacon.as_ref()?.cycle.clone()
+}
+
+fn play(table: &mut Tabletop<'_>, robot: u8) -> Option<Vec<u8>> {
+    let cycle = cycle(table, robot)?;
+    Some(cycle.play()?.robots.iter().map(|id| id.number()).collect())
+}
+
+/// How the newest cycle that ended did so.
+fn closure(table: &Tabletop<'_>) -> Option<Closure> {
+    table.ends.last().map(|(_, end)| *end)
+}
+
+fn progress(table: &mut Tabletop<'_>, robot: u8) -> Progress {
+    table.robot(robot).beacon.as_ref().map_or(Progress::Idle, |beacon| beacon.progress)
+}
+
+const LEAGUE: &str = r#"
+[field]
+length = 5400
+width = 3600
+goal_width = 800
+penalty_area = { depth = 650, width = 1300 }
+
+[pass]
+r_min = 100
+r_max = 300
+
+[kicks.goal]
+aim = "goal"
+r_min = 100
+r_max = 300
+primitive = "forward_hard"
+"#;
+
+const PASS_AROUND: &str = r#"
+intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
+defending = "yellow"
+ball = { at = [-600, 0], scope = [450, 250] }
+
+[[teammates]]
+at = [-720, 0]
+gameplay = ["get_ball", { pass_ball = 2 }]
+
+[[teammates]]
+at = [300, 900]
+gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
+
+[[opponents]]
+at = [-150, 40]
+scope = [300, 300]
+"#;
