@@ -209,38 +209,6 @@ fn progress(table: &mut Tabletop<'_>, robot: u8) -> Progress {
     table.robot(robot).beacon.as_ref().map_or(Progress::Idle, |beacon| beacon.progress)
 }
 
-const LEAGUE: &str = r#"
-[field]
-length = 5400
-width = 3600
-goal_width = 800
-penalty_area = { depth = 650, width = 1300 }
-
-[pass]
-r_min = 100
-r_max = 300
-
-[kicks.goal]
-aim = "goal"
-r_min = 100
-r_max = 300
-primitive = "forward_hard"
-"#;
-
-const PASS_AROUND: &str = r#"
-intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
-defending = "yellow"
-ball = { at = [-600, 0], scope = [450, 250] }
-
-[[teammates]]
-at = [-720, 0]
-gameplay = ["get_ball", { pass_ball = 2 }]
-
-[[teammates]]
-at = [300, 900]
-gameplay = ["wait", { receive_ball = 1 }, { kick = "goal" }]
-
-[[opponents]]
-at = [-150, 40]
-scope = [300, 300]
-"#;
+const LEAGUE: &str = include_str!("../../casebase/library/cases/four-legged/league.toml");
+/// The worked example of DESIGN §4.1, as it is in the built-in library.
+const PASS_AROUND: &str = include_str!("../../casebase/library/cases/four-legged/center/pass-around.toml");
