@@ -121,8 +121,11 @@ impl Team {
 
     fn simulation(&self, air: AirSettings, faults: Vec<ScheduledFault>) -> Simulation<'static> {
         let parameters = Parameters::four_legged();
-        let configuration =
-            if self.seed % 2 == 0 { Configuration::DefenderGoalie } else { Configuration::TwoDefenders };
+        let configuration = if self.seed.is_multiple_of(2) {
+            Configuration::DefenderGoalie
+        } else {
+            Configuration::TwoDefenders
+        };
         let scenario = Scenario::PAPER[(self.seed / 2 % 4) as usize];
         let brains = self.ids.iter().zip(&self.retrievers);
         let brains =

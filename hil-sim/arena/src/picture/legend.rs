@@ -86,6 +86,6 @@ fn signs(canvas: &mut Canvas, y: f32) {
 }
 
 /// Gameplays in the list; more would make it longer than the field is high.
-const LISTED: usize = 24;
+pub(super) const LISTED: usize = 24;
 /// Height of a row of the list, px.
 const ROW: f32 = 26.0;
