@@ -103,7 +103,7 @@ impl<'a> Brain<'a> {
         if !core::mem::take(&mut self.beacon_due) {
             return None;
         }
-        let beacon = self.beacon(now);
+        let beacon = self.beacon();
         if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
             // The end is told before the next cycle begins: who hears only the beginning would not know why.
             self.told_end_of = self.cycle.id();
@@ -132,7 +132,7 @@ impl<'a> Brain<'a> {
         &self.cycle
     }
 
-    fn beacon(&self, _now: Instant) -> Beacon {
+    fn beacon(&self) -> Beacon {
         let mut status = Status::default();
         if self.awake {
             status = status.with(Status::AVAILABLE);
@@ -266,7 +266,7 @@ impl<'a> Brain<'a> {
 
     fn propose(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
-        let coordinator = election::coordinator(now, me, &self.beacon(now), &self.mates)?;
+        let coordinator = election::coordinator(now, me, &self.beacon(), &self.mates)?;
         let skip = core::mem::take(&mut self.skip);
         Some(election::proposal(self.cycle.id(), me, coordinator, skip))
     }

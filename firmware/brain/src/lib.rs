@@ -6,6 +6,9 @@
 //! (what it holds true), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by itself), [`execution`]
 //! (its part of a case), [`team`] (the cycle), [`Brain`] (the order of thought), [`Station`] (brain with radio).
 //!
+//! Not here yet: `handle_host_frame` and its directives, the skills and the body of wheeled robots, and the safety governor;
+//! they come with the host of the Small Size League.
+//!
 //! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it knows the world only
 //! by [`SensorFrame`](protocol::robot_io::SensorFrame) and its teammates' beacons; it takes a
 //! [`CaseBase`](casebase::CaseBase) and never links a library.
