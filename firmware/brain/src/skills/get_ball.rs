@@ -29,14 +29,18 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     let detour = onwards.filter(|&onwards| {
         !contested && ball.is_at_rest() && (onwards - direct).abs() > DIRECT_WITHIN && distance > STAND_OFF
     });
-    let heading = detour.unwrap_or(direct);
-    // From straight behind, the last steps go to a place from which the ball is in reach.
-    let to = meeting - Vector::polar(STAND_OFF, heading);
-    if detour.is_none() && distance < NEAR {
-        let face = pose.position.direction_to(ball.position);
-        return Step::Running(Intent::Walk { to, face, shy_of_ball: false });
+    match detour {
+        Some(onwards) => {
+            let to = meeting - Vector::polar(STAND_OFF, onwards);
+            Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true })
+        }
+        None => {
+            // Not slowing down before the ball is in reach: the walk would end beyond that.
+            let to = meeting - Vector::polar(WALK_UP_TO, direct);
+            let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
+            Step::Running(Intent::Walk { to, face, shy_of_ball: false })
+        }
     }
-    Step::Running(Intent::Walk { to, face: heading, shy_of_ball: detour.is_some() })
 }
 
 /// The earliest place on the ball's way that the robot reaches no later than the ball; else where it will rest.
@@ -61,6 +65,8 @@ fn meeting_point(belief: &Belief, ball: &Ball) -> Point<Field> {
 
 /// Where the robot's centre stands to grab, behind the ball, m: the ball lies between the front legs.
 const STAND_OFF: f32 = 0.14;
+/// Where a walk straight to the ball would end, before its centre, m: less than the grab's reach.
+const WALK_UP_TO: f32 = 0.08;
 /// Within this distance only the way to the ball counts, m.
 const NEAR: f32 = 0.5;
 /// Facing onwards comes for free within this angle, rad.
@@ -138,6 +144,6 @@ mod tests {
         let Step::Running(Intent::Walk { to, .. }) = get_ball(&contested, Some(Angle::HALF_TURN)) else {
             panic!("walks")
         };
-        assert!(to.x() < 0.5);
+        assert!(to.x() < 0.55, "straight up to the ball: {to:?}");
     }
 }
