@@ -10,7 +10,7 @@ use protocol::team::{
     AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage,
 };
 use protocol::{CycleId, Duration, Instant, RobotId};
-use rules::{GoalSide, League};
+use rules::GoalSide;
 
 use crate::belief::Belief;
 use crate::body::{Intent, legged};
@@ -53,7 +53,7 @@ impl<'a> Brain<'a> {
         Self {
             config: config.clone(),
             base,
-            belief: Belief::new(League::FourLegged),
+            belief: Belief::new(config.league),
             mates: Mates::default(),
             cycle: Cycle::new(config.robot),
             execution: None,

@@ -2,6 +2,7 @@
 
 use casebase::{GoalEnd, Settings};
 use protocol::{Duration, RobotId, TeamId};
+use rules::League;
 use serde::{Deserialize, Serialize};
 
 /// A robot's configuration; travels in the lockstep set-up and is compiled or provisioned on a board.
@@ -13,6 +14,8 @@ pub struct BrainConfig {
     pub team: TeamId,
     /// Which life this is: rises with every boot.
     pub epoch: u32,
+    /// Whose field, robots and ball.
+    pub league: League,
     /// The goal its team defends.
     pub defending: GoalEnd,
     /// Whether it is one of the k robots that may retrieve (paper §4.1).
@@ -48,12 +51,13 @@ pub enum Approach {
 }
 
 impl BrainConfig {
-    /// An attacker towards +x with the paper's settings, able to retrieve.
+    /// An attacker of the four-legged league towards +x with the paper's settings, able to retrieve.
     pub fn new(robot: RobotId, team: TeamId) -> Self {
         Self {
             robot,
             team,
             epoch: 1,
+            league: League::FourLegged,
             defending: GoalEnd::Negative,
             retriever: true,
             positioning: Positioning::default(),

@@ -3,10 +3,12 @@
 //! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; carpet 6 × 4 m
 //! as in Ros et al. 2009 §6.1.
 
+use serde::{Deserialize, Serialize};
+
 use crate::FieldSpec;
 
 /// A league's world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum League {
     /// RoboCup Four-Legged League, 2007: AIBO ERS-7 on 5.4 × 3.6 m.
     FourLegged,
