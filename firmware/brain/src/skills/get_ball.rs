@@ -29,18 +29,14 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     let detour = onwards.filter(|&onwards| {
         !contested && ball.is_at_rest() && (onwards - direct).abs() > DIRECT_WITHIN && distance > STAND_OFF
     });
-    match detour {
-        Some(onwards) => {
-            let to = meeting - Vector::polar(STAND_OFF, onwards);
-            Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true })
-        }
-        None => {
-            // Not slowing down before the ball is in reach: the walk would end beyond that.
-            let to = meeting - Vector::polar(WALK_UP_TO, direct);
-            let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
-            Step::Running(Intent::Walk { to, face, shy_of_ball: false })
-        }
+    if let Some(onwards) = detour {
+        let to = meeting - Vector::polar(STAND_OFF, onwards);
+        return Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true });
     }
+    // Not slowing down before the ball is in reach: the walk would end beyond that.
+    let to = meeting - Vector::polar(WALK_UP_TO, direct);
+    let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
+    Step::Running(Intent::Walk { to, face, shy_of_ball: false })
 }
 
 /// The earliest place on the ball's way that the robot reaches no later than the ball; else where it will rest.
