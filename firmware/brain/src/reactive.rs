@@ -75,7 +75,8 @@ impl Reactive {
                 _ => Intent::Stand { face: None },
             };
         }
-        match skills::get_ball(belief, None) {
+        let onwards = ball.position.direction_to(goal);
+        match skills::get_ball(belief, Some(onwards)) {
             Step::Running(Intent::Grab) if freedom != Freedom::Full => Intent::Stand { face: None },
             Step::Running(intent) => intent,
             Step::Done => Intent::Stand { face: None },
