@@ -78,7 +78,9 @@ struct Content {
 #[derive(Clone, Copy, Debug)]
 struct Pending {
     lost: RobotId,
+    /// The fault; where packets are lost, the first beacon that anybody heard after it.
     since: Instant,
+    heard_since: bool,
     newer_than: CycleId,
 }
 
@@ -178,7 +180,7 @@ impl Watcher {
         // Whoever is left must start anew, unless a gameplay goes on that the lost robot has no part in.
         let goes_on = self.plays_on_without(id);
         if let (Some(newer_than), false, false) = (newest, goes_on, self.robots.is_empty()) {
-            self.pending = Some(Pending { lost: id, since: now, newer_than });
+            self.pending = Some(Pending { lost: id, since: now, heard_since: false, newer_than });
         }
     }
 
@@ -191,6 +193,11 @@ impl Watcher {
     }
 
     fn heard(&mut self, now: Instant, id: RobotId, beacon: &Beacon) {
+        if let (Some(pending), Air::Lossy) = (&mut self.pending, self.air)
+            && !pending.heard_since
+        {
+            (pending.since, pending.heard_since) = (now, true);
+        }
         let (Some(watched), Some(cycle)) = (self.robots.get_mut(&id), &beacon.cycle) else { return };
         if cycle.is_newer_than(watched.told.as_ref().map(|(state, _)| state)) {
             watched.told = Some((cycle.clone(), now));

@@ -49,22 +49,21 @@ fn under_loss_robots_leave_an_old_gameplay_when_they_hear_of_a_newer_one() {
 fn a_robot_may_crash_and_return_at_any_time() {
     let tally = for_each_seed(|seed| {
         let team = Team::drawn(seed);
-        let mut chance = Stream::new(seed, "crash");
-        let at = chance.whole(30, 200);
-        // A third each: any robot, the lowest id (the elector), the coordinator of that very moment.
-        let victim = match seed % 3 {
-            0 => team.ids[chance.whole(0, team.ids.len() as u32 - 1) as usize],
-            1 => team.ids[0],
-            _ => coordinator_at(&team, at).unwrap_or(team.ids[0]),
-        };
-        let away = chance.whole(1, 75);
-        let faults = vec![
-            ScheduledFault { tick: at, fault: Fault::Crash(victim) },
-            ScheduledFault { tick: at + away, fault: Fault::Return(victim) },
-        ];
+        let faults = crash_and_return(&team);
         watch(&team, AirSettings::default(), faults, Air::Lossless)
     });
     println!("crash and return, {SEEDS} seeds: {tally:?}");
+    assert!(tally.slowest_ms > 0, "{tally:?}");
+}
+
+#[test]
+fn a_robot_may_crash_and_return_while_packets_are_lost() {
+    let tally = for_each_seed(|seed| {
+        let team = Team::drawn(seed);
+        let faults = crash_and_return(&team);
+        watch(&team, AirSettings { loss: 0.3, delay: [1, 2], ..AirSettings::default() }, faults, Air::Lossy)
+    });
+    println!("crash and return under 30 % loss, {SEEDS} seeds: {tally:?}");
     assert!(tally.slowest_ms > 0, "{tally:?}");
 }
 
@@ -99,6 +98,23 @@ fn halves_of_a_partition_are_one_team_again_within_a_second_of_healing() {
         }
         report(&watcher)
     });
+}
+
+/// At a time drawn from the seed a robot dies, for up to three seconds. A third of the seeds each: any robot, the lowest id
+/// (the elector), the coordinator of that very moment.
+fn crash_and_return(team: &Team) -> Vec<ScheduledFault> {
+    let mut chance = Stream::new(team.seed, "crash");
+    let at = chance.whole(30, 200);
+    let victim = match team.seed % 3 {
+        0 => team.ids[chance.whole(0, team.ids.len() as u32 - 1) as usize],
+        1 => team.ids[0],
+        _ => coordinator_at(team, at).unwrap_or(team.ids[0]),
+    };
+    let away = chance.whole(1, 75);
+    vec![
+        ScheduledFault { tick: at, fault: Fault::Crash(victim) },
+        ScheduledFault { tick: at + away, fault: Fault::Return(victim) },
+    ]
 }
 
 /// A team drawn from a seed.
