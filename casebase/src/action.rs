@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::PointMm;
 
 /// Most robots in a case.
-pub const TEAMMATES_MAX: usize = 4;
+pub const TEAMMATES_MAX: usize = protocol::team::CASE_ROBOTS_MAX;
 /// Most opponents (scopes) in a case.
 pub const OPPONENTS_MAX: usize = 4;
 /// Most kick kinds in a league.

@@ -6,9 +6,10 @@
 //! number of opponents, then of teammates, both falling: what can fulfil most conditions comes first.
 
 use crate::settings::SCOPE_EXPONENT;
-use crate::symmetry::{GoalEnd, Symmetry};
+use crate::symmetry::Symmetry;
 use crate::table::CaseBase;
 use crate::{FieldMm, PointMm};
+use geometry::GoalEnd;
 
 /// The shape of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -33,6 +33,7 @@ pub use action::{
 };
 pub use case::Case;
 pub use explain::{Verdict, explain};
+pub use geometry::GoalEnd;
 pub use index::Grid;
 pub use path::{Abreast, Blocked, Leg, LegKind, blocked_leg};
 pub use point::{PointMm, Scope};
@@ -42,5 +43,5 @@ pub use retrieve::{Retrieval, adapted_position, retrieve, retrieve_best};
 pub use settings::{
     CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, SettingError, Settings,
 };
-pub use symmetry::{GoalEnd, Symmetry};
+pub use symmetry::Symmetry;
 pub use table::{CaseBase, TableError};

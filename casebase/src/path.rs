@@ -4,7 +4,7 @@
 //! end: μ = exp(−(v/ρ)²), u along and v across the leg, 0 ≤ u ≤ l. One opponent above the threshold in any of them,
 //! and the case is not applicable now. Lengths in mm, axes of the field.
 
-use geometry::math;
+use geometry::{Field, Point, math};
 use serde::{Deserialize, Serialize};
 
 use crate::action::{Action, CaseRobot, KickId};
@@ -43,6 +43,16 @@ pub enum LegKind {
 }
 
 impl Leg {
+    /// Where the ball is kicked, m.
+    pub fn start(&self) -> Point<Field> {
+        in_metres(self.from)
+    }
+
+    /// Where it comes to rest, m.
+    pub fn end(&self) -> Point<Field> {
+        in_metres(self.to)
+    }
+
     /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
     /// not abreast of the leg. A leg of length 0 has nothing abreast.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
@@ -217,6 +227,11 @@ pub(crate) fn is_blocking(exponent: f32, settings: &Settings) -> bool {
 /// 1 − max μ.
 pub(crate) fn freedom(least_exponent: Option<f32>) -> f32 {
     least_exponent.map_or(1.0, |exponent| 1.0 - math::exp(-exponent))
+}
+
+/// From the paper's unit to the robots'.
+fn in_metres([x, y]: [f32; 2]) -> Point<Field> {
+    Point::new(x * 0.001, y * 0.001)
 }
 
 /// Every leg of the ball path in turn: as stored, or walked anew where adapted positions are clamped to the field.

@@ -2,6 +2,8 @@
 //!
 //! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input overflows.
 
+use geometry::{Field, Point};
+use protocol::quantized::{self, WirePoint};
 use serde::{Deserialize, Serialize};
 
 /// A place on the field, mm, field frame.
@@ -45,6 +47,28 @@ impl From<(i32, i32)> for PointMm {
 impl From<PointMm> for (i32, i32) {
     fn from(point: PointMm) -> Self {
         (point.x, point.y)
+    }
+}
+impl From<Point<Field>> for PointMm {
+    /// To the nearest millimetre.
+    fn from(point: Point<Field>) -> Self {
+        Self { x: quantized::whole_mm(point.x()), y: quantized::whole_mm(point.y()) }
+    }
+}
+impl From<PointMm> for Point<Field> {
+    fn from(point: PointMm) -> Self {
+        Self::new(quantized::from_mm(point.x), quantized::from_mm(point.y))
+    }
+}
+impl From<WirePoint> for PointMm {
+    fn from(point: WirePoint) -> Self {
+        Self { x: i32::from(point.x), y: i32::from(point.y) }
+    }
+}
+impl From<PointMm> for WirePoint {
+    /// A place farther than 32 m off saturates.
+    fn from(point: PointMm) -> Self {
+        Self { x: quantized::saturate(point.x), y: quantized::saturate(point.y) }
     }
 }
 

@@ -5,53 +5,10 @@
 
 use core::fmt;
 
+use geometry::GoalEnd;
 use serde::{Deserialize, Serialize};
 
 use crate::PointMm;
-
-/// The goal we defend, by the end of the field it stands at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum GoalEnd {
-    /// At −x, the paper's "yellow": we attack towards +x.
-    Negative,
-    /// At +x, the paper's "cyan": we attack towards −x.
-    Positive,
-}
-
-impl GoalEnd {
-    /// The paper's word, as files and problems have it.
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Negative => "yellow",
-            Self::Positive => "cyan",
-        }
-    }
-
-    /// From the paper's word.
-    pub fn from_word(word: &str) -> Option<Self> {
-        match word {
-            "yellow" => Some(Self::Negative),
-            "cyan" => Some(Self::Positive),
-            _ => None,
-        }
-    }
-
-    /// +1 where we attack towards +x, else −1.
-    pub const fn attack_sign(self) -> i32 {
-        match self {
-            Self::Negative => 1,
-            Self::Positive => -1,
-        }
-    }
-
-    /// The other end.
-    pub const fn opposite(self) -> Self {
-        match self {
-            Self::Negative => Self::Positive,
-            Self::Positive => Self::Negative,
-        }
-    }
-}
 
 /// How a stored case came out of the authored one; the number is the case id modulo 4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -313,7 +313,8 @@ static FOUR_LEGGED: LazyLock<Parameters> = LazyLock::new(|| {
 
 #[cfg(test)]
 mod tests {
-    use rules::{GoalSide, League};
+    use geometry::GoalEnd;
+    use rules::League;
 
     use super::*;
 
@@ -326,7 +327,7 @@ mod tests {
     #[test]
     fn the_goalies_home_is_the_penalty_area_and_the_defender_stays_out_of_it() {
         let (field, homes) = (League::FourLegged.field(), &Parameters::four_legged().opponent);
-        let goal_x = field.goal_center(GoalSide::Positive).x();
+        let goal_x = field.goal_center(GoalEnd::Positive).x();
         assert_eq!(homes.goalie.x[1], goal_x);
         assert!((homes.goalie.x[0] - (goal_x - field.penalty_depth)).abs() < 1e-6);
         assert_eq!(homes.goalie.y, [-field.penalty_width / 2.0, field.penalty_width / 2.0]);

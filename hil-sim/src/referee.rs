@@ -4,8 +4,8 @@
 //! it enters the attacked penalty area (two defenders; the paper calls that "to goal", the outcome here is `goal`), or
 //! when time is up. m, s, field frame; the attacked goal is at +x.
 
-use geometry::{Field, Point};
-use rules::{FieldSpec, GoalSide, League};
+use geometry::{Field, GoalEnd, Point};
+use rules::{FieldSpec, League};
 use serde::{Deserialize, Serialize};
 
 use crate::opponents::Role;
@@ -209,7 +209,7 @@ impl Referee {
         let goal_line = self.field.length * 0.5;
         let (out_x, out_y) = (goal_line + self.ball_radius, self.field.width * 0.5 + self.ball_radius);
         let two_defenders = self.configuration == Configuration::TwoDefenders;
-        if two_defenders && self.field.in_penalty_area(GoalSide::Positive, now) {
+        if two_defenders && self.field.in_penalty_area(GoalEnd::Positive, now) {
             return Some(Outcome::Goal);
         }
         if now.x().abs() > out_x {

@@ -24,9 +24,14 @@ pub struct WirePose {
     pub heading: i16,
 }
 
-/// Metres to whole millimetres, to the nearest; saturates at ±32.767 m, NaN gives 0.
+/// Metres to whole millimetres, to the nearest; NaN gives 0.
+pub fn whole_mm(metres: f32) -> i32 {
+    math::round_to_i32(metres * 1000.0)
+}
+
+/// As [`whole_mm`], for the wire: saturates at ±32.767 m.
 pub fn to_mm(metres: f32) -> i16 {
-    saturate(math::round_to_i32(metres * 1000.0))
+    saturate(whole_mm(metres))
 }
 
 /// Millimetres to metres.
@@ -36,7 +41,7 @@ pub fn from_mm(mm: i32) -> f32 {
 
 /// A length ≥ 0 in whole millimetres, saturating at 65.535 m.
 pub fn length_to_mm(metres: f32) -> u16 {
-    math::round_to_i32(metres * 1000.0).clamp(0, i32::from(u16::MAX)) as u16
+    whole_mm(metres).clamp(0, i32::from(u16::MAX)) as u16
 }
 
 impl From<Point<Field>> for WirePoint {
@@ -63,7 +68,8 @@ impl From<WirePose> for Pose<Field> {
     }
 }
 
-fn saturate(value: i32) -> i16 {
+/// What does not fit into the wire's integers becomes the nearest that does.
+pub fn saturate(value: i32) -> i16 {
     value.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
 }
 

@@ -3,14 +3,13 @@
 //! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
 //! `poll_timeout` when to come back.
 
-use casebase::{CaseBase, CaseRobot, GoalEnd};
+use casebase::{CaseBase, CaseRobot};
 use protocol::quantized::length_to_mm;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::{
     AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage,
 };
 use protocol::{CycleId, Duration, Instant, RobotId};
-use rules::GoalSide;
 
 use crate::belief::Belief;
 use crate::body::{Intent, legged};
@@ -388,10 +387,7 @@ impl<'a> Brain<'a> {
     }
 
     fn default_behaviour(&mut self, now: Instant, freedom: Freedom) -> Intent {
-        let attacked = match self.config.defending {
-            GoalEnd::Negative => GoalSide::Positive,
-            GoalEnd::Positive => GoalSide::Negative,
-        };
+        let attacked = self.config.defending.opposite();
         self.reactive.step(now, self.config.robot, &self.belief, &self.mates, attacked, freedom)
     }
 

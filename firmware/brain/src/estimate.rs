@@ -7,7 +7,6 @@ use motion::rolling::RollingBall;
 use protocol::Duration;
 
 use crate::execution::Scene;
-use crate::units::{end_to_field, to_field};
 
 /// The limit for something expected to take `expected` seconds.
 pub(crate) fn limit(expected: f32) -> Duration {
@@ -50,16 +49,14 @@ pub(crate) fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize)
         Some(Action::DribbleTo(p)) => TURN + walk(place, scene.adapt(p), CARRY_SPEED),
         Some(Action::Turn(_)) => TURN,
         Some(Action::GetBall) => {
-            walk(place, to_field(scene.ball_used()), WALK_FORWARD).min(LONGEST_FETCH) + GRAB
+            walk(place, scene.ball_used().into(), WALK_FORWARD).min(LONGEST_FETCH) + GRAB
         }
         Some(Action::ReceiveBall(_)) => scene
             .case
             .partner_of(part, index)
-            .and_then(|(from, action)| {
-                scene.case.legs(scene.ball_used()).into_iter().find(|l| l.robot == from && l.action == action)
-            })
+            .and_then(|(from, action)| scene.leg(from, action))
             .map_or(GRAB, |leg| {
-                let length = end_to_field(leg.from).distance(end_to_field(leg.to));
+                let length = leg.start().distance(leg.end());
                 let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
                 ball.speed_for(length) / ball.deceleration + GRAB
             }),

@@ -4,7 +4,7 @@
 //! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
 //! the coordinator used. Field frame, SI.
 
-use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, LegKind, PointMm, Primitive, TurnTarget};
+use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, Primitive, TurnTarget};
 use geometry::{Angle, Field, Point};
 use protocol::quantized::from_mm;
 use protocol::robot_io::LeggedKick;
@@ -17,7 +17,6 @@ use crate::estimate;
 use crate::mates::Mates;
 use crate::skills::{self, Reception, Step};
 use crate::timer::{Timer, TimerTable};
-use crate::units::{end_to_field, from_wire, to_field};
 
 /// Everything an execution looks at in one step.
 #[derive(Clone, Copy)]
@@ -41,18 +40,17 @@ pub struct Scene<'s> {
 impl Scene<'_> {
     /// A point of the case, adapted, on the field.
     pub fn adapt(&self, point: PointMm) -> Point<Field> {
-        let shift = self.case.shift(self.ball_used());
-        to_field(PointMm { x: point.x.saturating_add(shift.x), y: point.y.saturating_add(shift.y) })
+        point.plus(self.case.shift(self.ball_used())).into()
     }
 
     /// Where case robot `part` has its place.
     pub fn place_of(&self, part: CaseRobot) -> Point<Field> {
-        to_field(self.case.adapted(part, self.ball_used()))
+        self.case.adapted(part, self.ball_used()).into()
     }
 
     /// The ball that all adapted positions of this cycle are relative to, mm.
     pub fn ball_used(&self) -> PointMm {
-        from_wire(self.play.ball)
+        self.play.ball.into()
     }
 
     /// Who plays case robot `part`.
@@ -65,12 +63,15 @@ impl Scene<'_> {
         self.mates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
     }
 
-    /// Where the ball's leg of that action leads: field point of its end, and its direction.
+    /// The leg of the ball's path that this action makes.
+    pub(crate) fn leg(&self, part: CaseRobot, action: usize) -> Option<Leg> {
+        self.case.legs(self.ball_used()).into_iter().find(|leg| leg.robot == part && leg.action == action)
+    }
+
+    /// Where that leg leads: field point of its end, and its direction.
     fn leg_of(&self, part: CaseRobot, action: usize) -> Option<(Point<Field>, Angle)> {
-        let leg =
-            self.case.legs(self.ball_used()).into_iter().find(|l| l.robot == part && l.action == action)?;
-        let (from, to) = (end_to_field(leg.from), end_to_field(leg.to));
-        Some((to, from.direction_to(to)))
+        let leg = self.leg(part, action)?;
+        Some((leg.end(), leg.start().direction_to(leg.end())))
     }
 }
 
@@ -319,7 +320,8 @@ impl Execution {
         match scene.case.action(self.part, next)? {
             Action::PassBall(_) => scene.leg_of(self.part, next).map(|(_, along)| along),
             Action::Kick(id) => {
-                let kick = legged_kick(scene.base.kick(id)?.primitive, scene.base.kick(id)?.aim);
+                let kick = scene.base.kick(id)?;
+                let kick = legged_kick(kick.primitive, kick.aim);
                 let (_, along) = scene.leg_of(self.part, next)?;
                 Some(along - crate::body::legged::nominal(kick).0)
             }
@@ -342,11 +344,6 @@ impl From<Step> for Verdict {
             Step::Done => Self::Done,
         }
     }
-}
-
-/// Whether any leg of the ball path begins with a pass (a case of one robot has none).
-pub fn is_cooperative(case: &Case<'_>, ball: PointMm) -> bool {
-    case.legs(ball).into_iter().any(|leg| matches!(leg.kind, LegKind::Pass(_)))
 }
 
 /// The heading from `at` to the ball, or the present one while no ball is known.

@@ -26,7 +26,6 @@ pub mod skills;
 mod station;
 pub mod team;
 pub mod timer;
-mod units;
 
 pub use brain::Brain;
 pub use config::{Approach, BrainConfig, Positioning};

@@ -4,11 +4,10 @@
 //! off the line from ball to goal. An opponent is considered only when it blocks the way within 0.4 m: then dodge,
 //! carrying the ball diagonally past it. Short kicks advance, near the goal the robot turns and shoots. No passes.
 
-use geometry::{Angle, Field, Point, Vector};
+use geometry::{Angle, Field, GoalEnd, Point, Vector};
 use protocol::robot_io::LeggedKick;
 use protocol::team::{Role, Status};
 use protocol::{Duration, Instant, RobotId};
-use rules::GoalSide;
 
 use crate::belief::{Ball, Belief};
 use crate::body::{Intent, legged};
@@ -53,7 +52,7 @@ impl Reactive {
         me: RobotId,
         belief: &Belief,
         mates: &Mates,
-        attacked: GoalSide,
+        attacked: GoalEnd,
         freedom: Freedom,
     ) -> Intent {
         let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
@@ -131,7 +130,7 @@ fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &
 }
 
 /// Back up: beside the ball, off its line to the goal, on the side where the robot is.
-fn support(belief: &Belief, ball: &Ball, attacked: GoalSide) -> Intent {
+fn support(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Intent {
     let field = belief.league().field();
     let to_goal = ball.position.direction_to(field.goal_center(attacked));
     let left = Vector::polar(1.0, to_goal).cross(belief.pose.position - ball.position) > 0.0;
@@ -210,7 +209,7 @@ mod tests {
 
     fn step(reactive: &mut Reactive, belief: &Belief, ms: u64) -> Intent {
         let me = RobotId::new(1).unwrap();
-        reactive.step(Instant(ms * 1000), me, belief, &Mates::default(), GoalSide::Positive, Freedom::Full)
+        reactive.step(Instant(ms * 1000), me, belief, &Mates::default(), GoalEnd::Positive, Freedom::Full)
     }
 
     #[test]
@@ -250,7 +249,7 @@ mod tests {
     #[test]
     fn a_supporter_backs_up_off_the_line_to_the_goal() {
         let b = belief((-0.5, 0.4), (0.0, 0.0));
-        let Intent::Walk { to, .. } = support(&b, &b.ball.unwrap(), GoalSide::Positive) else {
+        let Intent::Walk { to, .. } = support(&b, &b.ball.unwrap(), GoalEnd::Positive) else {
             panic!("walks")
         };
         assert!((to.distance(Point::new(0.0, 0.0)) - SUPPORT_DISTANCE).abs() < 1e-3);

@@ -211,13 +211,12 @@ fn action(moment: &Moment<'_>, play: &Play, part: usize, n: usize) -> Option<Act
 }
 
 fn action_words(moment: &Moment<'_>, play: &Play, action: Action) -> String {
-    let ball: geometry::Point<geometry::Field> = play.ball.into();
-    let ball = PointMm {
-        x: geometry::math::round_to_i32(ball.x() * 1000.0),
-        y: geometry::math::round_to_i32(ball.y() * 1000.0),
+    let case = moment.config.base.case(play.case);
+    let shift = case.map_or(PointMm::default(), |case| case.shift(play.ball.into()));
+    let place = |p: PointMm| {
+        let PointMm { x, y } = p.plus(shift);
+        format!("({x}, {y})")
     };
-    let shift = moment.config.base.case(play.case).map_or(PointMm { x: 0, y: 0 }, |case| case.shift(ball));
-    let place = |p: PointMm| format!("({}, {})", p.x.saturating_add(shift.x), p.y.saturating_add(shift.y));
     let mate = |robot: CaseRobot| {
         play.robots.get(robot.index()).map_or_else(|| "nobody".to_owned(), |id| moment.cast.name_of(*id))
     };

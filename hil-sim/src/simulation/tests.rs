@@ -213,7 +213,7 @@ fn defenders_never_enter_the_penalty_area() {
                     // A shove can move a robot a little before its legs answer.
                     let deeper = geometry::Point::new(place.x() - 0.1, place.y());
                     assert!(
-                        !field.in_penalty_area(rules::GoalSide::Positive, deeper),
+                        !field.in_penalty_area(geometry::GoalEnd::Positive, deeper),
                         "{role:?} at {place:?}"
                     );
                 }

@@ -22,11 +22,13 @@
 
 mod angle;
 mod frame;
+mod goal;
 pub mod math;
 mod pose;
 mod segment;
 
 pub use angle::Angle;
 pub use frame::{Attack, Body, Field, Point, Vector};
+pub use goal::GoalEnd;
 pub use pose::{Pose, Twist};
 pub use segment::Segment;

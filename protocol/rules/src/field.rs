@@ -1,6 +1,6 @@
 //! Where are lines, goals and penalty areas? All lengths in metres, points in the field frame.
 
-use geometry::{Field, Point};
+use geometry::{Field, GoalEnd, Point};
 
 /// The lines of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,37 +23,10 @@ pub struct FieldSpec {
     pub center_radius: f32,
 }
 
-/// One of the two ends of the field, named by the sign of x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GoalSide {
-    /// At −x.
-    Negative,
-    /// At +x.
-    Positive,
-}
-
-impl GoalSide {
-    /// −1 or +1.
-    pub fn sign(self) -> f32 {
-        match self {
-            Self::Negative => -1.0,
-            Self::Positive => 1.0,
-        }
-    }
-
-    /// The other end.
-    pub fn opposite(self) -> Self {
-        match self {
-            Self::Negative => Self::Positive,
-            Self::Positive => Self::Negative,
-        }
-    }
-}
-
 impl FieldSpec {
     /// Middle of the goal mouth at that end.
-    pub fn goal_center(&self, side: GoalSide) -> Point<Field> {
-        Point::new(side.sign() * self.length * 0.5, 0.0)
+    pub fn goal_center(&self, goal: GoalEnd) -> Point<Field> {
+        Point::new(goal.sign() as f32 * self.length * 0.5, 0.0)
     }
 
     /// On the field or on its lines.
@@ -62,8 +35,8 @@ impl FieldSpec {
     }
 
     /// In the penalty area at that end, lines included.
-    pub fn in_penalty_area(&self, side: GoalSide, p: Point<Field>) -> bool {
-        let depth = self.length * 0.5 - p.x() * side.sign();
+    pub fn in_penalty_area(&self, goal: GoalEnd, p: Point<Field>) -> bool {
+        let depth = self.length * 0.5 - p.x() * goal.sign() as f32;
         (0.0..=self.penalty_depth).contains(&depth) && p.y().abs() <= self.penalty_width * 0.5
     }
 
@@ -82,11 +55,11 @@ mod tests {
     #[test]
     fn the_penalty_area_is_at_its_own_end() {
         let field = League::FourLegged.field();
-        assert!(field.in_penalty_area(GoalSide::Positive, Point::new(2.1, 0.6)));
-        assert!(!field.in_penalty_area(GoalSide::Positive, Point::new(2.0, 0.0)));
-        assert!(!field.in_penalty_area(GoalSide::Positive, Point::new(2.1, 0.7)));
-        assert!(field.in_penalty_area(GoalSide::Negative, Point::new(-2.7, 0.0)));
-        assert!(!field.in_penalty_area(GoalSide::Positive, Point::new(2.71, 0.0)));
+        assert!(field.in_penalty_area(GoalEnd::Positive, Point::new(2.1, 0.6)));
+        assert!(!field.in_penalty_area(GoalEnd::Positive, Point::new(2.0, 0.0)));
+        assert!(!field.in_penalty_area(GoalEnd::Positive, Point::new(2.1, 0.7)));
+        assert!(field.in_penalty_area(GoalEnd::Negative, Point::new(-2.7, 0.0)));
+        assert!(!field.in_penalty_area(GoalEnd::Positive, Point::new(2.71, 0.0)));
     }
 
     #[test]

@@ -7,5 +7,5 @@
 mod field;
 mod league;
 
-pub use field::{FieldSpec, GoalSide};
+pub use field::FieldSpec;
 pub use league::{BallSpec, League, RobotSpec};

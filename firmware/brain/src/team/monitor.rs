@@ -9,7 +9,6 @@ use geometry::Segment;
 use protocol::team::AbortReason;
 
 use crate::execution::Scene;
-use crate::units::{end_to_field, to_field, to_mm};
 
 /// A doubt and how long it has lasted.
 #[derive(Clone, Debug, Default)]
@@ -34,13 +33,13 @@ impl Monitor {
 }
 
 fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
-    let ball = to_mm(scene.belief.ball?.rest);
+    let ball = scene.belief.ball?.rest.into();
     if !scene.case.ball_in_scope(ball) {
         return Some(AbortReason::BallOutOfScope);
     }
     let mut opponents: heapless::Vec<PointMm, { protocol::robot_io::OPPONENTS_MAX }> = heapless::Vec::new();
     // Same capacity as the belief's.
-    opponents.extend(scene.belief.opponents.iter().copied().map(to_mm));
+    opponents.extend(scene.belief.opponents.iter().copied().map(PointMm::from));
     casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
         .map(|_| AbortReason::PathBlocked)
 }
@@ -55,10 +54,10 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
         return None;
     }
     let expected = scene.case.legs(scene.ball_used()).into_iter().any(|leg| {
-        let way = Segment::new(end_to_field(leg.from), end_to_field(leg.to));
+        let way = Segment::new(leg.start(), leg.end());
         way.distance_to(ball.position) < leg.r_max * 0.001 + STRAY
     });
-    let at_start = ball.position.distance(to_field(scene.ball_used())) < STRAY;
+    let at_start = ball.position.distance(scene.ball_used().into()) < STRAY;
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
 }
 

@@ -9,7 +9,6 @@ use protocol::{Instant, RobotId};
 
 use crate::belief::Belief;
 use crate::mates::Mates;
-use crate::units::{to_mm, to_wire};
 
 /// The problem as this robot believes it; `None` while no ball is known.
 pub fn problem(
@@ -22,7 +21,7 @@ pub fn problem(
 ) -> Option<Problem> {
     let ball = belief.ball?;
     let mut problem = Problem {
-        ball: to_mm(ball.rest),
+        ball: ball.rest.into(),
         defending,
         teammates: heapless::Vec::new(),
         opponents: heapless::Vec::new(),
@@ -34,10 +33,10 @@ pub fn problem(
         .map(|(id, mate)| (id, mate.pose().position));
     for (id, position) in able.chain([(me, belief.pose.position)]) {
         // A team larger than a problem holds is told to its limit.
-        let _ = problem.teammates.push((id, to_mm(position)));
+        let _ = problem.teammates.push((id, position.into()));
     }
     for opponent in &belief.opponents {
-        let _ = problem.opponents.push(to_mm(*opponent));
+        let _ = problem.opponents.push((*opponent).into());
     }
     Some(problem)
 }
@@ -60,7 +59,7 @@ pub fn decide(
     }
     Decision::Play(Play {
         case: best.case,
-        ball: to_wire(problem.ball),
+        ball: problem.ball.into(),
         robots: best.correspondence.into_iter().collect(),
     })
 }

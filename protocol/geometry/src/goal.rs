@@ -1,0 +1,65 @@
+//! Which goal is meant? The one at this end of the field; the paper's words for the two, and who attacks where (DESIGN §2).
+
+use serde::{Deserialize, Serialize};
+
+/// A goal, by the end of the field it stands at. Cases, problems and robots name the goal they defend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum GoalEnd {
+    /// At −x, the paper's "yellow": who defends it attacks towards +x.
+    Negative,
+    /// At +x, the paper's "cyan": who defends it attacks towards −x.
+    Positive,
+}
+
+impl GoalEnd {
+    /// The paper's word, as files and problems have it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Negative => "yellow",
+            Self::Positive => "cyan",
+        }
+    }
+
+    /// From the paper's word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        match word {
+            "yellow" => Some(Self::Negative),
+            "cyan" => Some(Self::Positive),
+            _ => None,
+        }
+    }
+
+    /// The sign of its x: −1 or +1.
+    pub const fn sign(self) -> i32 {
+        match self {
+            Self::Negative => -1,
+            Self::Positive => 1,
+        }
+    }
+
+    /// +1 where its defenders attack towards +x, else −1.
+    pub const fn attack_sign(self) -> i32 {
+        -self.sign()
+    }
+
+    /// The goal at the other end.
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Negative => Self::Positive,
+            Self::Positive => Self::Negative,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_defends_yellow_attacks_cyan_towards_plus_x() {
+        let ours = GoalEnd::from_word("yellow").unwrap();
+        assert_eq!((ours.sign(), ours.attack_sign()), (-1, 1));
+        assert_eq!(ours.opposite().word(), "cyan");
+        assert_eq!(ours.opposite().sign(), ours.attack_sign());
+    }
+}
