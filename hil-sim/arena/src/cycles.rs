@@ -1,6 +1,6 @@
 //! Which retrieve–reuse cycles did a team go through? Put together from overheard beacons alone (paper §4; DESIGN §5).
 
-use protocol::team::{AbortReason, Closure, CycleState, Decision, Play, Progress};
+use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
 use protocol::{CycleId, RobotId};
 
 /// A cycle as seen from outside.
@@ -16,22 +16,8 @@ pub struct CycleSeen {
     pub no_case: bool,
     /// Seconds from kick-off: first heard of.
     pub start: f32,
-    /// Who of its players has reported the end of its actions.
-    pub finished: Vec<RobotId>,
     /// When and how it ended, once it has.
     pub end: Option<(f32, CycleEnd)>,
-}
-
-impl CycleSeen {
-    /// It ended because a newer one began: as finished, where every player had said so.
-    fn superseded(&self) -> CycleEnd {
-        let all = |play: &Play| play.robots.iter().all(|robot| self.finished.contains(robot));
-        if self.play.as_ref().is_some_and(all) {
-            CycleEnd::Closed(Closure::Finished)
-        } else {
-            CycleEnd::Superseded
-        }
-    }
 }
 
 /// How a cycle ended.
@@ -93,8 +79,8 @@ pub enum News {
 }
 
 impl CycleLog {
-    /// Robot `from` said at `time` seconds that it knows this of its newest cycle, and how far it has come in it.
-    pub fn hear(&mut self, time: f32, from: RobotId, state: &CycleState, progress: Progress) -> News {
+    /// A robot said at `time` seconds that it knows this of its newest cycle.
+    pub fn hear(&mut self, time: f32, state: &CycleState) -> News {
         let place = self.cycles.binary_search_by_key(&state.id, |cycle| cycle.id);
         let (place, began) = match place {
             Ok(place) => (place, false),
@@ -103,19 +89,14 @@ impl CycleLog {
                 let end = (place < self.cycles.len()).then_some((time, CycleEnd::Superseded));
                 let CycleState { id, coordinator, .. } = *state;
                 for older in &mut self.cycles[..place] {
-                    older.end = older.end.or(Some((time, older.superseded())));
+                    older.end = older.end.or(Some((time, CycleEnd::Superseded)));
                 }
-                let finished = Vec::new();
-                let cycle =
-                    CycleSeen { id, coordinator, play: None, no_case: false, start: time, finished, end };
+                let cycle = CycleSeen { id, coordinator, play: None, no_case: false, start: time, end };
                 self.cycles.insert(place, cycle);
                 (place, true)
             }
         };
         let cycle = &mut self.cycles[place];
-        if progress == (Progress::WaitEnd { finished: true }) && !cycle.finished.contains(&from) {
-            cycle.finished.push(from);
-        }
         let decided_before = cycle.play.is_some() || cycle.no_case;
         let mut ended = false;
         match &state.decision {
@@ -175,17 +156,11 @@ mod tests {
     #[test]
     fn a_cycle_begins_is_decided_and_ends() {
         let mut log = CycleLog::default();
-        assert_eq!(log.hear(0.4, robot(1), &state(1, Decision::Undecided), Progress::Idle), News::Began(0));
-        assert_eq!(log.hear(0.44, robot(1), &state(1, play()), Progress::Idle), News::Decided(0));
-        assert_eq!(log.hear(0.48, robot(1), &state(1, play()), Progress::Idle), News::Nothing);
-        assert_eq!(
-            log.hear(5.0, robot(1), &state(1, Decision::Closed(Closure::Finished)), Progress::Idle),
-            News::Ended(0)
-        );
-        assert_eq!(
-            log.hear(5.04, robot(1), &state(1, Decision::Closed(Closure::Finished)), Progress::Idle),
-            News::Nothing
-        );
+        assert_eq!(log.hear(0.4, &state(1, Decision::Undecided)), News::Began(0));
+        assert_eq!(log.hear(0.44, &state(1, play())), News::Decided(0));
+        assert_eq!(log.hear(0.48, &state(1, play())), News::Nothing);
+        assert_eq!(log.hear(5.0, &state(1, Decision::Closed(Closure::Finished))), News::Ended(0));
+        assert_eq!(log.hear(5.04, &state(1, Decision::Closed(Closure::Finished))), News::Nothing);
         let cycle = &log.cycles()[0];
         assert_eq!((cycle.start, cycle.end.unwrap().0), (0.4, 5.0));
         assert_eq!(cycle.end.unwrap().1.word(), "finished");
@@ -195,34 +170,20 @@ mod tests {
     #[test]
     fn a_newer_cycle_ends_an_older_one_and_a_late_closure_still_says_why() {
         let mut log = CycleLog::default();
-        log.hear(0.0, robot(1), &state(1, play()), Progress::Idle);
-        log.hear(2.0, robot(1), &state(2, Decision::Undecided), Progress::Idle);
+        log.hear(0.0, &state(1, play()));
+        log.hear(2.0, &state(2, Decision::Undecided));
         assert_eq!(log.cycles()[0].end, Some((2.0, CycleEnd::Superseded)));
         let closure = Closure::Aborted { by: robot(2), reason: AbortReason::OpponentOnBall };
-        assert_eq!(
-            log.hear(2.1, robot(1), &state(1, Decision::Closed(closure)), Progress::Idle),
-            News::Ended(0)
-        );
+        assert_eq!(log.hear(2.1, &state(1, Decision::Closed(closure))), News::Ended(0));
         assert_eq!(log.cycles()[0].end.map(|(at, end)| (at, end.word())), Some((2.0, "opponent-on-ball")));
         log.finish(3.0);
         assert_eq!(log.cycles()[1].end, Some((3.0, CycleEnd::TrialOver)));
     }
 
     #[test]
-    fn a_cycle_whose_players_have_all_finished_is_finished_when_the_next_begins() {
-        let mut log = CycleLog::default();
-        let done = Progress::WaitEnd { finished: true };
-        log.hear(1.0, robot(1), &state(1, play()), done);
-        assert_eq!(log.cycles()[0].superseded(), CycleEnd::Superseded, "robot 2 has not");
-        log.hear(1.1, robot(2), &state(1, play()), done);
-        log.hear(1.2, robot(1), &state(2, Decision::Undecided), Progress::Idle);
-        assert_eq!(log.cycles()[0].end.map(|(at, end)| (at, end.word())), Some((1.2, "finished")));
-    }
-
-    #[test]
     fn a_closure_for_want_of_a_case_counts_as_no_case() {
         let mut log = CycleLog::default();
-        log.hear(0.0, robot(1), &state(1, Decision::Closed(Closure::NoCase)), Progress::Idle);
+        log.hear(0.0, &state(1, Decision::Closed(Closure::NoCase)));
         assert!(log.cycles()[0].no_case && log.cycles()[0].play.is_none());
         assert_eq!(log.cycles()[0].end.unwrap().1.word(), "no-case");
     }
@@ -230,8 +191,8 @@ mod tests {
     #[test]
     fn a_straggler_of_an_unknown_older_cycle_is_filed_before_the_newer() {
         let mut log = CycleLog::default();
-        log.hear(1.0, robot(1), &state(5, Decision::Undecided), Progress::Idle);
-        log.hear(1.1, robot(1), &state(4, play()), Progress::Idle);
+        log.hear(1.0, &state(5, Decision::Undecided));
+        log.hear(1.1, &state(4, play()));
         assert_eq!(log.cycles().iter().map(|c| c.id.counter).collect::<Vec<_>>(), [4, 5]);
         assert_eq!(log.cycles()[0].end, Some((1.1, CycleEnd::Superseded)));
         assert_eq!(log.cycles()[1].end, None);

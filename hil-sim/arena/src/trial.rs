@@ -159,7 +159,7 @@ pub fn run<'a>(
             };
             backups.hear(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
-                news.push(cycles.hear(tick.time, from, state, beacon.progress));
+                news.push(cycles.hear(tick.time, state));
             }
             beacons.push((from, beacon));
         }

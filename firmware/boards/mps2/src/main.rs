@@ -16,7 +16,6 @@ mod library;
 #[cfg(target_os = "none")]
 mod lockstep;
 #[cfg(target_os = "none")]
-#[cfg(target_os = "none")]
 mod start {
     use cortex_m_rt::{ExceptionFrame, entry, exception};
     use panic_semihosting as _;
