@@ -8,6 +8,7 @@
 mod authored;
 mod check;
 mod document;
+pub mod draw;
 mod encode;
 mod files;
 mod finding;

@@ -1,0 +1,42 @@
+//! What lies under a case? Carpet, lines and goals of a league; the goals in the paper's colours.
+
+use casebase::FieldMm;
+
+use super::svg::Svg;
+use super::theme::Colors;
+
+/// The part of the page that the field with its goals and margin takes: from −x, −y to +x, +y, mm.
+pub(super) fn half_extent(field: &FieldMm) -> [f64; 2] {
+    let room = |side: i32| f64::from(side) * 0.5 + f64::from(field.margin.max(ROOM));
+    [room(field.length), room(field.width)]
+}
+
+/// Carpet, then lines and goals.
+pub(super) fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
+    let [x, y] = half_extent(field);
+    let Colors { carpet, .. } = colors;
+    svg.rect([-x, -y], [x, y], format_args!(r#"fill="{carpet}""#));
+    lines(svg, field, colors, colors.line);
+}
+
+/// Lines and goals alone, over what is there.
+pub(super) fn lines(svg: &mut Svg, field: &FieldMm, colors: &Colors, line: &str) {
+    let [x, y] = [f64::from(field.length) * 0.5, f64::from(field.width) * 0.5];
+    let style = format!(r#"fill="none" stroke="{line}" stroke-width="{LINE}""#);
+    for (sign, fill) in [(-1.0, colors.yellow), (1.0, colors.cyan)] {
+        let area = [f64::from(field.penalty_depth), f64::from(field.penalty_width) * 0.5];
+        svg.rect([sign * x, -area[1]], [sign * (x - area[0]), area[1]], &style);
+        let half = f64::from(field.goal_width) * 0.5;
+        let goal = format_args!(r#"fill="{fill}" stroke="{line}" stroke-width="{LINE}""#).to_string();
+        svg.rect([sign * x, -half], [sign * (x + GOAL_DEPTH), half], goal);
+    }
+    svg.rect([-x, -y], [x, y], &style);
+    svg.line([0.0, -y], [0.0, y], &style);
+}
+
+/// Width of the field's lines, mm: the four-legged league's 25 mm.
+const LINE: f64 = 25.0;
+/// How deep a goal is drawn, mm: it is a sign, `league.toml` does not tell it.
+const GOAL_DEPTH: f64 = 180.0;
+/// Carpet around the lines at least, mm: so that goals have room.
+const ROOM: i32 = 260;

@@ -1,0 +1,278 @@
+//! Where on the field is how much? A grid of values over the field with its legend and caption, as an SVG.
+
+use casebase::{FieldMm, PointMm};
+
+use super::field;
+use super::svg::{Anchor, Font, Svg, wrapped};
+use super::theme::{Colors, Theme};
+
+/// A grid of values over the field.
+#[derive(Clone, Debug)]
+pub struct HeatMap<'a> {
+    /// One line above the field.
+    pub title: &'a str,
+    /// What is shown, below the field; wrapped to its width.
+    pub caption: &'a str,
+    /// The field.
+    pub field: FieldMm,
+    /// Two opposite corners of what the grid covers: least x and y, greatest x and y; mm, field frame.
+    pub area: [PointMm; 2],
+    /// Cells along x.
+    pub columns: usize,
+    /// Cells along y.
+    pub rows: usize,
+    /// One value a cell, row by row from the least y, each from the least x: `values[row * columns + column]`. A
+    /// value that is `None`, not finite or missing is drawn as unknown.
+    pub values: &'a [Option<f64>],
+    /// What the values are.
+    pub scale: Scale<'a>,
+    /// The colours of page and lines.
+    pub theme: Theme,
+}
+
+/// What the values of a heat map are.
+#[derive(Clone, Copy, Debug)]
+pub enum Scale<'a> {
+    /// Numbers; what lies beyond an end is drawn in that end's colour.
+    Continuous {
+        /// The value of the darkest colour.
+        low: f64,
+        /// The value of the brightest one.
+        high: f64,
+        /// What is behind each number in the legend: `" %"`, `" cases"`.
+        unit: &'a str,
+    },
+    /// Categories: the value is a number in this list of at most [`CATEGORIES_MAX`], rounded; others are unknown.
+    Categorical {
+        /// Their names in the legend.
+        names: &'a [&'a str],
+    },
+}
+
+/// How many categories can be told apart.
+pub const CATEGORIES_MAX: usize = 8;
+
+/// The picture as an SVG, in mm with a width of about 900 px.
+pub fn heat_map(map: &HeatMap<'_>) -> String {
+    let colors = map.theme.colors();
+    let mut svg = Svg::default();
+    let [x, y] = field::half_extent(&map.field);
+    let unit = 2.0 * x / 100.0;
+    field::draw(&mut svg, &map.field, colors);
+    cells(&mut svg, map, colors);
+    let mut over = Svg::default();
+    field::lines(&mut over, &map.field, colors, "#000000");
+    svg.group_with(&over, LINES_OPACITY);
+    let font = Font { size: unit * 2.6, fill: colors.ink, bold: true, halo: None };
+    svg.text([-x, y + unit * 1.6], map.title, Anchor::Start, font);
+    let mut below = -y - unit * 1.6;
+    below = match map.scale {
+        Scale::Continuous { low, high, unit: word } => {
+            bar(&mut svg, colors, (low, high, word), [-x, below], x, unit)
+        }
+        Scale::Categorical { names } => list(&mut svg, colors, names, [-x, below], x, unit),
+    };
+    let font = Font { size: unit * 1.9, fill: colors.faint, bold: false, halo: None };
+    below -= unit;
+    for line in wrapped(map.caption, font.size, 2.0 * x) {
+        below -= unit * 2.7;
+        svg.text([-x, below], &line, Anchor::Start, font);
+    }
+    let px_per_mm = 900.0 / (2.0 * (x + unit * 2.0));
+    let (lower, upper) = ([-x - unit * 2.0, below - unit * 2.0], [x + unit * 2.0, y + unit * 5.5]);
+    svg.finish(lower, upper, px_per_mm, colors.paper, map.title)
+}
+
+fn cells(svg: &mut Svg, map: &HeatMap<'_>, colors: &Colors) {
+    let [low, high] = map.area.map(|PointMm { x, y }| [f64::from(x), f64::from(y)]);
+    let step = [(high[0] - low[0]) / map.columns.max(1) as f64, (high[1] - low[1]) / map.rows.max(1) as f64];
+    for row in 0..map.rows {
+        for column in 0..map.columns {
+            let value = map.values.get(row * map.columns + column).copied().flatten();
+            let fill = value.and_then(|value| color(value, map.scale)).unwrap_or(colors.unknown.to_owned());
+            let corner = [low[0] + step[0] * column as f64, low[1] + step[1] * row as f64];
+            // Neighbours share an edge: without its own stroke a viewer shows the carpet between them.
+            let style = format_args!(
+                r#"fill="{fill}" stroke="{fill}" stroke-width="4" shape-rendering="crispEdges""#
+            )
+            .to_string();
+            svg.rect(corner, [corner[0] + step[0], corner[1] + step[1]], style);
+        }
+    }
+}
+
+/// The colour of a value; `None` where it has none.
+fn color(value: f64, scale: Scale<'_>) -> Option<String> {
+    match scale {
+        Scale::Continuous { low, high, .. } => {
+            let span = high - low;
+            let share = if span == 0.0 { 0.0 } else { (value - low) / span };
+            share.is_finite().then(|| shade(share.clamp(0.0, 1.0)))
+        }
+        Scale::Categorical { names } => {
+            let known = names.len().min(CATEGORIES_MAX);
+            let index = value.round();
+            let inside = index >= 0.0 && index < known as f64;
+            inside.then(|| CATEGORIES[index as usize].to_owned())
+        }
+    }
+}
+
+/// A share of the scale as a colour.
+fn shade(share: f64) -> String {
+    let along = share * (SHADES.len() - 1) as f64;
+    let before = (along.floor() as usize).min(SHADES.len() - 2);
+    let part = along - before as f64;
+    let mix = |channel: usize| {
+        let [from, to] = [SHADES[before][channel], SHADES[before + 1][channel]].map(f64::from);
+        (from + (to - from) * part).round() as u8
+    };
+    format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
+}
+
+/// The scale as a bar with five numbers; gives where it ends.
+fn bar(
+    svg: &mut Svg,
+    colors: &Colors,
+    (low, high, word): (f64, f64, &str),
+    [x, y]: [f64; 2],
+    half: f64,
+    unit: f64,
+) -> f64 {
+    let (width, height) = (half * 1.2, unit * 2.0);
+    for step in 0..STEPS {
+        let at = x + width * step as f64 / STEPS as f64;
+        let fill = shade((step as f64 + 0.5) / STEPS as f64);
+        let style = format!(r#"fill="{fill}" stroke="{fill}" stroke-width="4" shape-rendering="crispEdges""#);
+        svg.rect([at, y], [at + width / STEPS as f64, y - height], style);
+    }
+    let font = Font { size: unit * 1.7, fill: colors.ink, bold: false, halo: None };
+    for quarter in 0..=4 {
+        let share = f64::from(quarter) * 0.25;
+        let anchor = match quarter {
+            0 => Anchor::Start,
+            4 => Anchor::End,
+            _ => Anchor::Middle,
+        };
+        let number = number(low + (high - low) * share, high - low);
+        svg.text([x + width * share, y - height - unit * 2.0], &format!("{number}{word}"), anchor, font);
+    }
+    let known = x + width + unit * 6.0;
+    let style = format!(r#"fill="{}""#, colors.unknown);
+    svg.rect([known, y], [known + height, y - height], style);
+    svg.text([known + height + unit, y - height * 0.8], "not known", Anchor::Start, font);
+    y - height - unit * 2.2
+}
+
+/// The categories, each behind its colour; gives where they end.
+fn list(svg: &mut Svg, colors: &Colors, names: &[&str], [x, y]: [f64; 2], half: f64, unit: f64) -> f64 {
+    let font = Font { size: unit * 1.7, fill: colors.ink, bold: false, halo: None };
+    let (mut across, mut down) = (x, y);
+    let known = names.iter().zip(CATEGORIES).map(|(name, fill)| (*name, fill));
+    for (name, fill) in known.chain([("not known", colors.unknown)]) {
+        let wide = unit * 6.0 + super::svg::width(name, font.size);
+        if across > x && across + wide > half {
+            (across, down) = (x, down - unit * 3.0);
+        }
+        svg.rect([across, down], [across + unit * 2.0, down - unit * 2.0], format!(r#"fill="{fill}""#));
+        svg.text([across + unit * 3.0, down - unit * 1.6], name, Anchor::Start, font);
+        across += wide;
+    }
+    down - unit * 2.0
+}
+
+/// As few decimals as tell the quarters of `span` apart.
+fn number(value: f64, span: f64) -> String {
+    let decimals = if span.abs() >= 20.0 {
+        0
+    } else if span.abs() >= 2.0 {
+        1
+    } else {
+        2
+    };
+    let text = format!("{value:.decimals$}");
+    if decimals == 0 { text } else { text.trim_end_matches('0').trim_end_matches('.').to_owned() }
+}
+
+/// From dark blue to yellow, evenly brighter, also in grey and for the colour-blind: five colours of viridis (CC0).
+const SHADES: [[u8; 3]; 5] =
+    [[0x44, 0x01, 0x54], [0x3b, 0x52, 0x8b], [0x21, 0x91, 0x8c], [0x5e, 0xc9, 0x62], [0xfd, 0xe7, 0x25]];
+/// Okabe and Ito's, the faint ones first.
+const CATEGORIES: [&str; CATEGORIES_MAX] =
+    ["#56b4e9", "#e69f00", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7", "#7a7a7a"];
+/// How opaque the black lines over the cells are: the scale's darkest colours must not hide them, nor they a cell.
+const LINES_OPACITY: &str = "0.6";
+/// Stripes of the legend's bar.
+const STEPS: usize = 64;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIELD: FieldMm = FieldMm {
+        length: 5400,
+        width: 3600,
+        margin: 0,
+        goal_width: 800,
+        penalty_depth: 600,
+        penalty_width: 1200,
+    };
+
+    fn map<'a>(values: &'a [Option<f64>], scale: Scale<'a>) -> HeatMap<'a> {
+        let area = [PointMm { x: -2700, y: -1800 }, PointMm { x: 2700, y: 1800 }];
+        let (title, caption) = ("Share <1>", "what & where");
+        HeatMap {
+            title,
+            caption,
+            field: FIELD,
+            area,
+            columns: 2,
+            rows: 2,
+            values,
+            scale,
+            theme: Theme::Light,
+        }
+    }
+
+    #[test]
+    fn a_cell_has_the_colour_of_its_value_at_its_place() {
+        let values = [Some(0.0), Some(1.0), Some(0.5), None];
+        let svg = heat_map(&map(&values, Scale::Continuous { low: 0.0, high: 1.0, unit: "" }));
+        // Half the field is 2700 × 1800 mm; a cell's upper edge is its y on the page, which grows downwards.
+        for (x, y, fill) in [
+            ("-2700.0", "0.0", "#440154"),
+            ("0.0", "0.0", "#fde725"),
+            ("-2700.0", "-1800.0", "#21918c"),
+            ("0.0", "-1800.0", "#d0d0d0"),
+        ] {
+            let cell = format!(r#"x="{x}" y="{y}" width="2700.0" height="1800.0" fill="{fill}""#);
+            assert!(svg.replace("y=\"-0.0\"", "y=\"0.0\"").contains(&cell), "{cell} in {svg}");
+        }
+        assert!(svg.contains("Share &lt;1&gt;") && svg.contains("what &amp; where"));
+    }
+
+    #[test]
+    fn what_lies_beyond_the_scale_has_its_ends_colour_and_no_number_has_none() {
+        let scale = Scale::Continuous { low: 10.0, high: 20.0, unit: "" };
+        assert_eq!(color(-5.0, scale).as_deref(), Some("#440154"));
+        assert_eq!(color(90.0, scale).as_deref(), Some("#fde725"));
+        assert_eq!(color(f64::NAN, scale), None);
+        // A quarter of the way lies on viridis' second colour; an eighth half way to it.
+        assert_eq!(color(12.5, scale).as_deref(), Some("#3b528b"));
+        assert_eq!(color(11.25, scale).as_deref(), Some("#402a70"));
+    }
+
+    #[test]
+    fn a_category_without_a_name_is_unknown() {
+        let scale = Scale::Categorical { names: &["none", "one"] };
+        assert_eq!(color(1.0, scale).as_deref(), Some("#e69f00"));
+        assert_eq!(color(2.0, scale), None);
+        assert_eq!(color(-1.0, scale), None);
+    }
+
+    #[test]
+    fn missing_values_are_drawn_as_unknown() {
+        let svg = heat_map(&map(&[], Scale::Categorical { names: &["none"] }));
+        assert_eq!(svg.matches(r##"fill="#d0d0d0" stroke"##).count(), 4);
+    }
+}

@@ -1,0 +1,68 @@
+//! Which colours? Okabe and Ito's, told apart by every eye, on three kinds of paper.
+
+/// What the picture is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Theme {
+    /// A screen with a light page: a green carpet.
+    #[default]
+    Light,
+    /// A screen with a dark page.
+    Dark,
+    /// Paper: no carpet, black lines.
+    Print,
+}
+
+/// The colours of a theme, as SVG writes them.
+#[derive(Debug)]
+pub(super) struct Colors {
+    pub(super) paper: &'static str,
+    pub(super) carpet: &'static str,
+    pub(super) line: &'static str,
+    pub(super) ink: &'static str,
+    pub(super) faint: &'static str,
+    pub(super) yellow: &'static str,
+    pub(super) cyan: &'static str,
+    /// Where a heat map knows nothing.
+    pub(super) unknown: &'static str,
+}
+
+impl Theme {
+    pub(super) const fn colors(self) -> &'static Colors {
+        match self {
+            Self::Light => &LIGHT,
+            Self::Dark => &DARK,
+            Self::Print => &PRINT,
+        }
+    }
+}
+
+const LIGHT: Colors = Colors {
+    paper: "#ffffff",
+    carpet: "#e3eedd",
+    line: "#ffffff",
+    ink: "#1b1b1b",
+    faint: "#5c5c5c",
+    yellow: "#f0e442",
+    cyan: "#56b4e9",
+    unknown: "#d0d0d0",
+};
+const DARK: Colors = Colors {
+    paper: "#14181b",
+    carpet: "#1f2d26",
+    line: "#5d6f65",
+    ink: "#f2f2f2",
+    faint: "#b0b6b3",
+    yellow: "#c9be2b",
+    cyan: "#2f83b0",
+    unknown: "#3a3f42",
+};
+const PRINT: Colors = Colors {
+    paper: "#ffffff",
+    carpet: "#ffffff",
+    line: "#8a8a8a",
+    ink: "#000000",
+    faint: "#444444",
+    yellow: "#f0e442",
+    cyan: "#56b4e9",
+    unknown: "#e4e4e4",
+};
