@@ -7,9 +7,10 @@ use casebase::{
     Action, CaseRobot, GoalEnd, OPPONENTS_MAX, PointMm, Scope, Symmetry, TEAMMATES_MAX, TurnTarget,
 };
 
+use crate::codes::code;
 use crate::document::{COORDINATES, Reader, Table, Value};
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity, code};
+use crate::finding::{Finding, Severity};
 use crate::league::League;
 
 /// A case as somebody wrote it. Spans are places in its file.

@@ -4,8 +4,9 @@ use casebase::walk::{Script, WalkError, walk};
 use casebase::{Action, CaseRobot, Symmetry};
 
 use crate::authored::Authored;
+use crate::codes::code;
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity, code};
+use crate::finding::{Finding, Severity};
 use crate::league::League;
 
 /// Every error of a case that reads well.

@@ -6,8 +6,9 @@ use casebase::PointMm;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::codes::code;
 use crate::files::SourceFile;
-use crate::finding::{Finding, Severity, code};
+use crate::finding::{Finding, Severity};
 
 /// A file being read: where complaints go.
 pub(crate) struct Reader<'f> {

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::finding::{Finding, Severity, code};
+use crate::codes::code;
+use crate::finding::{Finding, Severity};
 
 /// A file of a library, read.
 #[derive(Clone, Debug)]

@@ -4,9 +4,10 @@ use casebase::action::KICKS_MAX;
 use casebase::walk::Kicks;
 use casebase::{FieldMm, Kick, KickAim, KickId, Pass, Primitive};
 
+use crate::codes::code;
 use crate::document::{COORDINATES, POSITIVE, Reader, Table, Value};
 use crate::files::SourceFile;
-use crate::finding::{Finding, code};
+use crate::finding::Finding;
 
 /// A league's rules.
 #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@
 
 mod authored;
 mod check;
+mod codes;
 mod document;
 pub mod draw;
 mod encode;
@@ -15,10 +16,12 @@ mod finding;
 mod grid;
 mod league;
 mod library;
+mod plans;
 mod warnings;
 
+pub use codes::{CODES, CodeEntry, code, entry};
 pub use encode::Table;
 pub use files::{Files, SourceFile};
-pub use finding::{Finding, Severity, code};
+pub use finding::{Finding, Severity};
 pub use league::League;
 pub use library::{Library, build, load};

@@ -7,9 +7,10 @@ use casebase::table::TableError;
 
 use crate::authored::Authored;
 use crate::check::errors;
+use crate::codes::code;
 use crate::encode::{Table, encode};
 use crate::files::Files;
-use crate::finding::{Finding, Severity, code};
+use crate::finding::{Finding, Severity};
 use crate::league::League;
 use crate::warnings::warnings;
 

@@ -11,9 +11,11 @@ use casebase::{
 use protocol::{CaseId, RobotId};
 
 use crate::authored::Authored;
+use crate::codes::code;
 use crate::files::{Files, SourceFile};
-use crate::finding::{Finding, Severity, code};
+use crate::finding::{Finding, Severity};
 use crate::league::League;
+use crate::plans;
 
 /// Every warning about cases that passed all checks.
 pub(crate) fn warnings(
@@ -37,7 +39,9 @@ pub(crate) fn warnings(
     for (authored, (file, case)) in files.cases.iter().zip(cases).enumerate() {
         let Some(stored) = base.case(CaseId(4 * authored as u16)) else { continue };
         let mut notes = Notes { file, findings: &mut findings };
+        names(&mut notes, case);
         big_scopes(&mut notes, case);
+        plans::doubts(&mut notes, case, &stored, league);
         gameplays(&mut notes, case, league);
         let path_is_free = scopes_in_path(&mut notes, case, &stored, base);
         if let Some(other) = twins.get(&authored) {
@@ -51,15 +55,33 @@ pub(crate) fn warnings(
 }
 
 /// Where the warnings about one file go.
-struct Notes<'n> {
+pub(crate) struct Notes<'n> {
     file: &'n SourceFile,
     findings: &'n mut Vec<Finding>,
 }
 
 impl Notes<'_> {
-    fn add(&mut self, code: &'static str, at: &Range<usize>, message: impl Into<String>, mend: &str) {
+    pub(crate) fn add(
+        &mut self,
+        code: &'static str,
+        at: &Range<usize>,
+        message: impl Into<String>,
+        mend: &str,
+    ) {
         let line = self.file.line(at.start);
         self.findings.push(self.file.finding(Severity::Warning, code, line, message, mend));
+    }
+}
+
+/// What the file is called, and what it says it is for.
+fn names(notes: &mut Notes<'_>, case: &Authored) {
+    if case.intent.trim().is_empty() {
+        notes.add(code::NO_INTENT, &(0..0), "the intent is blank", "say in a sentence what the case is for");
+    }
+    let odd = |c: &char| !(c.is_ascii_alphanumeric() || "-_./".contains(*c));
+    if let Some(character) = notes.file.name.chars().find(odd) {
+        let message = format!("the file's name holds {character:?}");
+        notes.add(code::FILE_NAME, &(0..0), message, "rename it: letters, digits, - _ and . travel well");
     }
 }
 

@@ -160,7 +160,9 @@ fn doubts_do_not_refuse() {
         16,
     );
     let waits_for_ever = "[[teammates]]\nat = [0, 500]\ngameplay = [\"wait\", \"get_ball\"]\n";
-    expect_warning(&(single("[0, 0]", "[400, 400]", "") + waits_for_ever), code::NEVER_REACHED, 9);
+    let dribbles = single("[0, 0]", "[400, 400]", ", { dribble_to = [90, 0] }") + waits_for_ever;
+    let told = vec![(code::IDLE_BALL, 9), (code::NEVER_REACHED, 9)];
+    assert_eq!(findings(LEAGUE, &[("a/a", &dribbles)]), (told, false));
     let league = LEAGUE.replace("forward_soft", "bicycle");
     assert_eq!(findings(&league, &[("a/a", PASS_AROUND)]), (vec![(code::UNKNOWN_PRIMITIVE, 18)], false));
     assert_eq!(findings(LEAGUE, &[]), (vec![(code::EMPTY, 1)], false));
@@ -185,7 +187,7 @@ fn twins_and_beaten_cases_are_doubtful() {
     assert_eq!(findings(LEAGUE, &[("a/near", &near), ("a/wide", &wide)]), (vec![], false));
     let scoped = wide.clone() + "[[opponents]]\nat = [100, 900]\nscope = [300, 300]\n";
     let third = near.clone()
-        + "[[opponents]]\nat = [0, 900]\nscope = [300, 300]\n[[opponents]]\nat = [0, 950]\nscope = [300, 300]\n";
+        + "[[opponents]]\nat = [0, 900]\nscope = [300, 300]\n[[opponents]]\nat = [0, 1060]\nscope = [300, 300]\n";
     // With its one opponent at [100, 900], both scopes of `third` are occupied: two conditions beat one.
     assert_eq!(findings(LEAGUE, &[("a/scoped", &scoped), ("a/third", &third)]).0, [(code::BEATEN, 1)]);
 }

@@ -1,17 +1,19 @@
 //! Is a library sound? Every error and warning as `file:line: error[CODE]: message; mend`, then one line of summary a
-//! league (DESIGN §4.1). Exit 1 on errors, and with `--strict` on warnings.
+//! league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on errors, and with `--strict` on warnings.
 
 use std::io::{self, BufWriter, Write, stdout};
 use std::path::Path;
 use std::process::ExitCode;
 
 use case_library::{LEAGUES, League};
-use case_tools::{Files, Finding, Library, Severity};
+use case_tools::{CODES, Files, Finding, Library, Severity};
 use clap::Args;
+use serde::Serialize;
 
 use crate::Failure;
 use crate::args::FolderArgs;
 
+use super::answer::write_line;
 use super::counted;
 
 /// What `cases check` may be told.
@@ -22,15 +24,59 @@ pub(crate) struct CheckArgs {
     /// Warnings fail too.
     #[arg(long)]
     strict: bool,
+    /// One JSON list of findings instead of lines.
+    #[arg(long)]
+    json: bool,
+    /// Say what a code of a finding means, or `all` of them, and check nothing.
+    #[arg(long, value_name = "CODE", value_parser = known_code)]
+    explain: Option<String>,
+}
+
+/// One finding as data.
+#[derive(Debug, Serialize)]
+struct Row<'a> {
+    league: &'a str,
+    severity: String,
+    code: &'a str,
+    file: String,
+    line: u32,
+    message: &'a str,
+    mend: &'a str,
+}
+
+const ALL: &str = "all";
+
+fn known_code(text: &str) -> Result<String, String> {
+    if text == ALL || case_tools::entry(text).is_some() {
+        return Ok(text.to_owned());
+    }
+    let codes: Vec<_> = CODES.iter().map(|entry| entry.code).collect();
+    Err(format!("no such code; take all or one of: {}", codes.join(", ")))
+}
+
+fn explain(code: &str, output: &mut impl Write) -> io::Result<()> {
+    for entry in CODES.iter().filter(|entry| code == ALL || entry.code == code) {
+        writeln!(output, "{}[{}]: {}", entry.severity, entry.code, entry.meaning)?;
+    }
+    output.flush()
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
+    if let Some(code) = &args.explain {
+        explain(code, &mut stdout().lock()).map_err(Failure::Output)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let reports = match &args.folder.library {
         Some(folder) => vec![Report::of(folder)?],
         None => LEAGUES.iter().map(Report::built_in).collect(),
     };
     let mut output = BufWriter::new(stdout().lock());
-    let written = reports.iter().try_for_each(|report| report.write(&mut output));
+    let written = if args.json {
+        let rows: Vec<_> = reports.iter().flat_map(Report::rows).collect();
+        write_line(&mut output, &rows)
+    } else {
+        reports.iter().try_for_each(|report| report.write(&mut output))
+    };
     written.and_then(|()| output.flush()).map_err(Failure::Output)?;
     let fails = |finding: &Finding| args.strict || finding.severity == Severity::Error;
     let failed = reports.iter().flat_map(|report| &report.findings).any(fails);
@@ -70,6 +116,18 @@ impl Report {
             }
             Err(findings) => Self { league, sizes: None, findings },
         }
+    }
+
+    fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        self.findings.iter().map(|finding| Row {
+            league: &self.league,
+            severity: finding.severity.to_string(),
+            code: finding.code,
+            file: finding.file.display().to_string(),
+            line: finding.line,
+            message: &finding.message,
+            mend: &finding.mend,
+        })
     }
 
     fn write(&self, output: &mut impl Write) -> io::Result<()> {

@@ -193,3 +193,25 @@ fn the_version_names_the_commit_and_wrong_usage_is_told_from_failure() {
         assert!(run.stderr.contains("Usage"), "{}", run.stderr);
     }
 }
+
+#[test]
+fn findings_are_told_as_data_and_their_codes_are_explained() {
+    let faulty = PASS_AROUND.replacen("[300, 300]", "[0, 300]", 1);
+    let folder = library("findings-as-data", &[("center/a.toml", &faulty)]);
+    let run = cases("check", &folder, &["--json"], "");
+    assert_eq!(run.code, 1);
+    let findings: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(findings.as_array().map(Vec::len), Some(1));
+    assert_eq!((&findings[0]["code"], &findings[0]["line"]), (&"bad-scope".into(), &15.into()));
+    assert_eq!(
+        (&findings[0]["severity"], &findings[0]["league"]),
+        (&"error".into(), &"findings-as-data".into())
+    );
+    assert!(findings[0]["file"].as_str().unwrap().ends_with("center/a.toml"));
+    assert_eq!(cases("check", &worked_example("no-findings"), &["--json"], "").stdout, "[]\n");
+
+    let told = onetwo(&["cases", "check", "--explain", "bad-scope"]);
+    assert!(told.code == 0 && told.stdout.starts_with("error[bad-scope]: "), "{}", told.stdout);
+    assert_eq!(onetwo(&["cases", "check", "--explain", "all"]).lines().len(), case_tools::CODES.len());
+    assert_eq!(onetwo(&["cases", "check", "--explain", "nonsense"]).code, 2);
+}

@@ -1,0 +1,100 @@
+//! Does the joint plan make sense on the field it is drawn on? Warnings; none stops retrieval (DESIGN §4.1).
+//!
+//! Everything is judged in the case's own situation: ball and robots where the file puts them. mm, field frame.
+
+use std::ops::Range;
+
+use casebase::walk::walk;
+use casebase::{Action, Case, CaseRobot, Leg, LegKind, PointMm, Symmetry};
+
+use crate::authored::Authored;
+use crate::codes::code;
+use crate::league::League;
+use crate::warnings::Notes;
+
+/// Warns of robots in one place, of legs that cannot be meant, and of a ball that goes nowhere.
+pub(crate) fn doubts(notes: &mut Notes<'_>, case: &Authored, stored: &Case<'_>, league: &League) {
+    same_spot(notes, case);
+    for (index, leg) in stored.legs(case.ball).enumerate() {
+        let span = &case.teammates[leg.robot.index()].gameplay[leg.action].1;
+        leg_doubts(notes, &leg, span, league);
+        if index == 0 {
+            mates_on(notes, case, &leg, league);
+        }
+    }
+    idle_ball(notes, case);
+}
+
+fn same_spot(notes: &mut Notes<'_>, case: &Authored) {
+    let mates = CaseRobot::first(case.teammates.len()).zip(&case.teammates);
+    let mates = mates.map(|(robot, mate)| (robot.to_string(), mate.at, &mate.at_span));
+    let opponents = case.opponents.iter().enumerate();
+    let opponents = opponents.map(|(i, opponent)| (format!("opp{}", i + 1), opponent.at, &opponent.span));
+    let all: Vec<_> = mates.chain(opponents).collect();
+    for (later, (who, at, span)) in all.iter().enumerate() {
+        let near = |(_, other, _): &&(String, PointMm, &Range<usize>)| {
+            let [dx, dy] = at.minus(*other).to_f32();
+            dx * dx + dy * dy < ROOM_MM * ROOM_MM
+        };
+        if let Some((other, ..)) = all[..later].iter().find(near) {
+            let message = format!("{who} and {other} stand less than {ROOM_MM} mm apart");
+            notes.add(code::SAME_SPOT, span, message, "move one of the two");
+        }
+    }
+}
+
+fn leg_doubts(notes: &mut Notes<'_>, leg: &Leg, span: &Range<usize>, league: &League) {
+    let [dx, dy] = [leg.to[0] - leg.from[0], leg.to[1] - leg.from[1]];
+    match leg.kind {
+        LegKind::Pass(to) if dx * dx + dy * dy < leg.r_min * leg.r_min => {
+            let message = format!("the pass to {to} is shorter than r_min, {} mm", leg.r_min);
+            notes.add(
+                code::SHORT_PASS,
+                span,
+                message,
+                "let the robot dribble, or the other stand farther off",
+            );
+        }
+        LegKind::Kick(_) => {
+            let end = PointMm::new(leg.to[0] as i32, leg.to[1] as i32);
+            if !league.field.contains(end) {
+                let message = format!("the kick ends at [{}, {}], outside the lines", end.x, end.y);
+                notes.add(code::KICK_LEAVES, span, message, "take a shorter kind, or another heading");
+            }
+        }
+        LegKind::Pass(_) => {}
+    }
+}
+
+/// Teammates on the first leg, before anybody has moved, who are neither its kicker nor ever take the ball.
+fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) {
+    let mut takers = vec![leg.robot];
+    // The case passed the same walk among the checks.
+    let _ = walk(&case.mirrored(Symmetry::Identity, league), league, |step| {
+        takers.extend(step.hand_over().map(|hand_over| hand_over.to.0));
+    });
+    for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
+        let moves = mate.gameplay.iter().any(|(action, _)| matches!(action, Action::GoToPoint(_)));
+        let abreast = leg.abreast(mate.at.to_f32());
+        let stands_on = abreast.is_some_and(|place| place.across.abs() < ROOM_MM);
+        if stands_on && !moves && !takers.contains(&robot) {
+            let message = format!("{robot} stands on the ball's first leg");
+            notes.add(code::MATE_IN_PATH, &mate.at_span, message, "move it aside");
+        }
+    }
+}
+
+/// Who takes the ball last should do something with it.
+fn idle_ball(notes: &mut Notes<'_>, case: &Authored) {
+    for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
+        let last = mate.gameplay.iter().rev().find(|(action, _)| *action != Action::Wait);
+        if let Some((Action::GetBall | Action::ReceiveBall(_), span)) = last {
+            let message = format!("{robot} takes the ball and does nothing with it");
+            notes.add(code::IDLE_BALL, span, message, "let it dribble_to, pass_ball or kick");
+        }
+    }
+}
+
+/// Nearer than this two bodies overlap, mm. Both an AIBO and a robot of the SSL are 180 mm wide; the slack is for an
+/// opponent that presses at the ball.
+const ROOM_MM: f32 = 100.0;
