@@ -8,6 +8,7 @@ use crate::codes::code;
 use crate::document::{COORDINATES, POSITIVE, Reader, Table, Value};
 use crate::files::SourceFile;
 use crate::finding::Finding;
+use crate::lineup::Lineup;
 
 /// A league's rules.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct League {
     pub pass: Pass,
     /// Kick kinds by name, in the order of their names: this order is their [`KickId`]s.
     pub kicks: Vec<(String, Kick)>,
+    /// Who stands where in drawn problems, where the file says it.
+    pub lineup: Option<Lineup>,
     /// The kind a single reflection plays instead of each.
     partners: Vec<KickId>,
 }
@@ -55,9 +58,10 @@ impl Kicks for League {
 }
 
 fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> {
-    root.refuse_others(reader, &["field", "pass", "kicks"]);
+    root.refuse_others(reader, &["field", "pass", "kicks", "problems"]);
     let field = root.required(reader, "field").and_then(|value| read_field(reader, value));
     let pass = root.required(reader, "pass").and_then(|value| read_pass(reader, value));
+    let lineup = root.optional("problems").and_then(|value| Lineup::read(reader, value));
     let mut kicks = Vec::new();
     let mut spans = Vec::new();
     if let Some(table) = root.optional("kicks").and_then(|value| reader.table(value, "kicks")) {
@@ -84,7 +88,7 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> 
             reader.error(code::NO_PARTNER, span, message, mend);
         }
     }
-    Some(League { field: field?, pass: pass?, kicks, partners })
+    Some(League { field: field?, pass: pass?, kicks, lineup, partners })
 }
 
 fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> {

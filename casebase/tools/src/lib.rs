@@ -16,7 +16,9 @@ mod finding;
 mod grid;
 mod league;
 mod library;
+mod lineup;
 mod plans;
+mod sample;
 mod warnings;
 
 pub use codes::{CODES, CodeEntry, code, entry};
@@ -25,3 +27,5 @@ pub use files::{Files, SourceFile};
 pub use finding::{Finding, Severity};
 pub use league::League;
 pub use library::{Library, build, load};
+pub use lineup::{Area, Lineup};
+pub use sample::Sampler;

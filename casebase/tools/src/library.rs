@@ -12,6 +12,8 @@ use crate::encode::{Table, encode};
 use crate::files::Files;
 use crate::finding::{Finding, Severity};
 use crate::league::League;
+use crate::lineup::Lineup;
+use crate::sample::Sampler;
 use crate::warnings::warnings;
 
 /// One league's cases, checked, mirrored and laid out. Lists go by authored case, in the order of ids.
@@ -29,6 +31,8 @@ pub struct Library {
     pub sources: Vec<String>,
     /// The names of the kick kinds, by [`casebase::KickId`].
     pub kicks: Vec<String>,
+    /// Who stands where in the problems it is tried with.
+    pub lineup: Lineup,
     /// What is doubtful.
     pub findings: Vec<Finding>,
 }
@@ -59,6 +63,7 @@ pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
     else {
         return Err(in_order(findings));
     };
+    let largest = cases.iter().map(|case| case.teammates.len()).max().unwrap_or(0);
     let table = encode(&league, &cases);
     let mut library = Library {
         league: files.league.clone(),
@@ -67,6 +72,7 @@ pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
         intents: cases.iter().map(|case| case.intent.clone()).collect(),
         sources: files.cases.iter().map(|file| file.text.clone()).collect(),
         kicks: league.kicks.iter().map(|(name, _)| name.clone()).collect(),
+        lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
     let doubts = warnings(files, &cases, &library.base(), &league);
@@ -81,6 +87,11 @@ impl Library {
         // The table was laid out by this crate; its reader refusing it is a defect here, and every test would see it.
         self.read()
             .unwrap_or_else(|error| panic!("the table built from {} cannot be read: {error}", self.league))
+    }
+
+    /// The problems of `seed` that this library is tried with.
+    pub fn sampler(&self, seed: u64) -> Sampler {
+        Sampler::new(self.lineup.clone(), self.base().field(), seed)
     }
 
     fn read(&self) -> Result<CaseBase<'_>, TableError> {
