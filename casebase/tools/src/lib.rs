@@ -8,6 +8,8 @@
 mod authored;
 mod check;
 mod codes;
+pub mod competence;
+pub mod coverage;
 mod document;
 pub mod draw;
 mod encode;

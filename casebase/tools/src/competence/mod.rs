@@ -1,0 +1,197 @@
+//! Which cases carry a library, and which could go? (Smyth & Keane 1995; Smyth & McKenna 2001, on sampled problems)
+//!
+//! A case's *coverage set* are the problems it is a candidate for, a problem's *reachability set* the cases that are
+//! candidates for it (authored cases: a file goes with its four copies). With C(x) for the coverage set of x:
+//!
+//! - **pivotal**: some problem is reached by x alone; deleting x loses it.
+//! - **auxiliary**: not pivotal, and C(x) lies within C(y), and is smaller, for one other case y.
+//! - **support**: neither, and C(y) lies within C(x) for one other case y that covers anything: they back each other up.
+//! - **spanning**: none of these: x lies across cases that cover its problems only together.
+//! - **idle**: C(x) is empty.
+//!
+//! *Competence groups* are the connected components of cases that share a problem. All of it is about the problems that
+//! were sampled: with more of them a case can only become more important.
+
+mod twins;
+
+use crate::coverage::Tally;
+
+pub use twins::{Shared, shared};
+
+/// What a case is to the library's coverage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// Alone for some problem.
+    Pivotal,
+    /// Covers its problems as others do together.
+    Spanning,
+    /// Backs another case up.
+    Support,
+    /// Within another case's coverage.
+    Auxiliary,
+    /// Covers nothing.
+    Idle,
+}
+
+impl Role {
+    /// All of them, the most important first.
+    pub const ALL: [Self; 5] = [Self::Pivotal, Self::Spanning, Self::Support, Self::Auxiliary, Self::Idle];
+
+    /// Its word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Pivotal => "pivotal",
+            Self::Spanning => "spanning",
+            Self::Support => "support",
+            Self::Auxiliary => "auxiliary",
+            Self::Idle => "idle",
+        }
+    }
+}
+
+/// The role of every authored case.
+pub fn roles(tally: &Tally, shared: &[Shared]) -> Vec<Role> {
+    let mut roles: Vec<Role> = tally
+        .cases
+        .iter()
+        .map(|case| match (case.candidate(), case.sole) {
+            (0, _) => Role::Idle,
+            (_, 0) => Role::Spanning,
+            _ => Role::Pivotal,
+        })
+        .collect();
+    let mut mark = |case: u16, role: Role| {
+        let slot = &mut roles[usize::from(case)];
+        if *slot != Role::Pivotal {
+            *slot = (*slot).max(role);
+        }
+    };
+    for pair in shared {
+        let [a, b] = pair.cases;
+        let [of_a, of_b] = pair.cases.map(|case| tally.cases[usize::from(case)].candidate());
+        let (a_within, b_within) = (pair.problems == of_a, pair.problems == of_b);
+        if a_within {
+            mark(b, Role::Support);
+            mark(a, if b_within { Role::Support } else { Role::Auxiliary });
+        } else if b_within {
+            mark(a, Role::Support);
+            mark(b, Role::Auxiliary);
+        }
+    }
+    roles
+}
+
+/// The competence groups, largest coverage first: their cases in rising order, and how many problems they cover.
+pub fn groups(tally: &Tally) -> Vec<(Vec<u16>, u64)> {
+    let mut parent: Vec<usize> = (0..tally.cases.len()).collect();
+    for cases in tally.reaches.keys() {
+        for pair in cases.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|case| root(&mut parent, usize::from(case)));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    let mut groups: Vec<(Vec<u16>, u64)> = vec![(Vec::new(), 0); parent.len()];
+    for case in 0..parent.len() {
+        let root = root(&mut parent, case);
+        groups[root].0.push(case as u16);
+    }
+    for (cases, reach) in &tally.reaches {
+        if let Some(first) = cases.first() {
+            groups[root(&mut parent, usize::from(*first))].1 += reach.problems;
+        }
+    }
+    groups.retain(|(_, problems)| *problems > 0);
+    groups.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
+    groups
+}
+
+/// One step of taking cases out one after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deletion {
+    /// The case taken out.
+    pub case: u16,
+    /// Problems this step leaves without any candidate.
+    pub lost: u64,
+    /// With those of the steps before.
+    pub lost_so_far: u64,
+}
+
+/// Takes out, again and again, the case whose loss is least (ties: the one that covers fewest, then the highest number)
+/// while at most `loss_max` problems are lost in all.
+pub fn thin_out(tally: &Tally, loss_max: u64) -> Vec<Deletion> {
+    let mut left: Vec<bool> = vec![true; tally.cases.len()];
+    let mut deletions: Vec<Deletion> = Vec::new();
+    let mut lost_so_far = 0;
+    loop {
+        let mut sole = vec![0_u64; left.len()];
+        for (cases, reach) in &tally.reaches {
+            let mut rest = cases.iter().filter(|case| left[usize::from(**case)]);
+            if let (Some(only), None) = (rest.next(), rest.next()) {
+                sole[usize::from(*only)] += reach.problems;
+            }
+        }
+        let key = |case: &usize| (sole[*case], tally.cases[*case].candidate(), usize::MAX - *case);
+        let Some(case) = (0..left.len()).filter(|case| left[*case]).min_by_key(key) else { break };
+        if lost_so_far + sole[case] > loss_max {
+            break;
+        }
+        left[case] = false;
+        lost_so_far += sole[case];
+        deletions.push(Deletion { case: case as u16, lost: sole[case], lost_so_far });
+    }
+    deletions
+}
+
+fn root(parent: &mut [usize], mut case: usize) -> usize {
+    while parent[case] != case {
+        parent[case] = parent[parent[case]];
+        case = parent[case];
+    }
+    case
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coverage::{CaseTally, Reach};
+
+    /// A tally of problems with these reachability sets.
+    fn tally(cases: usize, reaches: &[(&[u16], u64)]) -> Tally {
+        let mut tally = Tally::new(cases, 0);
+        for (first, (cases, problems)) in (0..).zip(reaches) {
+            tally.reaches.insert(cases.to_vec(), Reach { problems: *problems, first });
+            for case in *cases {
+                let CaseTally { verdicts, sole, .. } = &mut tally.cases[usize::from(*case)];
+                verdicts[5] += problems;
+                *sole += if cases.len() == 1 { *problems } else { 0 };
+            }
+        }
+        tally
+    }
+
+    #[test]
+    fn roles_are_those_a_hand_finds() {
+        // 0 alone covers 4; 1's problems are all 0's; 2 and 3 cover the same; 4 lies across 0 and 2; 5 covers nothing.
+        let tally =
+            tally(6, &[(&[0], 4), (&[0, 1], 3), (&[2, 3], 5), (&[0, 4], 1), (&[2, 3, 4], 2), (&[], 9)]);
+        let roles = roles(&tally, &shared(&tally));
+        use Role::{Auxiliary, Idle, Pivotal, Spanning, Support};
+        assert_eq!(roles, [Pivotal, Auxiliary, Support, Support, Spanning, Idle]);
+    }
+
+    #[test]
+    fn groups_are_the_connected_components_of_shared_problems() {
+        let tally = tally(6, &[(&[0, 2], 3), (&[2, 4], 1), (&[1], 7), (&[3, 5], 7), (&[], 2)]);
+        assert_eq!(groups(&tally), [(vec![1], 7), (vec![3, 5], 7), (vec![0, 2, 4], 4)]);
+    }
+
+    #[test]
+    fn thinning_counts_what_is_lost_after_the_deletions_before() {
+        // 0 and 1 back each other up: the first of them costs nothing, the second all they covered.
+        let tally = tally(3, &[(&[0, 1], 5), (&[2], 3), (&[0, 2], 1)]);
+        let step = |case, lost, lost_so_far| Deletion { case, lost, lost_so_far };
+        assert_eq!(thin_out(&tally, 0), [step(1, 0, 0)]);
+        assert_eq!(thin_out(&tally, 8), [step(1, 0, 0), step(2, 3, 3),]);
+        assert_eq!(thin_out(&tally, 9), [step(1, 0, 0), step(2, 3, 3), step(0, 6, 9)]);
+    }
+}

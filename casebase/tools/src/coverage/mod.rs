@@ -1,0 +1,18 @@
+//! Where on the field does a library leave robots without a case? (Ros et al. 2009, §5.1.1; Smyth & McKenna 2001)
+//!
+//! A [`Survey`] asks the library about many problems and counts into a [`Tally`]. Tallies of parts merge to the tally
+//! of the whole, in any order and grouping, so a caller may spread the work over threads and always gets the same
+//! numbers. No threads, clock or I/O here. Lengths in mm; cells and areas in the attack frame (+x towards the goal
+//! attacked), problems in the field frame.
+
+mod area;
+mod cells;
+mod survey;
+mod tally;
+
+pub use area::Area;
+pub use cells::{Cells, CellsError};
+pub use survey::Survey;
+pub use tally::{
+    AreaTally, COST_BIN_MM, COST_BINS, CaseTally, CellTally, RINGS, Reach, Tally, VERDICTS, entropy_bits,
+};

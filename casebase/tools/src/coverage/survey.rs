@@ -1,0 +1,148 @@
+//! What does a library say to many problems? Every case is judged in every problem, as `cases explain` does.
+
+use casebase::{CaseBase, Match, Problem, SettingError, Settings, Verdict, explain, rank_order};
+
+use super::area::Area;
+use super::cells::Cells;
+use super::tally::{COST_BIN_MM, COST_BINS, RINGS, Reach, Tally, VERDICTS};
+
+/// A library, what it is asked with, and the grid that is counted over.
+#[derive(Clone, Debug)]
+pub struct Survey<'a> {
+    base: CaseBase<'a>,
+    settings: Settings,
+    /// With scopes a fifth larger; opponents' ways widen too, so whoever passes these checks would pass with the
+    /// ball's scope alone enlarged.
+    wider: Settings,
+    cells: Cells,
+}
+
+impl<'a> Survey<'a> {
+    /// Over a library.
+    pub fn new(base: CaseBase<'a>, settings: &Settings, cells: Cells) -> Result<Self, SettingError> {
+        let mut wider = settings.clone();
+        // exp(−k²·e) where the threshold is exp(−e).
+        let threshold = f64::from(settings.threshold).powf(WIDER * WIDER);
+        wider.set("thr", &format!("{threshold:.6}"))?;
+        Ok(Self { base, settings: settings.clone(), wider, cells })
+    }
+
+    /// The grid.
+    pub const fn cells(&self) -> Cells {
+        self.cells
+    }
+
+    /// The library.
+    pub const fn base(&self) -> CaseBase<'a> {
+        self.base
+    }
+
+    /// Nothing counted yet.
+    pub fn empty(&self) -> Tally {
+        Tally::new(self.base.len() / COPIES, self.cells.len())
+    }
+
+    /// The tally of numbered problems.
+    pub fn over(&self, problems: impl IntoIterator<Item = (u64, Problem)>) -> Tally {
+        let mut tally = self.empty();
+        for (number, problem) in problems {
+            self.count(&mut tally, number, &problem);
+        }
+        tally
+    }
+
+    fn count(&self, tally: &mut Tally, number: u64, problem: &Problem) {
+        // Of each authored case: how far its better copy came, and that copy's interval.
+        let mut reached = vec![(0_usize, RINGS.len()); tally.cases.len()];
+        let mut best: Option<Match> = None;
+        let mut candidates = 0;
+        explain(&self.base, problem, &self.settings, |id, verdict| {
+            let Some((step, interval)) = reached.get_mut(usize::from(id.0) / COPIES) else { return };
+            *step = (*step).max(step_of(&verdict));
+            if let Verdict::Candidate(found) = verdict {
+                candidates += 1;
+                *interval = (*interval).min(ring(&found));
+                if best.as_ref().is_none_or(|best| rank_order(&found, best, &self.settings).is_lt()) {
+                    best = Some(found);
+                }
+            }
+        });
+        let area = Area::of(self.base.field(), problem.ball, problem.defending) as usize;
+        let cell = &mut tally.cells[self.cells.cell(problem.ball, problem.defending)];
+        tally.problems += 1;
+        tally.candidates += candidates;
+        tally.areas[area].problems += 1;
+        cell.problems += 1;
+        cell.candidates += candidates;
+        let winner = best.as_ref().map(|best| best.case.0 / COPIES as u16);
+        let mut reach = Vec::new();
+        for (authored, (counts, (step, interval))) in (0_u16..).zip(tally.cases.iter_mut().zip(&reached)) {
+            counts.verdicts[*step] += 1;
+            if *step == CANDIDATE {
+                reach.push(authored);
+                counts.rings[*interval] += 1;
+                match winner {
+                    Some(winner) if winner != authored => *counts.beaten_by.entry(winner).or_default() += 1,
+                    _ => {}
+                }
+            }
+        }
+        if let (Some(best), Some(winner)) = (&best, winner) {
+            let counts = &mut tally.cases[usize::from(winner)];
+            counts.wins += 1;
+            counts.rings_won[ring(best)] += 1;
+            *cell.wins.entry(winner).or_default() += 1;
+            tally.rings[ring(best)] += 1;
+            tally.costs[((best.cost / COST_BIN_MM) as usize).min(COST_BINS - 1)] += 1;
+        } else {
+            tally.none += 1;
+            tally.areas[area].none += 1;
+            cell.none += 1;
+            cell.first_hole = cell.first_hole.into_iter().chain([number]).min();
+            tally.furthest[reached.iter().map(|(step, _)| *step).max().unwrap_or(0)] += 1;
+            self.who_would_fill(tally, problem);
+        }
+        if let [only] = reach[..] {
+            let counts = &mut tally.cases[usize::from(only)];
+            counts.sole += 1;
+            counts.sole_in[area] += 1;
+        }
+        let reach = tally.reaches.entry(reach).or_insert(Reach { problems: 0, first: number });
+        reach.problems += 1;
+        reach.first = reach.first.min(number);
+    }
+
+    fn who_would_fill(&self, tally: &mut Tally, problem: &Problem) {
+        let mut last = None;
+        let mut fills = Vec::new();
+        explain(&self.base, problem, &self.wider, |id, verdict| {
+            let authored = usize::from(id.0) / COPIES;
+            if matches!(verdict, Verdict::Candidate(_)) && last != Some(authored) {
+                last = Some(authored);
+                fills.push(authored);
+            }
+        });
+        for authored in fills {
+            tally.cases[authored].would_fill += 1;
+        }
+    }
+}
+
+/// How far a copy came: a place in [`VERDICTS`].
+fn step_of(verdict: &Verdict) -> usize {
+    VERDICTS.iter().position(|word| *word == verdict.word()).unwrap_or(0)
+}
+
+/// The similarity interval: a place in [`RINGS`].
+fn ring(found: &Match) -> usize {
+    INTERVALS.iter().filter(|end| found.similarity < **end).count()
+}
+
+/// Stored copies of an authored case.
+const COPIES: usize = casebase::Symmetry::ALL.len();
+/// The place of "candidate" in [`VERDICTS`].
+const CANDIDATE: usize = VERDICTS.len() - 1;
+/// The ends of H, h and l (Ros et al. 2009, §3.4).
+const INTERVALS: [f32; 3] = [0.8, 0.6, 0.4];
+/// How much larger radii are tried for a hole.
+const WIDER: f64 = 1.2;
