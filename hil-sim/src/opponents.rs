@@ -45,6 +45,18 @@ impl Role {
     }
 }
 
+/// What a scripted opponent does with its time.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Conduct {
+    /// It plays from its role's home.
+    #[default]
+    AtHome,
+    /// It plays from this region instead.
+    Within(Region),
+    /// It holds its place: a body in the way that clears nothing.
+    Standing,
+}
+
 /// A scripted opponent.
 #[derive(Clone, Debug)]
 pub struct Opponent {
@@ -52,24 +64,31 @@ pub struct Opponent {
     pub role: Role,
     /// Its place in [`World::walkers`].
     robot: usize,
-    home: Region,
+    /// Where it plays; `None` where it only stands.
+    home: Option<Region>,
     /// Seconds that the ball has been in reach.
     in_reach: f32,
 }
 
 impl Opponent {
-    /// In its home.
-    pub fn new(role: Role, robot: usize, parameters: &Parameters) -> Self {
-        Self { role, robot, home: role.home(parameters), in_reach: 0.0 }
+    /// In its home, or where its conduct wants it.
+    pub fn new(role: Role, conduct: Conduct, robot: usize, parameters: &Parameters) -> Self {
+        let home = match conduct {
+            Conduct::AtHome => Some(role.home(parameters)),
+            Conduct::Within(region) => Some(region),
+            Conduct::Standing => None,
+        };
+        Self { role, robot, home, in_reach: 0.0 }
     }
 
     /// Decides and orders its body, once every `dt` seconds.
     pub fn act(&mut self, world: &mut World, parameters: &Parameters, dt: f32) {
+        let Some(home) = self.home else { return };
         let (ball, pose) = (world.ball.position, world.walkers[self.robot].pose);
         let p = &parameters.opponent;
         // A ball pushed against the robot at its border is in nobody's way but its own: that one it clears too.
         let touching = League::FourLegged.robot().radius + League::FourLegged.ball().radius;
-        let reach = if self.home.contains(ball) { p.reach } else { touching };
+        let reach = if home.contains(ball) { p.reach } else { touching };
         let reached = world.ball_within(self.robot, reach, p.half_angle);
         self.in_reach = if reached { self.in_reach + dt } else { 0.0 };
         if reached && self.in_reach >= p.delay {
@@ -83,7 +102,7 @@ impl Opponent {
             world.clear_ball(self.robot, to);
         }
         // At its home's border where the ball is outside, at the ball where it is inside: the same point.
-        let walk = walk_to(pose, self.home.nearest(ball), ball, parameters);
+        let walk = walk_to(pose, home.nearest(ball), ball, parameters);
         world.command(self.robot, &ActuatorFrame::Legged { walk, primitive: LeggedPrimitive::None });
     }
 }
@@ -138,7 +157,7 @@ mod tests {
         let p = Parameters::four_legged();
         let walker = Walker::at(Side::Opponents, Pose::from_mm_deg(at.0, at.1, 180.0));
         let world = World::new(p, 1, Point::new(ball.0, ball.1), vec![walker]);
-        Game { world, opponent: Opponent::new(role, 0, p), events: Vec::new() }
+        Game { world, opponent: Opponent::new(role, Conduct::AtHome, 0, p), events: Vec::new() }
     }
 
     impl Game {
@@ -182,6 +201,21 @@ mod tests {
         assert!(!game.events.iter().any(|e| matches!(e, WorldEvent::Kicked { .. })));
         game.run(0.08);
         assert!(game.events.iter().any(|e| matches!(e, WorldEvent::Kicked { .. })));
+    }
+
+    #[test]
+    fn one_that_stands_neither_moves_nor_clears_and_one_with_a_region_of_its_own_keeps_to_it() {
+        let p = Parameters::four_legged();
+        let mut standing = game(Role::Defender, (1400.0, 0.0), (1.2, 0.0));
+        standing.opponent = Opponent::new(Role::Defender, Conduct::Standing, 0, p);
+        standing.run(3.0);
+        assert_eq!(standing.pose().position, Point::new(1.4, 0.0));
+        assert!(!standing.events.iter().any(|e| matches!(e, WorldEvent::Kicked { .. })));
+        let region = Region { x: [-1.5, -0.5], y: [-0.5, 0.5] };
+        let mut presser = game(Role::Defender, (-1000.0, 0.0), (-2.0, 1.0));
+        presser.opponent = Opponent::new(Role::Defender, Conduct::Within(region), 0, p);
+        presser.run(10.0);
+        assert!(presser.pose().position.distance(Point::new(-1.5, 0.5)) < 0.05, "{:?}", presser.pose());
     }
 
     #[test]

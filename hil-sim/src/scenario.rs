@@ -9,7 +9,7 @@ use geometry::{Angle, Field, Point, Pose};
 use rules::League;
 use serde::Deserialize;
 
-use crate::opponents::Role;
+use crate::opponents::{Conduct, Role};
 use crate::parameters::Parameters;
 use crate::referee::Configuration;
 use crate::rng::Stream;
@@ -36,8 +36,27 @@ pub struct Layout {
     pub ball: Point<Field>,
     /// The robots led by brains: A, B, and as many more as a team may have.
     pub attackers: Vec<Pose<Field>>,
-    /// The scripted ones, facing the ball.
-    pub opponents: Vec<(Role, Pose<Field>)>,
+    /// The scripted ones.
+    pub opponents: Vec<Placed>,
+}
+
+/// A scripted opponent at kick-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// What it is there for.
+    pub role: Role,
+    /// What it does.
+    pub conduct: Conduct,
+    /// Where it stands.
+    pub pose: Pose<Field>,
+}
+
+impl Placed {
+    /// One that plays from its home, facing the ball.
+    pub fn at_home(role: Role, position: Point<Field>, ball: Point<Field>) -> Self {
+        let pose = Pose { position, heading: position.direction_to(ball) };
+        Self { role, conduct: Conduct::AtHome, pose }
+    }
 }
 
 impl Scenario {
@@ -79,7 +98,7 @@ impl Scenario {
             attackers: (file.attackers.iter())
                 .map(|a| Pose { position: in_metres(a.at), heading: heading(a) })
                 .collect(),
-            opponents: opponents.iter().map(|o| (o.role, facing(in_metres(o.at), ball))).collect(),
+            opponents: opponents.iter().map(|o| Placed::at_home(o.role, in_metres(o.at), ball)).collect(),
         }
     }
 
@@ -123,15 +142,11 @@ fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> L
     };
     let opponents = roles.map(|role| {
         let home = role.home(parameters);
-        (role, facing(place(&mut chance, home.x, home.y), ball))
+        Placed::at_home(role, place(&mut chance, home.x, home.y), ball)
     });
     let attackers =
         attackers.into_iter().map(|at| Pose { position: field.clamp(at, 0.0), heading: Angle::ZERO });
     Layout { ball, attackers: attackers.collect(), opponents: opponents.to_vec() }
-}
-
-fn facing(position: Point<Field>, ball: Point<Field>) -> Pose<Field> {
-    Pose { position, heading: position.direction_to(ball) }
 }
 
 fn in_metres([x, y]: [i16; 2]) -> Point<Field> {
@@ -205,7 +220,7 @@ mod tests {
     fn everybody_stands_on_the_field_at_home_and_clear_of_each_other() {
         let (field, p) = (League::FourLegged.field(), Parameters::four_legged());
         for (scenario, configuration, layout) in layouts() {
-            let robots = layout.attackers.iter().chain(layout.opponents.iter().map(|(_, pose)| pose));
+            let robots = layout.attackers.iter().chain(layout.opponents.iter().map(|placed| &placed.pose));
             let places: Vec<_> = robots.map(|pose| pose.position).chain([layout.ball]).collect();
             for (i, a) in places.iter().enumerate() {
                 assert!(field.contains(*a), "{scenario} {configuration:?}");
@@ -213,7 +228,7 @@ mod tests {
                     assert!(a.distance(*b) > 0.24, "{scenario} {configuration:?}: {a:?} and {b:?}");
                 }
             }
-            for (role, pose) in &layout.opponents {
+            for Placed { role, pose, .. } in &layout.opponents {
                 assert!(role.home(p).contains(pose.position), "{scenario} {role:?}");
             }
         }
@@ -224,7 +239,7 @@ mod tests {
         for configuration in BOTH {
             let ahead = |scenario: Scenario| {
                 let layout = scenario.layout(configuration, Parameters::four_legged(), 0);
-                layout.opponents[0].1.position - layout.ball
+                layout.opponents[0].pose.position - layout.ball
             };
             assert!(ahead(Scenario::DefenderAhead).norm() > 0.4);
             assert!(ahead(Scenario::DefenderClose).norm() < 0.4);

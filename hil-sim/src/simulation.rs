@@ -129,10 +129,10 @@ impl<'a> Simulation<'a> {
         let mut walkers: Vec<Walker> = (layout.attackers.iter().take(brains.len()))
             .map(|pose| Walker::at(Side::Attackers, *pose))
             .collect();
-        walkers.extend(layout.opponents.iter().map(|(_, pose)| Walker::at(Side::Opponents, *pose)));
-        let roles: Vec<Role> = layout.opponents.iter().map(|(role, _)| *role).collect();
-        let opponents =
-            roles.iter().zip(brains.len()..).map(|(role, i)| Opponent::new(*role, i, &parameters));
+        walkers.extend(layout.opponents.iter().map(|placed| Walker::at(Side::Opponents, placed.pose)));
+        let roles: Vec<Role> = layout.opponents.iter().map(|placed| placed.role).collect();
+        let opponents = (layout.opponents.iter().zip(brains.len()..))
+            .map(|(placed, i)| Opponent::new(placed.role, placed.conduct, i, &parameters));
         let mut robots = Vec::new();
         for (i, config) in brains.into_iter().enumerate() {
             let computer = start(&mut *backend, &config)?;

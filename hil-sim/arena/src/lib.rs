@@ -4,6 +4,8 @@
 //! watches: a [`Watcher`] is shown every tick, as somebody at the field's edge with a radio receiver would see it; [`Story`]
 //! tells it in words, [`Recording`] keeps what [`picture()`] draws.
 //!
+//! [`Rehearsal`] plays single cases from their own situation, many times: does a case do what its author meant?
+//!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
 
 mod backups;
@@ -11,6 +13,7 @@ mod cycles;
 mod names;
 mod picture;
 mod recording;
+mod rehearsal;
 mod report;
 mod story;
 mod trial;
@@ -19,6 +22,7 @@ pub use cycles::{CycleEnd, CycleLog, CycleSeen, News};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{Kick, Recording, Sample, Start};
+pub use rehearsal::{Attempt, Opposition, Rehearsal, Retrieved, Score, markdown};
 pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
 pub use story::Story;
 pub use trial::{Moment, TEAM, TrialConfig, Watcher, approach_from_word, approach_word, run};

@@ -37,15 +37,23 @@ impl Story {
 
     fn opening(&mut self, moment: &Moment<'_>) {
         let config = moment.config;
-        let against = match config.opponents {
-            Configuration::DefenderGoalie => "a defender and a goalie",
-            Configuration::TwoDefenders => "a midfield defender and a defender",
-        };
         let (scenario, title, seed) = (config.scenario, config.scenario.title(), config.seed);
-        let what = if scenario.word() == title {
-            format!("random scenario {seed}")
+        let what = if config.layout.is_some() {
+            let opponents: Vec<_> = (0..moment.cast.opponents.len())
+                .map(|i| moment.cast.name(moment.cast.attackers.len() + i))
+                .collect();
+            let against = if opponents.is_empty() { "nobody".to_owned() } else { opponents.join(" and ") };
+            format!("a given situation against {against}")
         } else {
-            format!("scenario {scenario} ({title})")
+            let against = match config.opponents {
+                Configuration::DefenderGoalie => "a defender and a goalie",
+                Configuration::TwoDefenders => "a midfield defender and a defender",
+            };
+            if scenario.word() == title {
+                format!("random scenario {seed} against {against}")
+            } else {
+                format!("scenario {scenario} ({title}) against {against}")
+            }
         };
         let names: Vec<_> = moment
             .cast
@@ -53,7 +61,7 @@ impl Story {
             .iter()
             .map(|id| format!("{} is robot {id}", moment.cast.name_of(*id)))
             .collect();
-        self.tell(0.0, format!("{what} against {against}, seed {seed}; {}", names.join(", ")));
+        self.tell(0.0, format!("{what}, seed {seed}; {}", names.join(", ")));
     }
 
     fn fault(&mut self, moment: &Moment<'_>, fault: &Fault) {

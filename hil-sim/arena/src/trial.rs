@@ -3,8 +3,8 @@
 use brain::{Approach, BrainConfig, Positioning};
 use casebase::{CaseBase, Settings};
 use hil_sim::{
-    AirSettings, Backend, Configuration, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
-    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, world::World,
+    AirSettings, Backend, Configuration, Layout, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
+    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, Verdict, world::World,
 };
 use protocol::frame::TeamKey;
 use protocol::link::overhear;
@@ -21,6 +21,8 @@ use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, i
 pub struct TrialConfig<'a> {
     /// Where everybody stands.
     pub scenario: Scenario,
+    /// Where everybody stands instead, if it is no named scenario.
+    pub layout: Option<Layout>,
     /// Which opponents play.
     pub opponents: Configuration,
     /// What leads the attackers.
@@ -57,6 +59,7 @@ impl TrialConfig<'static> {
         let league = case_library::LEAGUES.iter().find(|league| league.name == LEAGUE);
         Self {
             scenario,
+            layout: None,
             opponents,
             approach,
             seed,
@@ -92,9 +95,11 @@ impl<'a> TrialConfig<'a> {
             pause_after_cycle: self.pause_after_cycle,
             ..BrainConfig::new(robot, TEAM)
         });
+        let drawn = || self.scenario.layout(self.opponents, &self.parameters, self.seed);
+        let layout = self.layout.clone().unwrap_or_else(drawn);
         SimulationConfig {
             seed: self.seed,
-            layout: self.scenario.layout(self.opponents, &self.parameters, self.seed),
+            layout,
             configuration: self.opponents,
             brains: brains.collect(),
             air: self.air.clone(),
@@ -140,83 +145,131 @@ pub fn run<'a>(
     backend: Box<dyn Backend<'a> + 'a>,
     watchers: &mut [&mut dyn Watcher],
 ) -> Result<TrialReport, SimulationError> {
-    let backend_name = backend.name();
-    let mut simulation = Simulation::new(config.simulation(), backend)?;
-    let cast = Cast {
-        attackers: simulation.attackers().map(|(id, _)| id).collect(),
-        opponents: simulation.opponents().collect(),
-    };
-    let mut backups = BackupCount::new(cast.attackers.iter().copied());
-    let mut cycles = CycleLog::default();
-    let (mut beacons, mut news) = (Vec::new(), Vec::new());
+    let mut game = Game::new(config, backend)?;
     let verdict = loop {
-        let tick = simulation.step()?;
-        beacons.clear();
-        news.clear();
+        game.step(watchers)?;
+        if let Some(verdict) = game.moment().referee.verdict() {
+            break verdict;
+        }
+    };
+    Ok(game.end(verdict, watchers))
+}
+
+/// A trial under way; it ends when its caller says so.
+pub(crate) struct Game<'c, 'a> {
+    config: &'c TrialConfig<'a>,
+    backend: &'static str,
+    simulation: Simulation<'a>,
+    cast: Cast,
+    backups: BackupCount,
+    cycles: CycleLog,
+    beacons: Vec<(RobotId, Beacon)>,
+    news: Vec<News>,
+}
+
+impl<'c, 'a> Game<'c, 'a> {
+    /// At kick-off.
+    pub(crate) fn new(
+        config: &'c TrialConfig<'a>,
+        backend: Box<dyn Backend<'a> + 'a>,
+    ) -> Result<Self, SimulationError> {
+        let name = backend.name();
+        let simulation = Simulation::new(config.simulation(), backend)?;
+        let cast = Cast {
+            attackers: simulation.attackers().map(|(id, _)| id).collect(),
+            opponents: simulation.opponents().collect(),
+        };
+        Ok(Self {
+            config,
+            backend: name,
+            backups: BackupCount::new(cast.attackers.iter().copied()),
+            simulation,
+            cast,
+            cycles: CycleLog::default(),
+            beacons: Vec::new(),
+            news: Vec::new(),
+        })
+    }
+
+    /// A tick, shown to the watchers.
+    pub(crate) fn step(&mut self, watchers: &mut [&mut dyn Watcher]) -> Result<(), SimulationError> {
+        let tick = self.simulation.step()?;
+        self.beacons.clear();
+        self.news.clear();
         for sent in &tick.sent {
             let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO) else {
                 continue;
             };
-            backups.hear(tick.time, from, beacon.role);
+            self.backups.hear(tick.time, from, beacon.role);
             if let Some(state) = &beacon.cycle {
-                news.push(cycles.hear(tick.time, state));
+                self.news.push(self.cycles.hear(tick.time, state));
             }
-            beacons.push((from, beacon));
+            self.beacons.push((from, beacon));
         }
-        let moment = moment(config, &cast, &simulation, &beacons, &cycles, &news);
+        let moment = self.moment();
         for watcher in watchers.iter_mut() {
             watcher.watch(&moment);
         }
-        if let Some(verdict) = simulation.referee().verdict() {
-            break verdict;
-        }
-    };
-    cycles.finish(verdict.time);
-    let referee = simulation.referee();
-    let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::word);
-    let report = TrialReport {
-        scenario: config.scenario,
-        opponents: config.opponents,
-        approach: approach_word(config.approach),
-        backend: backend_name,
-        seed: config.seed,
-        outcome: verdict.outcome,
-        time_s: in_seconds(verdict.time),
-        possession: Possession {
-            defender: referee.possessions(Role::Defender),
-            midfield: referee.possessions(Role::Midfield),
-        },
-        backups: Backups(backups.counts()),
-        out_by,
-        cases: CaseCounts::of(cycles.cycles()),
-        cycles: (cycles.cycles().iter())
-            .map(|cycle| CycleReport::new(cycle, &config.names, verdict.time))
-            .collect(),
-        trace_hash: simulation.trace().digits(),
-        settings: config.settings.describe().map(|(name, value)| (name, value.as_str().to_owned())).collect(),
-        positioning: match config.positioning {
-            Positioning::Dependent => "dependent",
-            Positioning::Independent => "independent",
-        },
-        case_base: format!("{:08x}", config.base.hash()),
-    };
-    let moment = moment(config, &cast, &simulation, &beacons, &cycles, &news);
-    for watcher in watchers.iter_mut() {
-        watcher.end(&moment, &report);
+        Ok(())
     }
-    Ok(report)
-}
 
-fn moment<'a>(
-    config: &'a TrialConfig<'a>,
-    cast: &'a Cast,
-    simulation: &'a Simulation<'_>,
-    beacons: &'a [(RobotId, Beacon)],
-    cycles: &'a CycleLog,
-    news: &'a [News],
-) -> Moment<'a> {
-    let (world, tick, referee) = (simulation.world(), simulation.tick(), simulation.referee());
-    Moment { config, cast, world, tick, referee, beacons, cycles, news }
+    /// The end of the last tick.
+    pub(crate) fn moment(&self) -> Moment<'_> {
+        Moment {
+            config: self.config,
+            cast: &self.cast,
+            world: self.simulation.world(),
+            tick: self.simulation.tick(),
+            referee: self.simulation.referee(),
+            beacons: &self.beacons,
+            cycles: &self.cycles,
+            news: &self.news,
+        }
+    }
+
+    /// The trial is over: its report, told to the watchers.
+    pub(crate) fn end(mut self, verdict: Verdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
+        self.cycles.finish(verdict.time);
+        let report = self.report(verdict);
+        let moment = self.moment();
+        for watcher in watchers.iter_mut() {
+            watcher.end(&moment, &report);
+        }
+        report
+    }
+
+    fn report(&self, verdict: Verdict) -> TrialReport {
+        let (config, referee) = (self.config, self.simulation.referee());
+        let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::word);
+        TrialReport {
+            scenario: config.scenario,
+            opponents: config.opponents,
+            approach: approach_word(config.approach),
+            backend: self.backend,
+            seed: config.seed,
+            outcome: verdict.outcome,
+            time_s: in_seconds(verdict.time),
+            possession: Possession {
+                defender: referee.possessions(Role::Defender),
+                midfield: referee.possessions(Role::Midfield),
+            },
+            backups: Backups(self.backups.counts()),
+            out_by,
+            cases: CaseCounts::of(self.cycles.cycles()),
+            cycles: (self.cycles.cycles().iter())
+                .map(|cycle| CycleReport::new(cycle, &config.names, verdict.time))
+                .collect(),
+            trace_hash: self.simulation.trace().digits(),
+            settings: (config.settings.describe())
+                .map(|(name, value)| (name, value.as_str().to_owned()))
+                .collect(),
+            positioning: match config.positioning {
+                Positioning::Dependent => "dependent",
+                Positioning::Independent => "independent",
+            },
+            case_base: format!("{:08x}", config.base.hash()),
+        }
+    }
 }
 
 /// The word of an approach in options and reports.

@@ -50,6 +50,20 @@ pub(crate) enum Failure {
         /// Why.
         error: io::Error,
     },
+    /// No authored case of that name.
+    UnknownName {
+        /// What was asked for.
+        asked: String,
+        /// Whose cases.
+        league: String,
+    },
+    /// Cases of a field that no simulator plays on.
+    NoSimulator {
+        /// Whose cases.
+        league: String,
+    },
+    /// Threads cannot be started.
+    Threads(String),
     /// Announced, but not built yet.
     NotBuilt(&'static str),
     /// Stdin could not be read.
@@ -110,6 +124,16 @@ impl fmt::Display for Failure {
             Self::Picture { file, error } => {
                 write!(f, "cannot write the picture {}: {error}", file.display())
             }
+            Self::UnknownName { asked, league } => write!(
+                f,
+                "no case {asked:?} in {league}; take a region/name that `onetwo cases list` tells, or a region"
+            ),
+            Self::NoSimulator { league } => write!(
+                f,
+                "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of \
+                 5400 x 3600 mm, and theirs is another; take --league four-legged or a library for that field"
+            ),
+            Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::NotBuilt(what) => write!(f, "{what} is not built yet; README says what is"),
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),

@@ -5,6 +5,7 @@ mod check;
 mod explain;
 mod lines;
 mod list;
+mod play;
 mod problem;
 mod retrieve;
 mod show;
@@ -24,6 +25,8 @@ pub(crate) enum CasesVerb {
     List(list::ListArgs),
     /// What does a stored case say: the situation, each robot's gameplay, the ball's path?
     Show(show::ShowArgs),
+    /// Does each case work? Plays it from its own situation, many times, against standing and playing opponents.
+    Play(play::PlayArgs),
     /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
     #[command(after_help = PROBLEM_HELP)]
     Retrieve(retrieve::RetrieveArgs),
@@ -37,6 +40,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Check(args) => check::run(args),
         CasesVerb::List(args) => list::run(args),
         CasesVerb::Show(args) => show::run(args),
+        CasesVerb::Play(args) => play::run(args),
         CasesVerb::Retrieve(args) => retrieve::run(args),
         CasesVerb::Explain(args) => explain::run(args),
     }

@@ -1,0 +1,127 @@
+//! Which situation does a case describe? One drawn from it: who stands where when an attempt begins. m, field frame.
+//!
+//! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally likely.
+//! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation) about their places and look
+//!   20° past the ball.
+//! - Opponents are drawn on their scopes as the scope weighs places: a bell with the scope's radii, cut off where the scope ends.
+//! - The role of an opponent is that of the home its scope's centre lies in; it plays from there, so draws outside the home are drawn
+//!   again. Where no role is at home (own half), it plays from a region of its own, as deep as the midfield's, about its scope.
+
+use casebase::{Case, PointMm, Scope};
+use geometry::{Angle, Field, Point, Pose, Vector, math};
+use hil_sim::{Conduct, Layout, Parameters, Placed, Region, Role, Stream};
+use rules::League;
+
+use super::Opposition;
+
+/// Draws a situation of `case`.
+pub(super) fn draw(case: &Case<'_>, opposition: Opposition, parameters: &Parameters, seed: u64) -> Layout {
+    let mut chance = Stream::new(seed, "rehearsal");
+    let field = League::FourLegged.field();
+    let centre: Point<Field> = case.ball().into();
+    let ball =
+        (0..DRAWS).map(|_| centre + in_core(&mut chance, case.ball_scope())).find(|at| field.contains(*at));
+    let ball = ball.unwrap_or(centre);
+    // The whole millimetres that robots shift by.
+    let shift = case.shift(PointMm::from(ball));
+    let place = |at: PointMm| -> Point<Field> { at.plus(shift).into() };
+    let mut taken: Vec<Point<Field>> = Vec::new();
+    let attackers = case.robots().map(|robot| {
+        let centre = place(case.position(robot));
+        let draw = |chance: &mut Stream| {
+            let [x, y] = [(); 2].map(|()| SCATTER * chance.normal_within(2.0));
+            field.clamp(centre + Vector::new(x, y), 0.0)
+        };
+        let at = clear(&mut chance, ball, &taken, draw, |_| true).unwrap_or(centre);
+        taken.push(at);
+        let heading = at.direction_to(ball) + Angle::degrees(LOOKS_PAST_DEG * chance.normal_within(2.0));
+        Pose { position: at, heading }
+    });
+    let attackers = attackers.collect();
+    let opponents = case.opponents().map(|(at, scope)| {
+        let (authored, centre): (Point<Field>, _) = (at.into(), place(at));
+        let (role, home) = role_at(authored, parameters);
+        let region = home.unwrap_or_else(|| about(authored));
+        let draw = |chance: &mut Stream| centre + on_scope(chance, scope);
+        let fits = |at: Point<Field>| region.contains(at) && field.contains(at);
+        let at = clear(&mut chance, ball, &taken, draw, fits).unwrap_or_else(|| region.nearest(centre));
+        taken.push(at);
+        let conduct = match (opposition, home) {
+            (Opposition::Standing, _) => Conduct::Standing,
+            (Opposition::Playing, Some(_)) => Conduct::AtHome,
+            (Opposition::Playing, None) => Conduct::Within(region),
+        };
+        Placed { conduct, ..Placed::at_home(role, at, ball) }
+    });
+    Layout { ball, attackers, opponents: opponents.collect() }
+}
+
+/// The first draw that fits and is clear of the ball and of everybody placed before.
+fn clear(
+    chance: &mut Stream,
+    ball: Point<Field>,
+    taken: &[Point<Field>],
+    draw: impl Fn(&mut Stream) -> Point<Field>,
+    fits: impl Fn(Point<Field>) -> bool,
+) -> Option<Point<Field>> {
+    let free = |at: &Point<Field>| {
+        at.distance(ball) >= CLEAR_OF_BALL
+            && taken.iter().all(|other| other.distance(*at) >= APART)
+            && fits(*at)
+    };
+    (0..DRAWS).map(|_| draw(chance)).find(free)
+}
+
+/// Even in the ellipse in which the similarity is H.
+fn in_core(chance: &mut Stream, scope: Scope) -> Vector<Field> {
+    let radius = CORE * math::sqrt(chance.share());
+    let (sin, cos) = math::sin_cos(math::TAU * chance.share());
+    in_metres(scope, radius * cos, radius * sin)
+}
+
+/// As exp(−(x² + y²)) in the scope's radii, up to the scope's border.
+fn on_scope(chance: &mut Stream, scope: Scope) -> Vector<Field> {
+    let inside = |(x, y): &(f32, f32)| x * x + y * y <= BORDER;
+    let mut bell = || (chance.normal() * math::sqrt(0.5), chance.normal() * math::sqrt(0.5));
+    let (x, y) = (0..DRAWS).map(|_| bell()).find(inside).unwrap_or_default();
+    in_metres(scope, x, y)
+}
+
+fn in_metres(scope: Scope, x: f32, y: f32) -> Vector<Field> {
+    Vector::new(x * scope.x as f32 * 0.001, y * scope.y as f32 * 0.001)
+}
+
+/// The role of an opponent there, and its home if it is in it.
+fn role_at(at: Point<Field>, parameters: &Parameters) -> (Role, Option<Region>) {
+    let at_home = |role: &Role| role.home(parameters).contains(at);
+    match [Role::Goalie, Role::Defender, Role::Midfield].into_iter().find(at_home) {
+        Some(role) => (role, Some(role.home(parameters))),
+        None if at.x() > 0.0 => (Role::Defender, None),
+        None => (Role::Midfield, None),
+    }
+}
+
+/// A region across the field about a place where no role is at home.
+fn about(at: Point<Field>) -> Region {
+    let field = League::FourLegged.field();
+    let (length, width) = (field.length * 0.5, field.width * 0.5);
+    let middle = at.x().clamp(HALF_DEPTH - length, length - HALF_DEPTH);
+    Region { x: [middle - HALF_DEPTH, middle + HALF_DEPTH], y: [-width, width] }
+}
+
+/// Share of the scope's radii within which the similarity is at least 0.8: √(−ln 0.8).
+const CORE: f32 = 0.472_38;
+/// A scope's border: −ln 0.367 (DESIGN §4.3).
+const BORDER: f32 = 1.002_393;
+/// How far robots stand from their places, m, one standard deviation: the tolerance of arriving (DESIGN §4.4).
+const SCATTER: f32 = 0.15;
+/// How far past the ball they look, degrees, one standard deviation: an estimate.
+const LOOKS_PAST_DEG: f32 = 20.0;
+/// Nobody begins in touch with the ball, m: 0.1625 would be.
+const CLEAR_OF_BALL: f32 = 0.18;
+/// Nor with another robot, m: two radii and a hand.
+const APART: f32 = 0.3;
+/// Half of the midfield's depth, m (`hil-sim/data/four-legged.toml`).
+const HALF_DEPTH: f32 = 0.75;
+/// Draws before the middle is taken.
+const DRAWS: usize = 200;

@@ -1,0 +1,210 @@
+//! Does each case work? It is played from its own situation by robots that must retrieve it themselves (four-legged simulator).
+//!
+//! The answer is a table in words for people, Markdown for the file beside the cases, or JSON: a list of scores. The same seed gives
+//! the same answer for any number of jobs. `--story` tells single attempts instead, for whoever mends a case.
+
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+
+use arena::{CaseNames, Opposition, Rehearsal, Score, Story};
+use casebase::Case;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rules::League;
+
+use crate::Failure;
+use crate::args::{LibraryArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// What `cases play` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct PlayArgs {
+    /// Cases by region/name, or whole regions; all unless told.
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    #[command(flatten)]
+    library: LibraryArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    /// Attempts a case and kind of opposition.
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    trials: u32,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Bodies in the way, or the paper's scripted opponents; both unless told.
+    #[arg(long, value_parser = opposition)]
+    opponents: Option<Opposition>,
+    /// Threads; as many as there are cores unless told.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// One JSON list of scores.
+    #[arg(long, conflicts_with_all = ["markdown", "story"])]
+    json: bool,
+    /// The table as a file for people, headed by the command that makes it again.
+    #[arg(long, conflicts_with = "story")]
+    markdown: bool,
+    /// Tell what happens in each attempt, instead of a table.
+    #[arg(long)]
+    story: bool,
+}
+
+pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
+    let settings = args.settings.choose()?.settings;
+    let shelf = Shelf::open(&args.library)?;
+    let rehearsal = Rehearsal {
+        base: shelf.base(),
+        names: CaseNames::new(shelf.names()),
+        settings,
+        trials: args.trials,
+        seed: args.seed,
+    };
+    refuse_other_fields(&shelf)?;
+    let cases = chosen(args, &shelf, &rehearsal)?;
+    let oppositions: Vec<_> = Opposition::ALL
+        .into_iter()
+        .filter(|kind| args.opponents.is_none_or(|wanted| wanted == *kind))
+        .collect();
+    if args.story {
+        return tell(&rehearsal, &cases, &oppositions);
+    }
+    let scores = play(args, &rehearsal, &cases, &oppositions)?;
+    let words = if args.json {
+        serde_json::to_string(&scores).map_err(|error| Failure::Output(error.into()))? + "\n"
+    } else if args.markdown {
+        args.heading(&rehearsal, &scores) + &arena::markdown(&scores)
+    } else {
+        arena::markdown(&scores)
+    };
+    io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The simulator has one field.
+fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
+    let (played, field) = (League::FourLegged.field(), shelf.base().field());
+    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
+    if [in_mm(played.length), in_mm(played.width)] == [field.length, field.width] {
+        Ok(())
+    } else {
+        Err(Failure::NoSimulator { league: shelf.league().to_owned() })
+    }
+}
+
+/// The authored cases asked for, in the order of ids.
+fn chosen<'a>(args: &PlayArgs, shelf: &Shelf, rehearsal: &Rehearsal<'a>) -> Result<Vec<Case<'a>>, Failure> {
+    let names = shelf.names();
+    let means = |asked: &str, name: &str| {
+        name == asked || name.strip_prefix(asked).is_some_and(|rest| rest.starts_with('/'))
+    };
+    for asked in &args.names {
+        if !names.iter().any(|name| means(asked, name)) {
+            return Err(Failure::UnknownName { asked: asked.clone(), league: shelf.league().to_owned() });
+        }
+    }
+    let wanted = |name: &str| args.names.is_empty() || args.names.iter().any(|asked| means(asked, name));
+    let cases = names.iter().enumerate().filter(|(_, name)| wanted(name));
+    Ok(cases.filter_map(|(number, _)| rehearsal.case(number)).collect())
+}
+
+/// All attempts, on the threads asked for.
+fn play(
+    args: &PlayArgs,
+    rehearsal: &Rehearsal<'_>,
+    cases: &[Case<'_>],
+    oppositions: &[Opposition],
+) -> Result<Vec<Score>, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
+    let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
+    let attempts = u64::from(args.trials) * (cases.len() * oppositions.len()) as u64;
+    // Drawn on stderr where that is a terminal, and nowhere else.
+    let bar = ProgressBar::new(attempts);
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
+        bar.set_style(style);
+    }
+    let mut scores = Vec::new();
+    for case in cases {
+        let name = rehearsal.names.of(case.id());
+        bar.set_message(name.clone());
+        for kind in oppositions {
+            let attempts = pool.install(|| rehearsal.play(case, *kind, &|| bar.inc(1)));
+            let attempts = attempts.map_err(Failure::Trial)?;
+            scores.push(Score::of(name.clone(), kind.word(), &attempts));
+        }
+    }
+    bar.finish_and_clear();
+    Ok(scores)
+}
+
+/// Attempts in words, one after the other.
+fn tell(
+    rehearsal: &Rehearsal<'_>,
+    cases: &[Case<'_>],
+    oppositions: &[Opposition],
+) -> Result<ExitCode, Failure> {
+    let mut out = io::stdout().lock();
+    for case in cases {
+        for (kind, number) in
+            oppositions.iter().flat_map(|kind| (0..rehearsal.trials).map(move |n| (*kind, n)))
+        {
+            let mut story = Story::default();
+            let attempt = rehearsal.attempt(case, kind, number, &mut [&mut story]).map_err(Failure::Trial)?;
+            let mut text =
+                format!("{}, opponents {}, attempt {number}\n", rehearsal.names.of(case.id()), kind.word());
+            for line in story.take_lines() {
+                let _ = writeln!(text, "{line}");
+            }
+            let end = attempt.end.map_or("not played", arena::CycleEnd::word);
+            let _ = writeln!(text, "{end}, the ball {:.2} m nearer to the goal line\n", attempt.progress);
+            out.write_all(text.as_bytes()).map_err(Failure::Output)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl PlayArgs {
+    /// What stands above the table.
+    fn heading(&self, rehearsal: &Rehearsal<'_>, scores: &[Score]) -> String {
+        let [trials, seed, hash] = [u64::from(self.trials), self.seed, u64::from(rehearsal.base.hash())];
+        let reached = |word: &str| {
+            let of_kind: Vec<_> = scores.iter().filter(|score| score.opponents == word).collect();
+            let reached = of_kind.iter().filter(|score| score.completed_percent() >= ENOUGH_PERCENT).count();
+            format!("{reached} of {}", of_kind.len())
+        };
+        let mut command = "onetwo cases play".to_owned();
+        for name in &self.names {
+            let _ = write!(command, " {name}");
+        }
+        if let Some(folder) = &self.library.folder.library {
+            let _ = write!(command, " --library {}", folder.display());
+        }
+        let _ = write!(command, " --trials {trials} --seed {seed}");
+        for (name, value) in self.settings.given() {
+            let _ = write!(command, " --set {name}={value}");
+        }
+        if let Some(kind) = self.opponents {
+            let _ = write!(command, " --opponents {}", kind.word());
+        }
+        format!(
+            "# Cases played from their own situations\n\n\
+             Written by `{command} --markdown` (case base {hash:08x}). Each case is played {trials} times by its own robots alone, \
+             which must retrieve it themselves: the ball in the core of its scope (similarity H), robots 150 mm about their places, \
+             opponents drawn on their scopes. *standing*: opponents hold their places. *playing*: they are the paper's scripted ones, \
+             at home in the region of their role, or in one as deep about their scope where no role is at home. Percentages are shares \
+             of all {trials} attempts; *completed* means that every robot did its whole part; *why not* counts what was retrieved \
+             instead and why gameplays ended early; the last columns are of completed gameplays, the ball watched until it lies still \
+             or is taken.\n\n\
+             At least {ENOUGH_PERCENT:.0} % completed: {} standing, {} playing.\n\n",
+            reached("standing"),
+            reached("playing"),
+        )
+    }
+}
+
+fn opposition(word: &str) -> Result<Opposition, String> {
+    Opposition::from_word(word).ok_or_else(|| "take standing or playing".to_owned())
+}
+
+/// A case that is completed less often says why in its file, percent.
+const ENOUGH_PERCENT: f64 = 60.0;

@@ -1,0 +1,57 @@
+//! Does the table of played cases tell the truth about the library beside it? Re-plays some of it, and looks for every case.
+
+use std::path::Path;
+
+use arena::{CaseNames, Opposition, Rehearsal, Score, markdown};
+use casebase::Settings;
+
+/// What `onetwo cases play --trials 200 --seed 1 --markdown` wrote.
+const TRIALS: u32 = 200;
+const SEED: u64 = 1;
+
+fn file() -> String {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/four-legged/played.md");
+    std::fs::read_to_string(file).expect("the table is committed")
+}
+
+fn names() -> &'static [&'static str] {
+    let league = case_library::LEAGUES.iter().find(|league| league.name == "four-legged");
+    league.expect("the built-in league").names
+}
+
+#[test]
+fn the_table_of_played_cases_lists_every_case_against_both_kinds_of_opponents() {
+    let (file, names) = (file(), names());
+    for name in names {
+        for opponents in Opposition::ALL {
+            let row = format!("| {name} | {} | ", opponents.word());
+            assert_eq!(file.matches(&row).count(), 1, "{name} {}; {AGAIN}", opponents.word());
+        }
+    }
+    assert_eq!(file.lines().filter(|line| line.starts_with("| ")).count(), 1 + 2 * names.len(), "{AGAIN}");
+}
+
+#[test]
+fn rows_of_the_table_come_out_again() {
+    let (file, names) = (file(), names());
+    let rehearsal = Rehearsal {
+        base: case_library::four_legged(),
+        names: CaseNames::new(names.iter().copied()),
+        settings: Settings::default(),
+        trials: TRIALS,
+        seed: SEED,
+    };
+    for authored in (0..names.len()).step_by(8) {
+        let case = rehearsal.case(authored).expect("a stored case for every authored one");
+        for opponents in Opposition::ALL {
+            let attempts = rehearsal.play(&case, opponents, &|| ()).expect("the simulator runs");
+            let score = Score::of(names[authored].to_owned(), opponents.word(), &attempts);
+            let table = markdown(&[score]);
+            let row = table.lines().last().unwrap_or_default();
+            assert!(file.contains(row), "the file has no row {row}; {AGAIN}");
+        }
+    }
+}
+
+const AGAIN: &str = "if a case, the brain or the simulator changed, write it again: \
+    cargo run --release -- cases play --trials 200 --seed 1 --markdown > casebase/library/cases/four-legged/played.md";
