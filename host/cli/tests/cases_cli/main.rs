@@ -4,4 +4,5 @@ mod common;
 mod explain;
 mod inspect;
 mod oracle;
+mod play;
 mod retrieve;
