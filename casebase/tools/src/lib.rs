@@ -9,6 +9,7 @@ mod authored;
 mod check;
 mod codes;
 pub mod competence;
+mod counterfactual;
 pub mod coverage;
 mod document;
 pub mod draw;
@@ -24,6 +25,7 @@ mod sample;
 mod warnings;
 
 pub use codes::{CODES, CodeEntry, code, entry};
+pub use counterfactual::{Counterfactual, Entity, Move, Obstacle, counterfactual};
 pub use encode::Table;
 pub use files::{Files, SourceFile};
 pub use finding::{Finding, Severity};

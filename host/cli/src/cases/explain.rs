@@ -7,11 +7,14 @@ use std::process::ExitCode;
 
 use casebase::{Case, CaseBase, Match, Problem, Verdict, rank_order};
 use clap::Args;
+use protocol::CaseId;
 use serde::Serialize;
 
 use super::answer::{Answer, as_object, cost, roles, rounded, similarity, write_line};
 use super::counted;
+use super::diff::{self, Difference};
 use super::lines::for_each_problem;
+use super::whatif::WhatIf;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
@@ -26,17 +29,44 @@ pub(crate) struct ExplainArgs {
     /// One JSON object a problem instead of a table.
     #[arg(long)]
     json: bool,
+    /// Tell of every case, not of the candidates and the nearest misses alone.
+    #[arg(long)]
+    all: bool,
+    /// Only these two, side by side: ids, region/name, or region/name/symmetry.
+    #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with = "all")]
+    diff: Option<Vec<String>>,
 }
+
+/// Cases that are no candidates, but are told: those that miss by the least.
+const NEAREST: usize = 5;
 
 pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
     let shelf = Shelf::open(&args.library)?;
     let base = shelf.base();
+    let pair = args.diff.as_deref().map(|pair| -> Result<_, Failure> {
+        Ok([diff::find(&shelf, base.len(), &pair[0])?, diff::find(&shelf, base.len(), &pair[1])?])
+    });
+    let pair = pair.transpose()?;
     let mut output = BufWriter::new(stdout().lock());
     for_each_problem(stdin().lock(), &mut output, |output, number, problem| match problem {
         Ok(problem) => {
-            let explanation = Explanation::new(&shelf, &base, &problem, &chosen);
-            if args.json { write_line(output, &explanation) } else { explanation.write_table(output, number) }
+            if let Some(pair) = pair {
+                let difference = difference(&shelf, &base, &problem, &chosen, pair);
+                return if args.json {
+                    write_line(output, &difference)
+                } else {
+                    difference.write(output, number)
+                };
+            }
+            let mut explanation = Explanation::new(&shelf, &base, &problem, &chosen);
+            let told = explanation.told_first(args.all);
+            explanation.ask_what_if(&shelf, &base, &problem, &chosen, &told);
+            if args.json {
+                write_line(output, &explanation)
+            } else {
+                explanation.write_table(output, number, &told)
+            }
         }
         Err(error) if args.json => write_line(output, &Answer::Malformed { error }),
         Err(error) => writeln!(output, "{error}\n"),
@@ -50,6 +80,8 @@ struct Explanation<'a> {
     winner: Option<u16>,
     candidates: usize,
     cases: Vec<Row<'a>>,
+    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win.
+    counterfactuals: Vec<WhatIf>,
     /// What differs from retrieval's defaults; left out where nothing does.
     #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
     settings: &'a [(String, String)],
@@ -127,11 +159,38 @@ impl<'a> Explanation<'a> {
             winner: ranking.first().map(|found| found.case.0),
             candidates: ranking.len(),
             cases: verdicts.iter().filter_map(row).collect(),
+            counterfactuals: Vec::new(),
             settings: &chosen.changed,
         }
     }
 
-    fn write_table(&self, output: &mut impl Write, line: u64) -> io::Result<()> {
+    /// Rows in the order people are told them: candidates by rank, then misses, the nearest first.
+    fn told_first(&self, all: bool) -> Vec<usize> {
+        let mut order: Vec<_> = (0..self.cases.len()).collect();
+        let place = |at: &usize| self.cases[*at].evidence.place();
+        order.sort_by(|a, b| place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1)));
+        if !all {
+            order.truncate(self.candidates + NEAREST);
+        }
+        order
+    }
+
+    fn ask_what_if(
+        &mut self,
+        shelf: &Shelf,
+        base: &CaseBase<'_>,
+        problem: &Problem,
+        chosen: &Chosen,
+        told: &[usize],
+    ) {
+        for at in told {
+            let id = self.cases[*at].id;
+            let found = case_tools::counterfactual(base, problem, &chosen.settings, CaseId(id));
+            self.counterfactuals.extend(found.and_then(|found| WhatIf::new(shelf, id, &found)));
+        }
+    }
+
+    fn write_table(&self, output: &mut impl Write, line: u64, told: &[usize]) -> io::Result<()> {
         let candidates = counted(self.candidates, "candidate");
         match self.cases.iter().find(|row| Some(row.id) == self.winner) {
             Some(row) => writeln!(
@@ -144,14 +203,44 @@ impl<'a> Explanation<'a> {
         for (name, value) in self.settings {
             writeln!(output, "with {name}={value}")?;
         }
-        let width = self.cases.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
+        let shown: Vec<_> = told.iter().map(|at| &self.cases[*at]).collect();
+        let width = shown.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
         writeln!(output, "{:>5}  {:width$}  {:8}  {:9}  why", "id", "case", "symmetry", "verdict")?;
-        for row in &self.cases {
+        for row in &shown {
             let (id, case, why) = (row.id, row.case, row.evidence.told());
             writeln!(output, "{id:>5}  {case:width$}  {:8}  {:9}  {why}", row.symmetry, row.verdict)?;
+            if let Some(what_if) = self.counterfactuals.iter().find(|what_if| what_if.id() == id) {
+                writeln!(output, "{:>5}  {}", "", what_if.told())?;
+            }
+        }
+        if let Some(rest) = self.cases.len().checked_sub(shown.len()).filter(|rest| *rest > 0) {
+            writeln!(output, "and {} farther off; --all tells of them", counted(rest, "case"))?;
         }
         writeln!(output)
     }
+}
+
+/// Two cases on one problem.
+fn difference<'a>(
+    shelf: &'a Shelf,
+    base: &CaseBase<'_>,
+    problem: &Problem,
+    chosen: &Chosen,
+    pair: [CaseId; 2],
+) -> Difference<'a> {
+    let mut verdicts = Vec::new();
+    casebase::explain(base, problem, &chosen.settings, |id, verdict| verdicts.push((id, verdict)));
+    let mut ranking: Vec<&Match> = verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
+    ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));
+    let told = pair.map(|id| {
+        let verdict = verdicts.iter().find(|(other, _)| *other == id).map(|(_, verdict)| verdict);
+        let rank = ranking.iter().position(|found| found.case == id).map_or(0, |before| before + 1);
+        let words = verdict
+            .zip(base.case(id))
+            .map(|(verdict, case)| Evidence::of(verdict, rank, &case, problem, chosen).told());
+        (id, verdict, words.unwrap_or_else(|| "it defends the other goal".to_owned()))
+    });
+    Difference::new(shelf, told, &chosen.settings)
 }
 
 fn candidate(verdict: &Verdict) -> Option<&Match> {
@@ -188,6 +277,17 @@ impl Evidence {
             Verdict::Path { index, opponent, inside_mm, .. } => {
                 Self::Path { leg: index + 1, opponent: opponent + 1, inside_mm: rounded(*inside_mm, 1e2) }
             }
+        }
+    }
+
+    /// Where it comes among what people are told: candidates by rank, misses by mm, then those without a measure.
+    fn place(&self) -> (u8, f64) {
+        match self {
+            Self::Candidate { rank, .. } => (0, *rank as f64),
+            Self::Ball { outside_mm: mm, .. }
+            | Self::TooFar { over_mm: mm, .. }
+            | Self::Path { inside_mm: mm, .. } => (1, *mm),
+            Self::Robots { .. } | Self::OutOfField { .. } => (2, 0.0),
         }
     }
 

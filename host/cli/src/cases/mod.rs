@@ -2,6 +2,7 @@
 
 mod answer;
 mod check;
+mod diff;
 mod explain;
 mod lines;
 mod list;
@@ -9,6 +10,7 @@ mod play;
 mod problem;
 mod retrieve;
 mod show;
+mod whatif;
 
 use std::process::ExitCode;
 

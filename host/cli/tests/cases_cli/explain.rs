@@ -79,6 +79,7 @@ fn people_get_a_table() {
     let run = cases("explain", &folder("explain-table"), &["--set", "thr_c=1400"], input);
     let words: Vec<String> =
         run.lines().iter().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    // Candidates, then misses, the nearest first; each loser with what would make it win.
     assert_eq!(
         words[..5],
         [
@@ -87,15 +88,17 @@ fn people_get_a_table() {
             "id case symmetry verdict why",
             "0 center/pass-around identity candidate rank 1: 1 condition, 2 teammates, similarity 0.9984, cost 171.02 mm; \
          tm1 = robot 1, tm2 = robot 3",
-            "1 center/pass-around across-x thr_c tm2 = robot 3: 1692.96 mm to go, 292.96 mm too far",
+            "4 front/shot identity ball similarity 0.169, threshold 0.367: the ball lies 149.46 mm outside the scope",
         ]
     );
-    assert_eq!(
-        words[5],
-        "4 front/shot identity ball similarity 0.169, threshold 0.367: the ball lies 149.46 mm outside the scope"
-    );
-    assert_eq!(words[8], "line 3: ball: missing; the keys are ball, defending, teammates and opponents");
-    assert_eq!(words[10], "line 4: no case fits");
+    let missed = "1 center/pass-around across-x thr_c tm2 = robot 3: 1692.96 mm to go, 292.96 mm too far";
+    assert!(words.iter().any(|line| line == missed), "{words:#?}");
+    let after =
+        |line: &str| words[words.iter().position(|other| other.starts_with(line)).unwrap() + 1].clone();
+    assert!(after("4 front/shot").starts_with("would win if "), "{words:#?}");
+    let told = |line: &str| words.iter().any(|other| other == line);
+    assert!(told("line 3: ball: missing; the keys are ball, defending, teammates and opponents"));
+    assert!(told("line 4: no case fits"));
     assert_eq!(run.code, 0);
 }
 
@@ -104,4 +107,44 @@ fn malformed_lines_are_told_as_retrieval_tells_them() {
     let run = cases("explain", &folder("explain-malformed"), &["--json"], "x\n");
     assert_eq!(run.stdout, "{\"error\":\"line 1: column 1: not JSON: expected value\"}\n");
     assert_eq!(run.code, 0);
+}
+
+#[test]
+fn what_is_said_to_make_a_case_win_does_when_asked_again() {
+    let folder = folder("explain-what-if");
+    let explained = cases("explain", &folder, &["--json", "--all"], PROBLEM).stdout;
+    let read: serde_json::Value = serde_json::from_str(&explained).unwrap();
+    let list = read["counterfactuals"].as_array().unwrap();
+    assert_eq!(list.iter().map(|row| row["id"].as_u64().unwrap()).collect::<Vec<_>>().len(), 3, "{list:#?}");
+    let mut asked = 0;
+    for row in list.iter().filter(|row| row["moved"] == "ball") {
+        let mut problem: serde_json::Value = serde_json::from_str(PROBLEM).unwrap();
+        problem["ball"] = row["to"].clone();
+        let again = cases("retrieve", &folder, &[], problem.to_string()).stdout;
+        assert!(again.contains(&format!("\"id\":{},", row["id"])), "{row} {again}");
+        asked += 1;
+    }
+    assert!(asked > 0, "{list:#?}");
+}
+
+#[test]
+fn two_cases_are_set_side_by_side() {
+    let folder = library(
+        "explain-diff",
+        &[("front/near.toml", &shot_at(1000, 300)), ("front/nearer.toml", &shot_at(1040, 300))],
+    );
+    let problem = r#"{"ball":[1030,300],"defending":"yellow","teammates":{"2":[900,300]},"opponents":[]}"#;
+    let diff = |a: &str, b: &str, more: &[&str]| {
+        cases("explain", &folder, &[&["--diff", a, b], more].concat(), problem)
+    };
+    // Both in interval H; from (900, 300) it is 10 mm to (910, 300) for both: the nearer ball is the more similar one.
+    let run = diff("front/near", "4", &["--json"]);
+    let read: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!((&read["first"], &read["by"]), (&4.into(), &"similarity".into()), "{}", run.stdout);
+    let mirrored = diff("front/near/across-x", "front/nearer", &[]).stdout;
+    assert!(mirrored.contains("front/near (across-x), id 1: ball: "), "{mirrored}");
+    assert!(mirrored.contains("id 4 ranks first, by verdict"), "{mirrored}");
+    let other_goal = diff("2", "0", &[]).stdout;
+    assert!(other_goal.contains("other_goal: it defends the other goal"), "{other_goal}");
+    assert_eq!(diff("front/none", "0", &[]).code, 1);
 }

@@ -1,0 +1,280 @@
+//! Which smallest move of one thing on the field would make this case the retrieved one? (DESIGN §4.3, `explain`)
+//!
+//! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the case's
+//! scopes, out of its legs, out of the winner's scopes and into the winner's legs. On each line the shortest way is
+//! found by halving, in whole mm, and every answer was retrieved again on the changed problem: it is sure that the
+//! move serves, not that no other line has a shorter one.
+
+use casebase::{Case, CaseBase, Criterion, Leg, Match, PointMm, Problem, ScopeRule, Settings, retrieve_best};
+use protocol::{CaseId, RobotId};
+
+/// What would make a case win.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Counterfactual {
+    /// It is the retrieved case.
+    Winner,
+    /// This move makes it so.
+    Move(Move),
+    /// No single move that was tried does.
+    NoSingleMove(Obstacle),
+}
+
+/// One thing, elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Move {
+    /// What is moved.
+    pub entity: Entity,
+    /// From where, mm, field frame.
+    pub from: PointMm,
+    /// Where to, mm, field frame.
+    pub to: PointMm,
+    /// How far, mm.
+    pub distance_mm: f32,
+}
+
+/// What can be moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entity {
+    /// The ball; all adapted positions move with it.
+    Ball,
+    /// A robot of ours.
+    Teammate(RobotId),
+    /// An opponent, by its number in the problem, from 0.
+    Opponent(usize),
+}
+
+/// Why no single move serves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstacle {
+    /// Fewer robots are present than the case needs.
+    Robots {
+        /// Robots of the case.
+        needed: usize,
+        /// Robots of the problem.
+        present: usize,
+    },
+    /// The winner fulfils more conditions than the case has.
+    Conditions {
+        /// The winner.
+        winner: CaseId,
+        /// How many it fulfils.
+        fulfilled: u8,
+        /// How many the case has.
+        most: u8,
+    },
+    /// More than one thing stands against it.
+    Several {
+        /// Moves that were tried.
+        tried: usize,
+    },
+}
+
+impl Move {
+    /// The problem after it.
+    pub fn applied(&self, problem: &Problem) -> Problem {
+        let mut changed = problem.clone();
+        match self.entity {
+            Entity::Ball => changed.ball = self.to,
+            Entity::Teammate(id) => {
+                for (robot, at) in &mut changed.teammates {
+                    if *robot == id {
+                        *at = self.to;
+                    }
+                }
+            }
+            Entity::Opponent(index) => {
+                if let Some(at) = changed.opponents.get_mut(index) {
+                    *at = self.to;
+                }
+            }
+        }
+        changed
+    }
+}
+
+/// The smallest single move that makes `id` the retrieved case; `None` where the base has no such case under the
+/// problem's goal.
+pub fn counterfactual(
+    base: &CaseBase<'_>,
+    problem: &Problem,
+    settings: &Settings,
+    id: CaseId,
+) -> Option<Counterfactual> {
+    let case = base.case(id).filter(|case| case.defending() == problem.defending)?;
+    let winner = retrieve_best(base, problem, settings);
+    if winner.as_ref().is_some_and(|winner| winner.case == id) {
+        return Some(Counterfactual::Winner);
+    }
+    let (needed, present) = (case.teammates(), problem.teammates.len());
+    if needed > present {
+        return Some(Counterfactual::NoSingleMove(Obstacle::Robots { needed, present }));
+    }
+    let mut search = Search { base, problem, settings, id, best: None, tried: 0 };
+    search.ball(&case);
+    search.teammates(&case);
+    search.opponents(&case, winner.as_ref());
+    Some(match search.best {
+        Some(found) => Counterfactual::Move(found),
+        None => Counterfactual::NoSingleMove(obstacle(&case, winner.as_ref(), settings, search.tried)),
+    })
+}
+
+fn obstacle(case: &Case<'_>, winner: Option<&Match>, settings: &Settings, tried: usize) -> Obstacle {
+    let most = case.opponents().count() as u8;
+    match winner {
+        Some(winner) if settings.ranking[0] == Criterion::Conditions && winner.conditions > most => {
+            Obstacle::Conditions { winner: winner.case, fulfilled: winner.conditions, most }
+        }
+        _ => Obstacle::Several { tried },
+    }
+}
+
+struct Search<'s, 'b> {
+    base: &'s CaseBase<'b>,
+    problem: &'s Problem,
+    settings: &'s Settings,
+    id: CaseId,
+    best: Option<Move>,
+    tried: usize,
+}
+
+impl Search<'_, '_> {
+    /// Towards the case's ball. What lies between is looked at in steps: legs and opponents come and go on the way.
+    fn ball(&mut self, case: &Case<'_>) {
+        let from = self.problem.ball;
+        for step in 1..=BALL_STEPS {
+            let to = between(from, case.ball(), step as f32 / BALL_STEPS as f32);
+            if self.shorten(Entity::Ball, from, to) {
+                break;
+            }
+        }
+    }
+
+    fn teammates(&mut self, case: &Case<'_>) {
+        for robot in case.robots() {
+            let to = case.adapted(robot, self.problem.ball);
+            for (player, from) in &self.problem.teammates {
+                self.shorten(Entity::Teammate(*player), *from, to);
+            }
+        }
+    }
+
+    fn opponents(&mut self, case: &Case<'_>, winner: Option<&Match>) {
+        let winner = winner.and_then(|winner| self.base.case(winner.case));
+        let ball = self.problem.ball;
+        for (index, from) in self.problem.opponents.iter().enumerate() {
+            let mut targets: Vec<PointMm> = self.scopes(case).map(|(at, _)| at).collect();
+            for leg in case.legs(ball) {
+                targets.extend(beside(&leg, *from));
+            }
+            if let Some(winner) = &winner {
+                for (at, scope) in self.scopes(winner) {
+                    let reach = scope.x.max(scope.y) + ROOM_MM;
+                    targets.extend(away(*from, at, reach));
+                }
+                targets.extend(winner.legs(ball).filter_map(|leg| onto(&leg, *from)));
+            }
+            for to in targets {
+                self.shorten(Entity::Opponent(index), *from, to);
+            }
+        }
+    }
+
+    /// Opponent scopes as the settings place them.
+    fn scopes<'a>(&self, case: &Case<'a>) -> impl Iterator<Item = (PointMm, casebase::Scope)> + use<'a> {
+        let shift = match self.settings.scopes {
+            ScopeRule::Translated => case.shift(self.problem.ball),
+            ScopeRule::Absolute => PointMm::new(0, 0),
+        };
+        case.opponents().map(move |(at, scope)| (at.plus(shift), scope))
+    }
+
+    /// Does the move to `target` serve? Then the shortest part of it that does is kept if it is the shortest of all.
+    fn shorten(&mut self, entity: Entity, from: PointMm, target: PointMm) -> bool {
+        self.tried += 1;
+        if !self.serves(entity, from, target) {
+            return false;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut found = target;
+        // Halving a way of 10 m to 1 mm.
+        for _ in 0..14 {
+            let middle = 0.5 * (low + high);
+            let to = between(from, target, middle);
+            if self.serves(entity, from, to) {
+                (high, found) = (middle, to);
+            } else {
+                low = middle;
+            }
+        }
+        let moved = Move { entity, from, to: found, distance_mm: distance(from, found) };
+        if self.best.is_none_or(|best| moved.distance_mm < best.distance_mm) {
+            self.best = Some(moved);
+        }
+        true
+    }
+
+    fn serves(&self, entity: Entity, from: PointMm, to: PointMm) -> bool {
+        let changed = Move { entity, from, to, distance_mm: 0.0 }.applied(self.problem);
+        retrieve_best(self.base, &changed, self.settings).is_some_and(|winner| winner.case == self.id)
+    }
+}
+
+/// Both places beside a leg that an opponent abreast of it may leave to.
+fn beside(leg: &Leg, opponent: PointMm) -> Vec<PointMm> {
+    let Some((foot, normal)) = foot(leg, opponent) else { return Vec::new() };
+    let Some(abreast) = leg.abreast(opponent.to_f32()) else { return Vec::new() };
+    let reach = abreast.radius + ROOM_MM as f32;
+    let at = |side: f32| whole([foot[0] + side * reach * normal[0], foot[1] + side * reach * normal[1]]);
+    vec![at(1.0), at(-1.0)]
+}
+
+/// The place on a leg nearest to an opponent abreast of it.
+fn onto(leg: &Leg, opponent: PointMm) -> Option<PointMm> {
+    foot(leg, opponent).map(|(foot, _)| whole(foot))
+}
+
+/// Foot of the perpendicular on the leg, and the leg's normal (left).
+fn foot(leg: &Leg, opponent: PointMm) -> Option<([f32; 2], [f32; 2])> {
+    let along = leg.abreast(opponent.to_f32())?.along;
+    let [dx, dy] = [leg.to[0] - leg.from[0], leg.to[1] - leg.from[1]];
+    let length = dx.hypot(dy);
+    let unit = [dx / length, dy / length];
+    Some(([leg.from[0] + along * unit[0], leg.from[1] + along * unit[1]], [-unit[1], unit[0]]))
+}
+
+/// From `centre` through `from`, `reach` away; the four ways of the axes from the centre itself.
+fn away(from: PointMm, centre: PointMm, reach: i32) -> Vec<PointMm> {
+    let [dx, dy] = from.minus(centre).to_f32();
+    let length = dx.hypot(dy);
+    let mut places: Vec<_> = [(reach, 0), (-reach, 0), (0, reach), (0, -reach)]
+        .map(|(x, y)| centre.plus(PointMm::new(x, y)))
+        .into();
+    if length > 0.0 {
+        let [x, y] = centre.to_f32();
+        let factor = reach as f32 / length;
+        places.push(whole([x + dx * factor, y + dy * factor]));
+    }
+    places
+}
+
+fn between(from: PointMm, to: PointMm, part: f32) -> PointMm {
+    let [dx, dy] = to.minus(from).to_f32();
+    let [x, y] = [dx * part, dy * part];
+    from.plus(whole([x, y]))
+}
+
+fn whole([x, y]: [f32; 2]) -> PointMm {
+    PointMm::new(x.round() as i32, y.round() as i32)
+}
+
+fn distance(from: PointMm, to: PointMm) -> f32 {
+    let [dx, dy] = to.minus(from).to_f32();
+    dx.hypot(dy)
+}
+
+/// Into how many steps the ball's way is cut: a case's scopes are a good part of the field wide, so an eighth of the
+/// way finds what opens on it.
+const BALL_STEPS: u32 = 8;
+/// Beyond an edge, so that rounding to whole mm does not fall back over it, mm.
+const ROOM_MM: i32 = 5;

@@ -1,0 +1,125 @@
+//! Two cases side by side on one problem: what each says to every question, and which ranks first by what.
+
+use std::io::{self, Write};
+
+use casebase::{Criterion, Match, Settings, Symmetry, Verdict, rank_order};
+use protocol::CaseId;
+use serde::Serialize;
+
+use crate::Failure;
+use crate::library::Shelf;
+
+/// Which of two cases ranks first, and by what.
+#[derive(Debug, Serialize)]
+pub(super) struct Difference<'a> {
+    /// The one that ranks first; the only candidate, if just one is.
+    first: Option<u16>,
+    /// The criterion that tells them apart, or `verdict`, or `neither`.
+    by: &'static str,
+    /// Both, in the order they were asked for.
+    cases: [Side<'a>; 2],
+}
+
+#[derive(Debug, Serialize)]
+struct Side<'a> {
+    id: u16,
+    case: &'a str,
+    symmetry: &'static str,
+    verdict: &'static str,
+    #[serde(skip)]
+    why: String,
+}
+
+/// A stored case by its id, its name (as authored) or `name/symmetry`.
+pub(super) fn find(shelf: &Shelf, stored: usize, asked: &str) -> Result<CaseId, Failure> {
+    if let Some(id) = asked.parse::<u16>().ok().filter(|id| usize::from(*id) < stored) {
+        return Ok(CaseId(id));
+    }
+    let names = shelf.names();
+    let with = |name: &str, symmetry: Symmetry| {
+        let authored = names.iter().position(|known| known == name)?;
+        Some(CaseId(4 * authored as u16 + symmetry.bits()))
+    };
+    let mirrored = asked.rsplit_once('/').and_then(|(name, word)| {
+        let symmetry = Symmetry::ALL.into_iter().find(|symmetry| symmetry.word() == word)?;
+        with(name, symmetry)
+    });
+    mirrored.or_else(|| with(asked, Symmetry::Identity)).ok_or_else(|| Failure::UnknownCase {
+        asked: asked.to_owned(),
+        league: shelf.league().to_owned(),
+        stored,
+    })
+}
+
+impl<'a> Difference<'a> {
+    /// `told` are both cases, their verdicts and the words for them; a case under the other goal has none.
+    pub(super) fn new(
+        shelf: &'a Shelf,
+        told: [(CaseId, Option<&Verdict>, String); 2],
+        settings: &Settings,
+    ) -> Self {
+        let found = told.each_ref().map(|(_, verdict, _)| match verdict {
+            Some(Verdict::Candidate(found)) => Some(found),
+            _ => None,
+        });
+        let (first, by) = match found {
+            [Some(a), Some(b)] => {
+                let first = if rank_order(a, b, settings).is_le() { a } else { b };
+                (Some(first.case.0), separated_by(a, b, settings))
+            }
+            [Some(only), None] | [None, Some(only)] => (Some(only.case.0), "verdict"),
+            [None, None] => (None, "neither"),
+        };
+        let cases = told.map(|(id, verdict, why)| Side {
+            id: id.0,
+            case: shelf.name(id),
+            symmetry: Symmetry::from_bits(id.0).word(),
+            verdict: verdict.map_or("other_goal", Verdict::word),
+            why,
+        });
+        Self { first, by, cases }
+    }
+
+    pub(super) fn write(&self, output: &mut impl Write, line: u64) -> io::Result<()> {
+        for side in &self.cases {
+            writeln!(
+                output,
+                "line {line}: {} ({}), id {}: {}: {}",
+                side.case, side.symmetry, side.id, side.verdict, side.why
+            )?;
+        }
+        match self.first {
+            Some(id) => writeln!(output, "line {line}: id {id} ranks first, by {}\n", self.by),
+            None => writeln!(output, "line {line}: neither is a candidate\n"),
+        }
+    }
+}
+
+/// The criterion at which two candidates part.
+fn separated_by(a: &Match, b: &Match, settings: &Settings) -> &'static str {
+    for criterion in settings.ranking {
+        match criterion {
+            Criterion::Conditions if a.conditions != b.conditions => return "conditions",
+            Criterion::Teammates if a.teammates != b.teammates => return "teammates",
+            Criterion::IntervalCost => {
+                // Only fuzzy paths are compared by how free they are; crisp ones are all 1.
+                if a.free != b.free {
+                    return "free path";
+                }
+                if interval(a) != interval(b) {
+                    return "similarity interval";
+                }
+                if a.cost != b.cost {
+                    return "cost";
+                }
+            }
+            _ => {}
+        }
+    }
+    if a.exponent == b.exponent { "id" } else { "similarity" }
+}
+
+/// Number of the similarity interval H, h, l, L (paper §3.4).
+fn interval(found: &Match) -> usize {
+    [0.8_f64, 0.6, 0.4].iter().filter(|end| f64::from(found.exponent) > -end.ln()).count()
+}

@@ -1,0 +1,91 @@
+//! What would have to be otherwise for a case to win? The words and the data of a counterfactual. mm, field frame.
+
+use case_tools::{Counterfactual, Entity, Obstacle};
+use serde::Serialize;
+
+use super::answer::rounded;
+use crate::library::Shelf;
+
+/// What would make one case the winner, or why nothing single does.
+#[derive(Debug, Serialize)]
+pub(super) struct WhatIf {
+    id: u16,
+    #[serde(flatten)]
+    answer: Told,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Told {
+    Move {
+        moved: &'static str,
+        /// Robot id, or number of the opponent from 1.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        number: Option<usize>,
+        from: [i32; 2],
+        to: [i32; 2],
+        distance_mm: f64,
+    },
+    Nothing {
+        no_single_move: &'static str,
+        #[serde(skip)]
+        words: String,
+    },
+}
+
+impl WhatIf {
+    /// `None` for the winner itself.
+    pub(super) fn new(shelf: &Shelf, id: u16, found: &Counterfactual) -> Option<Self> {
+        let answer = match *found {
+            Counterfactual::Winner => return None,
+            Counterfactual::Move(found) => {
+                let (moved, number) = match found.entity {
+                    Entity::Ball => ("ball", None),
+                    Entity::Teammate(robot) => ("robot", Some(usize::from(robot.number()))),
+                    Entity::Opponent(index) => ("opponent", Some(index + 1)),
+                };
+                let [from, to] = [found.from, found.to].map(|point| [point.x, point.y]);
+                Told::Move { moved, number, from, to, distance_mm: rounded(found.distance_mm, 1.0) }
+            }
+            Counterfactual::NoSingleMove(obstacle) => {
+                let (no_single_move, words) = told_obstacle(shelf, obstacle);
+                Told::Nothing { no_single_move, words }
+            }
+        };
+        Some(Self { id, answer })
+    }
+
+    pub(super) fn id(&self) -> u16 {
+        self.id
+    }
+
+    /// `would win if …` or `cannot win …`.
+    pub(super) fn told(&self) -> String {
+        match &self.answer {
+            Told::Move { moved, number, to: [x, y], distance_mm, .. } => {
+                let number = number.map_or(String::new(), |number| format!(" {number}"));
+                let article = if number.is_empty() { "the " } else { "" };
+                format!("would win if {article}{moved}{number} stood {distance_mm} mm away, at ({x}, {y})")
+            }
+            Told::Nothing { words, .. } => words.clone(),
+        }
+    }
+}
+
+fn told_obstacle(shelf: &Shelf, obstacle: Obstacle) -> (&'static str, String) {
+    match obstacle {
+        Obstacle::Robots { needed, present } => {
+            ("robots", format!("cannot win: it needs {needed} robots, {present} are present"))
+        }
+        Obstacle::Conditions { winner, fulfilled, most } => {
+            let name = shelf.name(winner);
+            (
+                "conditions",
+                format!("cannot win while {name} fulfils {fulfilled} conditions: it has {most} at most"),
+            )
+        }
+        Obstacle::Several { tried } => {
+            ("several", format!("no single move makes it win ({tried} were tried)"))
+        }
+    }
+}
