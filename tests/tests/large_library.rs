@@ -1,0 +1,69 @@
+//! Does a library of 2,500 files load at run time, and do `explain` and `retrieve` agree in it and in the built-in one?
+//!
+//! `explain` looks at every case without index or short cut: it is the plain scan.
+
+use case_library::LEAGUES;
+use casebase::{
+    CaseBase, Match, PointMm, Problem, Settings, Verdict, explain, rank_order, retrieve, retrieve_best,
+};
+use match_tests::random_library::{Dice, RandomLibrary};
+use protocol::{CaseId, RobotId};
+
+/// A problem near a random case, robots about their places.
+fn problem(dice: &mut Dice, base: &CaseBase<'_>) -> Problem {
+    let id = dice.between(0, base.len() as i64 - 1) as u16;
+    let case = base.case(CaseId(id)).expect("an id of the base");
+    let mut near = |at: PointMm, sigma: f64| {
+        PointMm::new(at.x + dice.scatter(sigma) as i32, at.y + dice.scatter(sigma) as i32)
+    };
+    let ball = near(case.ball(), 150.0);
+    let teammates =
+        RobotId::all().zip(case.robots()).map(|(id, robot)| (id, near(case.adapted(robot, ball), 350.0)));
+    let teammates = teammates.collect();
+    let opponents = case.opponents().map(|(at, _)| near(at.plus(case.shift(ball)), 300.0)).collect();
+    Problem { ball, defending: case.defending(), teammates, opponents }
+}
+
+/// Same winner and same count; how many problems had a winner.
+fn agree(base: &CaseBase<'_>, seed: u64, problems: usize) -> usize {
+    let settings = Settings::default();
+    let mut dice = Dice::new(seed);
+    let mut won = 0;
+    for number in 0..problems {
+        let problem = problem(&mut dice, base);
+        let mut candidates: Vec<Match> = Vec::new();
+        explain(base, &problem, &settings, |_, verdict| {
+            if let Verdict::Candidate(found) = verdict {
+                candidates.push(found);
+            }
+        });
+        candidates.sort_by(|a, b| rank_order(a, b, &settings));
+        let found = retrieve(base, &problem, &settings);
+        assert_eq!(usize::from(found.candidates), candidates.len(), "problem {number}: {problem:?}");
+        assert_eq!(found.best.as_ref(), candidates.first(), "problem {number}: {problem:?}");
+        assert_eq!(retrieve_best(base, &problem, &settings), found.best, "problem {number}: {problem:?}");
+        won += usize::from(found.best.is_some());
+    }
+    won
+}
+
+#[test]
+fn explain_and_retrieve_agree_on_10_000_problems_of_the_built_in_libraries() {
+    for league in LEAGUES.iter().filter(|league| !league.names.is_empty()) {
+        let won = agree(&league.base(), 1, 10_000);
+        assert!(won > 2_000, "{}: {won}", league.name);
+    }
+}
+
+#[test]
+fn a_library_of_2_500_files_loads_and_retrieves_as_the_plain_scan() {
+    let folder = std::env::temp_dir().join(format!("large-library-{}", std::process::id()));
+    RandomLibrary::new(11, 2_500).write(&folder).expect("written");
+    let loaded = case_tools::load(&folder);
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let library = loaded.expect("sound");
+    let base = library.base();
+    assert_eq!((library.names.len(), base.len()), (2_500, 10_000));
+    let won = agree(&base, 2, 2_000);
+    assert!(won > 400, "{won}");
+}
