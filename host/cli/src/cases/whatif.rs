@@ -65,7 +65,7 @@ impl WhatIf {
             Told::Move { moved, number, to: [x, y], distance_mm, .. } => {
                 let number = number.map_or(String::new(), |number| format!(" {number}"));
                 let article = if number.is_empty() { "the " } else { "" };
-                format!("would win if {article}{moved}{number} stood {distance_mm} mm away, at ({x}, {y})")
+                format!("would win if {article}{moved}{number} moved by {distance_mm} mm, to ({x}, {y})")
             }
             Told::Nothing { words, .. } => words.clone(),
         }
