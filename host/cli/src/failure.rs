@@ -39,6 +39,10 @@ pub(crate) enum Failure {
         /// What retrieval says to it.
         error: SettingError,
     },
+    /// A library without a case has nothing to count.
+    EmptyLibrary(String),
+    /// Problems could not be drawn, read or counted.
+    Survey(String),
     /// A trial could not be played.
     Trial(SimulationError),
     /// The robots' image or its emulator cannot be had.
@@ -119,6 +123,10 @@ impl fmt::Display for Failure {
                 None => write!(f, "no case {asked:?} in {league}; the library holds no case"),
             },
             Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
+            Self::EmptyLibrary(league) => {
+                write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
+            }
+            Self::Survey(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
             Self::Picture { file, error } => {

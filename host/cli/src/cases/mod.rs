@@ -2,6 +2,7 @@
 
 mod answer;
 mod check;
+mod coverage;
 mod diff;
 mod explain;
 mod lines;
@@ -10,6 +11,8 @@ mod play;
 mod problem;
 mod retrieve;
 mod show;
+mod stats;
+mod survey;
 mod whatif;
 
 use std::process::ExitCode;
@@ -35,6 +38,10 @@ pub(crate) enum CasesVerb {
     /// Why that case? Every case's verdict for each problem on stdin.
     #[command(after_help = PROBLEM_HELP)]
     Explain(explain::ExplainArgs),
+    /// Where on the field is there no case? Maps and shares over drawn problems.
+    Coverage(coverage::CoverageArgs),
+    /// Which cases carry the library, which are shadowed, which could go?
+    Stats(stats::StatsArgs),
 }
 
 pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
@@ -45,6 +52,8 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Play(args) => play::run(args),
         CasesVerb::Retrieve(args) => retrieve::run(args),
         CasesVerb::Explain(args) => explain::run(args),
+        CasesVerb::Coverage(args) => coverage::run(args),
+        CasesVerb::Stats(args) => stats::run(args),
     }
 }
 

@@ -6,3 +6,4 @@ mod inspect;
 mod oracle;
 mod play;
 mod retrieve;
+mod survey;

@@ -1,0 +1,281 @@
+//! Where on the field does a library leave the robots without a case? A heat map over the ball's place, attack frame
+//! (the goal attacked is on the right), shares by area, region and class, and the worst holes as problems.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, BufWriter, Write, stdout};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use case_tools::coverage::{Area, CellTally, Cells, Tally, VERDICTS};
+use case_tools::draw::{HeatMap, Scale, Theme, heat_map};
+use casebase::PointMm;
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
+use crate::Failure;
+
+/// What `cases coverage` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct CoverageArgs {
+    #[command(flatten)]
+    survey: SurveyArgs,
+    /// Print the N worst holes as problems, one a line, as `cases retrieve` reads them; one of each cell, worst first.
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "10", conflicts_with = "json")]
+    gaps: Option<usize>,
+    /// One JSON object instead of maps and tables.
+    #[arg(long)]
+    json: bool,
+    /// Write the map as a picture (FILE.svg), or every cell as a table (FILE.csv).
+    #[arg(long, value_name = "FILE", value_parser = picture_file)]
+    out: Option<PathBuf>,
+    /// What the picture shows.
+    #[arg(long, value_enum, default_value = "holes")]
+    map: Map,
+}
+
+/// What is drawn over the field.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Map {
+    /// The share of problems without a candidate.
+    Holes,
+    /// The mean number of candidates.
+    Candidates,
+    /// The entropy of the winner.
+    Entropy,
+}
+
+pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
+    let trial = Trial::open(&args.survey)?;
+    let (tally, cells) = trial.count()?;
+    if let Some(file) = &args.out {
+        let text = if is_csv(file) { csv(&tally, cells) } else { picture(&trial, &tally, cells, args.map) };
+        fs::write(file, text).map_err(|error| Failure::Picture { file: file.clone(), error })?;
+    }
+    let mut output = BufWriter::new(stdout().lock());
+    let written = match (args.gaps, args.json) {
+        (Some(count), _) => write_gaps(&mut output, &trial, &tally, count),
+        (None, true) => writeln!(output, "{}", as_json(&trial, &tally, cells)),
+        (None, false) => write_text(&mut output, &trial, &tally, cells),
+    };
+    written.and_then(|()| output.flush()).map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The cells with holes, the largest share first (ties: more holes, then the lower cell).
+fn worst(tally: &Tally) -> Vec<(usize, &CellTally)> {
+    let mut cells: Vec<_> = tally.cells.iter().enumerate().filter(|(_, cell)| cell.none > 0).collect();
+    // a/b against c/d without a division: a·d against c·b.
+    cells.sort_by(|(i, a), (j, b)| {
+        (b.none * a.problems).cmp(&(a.none * b.problems)).then(b.none.cmp(&a.none)).then(i.cmp(j))
+    });
+    cells
+}
+
+fn write_gaps(output: &mut impl Write, trial: &Trial<'_>, tally: &Tally, count: usize) -> io::Result<()> {
+    let holes = worst(tally).into_iter().filter_map(|(_, cell)| trial.problem(cell.first_hole?));
+    for problem in holes.take(count) {
+        writeln!(output, "{}", problem_line(&problem))?;
+    }
+    Ok(())
+}
+
+fn write_text(output: &mut impl Write, trial: &Trial<'_>, tally: &Tally, cells: Cells) -> io::Result<()> {
+    let total = tally.problems;
+    writeln!(
+        output,
+        "{}: {total} problems, {:.1} % with a case, {} without; {:.2} candidates each\n",
+        trial.shelf.league(),
+        percent(tally.won(), total),
+        tally.none,
+        tally.candidates as f64 / total as f64
+    )?;
+    writeln!(output, "no case ({} mm cells; attack to the right)", cells.edge_mm)?;
+    write_map(output, tally, cells, |cell| match 100 * cell.none / cell.problems {
+        0 if cell.none == 0 => '·',
+        0..5 => '░',
+        5..20 => '▒',
+        20..50 => '▓',
+        _ => '█',
+    })?;
+    writeln!(
+        output,
+        "· none  ░ < 5 %  ▒ < 20 %  ▓ < 50 %  █ more  (blank: no problem)\n\ncandidates, mean (+: 9.5 or more)"
+    )?;
+    write_map(output, tally, cells, |cell| digit(cell.candidates as f64 / cell.problems as f64))?;
+    writeln!(output, "\nentropy of the winner, bits (0: one case always wins)")?;
+    write_map(output, tally, cells, |cell| digit(cell.entropy_bits()))?;
+    writeln!(output, "\n{:10}  {:>8}  {:>7}", "ball in", "problems", "no case")?;
+    for (area, counts) in Area::ALL.into_iter().zip(tally.areas) {
+        let none = percent(counts.none, counts.problems);
+        writeln!(output, "{:10}  {:>8}  {none:>5.1} %", area.word(), counts.problems)?;
+    }
+    if tally.none > 0 {
+        writeln!(output, "\nwithout a case, the best one failed at")?;
+        for (word, count) in VERDICTS.into_iter().zip(tally.furthest).filter(|(_, count)| *count > 0) {
+            writeln!(output, "{word:12}  {count:>6}  {:>5.1} %", percent(count, tally.none))?;
+        }
+    }
+    for (title, shares) in [("region", by_region(trial, tally)), ("class", by_class(trial, tally))] {
+        let width = shares.iter().map(|(name, ..)| name.len()).fold(title.len(), usize::max);
+        writeln!(output, "\n{title:width$}  {:>5}  {:>7}", "cases", "wins")?;
+        for (name, cases, wins) in shares {
+            writeln!(output, "{name:width$}  {cases:>5}  {:>5.1} %", percent(wins, tally.won()))?;
+        }
+    }
+    let names = trial.shelf.names();
+    let width = names.iter().map(String::len).max().unwrap_or(4);
+    writeln!(output, "\n{:width$}  {:>7}", "case", "wins")?;
+    for authored in winners(tally) {
+        let wins = percent(tally.cases[authored].wins, tally.won());
+        writeln!(output, "{:width$}  {wins:>5.1} %", names[authored])?;
+    }
+    Ok(())
+}
+
+/// Rows from +y down, as the field is seen from above.
+fn write_map(
+    output: &mut impl Write,
+    tally: &Tally,
+    cells: Cells,
+    sign: impl Fn(&CellTally) -> char,
+) -> io::Result<()> {
+    for row in tally.cells.chunks(cells.columns).rev() {
+        let signs = row.iter().map(|cell| if cell.problems == 0 { ' ' } else { sign(cell) });
+        let line: String = signs.flat_map(|sign| [sign, sign]).collect();
+        writeln!(output, "|{line}|")?;
+    }
+    Ok(())
+}
+
+fn digit(value: f64) -> char {
+    char::from_digit(value.round() as u32, 10).unwrap_or('+')
+}
+
+/// Authored cases, the one with most wins first.
+fn winners(tally: &Tally) -> Vec<usize> {
+    let mut cases: Vec<usize> = (0..tally.cases.len()).collect();
+    cases.sort_by_key(|case| (std::cmp::Reverse(tally.cases[*case].wins), *case));
+    cases
+}
+
+/// Name, cases and wins of each group.
+type Shares = Vec<(String, usize, u64)>;
+
+fn by_region(trial: &Trial<'_>, tally: &Tally) -> Shares {
+    let names = trial.shelf.names();
+    grouped(tally, |authored| region(&names[authored]).to_owned())
+}
+
+fn by_class(trial: &Trial<'_>, tally: &Tally) -> Shares {
+    grouped(tally, |authored| {
+        let (work, opponents) = class(&trial.shelf, authored);
+        format!("{work}, {opponents} opponent{}", if opponents == 1 { "" } else { "s" })
+    })
+}
+
+fn grouped(tally: &Tally, name: impl Fn(usize) -> String) -> Shares {
+    let mut groups = std::collections::BTreeMap::<String, (usize, u64)>::new();
+    for (authored, case) in tally.cases.iter().enumerate() {
+        let group = groups.entry(name(authored)).or_default();
+        group.0 += 1;
+        group.1 += case.wins;
+    }
+    groups.into_iter().map(|(name, (cases, wins))| (name, cases, wins)).collect()
+}
+
+fn as_json(trial: &Trial<'_>, tally: &Tally, cells: Cells) -> Value {
+    let names = trial.shelf.names();
+    let share = |wins: u64| wins as f64 / tally.won().max(1) as f64;
+    let groups = |shares: Shares| -> Vec<Value> {
+        let row =
+            |(name, cases, wins)| json!({"name": name, "cases": cases, "wins": wins, "share": share(wins)});
+        shares.into_iter().map(row).collect()
+    };
+    let cell = |(index, cell): (usize, &CellTally)| {
+        let PointMm { x, y } = cells.middle(index);
+        json!({"middle": [x, y], "problems": cell.problems, "none": cell.none, "candidates": cell.candidates,
+            "entropy_bits": cell.entropy_bits()})
+    };
+    json!({
+        "league": trial.shelf.league(),
+        "seed": trial.seed(),
+        "settings": trial.chosen.changed.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
+        "problems": tally.problems,
+        "none": tally.none,
+        "candidates": tally.candidates,
+        "furthest": VERDICTS.into_iter().zip(tally.furthest).collect::<std::collections::BTreeMap<_, _>>(),
+        "areas": Area::ALL.into_iter().zip(tally.areas)
+            .map(|(area, counts)| json!({"area": area.word(), "problems": counts.problems, "none": counts.none}))
+            .collect::<Vec<_>>(),
+        "regions": groups(by_region(trial, tally)),
+        "classes": groups(by_class(trial, tally)),
+        "cases": winners(tally).into_iter()
+            .map(|case| json!({"case": names[case], "wins": tally.cases[case].wins, "share": share(tally.cases[case].wins)}))
+            .collect::<Vec<_>>(),
+        "grid": {"columns": cells.columns, "rows": cells.rows, "edge_mm": cells.edge_mm},
+        "cells": tally.cells.iter().enumerate().map(cell).collect::<Vec<_>>(),
+    })
+}
+
+fn csv(tally: &Tally, cells: Cells) -> String {
+    let mut text = "x_mm,y_mm,problems,none,candidates,entropy_bits\n".to_owned();
+    for (index, cell) in tally.cells.iter().enumerate() {
+        let PointMm { x, y } = cells.middle(index);
+        let CellTally { problems, none, candidates, .. } = cell;
+        // A string takes everything.
+        let _ = writeln!(text, "{x},{y},{problems},{none},{candidates},{:.4}", cell.entropy_bits());
+    }
+    text
+}
+
+fn picture(trial: &Trial<'_>, tally: &Tally, cells: Cells, map: Map) -> String {
+    let value = |cell: &CellTally| {
+        let problems = cell.problems as f64;
+        (cell.problems > 0).then(|| match map {
+            Map::Holes => 100.0 * cell.none as f64 / problems,
+            Map::Candidates => cell.candidates as f64 / problems,
+            Map::Entropy => cell.entropy_bits(),
+        })
+    };
+    let values: Vec<_> = tally.cells.iter().map(value).collect();
+    let highest = values.iter().flatten().copied().fold(1.0, f64::max).ceil();
+    let (what, unit) = match map {
+        Map::Holes => ("problems without a case", " %"),
+        Map::Candidates => ("candidates, mean", ""),
+        Map::Entropy => ("entropy of the winner", " bits"),
+    };
+    let title = format!("{}: {what}", trial.shelf.league());
+    let caption = format!(
+        "{} problems, {:.1} % with a case. Cells of {} mm over the ball's place; the goal attacked is on the right.",
+        tally.problems,
+        percent(tally.won(), tally.problems),
+        cells.edge_mm
+    );
+    let corner = |count: usize| count as i32 * cells.edge_mm / 2;
+    let (x, y) = (corner(cells.columns), corner(cells.rows));
+    heat_map(&HeatMap {
+        title: &title,
+        caption: &caption,
+        field: trial.shelf.base().field(),
+        area: [PointMm::new(-x, -y), PointMm::new(x, y)],
+        columns: cells.columns,
+        rows: cells.rows,
+        values: &values,
+        scale: Scale::Continuous { low: 0.0, high: highest, unit },
+        theme: Theme::default(),
+    })
+}
+
+fn is_csv(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+}
+
+fn picture_file(text: &str) -> Result<PathBuf, String> {
+    let file = PathBuf::from(text);
+    match file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("svg" | "csv") => Ok(file),
+        _ => Err("expected FILE.svg or FILE.csv".to_owned()),
+    }
+}

@@ -1,0 +1,213 @@
+//! Which problems is a library tried with, and how is the work shared? What `cases coverage` and `cases stats` have in
+//! common: drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on how many there are.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::sink;
+use std::path::{Path, PathBuf};
+
+use case_tools::coverage::{Cells, Survey, Tally};
+use case_tools::{Files, Sampler, build};
+use casebase::{GoalEnd, Problem, Symmetry};
+use clap::{Args, value_parser};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use super::lines::for_each_problem;
+use crate::Failure;
+use crate::args::{Chosen, LibraryArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// What both verbs may be told.
+#[derive(Debug, Args)]
+pub(crate) struct SurveyArgs {
+    #[command(flatten)]
+    library: LibraryArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+    /// How many problems are drawn.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = value_parser!(u64).range(1..=100_000_000))]
+    problems: u64,
+    /// The draw: the same seed gives the same problems.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Recorded problems instead of drawn ones: a file of lines as `cases retrieve` takes them.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["problems", "seed"])]
+    from: Option<PathBuf>,
+    /// Only problems of the team that defends this goal.
+    #[arg(long, value_name = "GOAL", value_parser = goal)]
+    defending: Option<GoalEnd>,
+    /// Only the first N robots of each problem are present.
+    #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=11))]
+    teammates: Option<u8>,
+    /// How many threads work; as many as there are cores unless told. The answer is the same.
+    #[arg(long, value_name = "J", value_parser = value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Edge of a cell, mm; a cell holds the balls that are counted together.
+    #[arg(long, value_name = "MM", value_parser = value_parser!(i32).range(1..=30_000))]
+    cell: Option<i32>,
+}
+
+/// An opened library and the problems it is tried with.
+#[derive(Debug)]
+pub(crate) struct Trial<'a> {
+    args: &'a SurveyArgs,
+    pub(crate) shelf: Shelf,
+    pub(crate) chosen: Chosen,
+    source: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    Drawn(Sampler),
+    Recorded(Vec<Problem>),
+}
+
+impl<'a> Trial<'a> {
+    pub(crate) fn open(args: &'a SurveyArgs) -> Result<Self, Failure> {
+        let chosen = args.settings.choose()?;
+        let shelf = Shelf::open(&args.library)?;
+        if shelf.base().is_empty() {
+            return Err(Failure::EmptyLibrary(shelf.league().to_owned()));
+        }
+        let source = match &args.from {
+            Some(file) => Source::Recorded(recorded(file)?),
+            None => Source::Drawn(sampler(&shelf, args.seed)?),
+        };
+        Ok(Self { args, shelf, chosen, source })
+    }
+
+    /// How many problems there are before those of the other team are left out.
+    pub(crate) fn len(&self) -> u64 {
+        match &self.source {
+            Source::Drawn(_) => self.args.problems,
+            Source::Recorded(problems) => problems.len() as u64,
+        }
+    }
+
+    /// The seed, where problems were drawn.
+    pub(crate) fn seed(&self) -> Option<u64> {
+        matches!(self.source, Source::Drawn(_)).then_some(self.args.seed)
+    }
+
+    /// The problem of a number below [`Trial::len`], where it is wanted.
+    pub(crate) fn problem(&self, number: u64) -> Option<Problem> {
+        let mut problem = match &self.source {
+            Source::Drawn(sampler) => sampler.problem(number),
+            Source::Recorded(problems) => problems.get(usize::try_from(number).ok()?)?.clone(),
+        };
+        if let Some(teammates) = self.args.teammates {
+            problem.teammates.truncate(usize::from(teammates));
+        }
+        self.args.defending.is_none_or(|goal| goal == problem.defending).then_some(problem)
+    }
+
+    /// All counts, and the grid they are counted over.
+    pub(crate) fn count(&self) -> Result<(Tally, Cells), Failure> {
+        let base = self.shelf.base();
+        let edge = self.args.cell.unwrap_or_else(|| Cells::suitable_edge_mm(base.field()));
+        let cells = Cells::new(base.field(), edge)
+            .map_err(|error| Failure::Survey(format!("--cell {edge}: {error}")))?;
+        let survey = Survey::new(base, &self.chosen.settings, cells)
+            .map_err(|error| Failure::Survey(format!("with scopes a fifth larger, thr: {error}")))?;
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.args.jobs.map_or(0, usize::from))
+            .build()
+            .map_err(|error| Failure::Survey(format!("no threads to work with: {error}; try --jobs 1")))?;
+        let progress = ProgressBar::new(self.len());
+        progress
+            .set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let block = |number: u64| {
+            let numbers = number * BLOCK..self.len().min((number + 1) * BLOCK);
+            progress.inc(numbers.end - numbers.start);
+            survey.over(numbers.filter_map(|number| Some((number, self.problem(number)?))))
+        };
+        let blocks = self.len().div_ceil(BLOCK);
+        let tally =
+            pool.install(|| (0..blocks).into_par_iter().map(block).reduce(|| survey.empty(), Tally::merge));
+        progress.finish_and_clear();
+        if tally.problems == 0 {
+            return Err(Failure::Survey(
+                "no problem is left to ask; leave --defending out, or draw more".to_owned(),
+            ));
+        }
+        Ok((tally, cells))
+    }
+}
+
+/// A problem as `cases retrieve` reads it.
+pub(crate) fn problem_line(problem: &Problem) -> String {
+    let robots = problem.teammates.iter().map(|(id, at)| format!("\"{}\":[{},{}]", id.number(), at.x, at.y));
+    let opponents = problem.opponents.iter().map(|at| format!("[{},{}]", at.x, at.y));
+    format!(
+        "{{\"ball\":[{},{}],\"defending\":\"{}\",\"teammates\":{{{}}},\"opponents\":[{}]}}",
+        problem.ball.x,
+        problem.ball.y,
+        problem.defending.word(),
+        robots.collect::<Vec<_>>().join(","),
+        opponents.collect::<Vec<_>>().join(",")
+    )
+}
+
+/// A share in percent, to one decimal place: `12.3`.
+pub(crate) fn percent(part: u64, whole: u64) -> f64 {
+    (1000.0 * part as f64 / whole.max(1) as f64).round() / 10.0
+}
+
+/// Region of a case's name: its folder.
+pub(crate) fn region(name: &str) -> &str {
+    name.split_once('/').map_or(name, |(region, _)| region)
+}
+
+/// What the authored case is by the paper's classes: robots, and opponents in its situation.
+pub(crate) fn class(shelf: &Shelf, authored: usize) -> (&'static str, usize) {
+    let id = protocol::CaseId((authored * Symmetry::ALL.len()) as u16);
+    shelf.base().case(id).map_or(("individual", 0), |case| {
+        (if case.teammates() > 1 { "cooperative" } else { "individual" }, case.opponents().count())
+    })
+}
+
+fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
+    let fail = |words: String| Failure::Survey(format!("--from {}: {words}", file.display()));
+    let input = File::open(file).map_err(|error| fail(error.to_string()))?;
+    let mut problems = Vec::new();
+    let mut faults = VecDeque::new();
+    for_each_problem(input, &mut sink(), |_, _, problem| {
+        match problem {
+            Ok(problem) => problems.push(problem),
+            Err(error) => faults.push_back(error),
+        }
+        Ok(())
+    })?;
+    match faults.pop_front() {
+        Some(first) if faults.is_empty() => Err(fail(first)),
+        Some(first) => Err(fail(format!("{first}; and {} more lines", faults.len()))),
+        None if problems.is_empty() => {
+            Err(fail("no problem in it; one line each, as `cases retrieve` takes them".to_owned()))
+        }
+        None => Ok(problems),
+    }
+}
+
+fn sampler(shelf: &Shelf, seed: u64) -> Result<Sampler, Failure> {
+    match shelf {
+        Shelf::Folder(library) => Ok(library.sampler(seed)),
+        Shelf::BuiltIn(league) => {
+            let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
+            let library =
+                build(&Files::from_texts(league.name, league.rules, &cases)).map_err(|findings| {
+                    Failure::FaultyLibrary { folder: PathBuf::from(league.name), findings }
+                })?;
+            Ok(library.sampler(seed))
+        }
+    }
+}
+
+fn goal(word: &str) -> Result<GoalEnd, String> {
+    GoalEnd::from_word(word).ok_or_else(|| "expected yellow (the goal at -x) or cyan".to_owned())
+}
+
+/// Problems that are counted in one go: some tens of milliseconds.
+const BLOCK: u64 = 2048;
+/// Drawn on a terminal's stderr only.
+const BAR: &str = "{bar:40} {pos}/{len} problems, {eta} left";

@@ -1,0 +1,93 @@
+//! Do `onetwo cases coverage` and `stats` count what retrieval does, whoever shares the work? (DESIGN §8)
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::{PASS_AROUND, PROBLEM, cases, library, onetwo, shot_at, worked_example};
+
+const SMALL: [&str; 2] = ["--problems", "3000"];
+
+fn json(run: &str) -> Value {
+    serde_json::from_str(run).unwrap()
+}
+
+#[test]
+fn every_gap_is_a_problem_that_retrieval_finds_no_case_for() {
+    let folder = library("gaps", &[("center/pass-around.toml", PASS_AROUND)]);
+    let gaps = cases("coverage", &folder, &[&SMALL[..], &["--gaps", "10"]].concat(), "");
+    assert_eq!((gaps.code, gaps.lines().len(), gaps.stderr.as_str()), (0, 10, ""));
+    let answers = cases("retrieve", &folder, &[], &gaps.stdout);
+    assert_eq!(answers.lines(), [r#"{"case":null,"candidates":0}"#; 10]);
+}
+
+#[test]
+fn any_number_of_jobs_prints_the_same_bytes() {
+    for verb in ["coverage", "stats"] {
+        let with = |jobs| onetwo(&["cases", verb, "--problems", "5000", "--json", "--jobs", jobs]).stdout;
+        let one = with("1");
+        assert_eq!(json(&one)["problems"], 5000, "{verb}");
+        assert_eq!(one, with("7"), "{verb}");
+    }
+}
+
+#[test]
+fn the_counts_of_recorded_problems_are_those_of_their_answers() {
+    let folder = library(
+        "recorded",
+        &[("center/pass-around.toml", PASS_AROUND), ("front/shot.toml", &shot_at(1000, 300))],
+    );
+    // One that pass-around answers, two that nothing answers, one that the shot answers.
+    let far = PROBLEM.replace("[-600,10]", "[-2000,1500]");
+    let shot = PROBLEM.replace("[-600,10]", "[1000,300]").replace("[-700,0]", "[880,300]");
+    let file = folder.join("problems.jsonl");
+    fs::write(&file, [PROBLEM, &far, &far, &shot].join("\n")).unwrap();
+    let from = ["--from", file.to_str().unwrap(), "--json"];
+    let coverage = json(&cases("coverage", &folder, &from, "").stdout);
+    assert_eq!((&coverage["problems"], &coverage["none"]), (&4.into(), &2.into()));
+    let stats = json(&cases("stats", &folder, &from, "").stdout);
+    for case in stats["cases"].as_array().unwrap() {
+        assert_eq!((&case["wins"], &case["lost_if_deleted"]), (&1.into(), &1.into()), "{case}");
+        assert_eq!(case["role"], "pivotal");
+    }
+}
+
+#[test]
+fn cells_add_up_to_the_whole_in_picture_and_table() {
+    let folder = worked_example("cells");
+    let [svg, csv] = ["map.svg", "map.csv"].map(|name| folder.join(name));
+    let out = |file: &std::path::Path| {
+        let file = file.to_str().unwrap();
+        assert_eq!(cases("coverage", &folder, &[&SMALL[..], &["--out", file]].concat(), "").code, 0);
+        fs::read_to_string(file).unwrap()
+    };
+    assert!(out(&svg).starts_with("<svg"));
+    let problems: u64 =
+        out(&csv).lines().skip(1).map(|line| line.split(',').nth(2).unwrap().parse::<u64>().unwrap()).sum();
+    assert_eq!(problems, 3000);
+}
+
+#[test]
+fn what_cannot_be_counted_is_refused_in_words() {
+    let folder = worked_example("refused");
+    let empty = library("empty", &[]);
+    let recorded = folder.join("broken.jsonl");
+    fs::write(&recorded, format!("{PROBLEM}\n{{\n")).unwrap();
+    let recorded = recorded.to_str().unwrap();
+    let table: [(&str, &std::path::Path, &[&str], i32, &str); 9] = [
+        ("coverage", &folder, &["--problems", "0"], 2, "0 is not in 1..="),
+        ("coverage", &folder, &["--cell=-5"], 2, "-5 is not in 1..="),
+        ("coverage", &folder, &["--cell", "1"], 1, "take a larger edge"),
+        ("coverage", &folder, &["--jobs", "0"], 2, "0 is not in 1..="),
+        ("coverage", &folder, &["--out", "map.gif"], 2, "expected FILE.svg or FILE.csv"),
+        ("coverage", &folder, &["--defending", "blue"], 2, "expected yellow"),
+        ("stats", &folder, &["--case", "front/none"], 1, "no case \"front/none\""),
+        ("stats", &empty, &[], 1, "holds no case"),
+        ("stats", &folder, &["--from", recorded], 1, "line 2: "),
+    ];
+    for (verb, folder, more, code, words) in table {
+        let run = cases(verb, folder, more, "");
+        assert_eq!((run.code, run.stdout.as_str()), (code, ""), "{more:?}");
+        assert!(run.stderr.contains(words), "{more:?}: {}", run.stderr);
+    }
+}
