@@ -58,6 +58,7 @@ codes! {
     SCOPE_IN_PATH "scope-in-path" Warning "An opponent in the centre of its scope blocks the case's own ball path: the condition speaks against the case."
     BIG_SCOPE "big-scope" Warning "A scope over 900 x 700 mm is more than a situation. Split the case."
     BEATEN "beaten" Warning "In the very situation the case describes another one is retrieved. Tell them apart."
+    NEVER_RETRIEVED "never-retrieved" Warning "In none of the problems that were drawn was the case retrieved. Tell it apart from what is, or take it out."
     POINT_OUTSIDE "point-outside" Warning "An action's point lies beyond the lines. Move it inside the field."
     BYSTANDER "bystander" Warning "A robot that only waits. Leave it out, or give it something to do."
     LEAVES_BALL "leaves-ball" Warning "A robot walks off while it holds the ball. Write dribble_to to take the ball along."

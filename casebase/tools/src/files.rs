@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::codes::code;
 use crate::finding::{Finding, Severity};
+use crate::library::Place;
 
 /// A file of a library, read.
 #[derive(Clone, Debug)]
@@ -21,6 +22,11 @@ impl SourceFile {
     /// The line, from 1, of a byte of the text.
     pub(crate) fn line(&self, at: usize) -> u32 {
         self.text.bytes().take(at).filter(|byte| *byte == b'\n').count() as u32 + 1
+    }
+
+    /// The line of a byte of the text.
+    pub(crate) fn place(&self, at: usize) -> Place {
+        Place { file: self.path.clone(), line: self.line(at) }
     }
 
     /// A finding in this file.

@@ -22,6 +22,7 @@ mod library;
 mod lineup;
 mod plans;
 mod sample;
+mod sampled;
 mod warnings;
 
 pub use codes::{CODES, CodeEntry, code, entry};
@@ -30,6 +31,7 @@ pub use encode::Table;
 pub use files::{Files, SourceFile};
 pub use finding::{Finding, Severity};
 pub use league::League;
-pub use library::{Library, build, load};
+pub use library::{Library, Place, build, load};
 pub use lineup::{Area, Lineup};
 pub use sample::Sampler;
+pub use sampled::never_retrieved;

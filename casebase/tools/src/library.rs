@@ -1,6 +1,6 @@
 //! Is a league's library sound, and what do robots carry of it? From its files to a checked table (DESIGN §4.1–§4.3).
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use casebase::CaseBase;
 use casebase::table::TableError;
@@ -29,12 +29,23 @@ pub struct Library {
     pub intents: Vec<String>,
     /// The text of each case file.
     pub sources: Vec<String>,
+    /// Where each case says where its ball lies.
+    pub balls: Vec<Place>,
     /// The names of the kick kinds, by [`casebase::KickId`].
     pub kicks: Vec<String>,
     /// Who stands where in the problems it is tried with.
     pub lineup: Lineup,
     /// What is doubtful.
     pub findings: Vec<Finding>,
+}
+
+/// A line of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub file: PathBuf,
+    /// Its line, from 1.
+    pub line: u32,
 }
 
 /// Reads one league's folder; the findings, with at least one error among them, where it is refused.
@@ -71,13 +82,13 @@ pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
         names: files.cases.iter().map(|file| file.name.clone()).collect(),
         intents: cases.iter().map(|case| case.intent.clone()).collect(),
         sources: files.cases.iter().map(|file| file.text.clone()).collect(),
+        balls: files.cases.iter().zip(&cases).map(|(file, case)| file.place(case.ball_span.start)).collect(),
         kicks: league.kicks.iter().map(|(name, _)| name.clone()).collect(),
         lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
     let doubts = warnings(files, &cases, &library.base(), &league);
-    library.findings.extend(doubts);
-    library.findings = in_order(library.findings);
+    library.note(doubts);
     Ok(library)
 }
 
@@ -92,6 +103,11 @@ impl Library {
     /// The problems of `seed` that this library is tried with.
     pub fn sampler(&self, seed: u64) -> Sampler {
         Sampler::new(self.lineup.clone(), self.base().field(), seed)
+    }
+
+    /// Takes more findings in, in the order of files and lines.
+    pub fn note(&mut self, more: Vec<Finding>) {
+        self.findings = in_order([std::mem::take(&mut self.findings), more].concat());
     }
 
     fn read(&self) -> Result<CaseBase<'_>, TableError> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use case_library::{LEAGUES, League};
-use case_tools::{CODES, Files, Finding, Library, Severity};
+use case_tools::{CODES, Files, Finding, Library, Severity, never_retrieved};
 use clap::Args;
 use serde::Serialize;
 
@@ -15,6 +15,7 @@ use crate::args::FolderArgs;
 
 use super::answer::write_line;
 use super::counted;
+use super::survey;
 
 /// What `cases check` may be told.
 #[derive(Debug, Args)]
@@ -27,6 +28,12 @@ pub(crate) struct CheckArgs {
     /// One JSON list of findings instead of lines.
     #[arg(long)]
     json: bool,
+    /// How many problems are drawn, in search of cases that are never retrieved.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(..=100_000_000))]
+    problems: u64,
+    /// The draw: the same seed gives the same problems.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
     /// Say what a code of a finding means, or `all` of them, and check nothing.
     #[arg(long, value_name = "CODE", value_parser = known_code)]
     explain: Option<String>,
@@ -67,8 +74,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
         return Ok(ExitCode::SUCCESS);
     }
     let reports = match &args.folder.library {
-        Some(folder) => vec![Report::of(folder)?],
-        None => LEAGUES.iter().map(Report::built_in).collect(),
+        Some(folder) => vec![Report::of(folder, args)?],
+        None => LEAGUES.iter().map(|league| Report::built_in(league, args)).collect::<Result<_, _>>()?,
     };
     let mut output = BufWriter::new(stdout().lock());
     let written = if args.json {
@@ -83,6 +90,14 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
+/// What only drawn problems tell; the same for any number of threads.
+fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
+    let fail = |error: casebase::SettingError| Failure::Survey(error.to_string());
+    let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));
+    let tally = survey::tally(&survey, args.problems, |number| Some(sampler.problem(number)));
+    Ok(never_retrieved(library, &tally))
+}
+
 /// What the check of one library found.
 struct Report {
     league: String,
@@ -92,30 +107,35 @@ struct Report {
 }
 
 impl Report {
-    fn of(folder: &Path) -> Result<Self, Failure> {
+    fn of(folder: &Path, args: &CheckArgs) -> Result<Self, Failure> {
         if !folder.is_dir() {
             return Err(Failure::missing_folder(folder));
         }
         let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         let league = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self::new(league, case_tools::load(folder)))
+        Self::new(league, case_tools::load(folder), args)
     }
 
     /// From the texts this program carries; the build refused errors, so what is left are warnings.
-    fn built_in(league: &League) -> Self {
+    fn built_in(league: &League, args: &CheckArgs) -> Result<Self, Failure> {
         let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
         let files = Files::from_texts(league.name, league.rules, &cases);
-        Self::new(league.name.to_owned(), case_tools::build(&files))
+        Self::new(league.name.to_owned(), case_tools::build(&files), args)
     }
 
-    fn new(league: String, outcome: Result<Library, Vec<Finding>>) -> Self {
-        match outcome {
-            Ok(library) => {
+    fn new(
+        league: String,
+        outcome: Result<Library, Vec<Finding>>,
+        args: &CheckArgs,
+    ) -> Result<Self, Failure> {
+        Ok(match outcome {
+            Ok(mut library) => {
+                library.note(doubts_of_draw(&library, args)?);
                 let sizes = Some([library.names.len(), library.base().len()]);
                 Self { league: library.league, sizes, findings: library.findings }
             }
             Err(findings) => Self { league, sizes: None, findings },
-        }
+        })
     }
 
     fn rows(&self) -> impl Iterator<Item = Row<'_>> {

@@ -114,18 +114,7 @@ impl<'a> Trial<'a> {
             .num_threads(self.args.jobs.map_or(0, usize::from))
             .build()
             .map_err(|error| Failure::Survey(format!("no threads to work with: {error}; try --jobs 1")))?;
-        let progress = ProgressBar::new(self.len());
-        progress
-            .set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
-        let block = |number: u64| {
-            let numbers = number * BLOCK..self.len().min((number + 1) * BLOCK);
-            progress.inc(numbers.end - numbers.start);
-            survey.over(numbers.filter_map(|number| Some((number, self.problem(number)?))))
-        };
-        let blocks = self.len().div_ceil(BLOCK);
-        let tally =
-            pool.install(|| (0..blocks).into_par_iter().map(block).reduce(|| survey.empty(), Tally::merge));
-        progress.finish_and_clear();
+        let tally = pool.install(|| tally(&survey, self.len(), |number| self.problem(number)));
         if tally.problems == 0 {
             return Err(Failure::Survey(
                 "no problem is left to ask; leave --defending out, or draw more".to_owned(),
@@ -133,6 +122,23 @@ impl<'a> Trial<'a> {
         }
         Ok((tally, cells))
     }
+}
+
+/// All counts over the problems numbered below `len`, on the threads of the caller's pool.
+pub(crate) fn tally(survey: &Survey<'_>, len: u64, problem: impl Fn(u64) -> Option<Problem> + Sync) -> Tally {
+    let progress = ProgressBar::new(len);
+    progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let block = |number: u64| {
+        let numbers = number * BLOCK..len.min((number + 1) * BLOCK);
+        let count = numbers.end - numbers.start;
+        let tally = survey.over(numbers.filter_map(|number| Some((number, problem(number)?))));
+        progress.inc(count);
+        tally
+    };
+    let blocks = (0..len.div_ceil(BLOCK)).into_par_iter();
+    let tally = blocks.map(block).reduce(|| survey.empty(), Tally::merge);
+    progress.finish_and_clear();
+    tally
 }
 
 /// A problem as `cases retrieve` reads it.

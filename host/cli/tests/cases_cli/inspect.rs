@@ -163,9 +163,34 @@ fn a_warning_fails_the_check_only_where_it_is_strict() {
 }
 
 #[test]
+fn a_case_that_no_drawn_problem_retrieves_is_doubtful_for_any_number_of_threads() {
+    // Whatever the second is a candidate for, the first is too, with a condition more.
+    let rival = shot_at(0, 0) + "[[opponents]]\nat = [0, 1500]\nscope = [9000, 9000]\n";
+    let folder = library("shadowed", &[("front/rival.toml", &rival), ("front/shot.toml", &shot_at(0, 0))]);
+    let check = |jobs: &str, words: &[&str]| {
+        let mut command = command(&["cases", "check"]);
+        let command = command.arg("--library").arg(&folder).args(words).env("RAYON_NUM_THREADS", jobs);
+        let output = command.output().unwrap();
+        (String::from_utf8(output.stdout).unwrap(), output.status.code())
+    };
+    let (told, code) = check("1", &[]);
+    let line = told.lines().find(|line| line.contains("warning[never-retrieved]")).expect(&told);
+    assert!(line.contains("front/shot.toml:3: ") && line.contains("in 20000 drawn problems"), "{line}");
+    assert!(
+        line.contains("beaten most often by front/rival (") && line.contains("; tell them apart"),
+        "{line}"
+    );
+    assert_eq!((told.matches("never-retrieved").count(), code), (1, Some(0)), "{told}");
+    assert_eq!(check("3", &[]).0, told);
+    assert_ne!(check("3", &["--seed", "2"]).0, told);
+    assert!(!check("1", &["--problems", "0"]).0.contains("never-retrieved"));
+}
+
+#[test]
 fn the_built_in_leagues_pass_the_check() {
     let run = onetwo(&["cases", "check"]);
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+    assert!(!run.stdout.contains("never-retrieved"), "{}", run.stdout);
     for league in case_library::LEAGUES {
         assert!(run.stdout.contains(&format!("{}: ", league.name)), "{}", run.stdout);
     }

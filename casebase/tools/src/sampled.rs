@@ -1,0 +1,89 @@
+//! Which cases are never retrieved in drawn problems, and what is retrieved instead? Warnings (DESIGN §4.1), told from a
+//! tally of problems; the build of the built-in libraries draws none.
+
+use casebase::{SettingError, Settings};
+
+use crate::codes::code;
+use crate::coverage::{CaseTally, Cells, Survey, Tally, VERDICTS};
+use crate::finding::{Finding, Severity};
+use crate::library::Library;
+
+impl Library {
+    /// Asks the library about problems, with retrieval's defaults and the field as one cell: what
+    /// [`never_retrieved`] needs.
+    pub fn survey(&self) -> Result<Survey<'_>, SettingError> {
+        let base = self.base();
+        let field = base.field();
+        let cells = Cells { columns: 1, rows: 1, edge_mm: field.length.max(field.width) };
+        Survey::new(base, &Settings::default(), cells)
+    }
+}
+
+/// Warns of every authored case that none of the tally's problems retrieved. Twins are passed over: why they are never
+/// retrieved has been told.
+pub fn never_retrieved(library: &Library, tally: &Tally) -> Vec<Finding> {
+    if tally.problems == 0 {
+        return Vec::new();
+    }
+    let is_twin = |file| library.findings.iter().any(|other| other.code == code::TWIN && other.file == file);
+    let never = library.balls.iter().zip(&tally.cases).filter(|(_, case)| case.wins == 0);
+    let never = never.filter(|(ball, _)| !is_twin(ball.file.as_path()));
+    never
+        .map(|(ball, case)| {
+            let drawn = tally.problems;
+            let (why, mend) = reason(library, case, drawn);
+            Finding {
+                code: code::NEVER_RETRIEVED,
+                severity: Severity::Warning,
+                file: ball.file.clone(),
+                line: ball.line,
+                message: format!("never retrieved in {drawn} drawn problems: {why}"),
+                mend: mend.to_owned(),
+            }
+        })
+        .collect()
+}
+
+/// What stood in its way in `drawn` problems, and what to do about it.
+fn reason(library: &Library, case: &CaseTally, drawn: u64) -> (String, &'static str) {
+    // The lowest id of those that beat it equally often.
+    let beaten_by = case.beaten_by.iter().max_by_key(|(winner, count)| (**count, u16::MAX - **winner));
+    if let Some((winner, count)) = beaten_by {
+        let name = &library.names[usize::from(*winner)];
+        let candidate = case.candidate();
+        return (
+            format!("a candidate in {candidate} of them, beaten most often by {name} ({count} times)"),
+            "tell them apart by opponents, robots or scopes, or take it out",
+        );
+    }
+    let at_ball = drawn - case.verdicts[BALL];
+    if at_ball == 0 {
+        return (
+            "a candidate in none of them, no ball lay in its scope".to_owned(),
+            "enlarge the scope of the ball, or draw more problems (--problems)",
+        );
+    }
+    let (word, count) = VERDICTS
+        .iter()
+        .zip(&case.verdicts)
+        .skip(BALL + 1)
+        .fold(("", 0), |most, (word, count)| if *count > most.1 { (*word, *count) } else { most });
+    let (failed, mend) = match word {
+        "robots" => (
+            "fewer robots are drawn than it needs",
+            "draw more with [problems] in league.toml, or leave robots out of the case",
+        ),
+        "path" => ("an opponent stands in the ball's way", "lead the ball another way, or keep legs short"),
+        _ => (
+            "its robots are too far away",
+            "place them nearer to the ball, or say in [problems] of league.toml where robots stand",
+        ),
+    };
+    let why = format!(
+        "a candidate in none of them; the ball lay in its scope in {at_ball}, and in {count} {failed}"
+    );
+    (why, mend)
+}
+
+/// The place of "ball" in [`VERDICTS`].
+const BALL: usize = 0;
