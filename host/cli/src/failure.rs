@@ -32,6 +32,12 @@ pub(crate) enum Failure {
         /// Stored cases there are.
         stored: usize,
     },
+    /// A problem to draw cannot be read.
+    Problem(String),
+    /// A picture of the retrieved case was asked for, and there is none.
+    NoCaseFits,
+    /// A case to be drawn under a problem that defends the other goal.
+    OtherGoal(String),
     /// `--set` with a name or value that retrieval does not know.
     Setting {
         /// As given.
@@ -122,6 +128,14 @@ impl fmt::Display for Failure {
                 ),
                 None => write!(f, "no case {asked:?} in {league}; the library holds no case"),
             },
+            Self::Problem(words) => f.write_str(words),
+            Self::NoCaseFits => {
+                f.write_str("no case fits the problem; name a case to see why, or ask `onetwo cases explain`")
+            }
+            Self::OtherGoal(name) => write!(
+                f,
+                "{name} defends the other goal than the problem; take the id of its copy from `onetwo cases list`"
+            ),
             Self::Setting { assignment, error } => write!(f, "--set {assignment}: {error}"),
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")

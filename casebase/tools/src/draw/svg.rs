@@ -40,11 +40,29 @@ impl Svg {
         ));
     }
 
+    pub(super) fn ellipse(&mut self, [x, y]: At, [rx, ry]: At, style: impl Display) {
+        let y = -y;
+        self.element(format_args!(r#"<ellipse cx="{x:.1}" cy="{y:.1}" rx="{rx:.1}" ry="{ry:.1}" {style}/>"#));
+    }
+
+    pub(super) fn circle(&mut self, at: At, radius: f64, style: impl Display) {
+        self.ellipse(at, [radius, radius], style);
+    }
+
     pub(super) fn line(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
         let (y, to_y) = (-y, -to_y);
         self.element(format_args!(
             r#"<line x1="{x:.1}" y1="{y:.1}" x2="{to_x:.1}" y2="{to_y:.1}" {style}/>"#
         ));
+    }
+
+    pub(super) fn polygon(&mut self, corners: &[At], style: impl Display) {
+        let mut points = String::new();
+        for [x, y] in corners {
+            let gap = if points.is_empty() { "" } else { " " };
+            let _ = write!(points, "{gap}{x:.1},{:.1}", -y);
+        }
+        self.element(format_args!(r#"<polygon points="{points}" {style}/>"#));
     }
 
     pub(super) fn text(&mut self, [x, y]: At, text: &str, anchor: Anchor, font: Font<'_>) {
@@ -145,8 +163,8 @@ mod tests {
     #[test]
     fn up_on_the_field_is_up_on_the_picture() {
         let mut svg = Svg::default();
-        svg.line([100.0, 250.0], [30.0, -10.0], "");
-        assert!(svg.body.contains(r#"x1="100.0" y1="-250.0" x2="30.0" y2="10.0""#), "{}", svg.body);
+        svg.circle([100.0, 250.0], 30.0, "");
+        assert!(svg.body.contains(r#"cx="100.0" cy="-250.0" rx="30.0""#), "{}", svg.body);
     }
 
     #[test]

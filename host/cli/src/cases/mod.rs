@@ -9,6 +9,7 @@ mod lines;
 mod list;
 mod play;
 mod problem;
+mod render;
 mod retrieve;
 mod show;
 mod stats;
@@ -42,6 +43,9 @@ pub(crate) enum CasesVerb {
     Coverage(coverage::CoverageArgs),
     /// Which cases carry the library, which are shadowed, which could go?
     Stats(stats::StatsArgs),
+    /// What does a case look like, and a problem over it? An SVG.
+    #[command(after_help = PROBLEM_HELP)]
+    Render(render::RenderArgs),
 }
 
 pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
@@ -54,6 +58,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Explain(args) => explain::run(args),
         CasesVerb::Coverage(args) => coverage::run(args),
         CasesVerb::Stats(args) => stats::run(args),
+        CasesVerb::Render(args) => render::run(args),
     }
 }
 

@@ -31,14 +31,14 @@ pub(super) fn run(args: &ShowArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn find<'a>(shelf: &'a Shelf, asked: &str) -> Option<Case<'a>> {
+pub(super) fn find<'a>(shelf: &'a Shelf, asked: &str) -> Option<Case<'a>> {
     match asked.parse() {
         Ok(id) => shelf.base().case(CaseId(id)),
         Err(_) => shelf.base().cases().find(|case| shelf.name(case.id()) == asked),
     }
 }
 
-fn unknown(shelf: &Shelf, asked: &str) -> Failure {
+pub(super) fn unknown(shelf: &Shelf, asked: &str) -> Failure {
     let base = shelf.base();
     Failure::UnknownCase { asked: asked.to_owned(), league: shelf.league().to_owned(), stored: base.len() }
 }

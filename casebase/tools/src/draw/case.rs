@@ -1,0 +1,386 @@
+//! What does a case say, and what becomes of a problem under it? One picture: scopes, ball path, robots, and who goes where.
+//!
+//! Over a problem everything is adapted, moved by `B_p` − `B_c`, except the ball's scope: that is where the case has it.
+
+use casebase::{
+    Action, Case, CaseBase, CaseRobot, GoalEnd, Leg, PointMm, Problem, Scope, ScopeRule, Settings, Verdict,
+    adapted_position,
+};
+
+use super::field;
+use super::labels::Labels;
+use super::svg::{Anchor, At, Font, Svg, wrapped};
+use super::theme::{Colors, Theme};
+use super::words;
+
+/// A case to be drawn.
+#[derive(Clone, Debug)]
+pub struct CasePicture<'a> {
+    /// Whose field it is.
+    pub base: CaseBase<'a>,
+    /// The case.
+    pub case: Case<'a>,
+    /// `region/name`.
+    pub name: &'a str,
+    /// What it is for, in its author's words.
+    pub intent: &'a str,
+    /// The situation it is held against, if any.
+    pub overlay: Option<Overlay<'a>>,
+    /// The colours.
+    pub theme: Theme,
+}
+
+/// A problem over a case.
+#[derive(Clone, Copy, Debug)]
+pub struct Overlay<'a> {
+    /// The situation.
+    pub problem: &'a Problem,
+    /// What retrieval was asked with.
+    pub settings: &'a Settings,
+    /// What [`casebase::explain()`] says of the case.
+    pub verdict: &'a Verdict,
+}
+
+/// The picture as an SVG of about 900 px, in mm.
+pub fn case_picture(picture: &CasePicture<'_>) -> String {
+    let colors = picture.theme.colors();
+    let [x, y] = field::half_extent(&picture.base.field());
+    let unit = 2.0 * x / 100.0;
+    let mut pen = Pen { svg: Svg::default(), labels: Labels::default(), colors, unit };
+    field::draw(&mut pen.svg, &picture.base.field(), colors);
+    let settings = picture.overlay.map_or_else(Settings::default, |overlay| overlay.settings.clone());
+    let ball = picture.overlay.map_or(picture.case.ball(), |overlay| overlay.problem.ball);
+    let scene = Scene { picture, settings: &settings, ball };
+    scene.ball_scope(&mut pen);
+    scene.opponents(&mut pen);
+    scene.legs(&mut pen);
+    scene.ways(&mut pen);
+    scene.robots(&mut pen);
+    if let Some(overlay) = &picture.overlay {
+        scene.situation(&mut pen, overlay);
+    }
+    pen.ball(at(ball));
+    scene.ring_names(&mut pen);
+    std::mem::take(&mut pen.labels).write(&mut pen.svg, unit * 1.4, colors.carpet);
+    caption(pen, picture, [x, y])
+}
+
+/// A case for a ball at one place.
+struct Scene<'p, 'a> {
+    picture: &'p CasePicture<'a>,
+    settings: &'p Settings,
+    ball: PointMm,
+}
+
+impl Scene<'_, '_> {
+    /// The rings at which the similarity interval changes, and the border.
+    fn ball_scope(&self, pen: &mut Pen) {
+        let (center, scope) = (at(self.picture.case.ball()), self.picture.case.ball_scope());
+        let Colors { ball, .. } = pen.colors;
+        for (similarity, _) in INTERVALS {
+            let radii = ring(scope, -f64::ln(similarity));
+            let style = format!(r#"fill="{ball}" fill-opacity="0.07" stroke="{ball}" stroke-width="8""#);
+            pen.svg.ellipse(center, radii, style);
+        }
+        let radii = ring(scope, f64::from(self.settings.limit()));
+        let style = format!(r#"fill="{ball}" fill-opacity="0.07" stroke="{ball}" stroke-width="16""#);
+        pen.svg.ellipse(center, radii, style);
+        if self.ball != self.picture.case.ball() {
+            let style = format!(r#"fill="none" stroke="{ball}" stroke-width="14" stroke-dasharray="30 24""#);
+            pen.svg.circle(center, pen.unit * 0.9, style);
+        }
+    }
+
+    /// The letters of the intervals: on a slant, away from the ball's robot and from where the ball goes.
+    fn ring_names(&self, pen: &mut Pen) {
+        let case = &self.picture.case;
+        let (center, scope) = (at(case.ball()), case.ball_scope());
+        let getter = at(case.position(case.getter()));
+        let right = if getter[0] <= center[0] { SLANT[0] } else { -SLANT[0] };
+        let goes_up = case.legs(case.ball()).next().is_some_and(|leg| leg.to[1] >= leg.from[1]);
+        let up = if goes_up { -SLANT[1] } else { SLANT[1] };
+        let size = pen.unit * 1.1;
+        let font = Font { size, fill: pen.colors.faint, bold: false, halo: Some(pen.colors.carpet) };
+        let mut inner = 0.0;
+        for (similarity, letter) in INTERVALS {
+            let outer = f64::sqrt(-f64::ln(similarity));
+            let place = |share: f64| {
+                [center[0] + right * share * f64::from(scope.x), center[1] + up * share * f64::from(scope.y)]
+            };
+            let [x, y] = place(f64::midpoint(inner, outer));
+            pen.svg.text([x, y - size * 0.35], letter, Anchor::Middle, font);
+            inner = outer;
+        }
+        // The outermost band is thinner than a letter: its name stands outside.
+        let [rx, ry] = ring(scope, f64::from(self.settings.limit()));
+        let [x, y] = [center[0] + right * rx + right.signum() * size * 0.6, center[1] + up * ry];
+        pen.svg.text([x, y - size * 0.35 + up.signum() * size * 0.4], "L", Anchor::Middle, font);
+    }
+
+    fn opponents(&self, pen: &mut Pen) {
+        let Colors { opponent, .. } = pen.colors;
+        let moved = match self.settings.scopes {
+            ScopeRule::Translated => self.picture.case.shift(self.ball),
+            ScopeRule::Absolute => PointMm::new(0, 0),
+        };
+        for (number, (place, scope)) in (1..).zip(self.picture.case.opponents()) {
+            let center = at(place.plus(moved));
+            let radii = ring(scope, f64::from(self.settings.limit()));
+            let held = self.picture.overlay.is_some_and(|overlay| {
+                overlay.problem.opponents.iter().any(|one| within(at(*one), center, radii))
+            });
+            let opacity = if held { 0.35 } else { 0.08 };
+            let style = format!(
+                r#"fill="{opponent}" fill-opacity="{opacity}" stroke="{opponent}" stroke-width="12" stroke-dasharray="40 28""#
+            );
+            pen.svg.ellipse(center, radii, style);
+            let ghost = self.picture.overlay.is_some();
+            pen.square(center, if ghost { "none" } else { opponent });
+            pen.labels.name(center, pen.unit * 1.7, format!("opp{number}"), pen.colors.ink);
+        }
+    }
+
+    fn legs(&self, pen: &mut Pen) {
+        let blocked = match self.picture.overlay.map(|overlay| overlay.verdict) {
+            Some(Verdict::Path { index, .. }) => Some(*index),
+            _ => None,
+        };
+        for (number, leg) in self.picture.case.legs(self.ball).enumerate() {
+            let Some(corners) = trapezoid(&leg, f64::from(self.settings.limit())) else { continue };
+            let color = if blocked == Some(number) { pen.colors.warning } else { pen.colors.path };
+            let style = format!(
+                r#"fill="{color}" fill-opacity="0.16" stroke="{color}" stroke-opacity="0.6" stroke-width="8""#
+            );
+            pen.svg.polygon(&corners, style);
+            let (from, to) = (leg.from.map(f64::from), leg.to.map(f64::from));
+            pen.arrow(from, to, color, "");
+            let middle = [f64::midpoint(from[0], to[0]), f64::midpoint(from[1], to[1])];
+            let style = format!(r#"fill="{}" stroke="{color}" stroke-width="10""#, pen.colors.paper);
+            pen.svg.circle(middle, pen.unit * 1.2, style);
+            pen.labels.keep_free(middle, pen.unit * 1.2);
+            let font = Font { size: pen.unit * 1.5, fill: pen.colors.ink, bold: true, halo: None };
+            let text = (number + 1).to_string();
+            pen.svg.text([middle[0], middle[1] - pen.unit * 0.55], &text, Anchor::Middle, font);
+        }
+    }
+
+    /// Movements without the ball and with it.
+    fn ways(&self, pen: &mut Pen) {
+        let case = &self.picture.case;
+        let shift = case.shift(self.ball);
+        for robot in case.robots() {
+            let mut place = at(self.adapted(robot));
+            for (index, action) in case.gameplay(robot).enumerate() {
+                let next = match action {
+                    Action::GoToPoint(point) | Action::DribbleTo(point) => at(point.plus(shift)),
+                    Action::GetBall | Action::ReceiveBall(_) => self.met(robot, index),
+                    _ => continue,
+                };
+                let dash = match action {
+                    Action::DribbleTo(_) => r#"stroke-dasharray="20 40" stroke-linecap="round""#,
+                    _ => r#"stroke-dasharray="60 36""#,
+                };
+                pen.arrow(place, next, pen.colors.team, dash);
+                place = next;
+            }
+        }
+    }
+
+    /// Where a robot meets the ball: at the end of the leg that brings it, or where it lies at first.
+    fn met(&self, robot: CaseRobot, action: usize) -> At {
+        let case = &self.picture.case;
+        let from = case.partner_of(robot, action);
+        let leg = case.legs(self.ball).find(|leg| Some((leg.robot, leg.action)) == from);
+        leg.map_or(at(self.ball), |leg| leg.to.map(f64::from))
+    }
+
+    fn robots(&self, pen: &mut Pen) {
+        let ghost = self.picture.overlay.is_some();
+        for robot in self.picture.case.robots() {
+            let label = robot.to_string();
+            let place = at(self.adapted(robot));
+            pen.robot(place, "", ghost);
+            pen.labels.name(place, pen.unit * 2.0, label, pen.colors.ink);
+        }
+    }
+
+    /// The real robots and opponents, and who goes where.
+    fn situation(&self, pen: &mut Pen, overlay: &Overlay<'_>) {
+        let Overlay { problem, verdict, .. } = overlay;
+        let place =
+            |id| problem.teammates.iter().find(|(other, _)| *other == id).map(|(_, place)| at(*place));
+        let pairs: Vec<_> = match verdict {
+            Verdict::Candidate(found) => {
+                self.picture.case.robots().zip(found.correspondence.iter().copied()).collect()
+            }
+            Verdict::TooFar { robot, player, .. } => vec![(*robot, *player)],
+            _ => Vec::new(),
+        };
+        let far = matches!(verdict, Verdict::TooFar { .. });
+        let color = if far { pen.colors.warning } else { pen.colors.team };
+        for (robot, player) in pairs {
+            let (Some(from), to) = (place(player), at(self.adapted(robot))) else { continue };
+            let style = format!(r#"stroke="{color}" stroke-width="16""#);
+            pen.svg.line(from, to, style);
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let middle = [f64::midpoint(from[0], to[0]), f64::midpoint(from[1], to[1])];
+            pen.labels.name(middle, pen.unit * 0.4, format!("{length:.0} mm"), color);
+        }
+        for (id, place) in &problem.teammates {
+            pen.robot(at(*place), &id.to_string(), false);
+        }
+        for (index, place) in problem.opponents.iter().enumerate() {
+            match verdict {
+                Verdict::Path { opponent, inside_mm, .. } if *opponent == index => {
+                    pen.square(at(*place), pen.colors.warning);
+                    let text = format!("{inside_mm:.0} mm inside");
+                    pen.labels.name(at(*place), pen.unit * 1.7, text, pen.colors.warning);
+                }
+                _ => pen.square(at(*place), pen.colors.opponent),
+            }
+        }
+    }
+
+    fn adapted(&self, robot: CaseRobot) -> PointMm {
+        adapted_position(&self.picture.case, robot, self.ball, self.settings)
+    }
+}
+
+/// Draws the signs of this kind of picture; `unit` is a hundredth of its width, mm.
+struct Pen {
+    svg: Svg,
+    labels: Labels,
+    colors: &'static Colors,
+    unit: f64,
+}
+
+impl Pen {
+    fn ball(&mut self, place: At) {
+        let style = format!(r#"fill="{}" stroke="{}" stroke-width="12""#, self.colors.ball, self.colors.ink);
+        self.svg.circle(place, self.unit * 0.8, style);
+    }
+
+    fn robot(&mut self, place: At, label: &str, ghost: bool) {
+        let Colors { team, paper, .. } = self.colors;
+        let (fill, ink, dash) =
+            if ghost { (paper, team, r#" stroke-dasharray="36 24""#) } else { (team, paper, "") };
+        let style = format!(r#"fill="{fill}" stroke="{team}" stroke-width="14"{dash}"#);
+        self.svg.circle(place, self.unit * 1.9, style);
+        self.labels.keep_free(place, self.unit * 1.7);
+        let font = Font { size: self.unit * 1.4, fill: ink, bold: true, halo: None };
+        if !label.is_empty() {
+            self.svg.text([place[0], place[1] - self.unit * 0.5], label, Anchor::Middle, font);
+        }
+    }
+
+    fn square(&mut self, [x, y]: At, fill: &str) {
+        self.labels.keep_free([x, y], self.unit * 1.5);
+        let (half, ink) = (self.unit * 1.5, self.colors.opponent);
+        let style = format!(r#"fill="{fill}" stroke="{ink}" stroke-width="14""#);
+        self.svg.rect([x - half, y - half], [x + half, y + half], style);
+    }
+
+    /// An arrow whose head's tip is at `to`; nothing where it has no length.
+    fn arrow(&mut self, from: At, to: At, color: &str, dash: &str) {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy);
+        let head = self.unit * 1.8;
+        if length < 1.0 {
+            return;
+        }
+        let (ux, uy) = (dx / length, dy / length);
+        let back = [to[0] - ux * head, to[1] - uy * head];
+        self.svg.line(from, back, format!(r#"stroke="{color}" stroke-width="18" {dash}"#));
+        let side = head * 0.42;
+        let corners =
+            [to, [back[0] - uy * side, back[1] + ux * side], [back[0] + uy * side, back[1] - ux * side]];
+        self.svg.polygon(&corners, format!(r#"fill="{color}""#));
+    }
+}
+
+fn caption(mut pen: Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String {
+    let (unit, colors, case) = (pen.unit, pen.colors, &picture.case);
+    let font = Font { size: unit * 2.4, fill: colors.ink, bold: true, halo: None };
+    pen.svg.text([-x, y + unit * 1.6], picture.name, Anchor::Start, font);
+    let towards = if case.defending() == GoalEnd::Negative { "right" } else { "left" };
+    let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().word(), case.id());
+    let font = Font { size: unit * 1.7, fill: colors.faint, bold: false, halo: None };
+    pen.svg.text([x, y + unit * 1.6], &side, Anchor::End, font);
+    let verdict = picture.overlay.map(|overlay| words::verdict(overlay.verdict));
+    let mut below = -y - unit * 0.6;
+    for text in [Some(picture.intent.to_owned()), verdict, Some(LEGEND.to_owned())].into_iter().flatten() {
+        for line in wrapped(&text, font.size, 2.0 * x) {
+            below -= unit * 2.4;
+            pen.svg.text([-x, below], &line, Anchor::Start, font);
+        }
+        below -= unit * 0.5;
+    }
+    let px_per_mm = 900.0 / (2.0 * (x + unit * 2.0));
+    let (lower, upper) = ([-x - unit * 2.0, below - unit * 1.5], [x + unit * 2.0, y + unit * 5.0]);
+    pen.svg.finish(lower, upper, px_per_mm, colors.paper, picture.name)
+}
+
+/// The corners of a leg as retrieval sees it: as wide as where μ falls to the threshold; none without a length.
+fn trapezoid(leg: &Leg, limit: f64) -> Option<[At; 4]> {
+    let (from, to) = (leg.from.map(f64::from), leg.to.map(f64::from));
+    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+    let length = dx.hypot(dy);
+    let [foot, end] = [leg.r_min, leg.r_max].map(|radius| f64::from(radius) * limit.sqrt());
+    let across = |[x, y]: At, radius: f64| [x - dy / length * radius, y + dx / length * radius];
+    (length > 0.0).then(|| [across(from, foot), across(to, end), across(to, -end), across(from, -foot)])
+}
+
+/// The radii at which a scope's Gaussian has this exponent, mm.
+fn ring(scope: Scope, exponent: f64) -> [f64; 2] {
+    [f64::from(scope.x) * exponent.sqrt(), f64::from(scope.y) * exponent.sqrt()]
+}
+
+fn within([x, y]: At, center: At, radii: [f64; 2]) -> bool {
+    ((x - center[0]) / radii[0]).powi(2) + ((y - center[1]) / radii[1]).powi(2) < 1.0
+}
+
+fn at(point: PointMm) -> At {
+    [f64::from(point.x), f64::from(point.y)]
+}
+
+/// Where a similarity interval ends, and its letter (DESIGN §4.3).
+const INTERVALS: [(f64, &str); 3] = [(0.8, "H"), (0.6, "h"), (0.4, "l")];
+/// Cosine and sine of the slant: 35 degrees off the length of the field.
+const SLANT: [f64; 2] = [0.819, 0.574];
+const LEGEND: &str = "Circles: teammates, dashed where the case wants them. Squares: opponents, in their scopes. Orange: the ball and \
+     its scope, rings at similarity 0.8, 0.6, 0.4 and its border. Trapezoids: legs of the ball, in order. Dashed arrows: \
+     ways of robots, dotted with the ball.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use casebase::LegKind;
+
+    #[test]
+    fn a_ring_is_the_scope_times_the_root_of_the_exponent() {
+        // −ln 0.8 = 0.22314, its root 0.47238; −ln 0.367 = 1.00239, its root 1.00120.
+        let scope = Scope { x: 450, y: 250 };
+        for (similarity, wide, high) in [(0.8, 212.57, 118.10), (0.367, 450.54, 250.30)] {
+            let [x, y] = ring(scope, -f64::ln(similarity));
+            assert!((x - wide).abs() < 0.01 && (y - high).abs() < 0.01, "{similarity}: {x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_trapezoid_is_as_wide_as_the_threshold_lets_it_be() {
+        let robot = CaseRobot::new(0).unwrap();
+        let kind = LegKind::Pass(robot);
+        let leg =
+            Leg { from: [0.0, 0.0], to: [1000.0, 0.0], r_min: 100.0, r_max: 350.0, robot, action: 1, kind };
+        // 100 and 350 mm times 1.0012 are 100.12 and 350.42 mm.
+        let wanted = [[0.0, 100.12], [1000.0, 350.42], [1000.0, -350.42], [0.0, -100.12]];
+        let corners = trapezoid(&leg, 1.002_393).unwrap();
+        for (corner, wanted) in corners.iter().zip(wanted) {
+            assert!(
+                (corner[0] - wanted[0]).abs() < 0.01 && (corner[1] - wanted[1]).abs() < 0.01,
+                "{corner:?}"
+            );
+        }
+        assert_eq!(trapezoid(&Leg { to: [0.0, 0.0], ..leg }, 1.0), None);
+    }
+}
