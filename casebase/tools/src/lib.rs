@@ -32,6 +32,6 @@ pub use files::{Files, SourceFile};
 pub use finding::{Finding, Severity};
 pub use league::League;
 pub use library::{Library, Place, build, load};
-pub use lineup::{Area, Lineup};
+pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

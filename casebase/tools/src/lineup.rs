@@ -17,21 +17,21 @@ use crate::document::{Reader, Table, Value};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lineup {
     /// One area per teammate, relative to the ball; the first is the one who plays the ball.
-    pub teammates: Vec<Area>,
+    pub teammates: Vec<Rectangle>,
     /// Line-ups of opponents, each with the homes of its robots, on the field.
-    pub opponents: Vec<Vec<Area>>,
+    pub opponents: Vec<Vec<Rectangle>>,
 }
 
 /// A rectangle, mm, borders included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Area {
+pub struct Rectangle {
     /// From, to.
     pub x: [i32; 2],
     /// From, to.
     pub y: [i32; 2],
 }
 
-impl Area {
+impl Rectangle {
     /// Inside or on the border.
     pub const fn contains(&self, point: PointMm) -> bool {
         self.x[0] <= point.x && point.x <= self.x[1] && self.y[0] <= point.y && point.y <= self.y[1]
@@ -49,17 +49,17 @@ impl Lineup {
     pub fn guess(field: FieldMm, largest_case: usize) -> Self {
         let robots = largest_case.clamp(2, PROBLEM_TEAMMATES_MAX);
         let [length, width] = [field.length, field.width];
-        let behind = Area { x: [-length / 8, -length / 18], y: [-width / 12, width / 12] };
-        let around = Area { x: [-length / 4, length / 8], y: [-width / 3, width / 3] };
+        let behind = Rectangle { x: [-length / 8, -length / 18], y: [-width / 12, width / 12] };
+        let around = Rectangle { x: [-length / 4, length / 8], y: [-width / 3, width / 3] };
         let teammates = std::iter::once(behind).chain(std::iter::repeat_n(around, robots - 1)).collect();
         let half = length / 2;
-        let goalie = Area {
+        let goalie = Rectangle {
             x: [half - field.penalty_depth, half],
             y: [-field.penalty_width / 2, field.penalty_width / 2],
         };
         let side = [-width / 2, width / 2];
-        let back = Area { x: [length / 6, half - field.penalty_depth], y: side }.in_order();
-        let middle = Area { x: [-length / 27, length / 4], y: side };
+        let back = Rectangle { x: [length / 6, half - field.penalty_depth], y: side }.in_order();
+        let middle = Rectangle { x: [-length / 27, length / 4], y: side };
         let deep = std::iter::once(goalie.in_order()).chain(std::iter::repeat_n(back, robots - 1)).collect();
         let high = std::iter::once(back).chain(std::iter::repeat_n(middle, robots - 1)).collect();
         Self { teammates, opponents: vec![deep, high] }
@@ -90,7 +90,7 @@ impl Lineup {
     }
 }
 
-impl Area {
+impl Rectangle {
     /// With its ends in rising order, whatever the field's dimensions were.
     fn in_order(self) -> Self {
         let ordered = |[a, b]: [i32; 2]| [a.min(b), a.max(b)];
@@ -98,7 +98,7 @@ impl Area {
     }
 }
 
-fn areas(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, most: usize) -> Option<Vec<Area>> {
+fn areas(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, most: usize) -> Option<Vec<Rectangle>> {
     let list = reader.list(value, name)?;
     if list.len() > most {
         let message = format!("{name} has {} robots", list.len());
@@ -113,11 +113,11 @@ fn areas(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, most: usize)
     list.into_iter().map(|area| read_area(reader, area, name)).collect()
 }
 
-fn read_area(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str) -> Option<Area> {
+fn read_area(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str) -> Option<Rectangle> {
     let table = reader.table(value, name)?;
     table.refuse_others(reader, &["x", "y"]);
     let (x, y) = (range(reader, &table, "x"), range(reader, &table, "y"));
-    Some(Area { x: x?, y: y? })
+    Some(Rectangle { x: x?, y: y? })
 }
 
 /// A pair of rising whole numbers.

@@ -12,7 +12,7 @@ use protocol::RobotId;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
-use crate::lineup::{Area, Lineup};
+use crate::lineup::{Lineup, Rectangle};
 
 /// Draws problems.
 #[derive(Clone, Debug)]
@@ -42,9 +42,9 @@ impl Sampler {
         mirrored(&self.attack(symmetry.point(ball), &mut chance), symmetry)
     }
 
-    fn whole_field(&self) -> Area {
+    fn whole_field(&self) -> Rectangle {
         let (x, y) = (self.field.length / 2, self.field.width / 2);
-        Area { x: [-x, x], y: [-y, y] }
+        Rectangle { x: [-x, x], y: [-y, y] }
     }
 
     /// Mirrored at random in both axes, so that no side is preferred by the way things are drawn.
@@ -84,7 +84,7 @@ impl Sampler {
                     home.nearest(ball.plus(self.in_front(ball, chance)))
                 } else {
                     let nearest = home.nearest(ball);
-                    let stray = Area { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
+                    let stray = Rectangle { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
                     home.nearest(nearest.plus(chance.within(stray)))
                 }
             });
@@ -100,7 +100,7 @@ impl Sampler {
         let distance = chance.between(IN_FRONT[0], IN_FRONT[1]) as f32;
         let length = geometry::math::hypot(goal[0], goal[1]).max(1.0);
         let ahead = goal.map(|part| geometry::math::round_to_i32(part * distance / length));
-        let stray = Area { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
+        let stray = Rectangle { x: [-STRAY, STRAY], y: [-STRAY, STRAY] };
         PointMm::new(ahead[0], ahead[1]).plus(chance.within(stray))
     }
 }
@@ -166,7 +166,7 @@ impl Chance {
         low + self.below(high.abs_diff(low) + 1) as i32
     }
 
-    fn within(&mut self, area: Area) -> PointMm {
+    fn within(&mut self, area: Rectangle) -> PointMm {
         let x = self.between(area.x[0], area.x[1]);
         PointMm::new(x, self.between(area.y[0], area.y[1]))
     }
@@ -240,7 +240,7 @@ mod tests {
                 let on_line = at.x.abs() == FIELD.length / 2 || at.y.abs() == FIELD.width / 2;
                 assert!(area.contains(from_ball) || on_line, "{number}: {from_ball:?}");
             }
-            let fits = |homes: &Vec<Area>| {
+            let fits = |homes: &Vec<Rectangle>| {
                 homes.len() == problem.opponents.len()
                     && homes.iter().zip(&problem.opponents).all(|(home, at)| home.contains(*at))
             };

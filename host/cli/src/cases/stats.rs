@@ -242,7 +242,7 @@ fn hints(case: &CaseTally, tally: &Tally) -> Vec<String> {
             case.rings[3]
         ));
     }
-    if case.would_fill >= EVIDENCE {
+    if case.would_fill >= EVIDENCE && case.would_fill * WORTH_ENLARGING >= tally.none {
         let share = percent(case.would_fill, tally.none);
         hints.push(format!(
             "enlarge its ball scope? a fifth more fills {} of the problems without a case ({share:.1} %)",
@@ -270,6 +270,8 @@ fn object(words: &[&str], counts: &[u64]) -> Value {
 const SHADOWED: u64 = 50;
 /// Problems that make a hint: fewer may be chance.
 const EVIDENCE: u64 = 20;
+/// A larger scope is worth a hint where it fills one in so many of the problems without a case.
+const WORTH_ENLARGING: u64 = 25;
 /// Jaccard's index of coverage sets from which two cases are nearly one.
 const NEAR_TWINS: f64 = 0.8;
 /// What thinning out may lose, of a thousand problems.
