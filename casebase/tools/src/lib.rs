@@ -23,6 +23,7 @@ mod lineup;
 mod plans;
 mod sample;
 mod sampled;
+mod skeleton;
 mod warnings;
 
 pub use codes::{CODES, CodeEntry, code, entry};
@@ -35,3 +36,4 @@ pub use library::{Library, Place, build, load};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;
+pub use skeleton::{Skeleton, SkeletonError, skeleton};

@@ -72,6 +72,8 @@ pub(crate) enum Failure {
         /// Whose cases.
         league: String,
     },
+    /// No case can be drafted from the problem.
+    Draft(String),
     /// Threads cannot be started.
     Threads(String),
     /// Announced, but not built yet.
@@ -140,7 +142,7 @@ impl fmt::Display for Failure {
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
-            Self::Survey(words) => f.write_str(words),
+            Self::Draft(words) | Self::Survey(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
             Self::Picture { file, error } => {

@@ -7,6 +7,7 @@ mod diff;
 mod explain;
 mod lines;
 mod list;
+mod new;
 mod play;
 mod problem;
 mod render;
@@ -31,6 +32,9 @@ pub(crate) enum CasesVerb {
     List(list::ListArgs),
     /// What does a stored case say: the situation, each robot's gameplay, the ball's path?
     Show(show::ShowArgs),
+    /// What would a case for this situation look like? Writes a first draft to author from.
+    #[command(after_help = PROBLEM_HELP)]
+    New(new::NewArgs),
     /// Does each case work? Plays it from its own situation, many times, against standing and playing opponents.
     Play(play::PlayArgs),
     /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
@@ -53,6 +57,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::Check(args) => check::run(args),
         CasesVerb::List(args) => list::run(args),
         CasesVerb::Show(args) => show::run(args),
+        CasesVerb::New(args) => new::run(args),
         CasesVerb::Play(args) => play::run(args),
         CasesVerb::Retrieve(args) => retrieve::run(args),
         CasesVerb::Explain(args) => explain::run(args),

@@ -3,6 +3,7 @@
 mod common;
 mod explain;
 mod inspect;
+mod new;
 mod oracle;
 mod play;
 mod retrieve;

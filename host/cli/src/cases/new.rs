@@ -1,0 +1,128 @@
+//! What would a case for this situation look like, to begin with? One problem in, a case file out, to author from. It
+//! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on stderr.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Write, stdin, stdout};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use case_library::LEAGUES;
+use case_tools::{Files, SkeletonError, SourceFile, skeleton};
+use casebase::Problem;
+use clap::Args;
+
+use super::lines::LINE_MAX;
+use super::problem;
+use crate::Failure;
+use crate::args::LibraryArgs;
+
+/// What `cases new` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct NewArgs {
+    /// The situation: a file with one problem, or - for stdin.
+    #[arg(long, value_name = "FILE|-")]
+    from: PathBuf,
+    /// The file to write: <region>/<name>.toml in a league's folder; stdout unless told.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Write over a file that is there.
+    #[arg(long, requires = "out")]
+    force: bool,
+    #[command(flatten)]
+    library: LibraryArgs,
+}
+
+pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
+    let rules = rules(&args.library)?;
+    let problem = read(&args.from)?;
+    let draft = skeleton(&rules, &problem).map_err(|error| match error {
+        SkeletonError::NoTeammate => Failure::Draft(
+            "the problem has no teammate, and a case needs one; add who plays the ball to \"teammates\""
+                .to_owned(),
+        ),
+        SkeletonError::League(findings) => {
+            let folder = rules.path.parent().map(Path::to_owned).unwrap_or_default();
+            Failure::FaultyLibrary { folder, findings }
+        }
+    })?;
+    match &args.out {
+        Some(file) => write(file, args.force, &draft.text)?,
+        None => stdout().lock().write_all(draft.text.as_bytes()).map_err(Failure::Output)?,
+    }
+    for note in &draft.notes {
+        eprintln!("note: {note}");
+    }
+    for finding in &draft.findings {
+        eprintln!("note: line {}: {}; {}", finding.line, finding.message, finding.mend);
+    }
+    if !draft.retrieved {
+        eprintln!(
+            "note: the draft is not retrieved from its own problem; the changes above make it another situation"
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// `league.toml` of the league meant.
+fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
+    if let Some(folder) = &args.folder.library {
+        let path = folder.join("league.toml");
+        let text = fs::read_to_string(&path).map_err(|error| {
+            let mend = "--library takes one league's folder, the one that holds league.toml";
+            Failure::Draft(format!("cannot read {}: {error}; {mend}", path.display()))
+        })?;
+        return Ok(SourceFile { path, name: "league".to_owned(), text });
+    }
+    let league = LEAGUES.iter().find(|league| league.name == args.league);
+    let league = league.ok_or_else(|| Failure::UnknownLeague(args.league.clone()))?;
+    Ok(Files::from_texts(league.name, league.rules, &[]).rules)
+}
+
+/// The one problem of a file.
+fn read(from: &Path) -> Result<Problem, Failure> {
+    let mut bytes = Vec::new();
+    let most = LINE_MAX as u64 + 1;
+    let (name, read) = if from == Path::new("-") {
+        ("stdin".to_owned(), stdin().lock().take(most).read_to_end(&mut bytes))
+    } else {
+        let file = File::open(from);
+        (from.display().to_string(), file.and_then(|file| file.take(most).read_to_end(&mut bytes)))
+    };
+    let fail = |words: &dyn std::fmt::Display| Failure::Draft(format!("{name}: {words}"));
+    read.map_err(|error| fail(&error))?;
+    if bytes.len() > LINE_MAX {
+        return Err(fail(&format!("more than {LINE_MAX} bytes; give one problem")));
+    }
+    let text = std::str::from_utf8(&bytes).map_err(|_| fail(&"not UTF-8; give one problem as JSON"))?;
+    let text = text.trim_start_matches('\u{feff}').trim();
+    if text.is_empty() {
+        return Err(fail(&"holds no problem; give one as JSON"));
+    }
+    // One problem may be spread over lines; several problems are several lines.
+    let first = text.lines().next().unwrap_or_default();
+    problem::parse(text).map_err(|malformed| {
+        if first.len() < text.len() && problem::parse(first).is_ok() {
+            fail(&"holds more than one problem; keep the line that the case is for")
+        } else {
+            fail(&malformed)
+        }
+    })
+}
+
+fn write(file: &Path, force: bool, text: &str) -> Result<(), Failure> {
+    let mut options = OpenOptions::new();
+    options.write(true);
+    let opened = if force {
+        options.create(true).truncate(true).open(file)
+    } else {
+        options.create_new(true).open(file)
+    };
+    opened.and_then(|mut out| out.write_all(text.as_bytes())).map_err(|error| {
+        let mend = match error.kind() {
+            io::ErrorKind::AlreadyExists => "--force writes over it",
+            io::ErrorKind::NotFound => "make its folder first",
+            _ => "choose another --out",
+        };
+        Failure::Draft(format!("cannot write {}: {error}; {mend}", file.display()))
+    })
+}
