@@ -53,5 +53,20 @@ fn rows_of_the_table_come_out_again() {
     }
 }
 
+#[test]
+fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
+    let file = file();
+    let league = case_library::LEAGUES.iter().find(|league| league.name == "four-legged").expect("built in");
+    for (name, text) in league.names.iter().zip(league.sources) {
+        let row = file.lines().find(|line| line.starts_with(&format!("| {name} | standing |")));
+        let completed: f64 = row.and_then(|row| row.split('|').nth(4)?.trim().parse().ok()).expect("a share");
+        let says_why = text.lines().any(|line| line.starts_with("# Completed by "));
+        assert!(
+            completed >= 60.0 || says_why,
+            "{name}: {completed} % completed; say why: `# Completed by …`"
+        );
+    }
+}
+
 const AGAIN: &str = "if a case, the brain or the simulator changed, write it again: \
     cargo run --release -- cases play --trials 200 --seed 1 --markdown > casebase/library/cases/four-legged/played.md";

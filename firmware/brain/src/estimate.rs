@@ -1,6 +1,6 @@
 //! How long should a gameplay take, and when has it taken too long? (DESIGN §5: 1.5 × expected duration + 2 s)
 
-use casebase::Action;
+use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};
 use motion::legged::{CARRY_SPEED, WALK_FORWARD};
 use motion::rolling::RollingBall;
@@ -41,7 +41,7 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
 }
 
 /// Expected seconds of one action, from the time it starts.
-pub(crate) fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize) -> f32 {
+pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
     let place = scene.place_of(part);
     match scene.case.action(part, index) {
         None | Some(Action::Wait) => 0.0,
@@ -49,19 +49,32 @@ pub(crate) fn action(scene: &Scene<'_>, part: casebase::CaseRobot, index: usize)
         Some(Action::DribbleTo(p)) => TURN + walk(place, scene.adapt(p), CARRY_SPEED),
         Some(Action::Turn(_)) => TURN,
         Some(Action::GetBall) => {
-            walk(place, scene.ball_used().into(), WALK_FORWARD).min(LONGEST_FETCH) + GRAB
+            GRAB + match handed_over(scene, part, index) {
+                // After a kick: from where it was kicked, or from the place, to where the ball will lie.
+                Some((from, leg)) => {
+                    let start = if from == part { leg.start() } else { place };
+                    walk(start, leg.end(), WALK_FORWARD).max(roll(scene, &leg))
+                }
+                None => walk(place, scene.ball_used().into(), WALK_FORWARD).min(LONGEST_FETCH),
+            }
         }
-        Some(Action::ReceiveBall(_)) => scene
-            .case
-            .partner_of(part, index)
-            .and_then(|(from, action)| scene.leg(from, action))
-            .map_or(GRAB, |leg| {
-                let length = leg.start().distance(leg.end());
-                let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
-                ball.speed_for(length) / ball.deceleration + GRAB
-            }),
+        Some(Action::ReceiveBall(_)) => {
+            GRAB + handed_over(scene, part, index).map_or(0.0, |(_, leg)| roll(scene, &leg))
+        }
         Some(Action::PassBall(_) | Action::Kick(_)) => TURN + KICK,
     }
+}
+
+/// The leg by which the ball comes to this robot for that action, and who makes it.
+fn handed_over(scene: &Scene<'_>, part: CaseRobot, index: usize) -> Option<(CaseRobot, Leg)> {
+    let (from, action) = scene.case.partner_of(part, index)?;
+    Some((from, scene.leg(from, action)?))
+}
+
+/// Seconds until the ball has come to rest at the leg's end.
+fn roll(scene: &Scene<'_>, leg: &Leg) -> f32 {
+    let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
+    ball.speed_for(leg.start().distance(leg.end())) / ball.deceleration
 }
 
 fn walk(from: Point<Field>, to: Point<Field>, speed: f32) -> f32 {

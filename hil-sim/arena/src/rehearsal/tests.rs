@@ -79,6 +79,15 @@ fn a_free_shot_is_retrieved_played_and_brings_the_ball_forward() {
 }
 
 #[test]
+fn a_ball_kicked_ahead_and_fetched_again_is_given_the_time_that_takes() {
+    let rehearsal = rehearsal(40);
+    let case = rehearsal.case(number(&rehearsal, "center/two-touch")).unwrap();
+    let attempts = rehearsal.play(&case, Opposition::Standing, &|| ()).unwrap();
+    let score = Score::of("center/two-touch".to_owned(), "standing", &attempts);
+    assert!(score.completed > 20 && !score.aborted.contains_key("timeout"), "{score:?}");
+}
+
+#[test]
 fn a_score_counts_what_was_retrieved_instead_and_why_gameplays_ended() {
     let attempt = |retrieved, end| Attempt { retrieved, end, duration: 2.0, outcome: None, progress: 0.5 };
     let finished = CycleEnd::Closed(protocol::team::Closure::Finished);
