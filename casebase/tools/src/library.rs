@@ -50,14 +50,25 @@ pub struct Place {
 
 /// Reads one league's folder; the findings, with at least one error among them, where it is refused.
 pub fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
-    build(&Files::read(folder)?)
+    load_telling(folder, |_, _| {})
+}
+
+/// The same; `tell` learns how many steps are done, of how many: two a case file.
+pub fn load_telling(folder: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
+    build_telling(&Files::read(folder)?, tell)
 }
 
 /// The library of files that were read.
 pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
+    build_telling(files, |_, _| {})
+}
+
+fn build_telling(files: &Files, mut tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
+    let steps = 2 * files.cases.len();
     let (league, mut findings) = League::read(&files.rules);
     let mut cases = Vec::new();
-    for file in &files.cases {
+    for (done, file) in files.cases.iter().enumerate() {
+        tell(done, steps);
         let (case, read) = Authored::read(file, league.as_ref());
         findings.extend(read);
         if let (Some(case), Some(league)) = (case, &league) {
@@ -87,7 +98,8 @@ pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
         lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
-    let doubts = warnings(files, &cases, &library.base(), &league);
+    let doubts =
+        warnings(files, &cases, &library.base(), &league, |done| tell(files.cases.len() + done, steps));
     library.note(doubts);
     Ok(library)
 }

@@ -17,12 +17,13 @@ use crate::finding::{Finding, Severity};
 use crate::league::League;
 use crate::plans;
 
-/// Every warning about cases that passed all checks.
+/// Every warning about cases that passed all checks; `tell` learns after how many cases it is.
 pub(crate) fn warnings(
     files: &Files,
     cases: &[Authored],
     base: &CaseBase<'_>,
     league: &League,
+    mut tell: impl FnMut(usize),
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     if cases.is_empty() {
@@ -38,6 +39,7 @@ pub(crate) fn warnings(
     let twins = twins(base);
     for (authored, (file, case)) in files.cases.iter().zip(cases).enumerate() {
         let Some(stored) = base.case(CaseId(4 * authored as u16)) else { continue };
+        tell(authored + 1);
         let mut notes = Notes { file, findings: &mut findings };
         names(&mut notes, case);
         big_scopes(&mut notes, case);

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use case_library::{LEAGUES, League};
-use case_tools::Library;
+use case_tools::{Finding, Library};
 use casebase::{CaseBase, KickId, Symmetry};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use protocol::CaseId;
 
 use crate::Failure;
@@ -13,10 +14,10 @@ use crate::args::LibraryArgs;
 /// One opened library.
 #[derive(Debug)]
 pub(crate) enum Shelf {
-    /// Baked into this program.
-    BuiltIn(&'static League),
-    /// Read from a folder.
-    Folder(Box<Library>),
+    /// Baked into this program; with the case base over its table, which is checked once.
+    BuiltIn(&'static League, CaseBase<'static>),
+    /// Read from a folder. It stays until the program ends, so that the case base may lie beside it.
+    Folder(&'static Library, CaseBase<'static>),
 }
 
 impl Shelf {
@@ -27,7 +28,7 @@ impl Shelf {
             None => LEAGUES
                 .iter()
                 .find(|league| league.name == args.league)
-                .map(Self::BuiltIn)
+                .map(Self::built_in)
                 .ok_or_else(|| Failure::UnknownLeague(args.league.clone())),
         }
     }
@@ -37,40 +38,45 @@ impl Shelf {
         if !folder.is_dir() {
             return Err(Failure::missing_folder(folder));
         }
-        let library = case_tools::load(folder)
-            .map_err(|findings| Failure::FaultyLibrary { folder: folder.to_owned(), findings })?;
-        Ok(Self::Folder(Box::new(library)))
+        let library: &'static Library = Box::leak(Box::new(
+            load(folder)
+                .map_err(|findings| Failure::FaultyLibrary { folder: folder.to_owned(), findings })?,
+        ));
+        Ok(Self::Folder(library, library.base()))
+    }
+
+    fn built_in(league: &'static League) -> Self {
+        Self::BuiltIn(league, league.base())
     }
 
     /// The libraries meant where no single one needs to be named: the folder, or every built-in league.
     pub(crate) fn all(folder: Option<&Path>) -> Result<Vec<Self>, Failure> {
         match folder {
             Some(folder) => Ok(vec![Self::read(folder)?]),
-            None => Ok(LEAGUES.iter().map(Self::BuiltIn).collect()),
+            None => Ok(LEAGUES.iter().map(Self::built_in).collect()),
         }
     }
 
-    /// The case base over the table, checked anew by every call: once is enough.
-    pub(crate) fn base(&self) -> CaseBase<'_> {
+    /// The case base over the table.
+    pub(crate) const fn base(&self) -> CaseBase<'_> {
         match self {
-            Self::BuiltIn(league) => league.base(),
-            Self::Folder(library) => library.base(),
+            Self::BuiltIn(_, base) | Self::Folder(_, base) => *base,
         }
     }
 
     /// The league's name.
     pub(crate) fn league(&self) -> &str {
         match self {
-            Self::BuiltIn(league) => league.name,
-            Self::Folder(library) => &library.league,
+            Self::BuiltIn(league, _) => league.name,
+            Self::Folder(library, _) => &library.league,
         }
     }
 
     /// `region/name` of every authored case, in order.
     pub(crate) fn names(&self) -> Vec<String> {
         match self {
-            Self::BuiltIn(league) => league.names.iter().map(ToString::to_string).collect(),
-            Self::Folder(library) => library.names.clone(),
+            Self::BuiltIn(league, _) => league.names.iter().map(ToString::to_string).collect(),
+            Self::Folder(library, _) => library.names.clone(),
         }
     }
 
@@ -78,8 +84,8 @@ impl Shelf {
     pub(crate) fn name(&self, id: CaseId) -> &str {
         let authored = authored(id);
         match self {
-            Self::BuiltIn(league) => league.names[authored],
-            Self::Folder(library) => &library.names[authored],
+            Self::BuiltIn(league, _) => league.names[authored],
+            Self::Folder(library, _) => &library.names[authored],
         }
     }
 
@@ -87,8 +93,8 @@ impl Shelf {
     pub(crate) fn kick(&self, kind: KickId) -> &str {
         let kind = usize::from(kind.0);
         match self {
-            Self::BuiltIn(league) => league.kicks[kind],
-            Self::Folder(library) => &library.kicks[kind],
+            Self::BuiltIn(league, _) => league.kicks[kind],
+            Self::Folder(library, _) => &library.kicks[kind],
         }
     }
 
@@ -96,13 +102,33 @@ impl Shelf {
     pub(crate) fn intent(&self, id: CaseId) -> Option<String> {
         let authored = authored(id);
         let source = match self {
-            Self::BuiltIn(league) => league.sources[authored],
-            Self::Folder(library) => &library.sources[authored],
+            Self::BuiltIn(league, _) => league.sources[authored],
+            Self::Folder(library, _) => &library.sources[authored],
         };
         let table: toml::Table = source.parse().ok()?;
         Some(table.get("intent")?.as_str()?.to_owned())
     }
 }
+
+/// Reads one league's folder; with a bar on a terminal's stderr where there are many files, and nothing in a pipe.
+pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
+    let progress = ProgressBar::hidden();
+    progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let library = case_tools::load_telling(folder, |done, all| {
+        if done == 0 && all >= MANY {
+            progress.set_length(all as u64);
+            progress.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        progress.set_position(done as u64);
+    });
+    progress.finish_and_clear();
+    library
+}
+
+/// Steps of a load from which on it takes long enough to be told of: half a thousand files.
+const MANY: usize = 1000;
+/// Drawn on a terminal's stderr only.
+const BAR: &str = "reading the library {bar:40} {percent} %";
 
 /// Number of the case file that a stored case descends from.
 fn authored(id: CaseId) -> usize {

@@ -113,7 +113,7 @@ impl Report {
         }
         let absolute = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         let league = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Self::new(league, case_tools::load(folder), args)
+        Self::new(league, crate::library::load(folder), args)
     }
 
     /// From the texts this program carries; the build refused errors, so what is left are warnings.

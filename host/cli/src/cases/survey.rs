@@ -197,8 +197,8 @@ fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
 
 fn sampler(shelf: &Shelf, seed: u64) -> Result<Sampler, Failure> {
     match shelf {
-        Shelf::Folder(library) => Ok(library.sampler(seed)),
-        Shelf::BuiltIn(league) => {
+        Shelf::Folder(library, _) => Ok(library.sampler(seed)),
+        Shelf::BuiltIn(league, _) => {
             let cases: Vec<_> = league.names.iter().copied().zip(league.sources.iter().copied()).collect();
             let library =
                 build(&Files::from_texts(league.name, league.rules, &cases)).map_err(|findings| {
