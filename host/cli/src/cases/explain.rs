@@ -2,6 +2,7 @@
 //! the first check it fails, in the order ball, robot count, thr_c, free path, with its margin; candidates with their
 //! rank (DESIGN §4.3, §8). Lengths in mm; robots of a case, legs and opponents are counted from 1.
 
+use std::collections::HashMap;
 use std::io::{self, BufWriter, Write, stdin, stdout};
 use std::process::ExitCode;
 
@@ -32,6 +33,9 @@ pub(crate) struct ExplainArgs {
     /// Tell of every case, not of the candidates and the nearest misses alone.
     #[arg(long)]
     all: bool,
+    /// Say what would make each loser win, in JSON too and with --all of every case: some 100 retrievals a case.
+    #[arg(long, conflicts_with = "diff")]
+    what_if: bool,
     /// Only these two, side by side: ids, region/name, or region/name/symmetry.
     #[arg(long, num_args = 2, value_names = ["A", "B"], conflicts_with = "all")]
     diff: Option<Vec<String>>,
@@ -61,7 +65,15 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
             }
             let mut explanation = Explanation::new(&shelf, &base, &problem, &chosen);
             let told = explanation.told_first(args.all);
-            explanation.ask_what_if(&shelf, &base, &problem, &chosen, &told);
+            // A table is for people, a few problems at a time: they are told without asking, of a handful of cases.
+            let asked = match (args.what_if, args.json) {
+                (true, _) => told.len(),
+                (false, false) => told.len().min(explanation.candidates + NEAREST),
+                (false, true) => 0,
+            };
+            if asked > 0 || args.what_if {
+                explanation.ask_what_if(&shelf, &base, &problem, &chosen, &told[..asked]);
+            }
             if args.json {
                 write_line(output, &explanation)
             } else {
@@ -80,8 +92,10 @@ struct Explanation<'a> {
     winner: Option<u16>,
     candidates: usize,
     cases: Vec<Row<'a>>,
-    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win.
-    counterfactuals: Vec<WhatIf>,
+    /// For candidates that lose and the nearest misses (with `--all`: for all): what would make them win. Only where
+    /// asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    counterfactuals: Option<Vec<WhatIf>>,
     /// What differs from retrieval's defaults; left out where nothing does.
     #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
     settings: &'a [(String, String)],
@@ -144,9 +158,10 @@ impl<'a> Explanation<'a> {
         let mut ranking: Vec<&Match> =
             verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
         ranking.sort_by(|a, b| rank_order(a, b, &chosen.settings));
+        let ranks: HashMap<CaseId, usize> = ranking.iter().map(|found| found.case).zip(1..).collect();
         let row = |(id, verdict): &(_, Verdict)| {
             let case = base.case(*id)?;
-            let rank = ranking.iter().position(|found| found.case == *id).map_or(0, |before| before + 1);
+            let rank = ranks.get(id).copied().unwrap_or(0);
             Some(Row {
                 id: id.0,
                 case: shelf.name(*id),
@@ -159,7 +174,7 @@ impl<'a> Explanation<'a> {
             winner: ranking.first().map(|found| found.case.0),
             candidates: ranking.len(),
             cases: verdicts.iter().filter_map(row).collect(),
-            counterfactuals: Vec::new(),
+            counterfactuals: None,
             settings: &chosen.changed,
         }
     }
@@ -183,11 +198,12 @@ impl<'a> Explanation<'a> {
         chosen: &Chosen,
         told: &[usize],
     ) {
-        for at in told {
+        let what_if = |at: &usize| {
             let id = self.cases[*at].id;
-            let found = case_tools::counterfactual(base, problem, &chosen.settings, CaseId(id));
-            self.counterfactuals.extend(found.and_then(|found| WhatIf::new(shelf, id, &found)));
-        }
+            let found = case_tools::counterfactual(base, problem, &chosen.settings, CaseId(id))?;
+            WhatIf::new(shelf, id, &found)
+        };
+        self.counterfactuals = Some(told.iter().filter_map(what_if).collect());
     }
 
     fn write_table(&self, output: &mut impl Write, line: u64, told: &[usize]) -> io::Result<()> {
@@ -203,13 +219,15 @@ impl<'a> Explanation<'a> {
         for (name, value) in self.settings {
             writeln!(output, "with {name}={value}")?;
         }
+        let what_ifs = self.counterfactuals.as_deref().unwrap_or_default();
+        let what_ifs: HashMap<u16, &WhatIf> = what_ifs.iter().map(|one| (one.id(), one)).collect();
         let shown: Vec<_> = told.iter().map(|at| &self.cases[*at]).collect();
         let width = shown.iter().map(|row| row.case.chars().count()).fold("case".len(), usize::max);
         writeln!(output, "{:>5}  {:width$}  {:8}  {:9}  why", "id", "case", "symmetry", "verdict")?;
         for row in &shown {
             let (id, case, why) = (row.id, row.case, row.evidence.told());
             writeln!(output, "{id:>5}  {case:width$}  {:8}  {:9}  {why}", row.symmetry, row.verdict)?;
-            if let Some(what_if) = self.counterfactuals.iter().find(|what_if| what_if.id() == id) {
+            if let Some(what_if) = what_ifs.get(&id) {
                 writeln!(output, "{:>5}  {}", "", what_if.told())?;
             }
         }

@@ -112,7 +112,8 @@ fn malformed_lines_are_told_as_retrieval_tells_them() {
 #[test]
 fn what_is_said_to_make_a_case_win_does_when_asked_again() {
     let folder = folder("explain-what-if");
-    let explained = cases("explain", &folder, &["--json", "--all"], PROBLEM).stdout;
+    let explained = cases("explain", &folder, &["--json", "--all", "--what-if"], PROBLEM).stdout;
+    assert!(!cases("explain", &folder, &["--json", "--all"], PROBLEM).stdout.contains("counterfactuals"));
     let read: serde_json::Value = serde_json::from_str(&explained).unwrap();
     let list = read["counterfactuals"].as_array().unwrap();
     assert_eq!(list.iter().map(|row| row["id"].as_u64().unwrap()).collect::<Vec<_>>().len(), 3, "{list:#?}");

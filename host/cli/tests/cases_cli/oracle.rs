@@ -1,10 +1,13 @@
 //! Does the built program answer problem lines as an independent reading of DESIGN §4.3 does? Files in, lines out: nothing
 //! of ours in between but the program itself.
 
+use std::path::Path;
+
 use match_tests::oracle::library::Library;
 use match_tests::oracle::problem::Problem;
 use match_tests::oracle::{Rules, answer_line, retrieve};
 use match_tests::random_library::{Dice, RandomLibrary, random_problem};
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::common::{cases, library as scratch};
@@ -42,6 +45,55 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
     }
     assert!(excused * 100 < PROBLEMS, "{excused} near-ties");
     assert!(winners * 4 > PROBLEMS, "only {winners} problems have an answer");
+}
+
+/// What both verbs say of a problem.
+#[derive(Deserialize)]
+struct Told {
+    #[serde(alias = "winner")]
+    id: Option<u16>,
+    candidates: usize,
+    #[serde(default)]
+    cases: Vec<Row>,
+}
+
+#[derive(Deserialize)]
+struct Row {
+    id: u16,
+    verdict: String,
+    rank: Option<usize>,
+}
+
+#[test]
+fn explain_agrees_with_retrieve_on_10_000_problems_of_the_built_in_and_of_a_random_library() {
+    let random = scratch("explain-agrees", &[]);
+    RandomLibrary::new(23, 30).write(&random).expect("a library can be written");
+    let built_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../casebase/library/cases/four-legged");
+    for (folder, seed) in [(built_in, 24), (random, 25)] {
+        let library = Library::read(&folder).expect("the oracle reads it");
+        let mut dice = Dice::new(seed);
+        let mut winners = 0;
+        // In parts, so that no more than a few MB are held at a time.
+        for part in 0..10 {
+            let lines: Vec<_> = (0..1_000).map(|_| random_problem(&mut dice, &library).to_line()).collect();
+            let ask = |verb, words: &[&str]| cases(verb, &folder, words, lines.join("\n") + "\n");
+            let (explained, retrieved) = (ask("explain", &["--json"]), ask("retrieve", &[]));
+            assert_eq!((explained.lines().len(), retrieved.lines().len()), (1_000, 1_000));
+            for ((explained, retrieved), line) in explained.lines().iter().zip(retrieved.lines()).zip(&lines)
+            {
+                let [why, what] = [*explained, retrieved].map(|text| {
+                    serde_json::from_str::<Told>(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+                });
+                assert_eq!((why.id, why.candidates), (what.id, what.candidates), "{part}: {line}");
+                let candidates: Vec<_> = why.cases.iter().filter(|row| row.verdict == "candidate").collect();
+                assert_eq!(candidates.len(), what.candidates, "{line}");
+                let first = candidates.iter().find(|row| row.rank == Some(1)).map(|row| row.id);
+                assert_eq!(first, what.id, "{line}");
+                winners += usize::from(what.id.is_some());
+            }
+        }
+        assert!(winners > 2_500, "only {winners} problems have an answer");
+    }
 }
 
 /// Equal but for the last digit that is printed of the two numbers that are not whole.
