@@ -6,6 +6,7 @@ use crate::action::{Action, CaseRobot, KickId, TurnTarget};
 use crate::path::{Leg, RelativeLeg, Tube};
 use crate::point::gauss_exponent;
 use crate::settings::SCOPE_EXPONENT;
+use crate::stored::Stored;
 use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, RawLeg, part};
 use crate::walk::{HandOver, Script, walk};
 use crate::{GoalEnd, PointMm, Scope, Symmetry};
@@ -133,6 +134,12 @@ impl<'a> Case<'a> {
         partner
     }
 
+    /// Its records.
+    #[inline]
+    pub(crate) fn stored(&self) -> Option<Stored<'_, 'a>> {
+        Stored::new(&self.base, self.id)
+    }
+
     pub(crate) const fn base(&self) -> &CaseBase<'a> {
         &self.base
     }
@@ -164,7 +171,7 @@ impl<'a> Case<'a> {
     pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
         let case = *self;
         self.raw_legs().iter().scan([0.0; 2], move |rest, raw| {
-            let tube = Tube::decode(&case, raw, *rest, ball);
+            let tube = Tube::decode(&case.stored()?, raw, *rest, ball);
             *rest = tube.to;
             RelativeLeg::decode(&case, raw, tube)
         })

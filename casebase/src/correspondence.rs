@@ -5,6 +5,7 @@
 //! 1/256 mm, so that equal sums are equal in any order of adding; a tie goes to the lexicographically smallest list
 //! of robot ids in the order of the parts, which is the smallest number when an id is a digit of base 16.
 
+use geometry::math;
 use heapless::Vec;
 use protocol::RobotId;
 
@@ -22,16 +23,6 @@ pub(crate) struct Distances {
     pub(crate) parts: usize,
 }
 
-impl Distances {
-    /// Is there a part that nobody can reach within `limit`? Then every correspondence exceeds it.
-    #[inline]
-    pub(crate) fn leave_a_part_alone(&self, limit: f32) -> bool {
-        let within =
-            |part: usize| self.columns.iter().any(|(_, column)| column[part & (TEAMMATES_MAX - 1)] <= limit);
-        !(0..self.parts).all(within)
-    }
-}
-
 /// A correspondence and what it costs.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Assignment {
@@ -42,6 +33,70 @@ pub(crate) struct Assignment {
     pub(crate) farthest: usize,
     /// How long that is, mm.
     pub(crate) distance: f32,
+}
+
+/// The nearest robot to each part: the cheapest correspondence, if nobody is named twice.
+pub(crate) struct Nearest {
+    assignment: Assignment,
+    /// Nobody is nearest to two parts, and nobody else is just as near.
+    distinct: bool,
+}
+
+impl Nearest {
+    /// At most what the cheapest correspondence costs, mm.
+    #[inline]
+    pub(crate) fn cost(&self) -> f32 {
+        self.assignment.cost
+    }
+
+    /// The cheapest correspondence by the sum, where these robots are it.
+    #[inline]
+    pub(crate) fn if_distinct(self) -> Option<Assignment> {
+        self.distinct.then_some(self.assignment)
+    }
+}
+
+/// The nearest robot to each place; `None` where nobody can reach one of them within `limit` mm: then every
+/// correspondence exceeds it.
+#[inline]
+pub(crate) fn nearest(
+    robots: &[(RobotId, [f32; 2])],
+    places: impl Iterator<Item = [f32; 2]>,
+    limit: f32,
+) -> Option<Nearest> {
+    let mut found = Nearest {
+        assignment: Assignment { players: Vec::new(), cost: 0.0, farthest: 0, distance: -1.0 },
+        distinct: true,
+    };
+    let assignment = &mut found.assignment;
+    let mut taken = 0_u16;
+    for (part, place) in places.enumerate() {
+        let (mut least, mut second, mut player) = (f32::INFINITY, f32::INFINITY, None);
+        for (id, at) in robots {
+            let (dx, dy) = (at[0] - place[0], at[1] - place[1]);
+            let squared = dx * dx + dy * dy;
+            if squared < least {
+                (least, second, player) = (squared, least, Some(*id));
+            } else if squared < second {
+                second = squared;
+            }
+        }
+        let player = player?;
+        let distance = math::sqrt(least);
+        if distance > limit {
+            return None;
+        }
+        let next = distance + TOLD_APART_MM;
+        let bit = 1 << player.index();
+        found.distinct &= second > next * next && taken & bit == 0;
+        taken |= bit;
+        assignment.players.push(player).ok()?;
+        assignment.cost += distance;
+        if distance > assignment.distance {
+            (assignment.farthest, assignment.distance) = (part, distance);
+        }
+    }
+    Some(found)
 }
 
 /// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings constrain the
@@ -168,6 +223,8 @@ fn digit(packed: u16, part: usize) -> u8 {
     ((packed >> (12 - 4 * (part & 3))) & 15) as u8
 }
 
+/// Above the 1/256 mm within which distances count as equal, and above the rounding of those that can matter.
+const TOLD_APART_MM: f32 = 0.02;
 /// Sets of parts.
 const SETS: usize = 1 << TEAMMATES_MAX;
 

@@ -7,12 +7,14 @@ use geometry::math;
 use protocol::{CaseId, RobotId};
 
 use crate::action::CaseRobot;
+use crate::case::Case;
 use crate::correspondence::{assign, assign_within};
 use crate::path::{Leg, blocked_leg};
 use crate::problem::Problem;
+use crate::query::Query;
 use crate::rank::Match;
-use crate::retrieve::Query;
 use crate::settings::Settings;
+use crate::stored::Stored;
 use crate::table::CaseBase;
 
 /// What became of a case.
@@ -86,11 +88,12 @@ pub fn explain(
 ) {
     let query = Query::new(problem, settings);
     for case in base.cases().filter(|case| case.defending() == problem.defending) {
-        sink(case.id(), judge(base, &query, &case));
+        let Some(stored) = case.stored() else { continue };
+        sink(case.id(), judge(base, &query, &case, &stored));
     }
 }
 
-fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &crate::Case<'_>) -> Verdict {
+fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Stored<'_, '_>) -> Verdict {
     let (problem, settings) = (query.problem, query.settings);
     let exponent = case.ball_exponent(problem.ball);
     if exponent >= query.limit {
@@ -100,10 +103,10 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &crate::Case<'_>) -> Verd
     if case.teammates() > problem.teammates.len() {
         return Verdict::Robots { needed: case.teammates(), present: problem.teammates.len() };
     }
-    if let Some(robot) = query.robot_outside(case) {
+    if let Some(robot) = query.robot_outside(stored) {
         return Verdict::OutOfField { robot };
     }
-    let distances = query.distances(case);
+    let distances = query.distances(stored);
     let assigned = assign(&distances, settings).filter(|found| found.distance <= settings.travel_max_mm);
     let Some(assignment) = assigned else {
         // A constrained search that finds nothing tells of the cheapest correspondence without the constraint.
@@ -127,6 +130,6 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &crate::Case<'_>) -> Verd
             inside_mm: blocked.inside_mm,
         };
     }
-    let free = query.freedom(case).unwrap_or(0.0);
-    Verdict::Candidate(query.found(case, exponent, free, assignment).into_match())
+    let free = query.freedom(stored).unwrap_or(0.0);
+    Verdict::Candidate(query.found(stored, exponent, free, assignment).into_match())
 }

@@ -18,9 +18,11 @@ mod index;
 mod path;
 mod point;
 mod problem;
+mod query;
 mod rank;
 mod retrieve;
 pub mod settings;
+mod stored;
 mod symmetry;
 pub mod table;
 #[cfg(test)]
@@ -38,8 +40,9 @@ pub use index::Grid;
 pub use path::{Abreast, Blocked, Leg, LegKind, blocked_leg};
 pub use point::{PointMm, Scope};
 pub use problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
+pub use query::adapted_position;
 pub use rank::{Correspondence, Match, rank_order};
-pub use retrieve::{Retrieval, adapted_position, retrieve, retrieve_best};
+pub use retrieve::{Retrieval, retrieve, retrieve_best};
 pub use settings::{
     CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, ScopeRule, SettingError, Settings,
 };

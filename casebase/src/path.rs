@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::action::{Action, CaseRobot, KickId};
 use crate::case::{Case, widen};
+use crate::point::gauss_exponent;
 use crate::settings::{FreePathRule, OutOfField, Settings};
+use crate::stored::Stored;
 use crate::table::{CaseBase, RawLeg};
 use crate::walk::{Script, Spot, Step, walk};
 use crate::{GoalEnd, PointMm};
@@ -88,10 +90,10 @@ pub(crate) struct Tube {
 impl Tube {
     /// From the table, relative to a ball at `ball`; `rest` is where the leg before left the ball.
     #[inline]
-    pub(crate) fn decode(case: &Case<'_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Self {
+    pub(crate) fn decode(case: &Stored<'_, '_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Self {
         let from = match raw.carried_to {
             RawLeg::NOT_CARRIED => rest,
-            point => case.point(point).minus(case.ball()).to_f32(),
+            point => PointMm::from_array(case.point(point)).minus(widen(case.gate.ball)).to_f32(),
         };
         let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { relative_to(ball, raw.to) };
         let [r_min, r_max] = raw.radii;
@@ -184,7 +186,7 @@ pub fn blocked_leg(
 /// path is blocked. Opponents relative to the ball.
 #[inline]
 pub(crate) fn least_exponent(
-    case: &Case<'_>,
+    stored: &Stored<'_, '_>,
     ball: PointMm,
     opponents: &[[f32; 2]],
     settings: &Settings,
@@ -199,14 +201,16 @@ pub(crate) fn least_exponent(
         least.is_some_and(|exponent| is_blocking(exponent, settings))
     };
     if settings.out_of_field == OutOfField::Clamp {
-        each_leg(case, case.base(), ball, settings, |leg| {
-            look(&leg.0.tube());
-        });
+        if let Some(case) = stored.case() {
+            each_leg(&case, case.base(), ball, settings, |leg| {
+                look(&leg.0.tube());
+            });
+        }
         return least;
     }
     let mut rest = [0.0; 2];
-    for raw in case.raw_legs() {
-        let tube = Tube::decode(case, raw, rest, ball);
+    for raw in stored.legs() {
+        let tube = Tube::decode(stored, raw, rest, ball);
         if look(&tube) {
             break;
         }
@@ -214,6 +218,41 @@ pub(crate) fn least_exponent(
     }
     least
 }
+
+/// Does any opponent stand in a leg, the legs taken as stored and each free or not? Opponents relative to the ball.
+#[inline]
+pub(crate) fn is_crisply_blocked(
+    case: &Stored<'_, '_>,
+    ball: PointMm,
+    opponents: &[[f32; 2]],
+    limit: f32,
+) -> bool {
+    let mut rest = [0.0; 2];
+    for raw in case.legs() {
+        let tube = Tube::decode(case, raw, rest, ball);
+        rest = tube.to;
+        let d = [tube.to[0] - tube.from[0], tube.to[1] - tube.from[1]];
+        let squared = d[0] * d[0] + d[1] * d[1];
+        let widest = tube.r_min.max(tube.r_max);
+        // Nobody farther from the axis is inside, whatever the rounding.
+        let reach = squared * (widest * widest * limit * ROUNDING);
+        for opponent in opponents {
+            let q = [opponent[0] - tube.from[0], opponent[1] - tube.from[1]];
+            let along = d[0] * q[0] + d[1] * q[1];
+            if along < 0.0 || along > squared {
+                continue;
+            }
+            let cross = d[0] * q[1] - d[1] * q[0];
+            if cross * cross <= reach && tube.exponent(*opponent).is_some_and(|exponent| exponent < limit) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// More than single precision loses in a few products.
+const ROUNDING: f32 = 1.0001;
 
 /// Does an opponent with this exponent in a leg block it?
 #[inline]
@@ -322,25 +361,31 @@ impl Script for Clamped<'_, '_> {
     }
 }
 
-/// How many of the case's opponent scopes hold an opponent; opponents relative to the ball.
+/// How many of the case's opponent scopes hold an opponent, opponents relative to the ball; `None` as soon as more than
+/// `missing_max` of them are known to be empty.
 #[inline]
 pub(crate) fn conditions(
-    case: &Case<'_>,
+    case: &Stored<'_, '_>,
     scopes_moved_by: PointMm,
     opponents: &[[f32; 2]],
     limit: f32,
-) -> u8 {
+    missing_max: u8,
+) -> Option<u8> {
     let moved = scopes_moved_by.to_f32();
+    let mut may_miss = missing_max;
     let mut count = 0;
-    for scope in case.raw_opponents() {
-        let at = widen(scope.at).to_f32();
-        let centre = [at[0] + moved[0], at[1] + moved[1]];
+    for scope in case.opponents() {
+        let centre = [f32::from(scope.at[0]) + moved[0], f32::from(scope.at[1]) + moved[1]];
         let [inverse_x, inverse_y] = scope.inverse_scope;
         let holds = |opponent: &[f32; 2]| {
             let (dx, dy) = (opponent[0] - centre[0], opponent[1] - centre[1]);
-            crate::point::gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
+            gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
         };
-        count += u8::from(opponents.iter().any(holds));
+        if opponents.iter().any(holds) {
+            count += 1;
+        } else {
+            may_miss = may_miss.checked_sub(1)?;
+        }
     }
-    count
+    Some(count)
 }
