@@ -264,7 +264,7 @@ const PURE: [&str; 9] =
     ["nalgebra", "libm", "micromath", "heapless", "serde", "postcard", "siphasher", "zerocopy", "defmt"];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 21] = [
+const LOWEST_FIRST: [&str; 22] = [
     "geometry",
     "rules",
     "protocol",
@@ -273,6 +273,7 @@ const LOWEST_FIRST: [&str; 21] = [
     "casebase",
     "case-tools",
     "case-library",
+    "retrieval-bench",
     "brain",
     "runtime",
     "board-mps2",

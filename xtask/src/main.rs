@@ -3,6 +3,7 @@
 //! It installs what is missing or says what to install, runs every step whatever failed before, and tells all
 //! failures last, each with the command that repeats it.
 
+mod bench;
 mod context;
 mod determinism;
 mod pictures;
@@ -26,6 +27,13 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
+        Ok(Request::Bench(words)) => match bench::retrieval(&Context::new(), &words) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => {
+                eprintln!("xtask: {failure}");
+                ExitCode::FAILURE
+            }
+        },
         Ok(Request::Pictures) => match pictures::draw(&Context::new()) {
             Ok(()) => ExitCode::SUCCESS,
             Err(failure) => {
@@ -61,6 +69,8 @@ enum Request {
     Test(Vec<&'static Step>),
     List,
     Pictures,
+    /// Retrieval, with these words for the bench.
+    Bench(Vec<String>),
     Help,
 }
 
@@ -74,6 +84,12 @@ impl Request {
                 return match words.next() {
                     None => Ok(Self::Pictures),
                     Some(word) => Err(format!("unknown argument `{word}`")),
+                };
+            }
+            Some("bench") => {
+                return match words.next() {
+                    Some("retrieval") => Ok(Self::Bench(words.map(String::from).collect())),
+                    _ => Err("bench needs a name: retrieval".into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -98,11 +114,15 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask bench retrieval
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
-  pictures       draw the documentation's pictures anew";
+  pictures       draw the documentation's pictures anew
+  bench retrieval [--write | --guest | --verify]
+                 count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
+                 --write puts the table into casebase/README.md, --guest leaves this machine out,
+                 --verify holds 10^6 answers to a plain scan's instead";
 
 #[cfg(test)]
 mod tests {
@@ -135,5 +155,7 @@ mod tests {
         assert!(matches!(ask("test --list"), Ok(Request::List)));
         assert!(matches!(ask("pictures"), Ok(Request::Pictures)));
         assert!(ask("pictures now").is_err());
+        assert!(matches!(ask("bench retrieval --guest"), Ok(Request::Bench(words)) if words == ["--guest"]));
+        assert!(ask("bench").unwrap_err().contains("retrieval"));
     }
 }

@@ -3,7 +3,7 @@
 //! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
 //! `poll_timeout` when to come back.
 
-use casebase::{CaseBase, CaseRobot};
+use casebase::{CaseBase, CaseRobot, Problem};
 use protocol::quantized::length_to_mm;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::{
@@ -131,6 +131,12 @@ impl<'a> Brain<'a> {
         &self.cycle
     }
 
+    /// The problem it would retrieve for, if it had to decide now.
+    pub fn problem(&self, now: Instant) -> Option<Problem> {
+        let Self { config, base, belief, mates, .. } = self;
+        retrieval::problem(now, config.robot, base, config.defending, belief, mates)
+    }
+
     fn beacon(&self) -> Beacon {
         let mut status = Status::default();
         if self.awake {
@@ -234,10 +240,8 @@ impl<'a> Brain<'a> {
                 if elects && settled && told && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
-                let problem =
-                    retrieval::problem(now, me, &self.base, self.config.defending, &self.belief, &self.mates);
                 let holder = self.holder(now);
-                let decision = problem.map_or(Decision::NoCase, |problem| {
+                let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
                     retrieval::decide(&self.base, &problem, &self.config.settings, holder)
                 });
                 self.cycle.decided(decision)

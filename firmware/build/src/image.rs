@@ -45,6 +45,8 @@ pub enum Program {
     Robot,
     /// Ends well where `geometry::math` has the bits it has on the PC.
     MathHash,
+    /// Counts the instructions of retrievals.
+    RetrievalBench,
 }
 
 impl Program {
@@ -53,6 +55,7 @@ impl Program {
         match self {
             Self::Robot => "onetwo-mps2",
             Self::MathHash => "math-hash",
+            Self::RetrievalBench => "retrieval-bench",
         }
     }
 }

@@ -1,0 +1,15 @@
+//! What is retrieval measured against, and how do problems and answers travel to the board that is measured?
+//!
+//! [`scan`] is the plain linear scan of DESIGN §4.3: every case in turn, no index, no short cut. [`encode`] and
+//! [`problems`] carry problems to a board, [`Answer`] brings back what it found and what that cost. Runs on the PC and in
+//! the bench's image (`retrieval-bench` of the QEMU board); `cargo xtask bench retrieval` drives both.
+#![no_std]
+
+mod exchange;
+mod scan;
+
+pub use exchange::{
+    Answer, Found, HEADER_LEN, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, encode, header,
+    problems,
+};
+pub use scan::scan;

@@ -1,0 +1,69 @@
+//! What does a retrieval cost on this machine? This very program under callgrind, which counts instructions.
+//!
+//! It runs over all problems once and then twice; the difference is free of everything that happens once.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::{env, fs};
+
+use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
+use retrieval_bench::{problems, scan};
+
+use crate::guest::{Folder, in_memory, write};
+
+/// What is counted, by its word.
+pub(crate) const WAYS: [&str; 3] = ["best", "counted", "scan"];
+
+/// Instructions a problem, on average, of each of [`WAYS`].
+pub(crate) fn instructions(table: &[u8], problems: &[Problem]) -> Result<[u64; 3], String> {
+    let folder = Folder::new()?;
+    write(&folder.0.join("table"), table)?;
+    write(&folder.0.join("problems"), &in_memory(problems))?;
+    let mut means = [0; 3];
+    for (way, mean) in WAYS.iter().zip(&mut means) {
+        let (once, twice) = (counted(&folder.0, way, 1)?, counted(&folder.0, way, 2)?);
+        *mean = twice.saturating_sub(once) / problems.len().max(1) as u64;
+    }
+    Ok(means)
+}
+
+fn counted(folder: &Path, way: &str, rounds: u32) -> Result<u64, String> {
+    let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .arg("--work")
+        .arg(folder)
+        .args([way, &rounds.to_string()])
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let count = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
+}
+
+/// What callgrind looks at: all problems in `folder`, `rounds` times.
+pub(crate) fn work(folder: &Path, way: &str, rounds: u32) -> Result<(), String> {
+    let read = |name: &str| {
+        let file = folder.join(name);
+        fs::read(&file).map_err(|error| format!("cannot read {}: {error}", file.display()))
+    };
+    let table = case_tools::Table::aligned(&read("table")?);
+    let base = CaseBase::from_bytes(table.bytes()).map_err(|error| error.to_string())?;
+    let problems: Vec<Problem> = problems(&read("problems")?).collect();
+    let settings = Settings::default();
+    let mut found = 0_u64;
+    for _ in 0..rounds {
+        for problem in &problems {
+            let best = match way {
+                "best" => retrieve_best(&base, problem, &settings),
+                "counted" => retrieve(&base, problem, &settings).best,
+                _ => scan(&base, problem).best,
+            };
+            found += u64::from(best.is_some());
+        }
+    }
+    println!("{found}");
+    Ok(())
+}

@@ -1,0 +1,111 @@
+//! What does a retrieval cost on the robot's processor? The bench's image under QEMU, which counts instructions.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::{env, fs};
+
+use casebase::{CaseBase, Problem, Settings, retrieve, retrieve_best};
+use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, encode, header, scan};
+
+/// The emulator and the image.
+pub(crate) struct Board {
+    qemu: PathBuf,
+    image: PathBuf,
+}
+
+impl Board {
+    pub(crate) fn new() -> Result<Self, String> {
+        let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
+        let image = build_program(&workspace_root(), Program::RetrievalBench);
+        Ok(Self { qemu, image: image.map_err(|error| error.to_string())? })
+    }
+
+    /// The answers to all problems, in order.
+    pub(crate) fn answers(&self, table: &[u8], problems: &[Problem]) -> Result<Vec<Answer>, String> {
+        let folder = Folder::new()?;
+        let (table_file, problem_file) = (folder.0.join("table"), folder.0.join("problems"));
+        let (table, in_memory) = ([&header(table.len(), 1), table].concat(), in_memory(problems));
+        if table.len().max(in_memory.len()) > LEN_MAX {
+            return Err(format!("table or problems are over {LEN_MAX} bytes"));
+        }
+        write(&table_file, &table)?;
+        write(&problem_file, &in_memory)?;
+        let output = Command::new(&self.qemu)
+            .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
+            .args(["-icount", "shift=6,align=off", "-semihosting-config", "enable=on,target=native"])
+            .args(["-device", &loader(&table_file, TABLE_ADDRESS)])
+            .args(["-device", &loader(&problem_file, PROBLEMS_ADDRESS)])
+            .arg("-kernel")
+            .arg(&self.image)
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|error| format!("{} does not start: {error}", self.qemu.display()))?;
+        let said = String::from_utf8_lossy(&output.stdout);
+        let answers: Vec<Answer> = said.lines().filter_map(|line| line.parse().ok()).collect();
+        if output.status.success() && answers.len() == problems.len() {
+            return Ok(answers);
+        }
+        let words = String::from_utf8_lossy(&output.stderr);
+        Err(format!(
+            "the image ended with {} after {} of {} answers: {words}",
+            output.status,
+            answers.len(),
+            problems.len()
+        ))
+    }
+}
+
+/// The board's answers are those of this machine, bit for bit.
+pub(crate) fn agrees(base: &CaseBase<'_>, problems: &[Problem], answers: &[Answer]) -> Result<(), String> {
+    let settings = Settings::default();
+    for (problem, answer) in problems.iter().zip(answers) {
+        let best = retrieve_best(base, problem, &settings);
+        let here = Answer::new(
+            best.as_ref(),
+            &retrieve(base, problem, &settings),
+            &scan(base, problem),
+            answer.instructions,
+        );
+        if here != *answer || !here.agrees() {
+            return Err(format!("{problem:?}: {here} here, {answer} on the board"));
+        }
+    }
+    Ok(())
+}
+
+/// The problems as the image finds them in memory.
+pub(crate) fn in_memory(problems: &[Problem]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for problem in problems {
+        bytes.extend(encode(problem, &mut [0; 512]).expect("a problem is shorter than 512 bytes"));
+    }
+    [&header(bytes.len(), problems.len())[..], &bytes].concat()
+}
+
+/// QEMU's device that puts a file into memory; commas of a path are doubled.
+fn loader(file: &Path, address: usize) -> String {
+    format!("loader,file={},addr={address:#x},force-raw=on", file.display().to_string().replace(',', ",,"))
+}
+
+pub(crate) fn write(file: &Path, bytes: &[u8]) -> Result<(), String> {
+    fs::write(file, bytes).map_err(|error| format!("cannot write {}: {error}", file.display()))
+}
+
+/// A folder that goes when it is not needed any more.
+pub(crate) struct Folder(pub(crate) PathBuf);
+
+impl Folder {
+    pub(crate) fn new() -> Result<Self, String> {
+        let folder = env::temp_dir().join(format!("onetwo-bench-{}", std::process::id()));
+        fs::create_dir_all(&folder).map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+        Ok(Self(folder))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A temporary folder that stays is a pity, not an error.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

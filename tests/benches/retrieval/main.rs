@@ -1,0 +1,99 @@
+//! What does a retrieval cost, and does it answer as a plain scan does? (DESIGN §9) `cargo xtask bench retrieval` starts it.
+//!
+//! Bases of 36 to 10,000 stored cases; random problems and those that robots retrieved for in 200 trials; instructions
+//! on the robot's processor (QEMU) and on this machine (callgrind). Exit code 1 where a budget is broken.
+
+mod bases;
+mod callgrind;
+mod figures;
+mod guest;
+mod played;
+mod table;
+mod verify;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use bases::Base;
+use casebase::Problem;
+use figures::{Figures, PLAYED};
+use guest::Board;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "--bench").collect();
+    let done = match words[..] {
+        ["--work", folder, way, rounds] => rounds
+            .parse()
+            .map_err(|_| "rounds".into())
+            .and_then(|rounds| callgrind::work(Path::new(folder), way, rounds)),
+        [] => report(false, true),
+        ["--write"] => report(true, true),
+        ["--guest"] => report(false, false),
+        ["--verify"] => verify::run(VERIFIED),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("bench retrieval: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Counts, prints, judges.
+fn report(write: bool, host: bool) -> Result<(), String> {
+    let board = Board::new()?;
+    let played = played::problems(TRIALS);
+    eprintln!("{} problems played in {TRIALS} trials", played.len());
+    let mut all = Vec::new();
+    for base in Base::all() {
+        let random: Vec<Problem> = base.random_problems(SEED).take(RANDOM).collect();
+        for (set, problems) in [("random", &random), (PLAYED, &played)] {
+            let table = base.library.base();
+            let step = if table.len() < LARGE { 1 } else { problems.len().div_ceil(LARGE_PROBLEMS) };
+            let problems: &Vec<Problem> = &problems.iter().step_by(step).cloned().collect();
+            let answers = board.answers(table.bytes(), problems)?;
+            guest::agrees(&table, problems, &answers)?;
+            let host = if host {
+                Some(callgrind::instructions(table.bytes(), &problems[..problems.len().min(HOST_PROBLEMS)])?)
+            } else {
+                None
+            };
+            let figures = Figures::of(&table, set, problems, &answers, host);
+            eprintln!("{}", table::row(&figures));
+            all.push(figures);
+        }
+    }
+    let text = table::table(&all);
+    println!("{text}");
+    let broken: Vec<String> = all.iter().flat_map(Figures::broken).collect();
+    if write {
+        table::write(&text)?;
+    }
+    if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
+}
+
+const USAGE: &str = "\
+usage: cargo xtask bench retrieval [--write | --guest | --verify]
+  --write   put the table into casebase/README.md
+  --guest   the robot's processor alone, without callgrind
+  --verify  answer 10^6 random problems as a plain scan does";
+
+/// Trials whose problems are recorded (DESIGN §9).
+const TRIALS: usize = 200;
+/// Random problems a base.
+const RANDOM: usize = 1_000;
+/// Cases from which on the scan takes its time, and about how many problems of a set it then gets.
+const LARGE: usize = 10_000;
+const LARGE_PROBLEMS: usize = 1_500;
+/// Problems of a set that callgrind, fifty times slower than the machine, looks at.
+const HOST_PROBLEMS: usize = 200;
+/// Random problems a base that are answered both ways: 10^6 in all.
+const VERIFIED: [usize; 4] = [300_000, 400_000, 250_000, 50_000];
+/// Of the random problems.
+const SEED: u64 = 34;

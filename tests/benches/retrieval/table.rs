@@ -1,0 +1,70 @@
+//! How do the figures look in casebase/README.md, and how do they get there?
+
+use std::fmt::Write as _;
+use std::fs;
+
+use crate::figures::{Figures, Spread};
+
+/// All figures as a table.
+pub(crate) fn table(all: &[Figures]) -> String {
+    let mut text = format!("{HEAD}\n");
+    for figures in all {
+        let _ = writeln!(text, "{}", row(figures));
+    }
+    text
+}
+
+/// One line of it.
+pub(crate) fn row(figures: &Figures) -> String {
+    let [best, counted, scan] = figures.guest;
+    let spread =
+        |Spread { median, p99, worst, .. }: Spread| format!("{} / {} / {}", n(median), n(p99), n(worst));
+    let host = figures.host.map_or("–".to_owned(), |counts| {
+        counts.map(|count| n(u32::try_from(count).unwrap_or(u32::MAX))).join(" / ")
+    });
+    format!(
+        "| {} | {:.0} | {} {} | {:.1} / {:.0} | {} | {:.0} of {:.0} | {} | {} | {:.0} × | {host} |",
+        n(figures.stored as u32),
+        figures.bytes_per_case,
+        n(figures.problems as u32),
+        figures.set,
+        figures.gated[0],
+        figures.gated[1],
+        spread(best),
+        best.mean,
+        figures.mean_allowed(),
+        spread(counted),
+        n(scan.median),
+        figures.ratio(),
+    )
+}
+
+/// Puts the table between its marks.
+pub(crate) fn write(table: &str) -> Result<(), String> {
+    let file = firmware_build::workspace_root().join("casebase/README.md");
+    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let missing = || format!("{} has no marks for the table: `{BEGIN}` and `{END}`", file.display());
+    let (before, rest) = text.split_once(BEGIN).ok_or_else(missing)?;
+    let (_, after) = rest.split_once(END).ok_or_else(missing)?;
+    let text = format!("{before}{BEGIN}\n{table}{END}{after}");
+    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+}
+
+/// A number with its thousands apart.
+fn n(number: u32) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+const HEAD: &str = "\
+| stored cases | bytes each | problems | in the gate, mean / most | best: median / p99 / worst | mean of 400 + 60 per case in the gate | with the count | scan | scan ÷ best | on the PC, mean: best / count / scan |
+|---:|---:|---|---:|---:|---:|---:|---:|---:|---:|";
+const BEGIN: &str = "<!-- retrieval table -->";
+const END: &str = "<!-- end of retrieval table -->";

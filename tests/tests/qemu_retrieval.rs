@@ -1,0 +1,29 @@
+//! Is a retrieval on the robot's processor within its budget, and the same as on the PC? (DESIGN §9)
+//!
+//! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases and problems.
+//! Needs QEMU and a compiler for the target (feature `qemu`).
+
+#[path = "../benches/retrieval/figures.rs"]
+#[allow(dead_code, reason = "the bench prints what is not judged")]
+mod figures;
+#[path = "../benches/retrieval/guest.rs"]
+mod guest;
+#[path = "../benches/retrieval/played.rs"]
+mod played;
+
+use figures::{Figures, PLAYED};
+use guest::Board;
+
+#[test]
+fn a_retrieval_from_the_built_in_library_is_within_its_budget() {
+    let base = case_library::four_legged();
+    let problems = played::problems(TRIALS);
+    let board = Board::new().unwrap_or_else(|why| panic!("{why}"));
+    let answers = board.answers(base.bytes(), &problems).unwrap_or_else(|why| panic!("{why}"));
+    guest::agrees(&base, &problems, &answers).unwrap_or_else(|why| panic!("{why}"));
+    let figures = Figures::of(&base, PLAYED, &problems, &answers, None);
+    assert_eq!(figures.broken(), Vec::<String>::new(), "{figures:?}");
+}
+
+/// Every scenario and configuration, four times.
+const TRIALS: usize = 32;

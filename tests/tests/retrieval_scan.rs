@@ -1,0 +1,13 @@
+//! Does retrieval answer bit for bit as a plain scan of the same table does?
+//!
+//! A share of what `cargo xtask bench retrieval --verify` does, over the same bases: 36 to 10,000 stored cases.
+
+#[path = "../benches/retrieval/bases.rs"]
+mod bases;
+#[path = "../benches/retrieval/verify.rs"]
+mod verify;
+
+#[test]
+fn a_thousand_problems_and_more_are_answered_as_a_plain_scan_answers_them() {
+    verify::run([2_000, 2_000, 1_000, 200]).unwrap();
+}
