@@ -58,7 +58,7 @@ pub(crate) enum Failure {
         /// Where to.
         file: PathBuf,
         /// Why.
-        error: io::Error,
+        words: String,
     },
     /// No authored case of that name.
     UnknownName {
@@ -145,8 +145,8 @@ impl fmt::Display for Failure {
             Self::Draft(words) | Self::Survey(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
-            Self::Picture { file, error } => {
-                write!(f, "cannot write the picture {}: {error}", file.display())
+            Self::Picture { file, words } => {
+                write!(f, "cannot write the picture {}: {words}", file.display())
             }
             Self::UnknownName { asked, league } => write!(
                 f,

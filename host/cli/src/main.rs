@@ -8,6 +8,7 @@ mod args;
 mod cases;
 mod failure;
 mod library;
+mod picture;
 mod trial;
 
 use std::process::ExitCode;

@@ -103,7 +103,7 @@ fn tell(args: &TrialArgs, svg: Option<&Path>) -> Result<ExitCode, Failure> {
     let report = play(args, &mut [&mut recording, &mut story])?;
     if let Some(file) = svg {
         fs::write(file, arena::picture(&recording))
-            .map_err(|error| Failure::Picture { file: file.to_owned(), error })?;
+            .map_err(|error| Failure::Picture { file: file.to_owned(), words: error.to_string() })?;
     }
     let mut out = io::stdout().lock();
     if args.json {

@@ -3,7 +3,7 @@
 use casebase::{FieldMm, PointMm};
 
 use super::field;
-use super::svg::{Anchor, Font, Svg, wrapped};
+use super::svg::{Anchor, At, Font, Svg, wrapped};
 use super::theme::{Colors, Theme};
 
 /// A grid of values over the field.
@@ -54,6 +54,27 @@ pub const CATEGORIES_MAX: usize = 8;
 
 /// The picture as an SVG, in mm with a width of about 900 px.
 pub fn heat_map(map: &HeatMap<'_>) -> String {
+    heat_maps(std::slice::from_ref(map))
+}
+
+/// Maps beside each other in one picture, each about 900 px wide, on the paper of the first.
+pub fn heat_maps(maps: &[HeatMap<'_>]) -> String {
+    let mut page = Svg::default();
+    let (mut across, mut low, mut high, mut px_per_mm) = (0.0, 0.0_f64, 0.0_f64, 0.1);
+    for map in maps {
+        let (panel, lower, upper) = panel(map);
+        page.inset(&panel, [across - lower[0], 0.0]);
+        across += upper[0] - lower[0];
+        (low, high) = (low.min(lower[1]), high.max(upper[1]));
+        px_per_mm = PANEL_PX / (upper[0] - lower[0]);
+    }
+    let titles: Vec<_> = maps.iter().map(|map| map.title).collect();
+    let paper = maps.first().map_or(Theme::default(), |map| map.theme).colors().paper;
+    page.finish([0.0, low], [across, high], px_per_mm, paper, &titles.join("; "))
+}
+
+/// One map, and its lower left and upper right corners.
+fn panel(map: &HeatMap<'_>) -> (Svg, At, At) {
     let colors = map.theme.colors();
     let mut svg = Svg::default();
     let [x, y] = field::half_extent(&map.field);
@@ -78,9 +99,7 @@ pub fn heat_map(map: &HeatMap<'_>) -> String {
         below -= unit * 2.7;
         svg.text([-x, below], &line, Anchor::Start, font);
     }
-    let px_per_mm = 900.0 / (2.0 * (x + unit * 2.0));
-    let (lower, upper) = ([-x - unit * 2.0, below - unit * 2.0], [x + unit * 2.0, y + unit * 5.5]);
-    svg.finish(lower, upper, px_per_mm, colors.paper, map.title)
+    (svg, [-x - unit * 2.0, below - unit * 2.0], [x + unit * 2.0, y + unit * 5.5])
 }
 
 fn cells(svg: &mut Svg, map: &HeatMap<'_>, colors: &Colors) {
@@ -202,6 +221,8 @@ const CATEGORIES: [&str; CATEGORIES_MAX] =
     ["#56b4e9", "#e69f00", "#009e73", "#f0e442", "#0072b2", "#d55e00", "#cc79a7", "#7a7a7a"];
 /// How opaque the black lines over the cells are: the scale's darkest colours must not hide them, nor they a cell.
 const LINES_OPACITY: &str = "0.6";
+/// How wide a map is on a screen, px.
+const PANEL_PX: f64 = 900.0;
 /// Stripes of the legend's bar.
 const STEPS: usize = 64;
 

@@ -9,5 +9,5 @@ mod theme;
 mod words;
 
 pub use case::{CasePicture, Overlay, case_picture};
-pub use heat::{CATEGORIES_MAX, HeatMap, Scale, heat_map};
+pub use heat::{CATEGORIES_MAX, HeatMap, Scale, heat_map, heat_maps};
 pub use theme::Theme;

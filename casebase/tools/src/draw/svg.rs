@@ -84,6 +84,12 @@ impl Svg {
         ));
     }
 
+    /// `inner` with its origin at `at`.
+    pub(super) fn inset(&mut self, inner: &Self, [x, y]: At) {
+        let (body, y) = (&inner.body, -y);
+        self.element(format_args!("<g transform=\"translate({x:.1} {y:.1})\">\n{body}</g>"));
+    }
+
     /// `inner` over what is there, as opaque as that.
     pub(super) fn group_with(&mut self, inner: &Self, opacity: &str) {
         let body = &inner.body;

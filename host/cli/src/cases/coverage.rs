@@ -2,19 +2,19 @@
 //! (the goal attacked is on the right), shares by area, region and class, and the worst holes as problems.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::io::{self, BufWriter, Write, stdout};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use case_tools::coverage::{Area, CellTally, Cells, Tally, VERDICTS};
-use case_tools::draw::{HeatMap, Scale, Theme, heat_map};
+use case_tools::draw::{HeatMap, Scale, Theme, heat_maps};
 use casebase::PointMm;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
 use crate::Failure;
+use crate::picture;
 
 /// What `cases coverage` may be told.
 #[derive(Debug, Args)]
@@ -27,7 +27,7 @@ pub(crate) struct CoverageArgs {
     /// One JSON object instead of maps and tables.
     #[arg(long)]
     json: bool,
-    /// Write the map as a picture (FILE.svg), or every cell as a table (FILE.csv).
+    /// Write the map as a picture (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
     /// What the picture shows.
@@ -44,14 +44,17 @@ enum Map {
     Candidates,
     /// The entropy of the winner.
     Entropy,
+    /// All three, beside each other.
+    All,
 }
 
 pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
     let trial = Trial::open(&args.survey)?;
     let (tally, cells) = trial.count()?;
     if let Some(file) = &args.out {
-        let text = if is_csv(file) { csv(&tally, cells) } else { picture(&trial, &tally, cells, args.map) };
-        fs::write(file, text).map_err(|error| Failure::Picture { file: file.clone(), error })?;
+        let is_table = picture::has_extension(file, "csv");
+        let text = if is_table { csv(&tally, cells) } else { drawn(&trial, &tally, cells, args.map) };
+        picture::write(file, &text)?;
     }
     let mut output = BufWriter::new(stdout().lock());
     let written = match (args.gaps, args.json) {
@@ -230,52 +233,66 @@ fn csv(tally: &Tally, cells: Cells) -> String {
     text
 }
 
-fn picture(trial: &Trial<'_>, tally: &Tally, cells: Cells, map: Map) -> String {
-    let value = |cell: &CellTally| {
-        let problems = cell.problems as f64;
-        (cell.problems > 0).then(|| match map {
-            Map::Holes => 100.0 * cell.none as f64 / problems,
-            Map::Candidates => cell.candidates as f64 / problems,
-            Map::Entropy => cell.entropy_bits(),
-        })
+fn drawn(trial: &Trial<'_>, tally: &Tally, cells: Cells, map: Map) -> String {
+    let kinds = match map {
+        Map::All => vec![Map::Holes, Map::Candidates, Map::Entropy],
+        one => vec![one],
     };
-    let values: Vec<_> = tally.cells.iter().map(value).collect();
-    let highest = values.iter().flatten().copied().fold(1.0, f64::max).ceil();
-    let (what, unit) = match map {
-        Map::Holes => ("problems without a case", " %"),
-        Map::Candidates => ("candidates, mean", ""),
-        Map::Entropy => ("entropy of the winner", " bits"),
-    };
-    let title = format!("{}: {what}", trial.shelf.league());
     let caption = format!(
         "{} problems, {:.1} % with a case. Cells of {} mm over the ball's place; the goal attacked is on the right.",
         tally.problems,
         percent(tally.won(), tally.problems),
         cells.edge_mm
     );
+    let panels: Vec<_> = kinds.into_iter().map(|map| Panel::of(map, trial, tally)).collect();
     let corner = |count: usize| count as i32 * cells.edge_mm / 2;
     let (x, y) = (corner(cells.columns), corner(cells.rows));
-    heat_map(&HeatMap {
-        title: &title,
-        caption: &caption,
-        field: trial.shelf.base().field(),
-        area: [PointMm::new(-x, -y), PointMm::new(x, y)],
-        columns: cells.columns,
-        rows: cells.rows,
-        values: &values,
-        scale: Scale::Continuous { low: 0.0, high: highest, unit },
-        theme: Theme::default(),
-    })
+    let maps: Vec<_> = panels
+        .iter()
+        .map(|panel| HeatMap {
+            title: &panel.title,
+            caption: &caption,
+            field: trial.shelf.base().field(),
+            area: [PointMm::new(-x, -y), PointMm::new(x, y)],
+            columns: cells.columns,
+            rows: cells.rows,
+            values: &panel.values,
+            scale: Scale::Continuous { low: 0.0, high: panel.highest, unit: panel.unit },
+            theme: Theme::default(),
+        })
+        .collect();
+    heat_maps(&maps)
 }
 
-fn is_csv(file: &Path) -> bool {
-    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+/// One map: a value for each cell that had a problem.
+struct Panel {
+    title: String,
+    unit: &'static str,
+    values: Vec<Option<f64>>,
+    highest: f64,
+}
+
+impl Panel {
+    fn of(map: Map, trial: &Trial<'_>, tally: &Tally) -> Self {
+        let (what, unit) = match map {
+            Map::Holes | Map::All => ("problems without a case", " %"),
+            Map::Candidates => ("candidates, mean", ""),
+            Map::Entropy => ("entropy of the winner", " bits"),
+        };
+        let value = |cell: &CellTally| {
+            let problems = cell.problems as f64;
+            (cell.problems > 0).then(|| match map {
+                Map::Holes | Map::All => 100.0 * cell.none as f64 / problems,
+                Map::Candidates => cell.candidates as f64 / problems,
+                Map::Entropy => cell.entropy_bits(),
+            })
+        };
+        let values: Vec<_> = tally.cells.iter().map(value).collect();
+        let highest = values.iter().flatten().copied().fold(1.0, f64::max).ceil();
+        Self { title: format!("{}: {what}", trial.shelf.league()), unit, values, highest }
+    }
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    match file.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("svg" | "csv") => Ok(file),
-        _ => Err("expected FILE.svg or FILE.csv".to_owned()),
-    }
+    picture::named(text, &["svg", "png", "csv"])
 }

@@ -13,6 +13,7 @@ use super::show::{find, unknown};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::picture;
 
 /// What `cases render` may be told.
 #[derive(Debug, Args)]
@@ -23,8 +24,8 @@ pub(crate) struct RenderArgs {
     /// A situation to draw over the case: a file, - for stdin, or the line of JSON itself.
     #[arg(long, value_name = "FILE|-|JSON")]
     problem: Option<String>,
-    /// Where to, an .svg; stdout if left out.
-    #[arg(long, value_name = "FILE", value_parser = svg_file)]
+    /// Where to, an .svg or a .png; the SVG on stdout if left out.
+    #[arg(long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
     /// What the picture is for.
     #[arg(long, value_enum, default_value = "light")]
@@ -86,7 +87,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
         },
     });
     if let Some(file) = &args.out {
-        std::fs::write(file, svg).map_err(|error| Failure::Picture { file: file.clone(), error })?;
+        picture::write(file, &svg)?;
     } else {
         stdout().lock().write_all(svg.as_bytes()).map_err(Failure::Output)?;
     }
@@ -108,21 +109,13 @@ fn read(argument: &str) -> Result<Problem, Failure> {
     problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
 }
 
-fn svg_file(text: &str) -> Result<PathBuf, String> {
-    let file = PathBuf::from(text);
-    let is_svg = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
-    if is_svg { Ok(file) } else { Err("expected a name that ends in .svg".to_owned()) }
+fn picture_file(text: &str) -> Result<PathBuf, String> {
+    picture::named(text, &["svg", "png"])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_picture_is_written_as_svg_only() {
-        assert!(svg_file("a.svg").is_ok());
-        assert!(svg_file("a.jpg").is_err());
-    }
 
     #[test]
     fn a_faulty_problem_is_told_with_its_place() {
