@@ -58,13 +58,21 @@ fn a_case_completed_by_less_than_sixty_in_a_hundred_says_why_in_its_file() {
     let file = file();
     let league = case_library::LEAGUES.iter().find(|league| league.name == "four-legged").expect("built in");
     for (name, text) in league.names.iter().zip(league.sources) {
-        let row = file.lines().find(|line| line.starts_with(&format!("| {name} | standing |")));
-        let completed: f64 = row.and_then(|row| row.split('|').nth(4)?.trim().parse().ok()).expect("a share");
-        let says_why = text.lines().any(|line| line.starts_with("# Completed by "));
-        assert!(
-            completed >= 60.0 || says_why,
-            "{name}: {completed} % completed; say why: `# Completed by …`"
-        );
+        for opponents in Opposition::ALL.map(Opposition::word) {
+            let row = file.lines().find(|line| line.starts_with(&format!("| {name} | {opponents} |")));
+            let completed: f64 =
+                row.and_then(|row| row.split('|').nth(4)?.trim().parse().ok()).expect("a share");
+            let says =
+                format!("# Completed by fewer than 60 in 100 against {opponents} opponents (played.md):");
+            let reason =
+                text.lines().skip_while(|line| *line != says).nth(1).filter(|line| line.starts_with("# "));
+            assert_eq!(
+                completed < 60.0,
+                reason.is_some(),
+                "{name}: {completed} % completed against {opponents} opponents; the file has to say why just where it is \
+                 below 60: `{says}` and the reason in the next line"
+            );
+        }
     }
 }
 
