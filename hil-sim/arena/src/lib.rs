@@ -10,6 +10,7 @@
 
 mod backups;
 mod cycles;
+mod defaults;
 mod names;
 mod picture;
 mod recording;
@@ -19,6 +20,7 @@ mod story;
 mod trial;
 
 pub use cycles::{CycleEnd, CycleLog, CycleSeen, News};
+pub use defaults::{Causes, DefaultReport};
 pub use names::{CaseNames, Cast, letter};
 pub use picture::picture;
 pub use recording::{Kick, Recording, Sample, Start};

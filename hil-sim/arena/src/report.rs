@@ -6,6 +6,7 @@ use hil_sim::{Configuration, Outcome, Scenario};
 use serde::{Serialize, Serializer};
 
 use crate::cycles::CycleSeen;
+use crate::defaults::DefaultReport;
 use crate::names::{CaseNames, letter, symmetry};
 
 /// A trial's result. Fields may be added at the end, never renamed.
@@ -44,6 +45,8 @@ pub struct TrialReport {
     pub positioning: &'static str,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
+    /// How long no case led the robots, and why; null where none ever does.
+    pub default: Option<DefaultReport>,
 }
 
 /// How often each opponent had the ball (paper §5.1.4; checklist R33); 0 where it does not play.
@@ -136,7 +139,7 @@ pub(crate) fn in_seconds(time: f32) -> f64 {
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
+pub(crate) fn scenario<S: Serializer>(scenario: &Scenario, s: S) -> Result<S::Ok, S::Error> {
     match scenario.word().parse::<u8>() {
         Ok(number) => s.serialize_u8(number),
         Err(_) => s.serialize_str(scenario.word()),

@@ -13,6 +13,7 @@ use protocol::{Duration, RobotId, TeamId};
 
 use crate::backups::BackupCount;
 use crate::cycles::{CycleLog, News};
+use crate::defaults::{self, DefaultWatch};
 use crate::names::{CaseNames, Cast};
 use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
 
@@ -163,6 +164,7 @@ pub(crate) struct Game<'c, 'a> {
     cast: Cast,
     backups: BackupCount,
     cycles: CycleLog,
+    defaults: DefaultWatch,
     beacons: Vec<(RobotId, Beacon)>,
     news: Vec<News>,
 }
@@ -186,6 +188,7 @@ impl<'c, 'a> Game<'c, 'a> {
             simulation,
             cast,
             cycles: CycleLog::default(),
+            defaults: DefaultWatch::default(),
             beacons: Vec::new(),
             news: Vec::new(),
         })
@@ -206,11 +209,27 @@ impl<'c, 'a> Game<'c, 'a> {
             }
             self.beacons.push((from, beacon));
         }
+        self.watch_defaults();
         let moment = self.moment();
         for watcher in watchers.iter_mut() {
             watcher.watch(&moment);
         }
         Ok(())
+    }
+
+    /// Does the team play by a case, and if not, why?
+    fn watch_defaults(&mut self) {
+        let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
+        for news in news.iter() {
+            let (News::Decided(i) | News::Ended(i)) = *news else { continue };
+            // What is still said of an older cycle leads nobody any more.
+            if let [cycle] = &cycles.cycles()[i..] {
+                let deceleration = config.parameters.ball.deceleration;
+                let problem = defaults::problem(simulation.world(), &cast.attackers, deceleration);
+                defaults.hear(cycle, &problem, &config.base, &config.settings);
+            }
+        }
+        defaults.tick();
     }
 
     /// The end of the last tick.
@@ -263,11 +282,9 @@ impl<'c, 'a> Game<'c, 'a> {
             settings: (config.settings.describe())
                 .map(|(name, value)| (name, value.as_str().to_owned()))
                 .collect(),
-            positioning: match config.positioning {
-                Positioning::Dependent => "dependent",
-                Positioning::Independent => "independent",
-            },
+            positioning: positioning_word(config.positioning),
             case_base: format!("{:08x}", config.base.hash()),
+            default: (config.approach != Approach::Reactive).then(|| self.defaults.report()),
         }
     }
 }
@@ -283,6 +300,14 @@ pub const fn approach_word(approach: Approach) -> &'static str {
 /// The approach of that word.
 pub fn approach_from_word(word: &str) -> Option<Approach> {
     [Approach::Cases, Approach::Reactive].into_iter().find(|approach| approach_word(*approach) == word)
+}
+
+/// The word of a positioning in options and reports.
+pub(crate) const fn positioning_word(positioning: Positioning) -> &'static str {
+    match positioning {
+        Positioning::Dependent => "dependent",
+        Positioning::Independent => "independent",
+    }
 }
 
 /// The attackers' team on the air.
