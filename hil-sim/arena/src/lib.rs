@@ -6,11 +6,14 @@
 //!
 //! [`Rehearsal`] plays single cases from their own situation, many times: does a case do what its author meant?
 //!
+//! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
+//!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
 
 mod backups;
 mod cycles;
 mod defaults;
+pub mod evaluation;
 mod names;
 mod picture;
 mod recording;

@@ -1,0 +1,99 @@
+//! What can go wrong with an evaluation, and what is to be done about it?
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use hil_sim::SimulationError;
+
+/// Why an evaluation stopped, or could not be put together.
+#[derive(Debug)]
+pub enum EvaluationError {
+    /// A file could not be read or written.
+    File {
+        /// Which.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A line of a file is not of this evaluation's trials.
+    Row {
+        /// Which file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The file is of another evaluation.
+    Another(PathBuf),
+    /// Another process writes to the file.
+    InUse(PathBuf),
+    /// Nothing to merge.
+    Nothing,
+    /// The files hold a trial twice, and it did not end alike.
+    Unlike {
+        /// Its number.
+        trial: usize,
+    },
+    /// Trials of the plan are in none of the files.
+    Missing {
+        /// How many.
+        trials: usize,
+        /// Of how many.
+        of: usize,
+        /// The first one.
+        first: usize,
+    },
+    /// A trial could not be played.
+    Trial {
+        /// Its number.
+        trial: usize,
+        /// Why.
+        error: SimulationError,
+    },
+    /// The caller stopped it; what was played is kept.
+    Stopped,
+}
+
+impl EvaluationError {
+    /// Of that file.
+    pub(super) fn file(path: &Path) -> impl Fn(io::Error) -> Self + use<> {
+        let file = path.to_owned();
+        move |error| Self::File { file: file.clone(), error }
+    }
+}
+
+impl fmt::Display for EvaluationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File { file, error } => write!(f, "{}: {error}", file.display()),
+            Self::Row { file, line, what } => {
+                write!(f, "{}:{line}: {what}; take the line out, or begin in an empty folder", file.display())
+            }
+            Self::Another(file) => write!(
+                f,
+                "{}: holds trials of another evaluation (other seed, numbers, settings, cases or program); \
+                 name an empty folder, or the same options",
+                file.display()
+            ),
+            Self::InUse(file) => {
+                write!(f, "{}: another process writes to it; wait for it, or stop it", file.display())
+            }
+            Self::Nothing => f.write_str("no trials there; name the folders that shards were written to"),
+            Self::Unlike { trial } => write!(
+                f,
+                "trial {trial} is there twice and ended differently: the shards were not played by the same program"
+            ),
+            Self::Missing { trials, of, first } => write!(
+                f,
+                "{trials} of {of} trials are missing, the first is {first}; play the shards that lack them again: \
+                 they go on where they stopped"
+            ),
+            Self::Trial { trial, error } => write!(f, "trial {trial}: {error}"),
+            Self::Stopped => f.write_str("stopped; the same command goes on from here"),
+        }
+    }
+}
+
+impl std::error::Error for EvaluationError {}

@@ -1,0 +1,174 @@
+//! How is nothing lost when an evaluation is interrupted? Every trial is a line, appended to its shard's file when it is over.
+//!
+//! The first line says which evaluation the file is of, the second names the columns. A last line without its end was torn by the
+//! interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials ended; whoever reads sorts.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::error::EvaluationError;
+use super::plan::Plan;
+use super::row::{TrialRow, to_csv, to_line};
+
+/// Which evaluation a file is of: whatever decides its trials. Only equals are resumed or merged.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Version and commit of the program.
+    pub program: String,
+    /// The named settings of retrieval, name and value.
+    pub settings: Vec<(String, String)>,
+    /// `dependent` or `independent`.
+    pub positioning: String,
+    /// Hash of the case base, 8 hexadecimal digits.
+    pub case_base: String,
+    /// All trials.
+    pub plan: Plan,
+}
+
+/// What a file of trials holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// Where it lies.
+    pub file: PathBuf,
+    /// Which evaluation it is of.
+    pub identity: Identity,
+    /// Its trials, in the order of the file.
+    pub rows: Vec<TrialRow>,
+    /// Bytes up to the end of the last whole line.
+    whole: usize,
+}
+
+/// Reads a file of trials; `None` where it was torn before its first trial.
+pub fn read(path: &Path) -> Result<Option<Kept>, EvaluationError> {
+    let bytes = std::fs::read(path).map_err(EvaluationError::file(path))?;
+    parse(path, &bytes)
+}
+
+fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Kept>, EvaluationError> {
+    let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+    let mut lines = bytes[..whole].split_inclusive(|&byte| byte == b'\n');
+    let (Some(head), Some(_columns)) = (lines.next(), lines.next()) else { return Ok(None) };
+    let fault = |line, what: String| EvaluationError::Row { file: path.to_owned(), line, what };
+    let json = head.strip_prefix(MARK.as_bytes()).ok_or_else(|| fault(1, format!("no `{MARK}`")))?;
+    let identity: Identity = serde_json::from_slice(json).map_err(|error| fault(1, error.to_string()))?;
+    let mut reader = csv::Reader::from_reader(&bytes[head.len()..whole]);
+    let rows = (3..).zip(reader.deserialize()).map(|(line, row)| {
+        let row: TrialRow = row.map_err(|error| fault(line, error.to_string()))?;
+        let planned = identity.plan.get(row.trial);
+        if planned.is_some_and(|planned| row.is_of(&planned)) {
+            Ok(row)
+        } else {
+            Err(fault(line, format!("trial {} of the plan is another", row.trial)))
+        }
+    });
+    let rows = rows.collect::<Result<_, _>>()?;
+    Ok(Some(Kept { file: path.to_owned(), identity, rows, whole }))
+}
+
+/// A file of trials that grows.
+#[derive(Debug)]
+pub(super) struct Ledger {
+    file: File,
+    path: PathBuf,
+    /// The line with the columns' names is there; it comes with the first trial.
+    headed: bool,
+}
+
+impl Ledger {
+    /// Opens or begins a file of `identity`; the trials it holds already come with it.
+    pub(super) fn open(path: &Path, identity: &Identity) -> Result<(Self, Vec<TrialRow>), EvaluationError> {
+        let failed = EvaluationError::file(path);
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(path)
+            .map_err(failed)?;
+        // Where the file system knows no locks, two processes on one shard are the user's own doing.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(EvaluationError::InUse(path.to_owned()));
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(EvaluationError::file(path))?;
+        let kept = parse(path, &bytes)?;
+        let mut ledger = Self { file, path: path.to_owned(), headed: kept.is_some() };
+        let Some(kept) = kept else {
+            ledger.cut(0)?;
+            let json = serde_json::to_string(identity).map_err(|error| ledger.unwritten(error))?;
+            ledger.write(format!("{MARK}{json}\n").as_bytes())?;
+            return Ok((ledger, Vec::new()));
+        };
+        if kept.identity != *identity {
+            return Err(EvaluationError::Another(path.to_owned()));
+        }
+        ledger.cut(kept.whole)?;
+        Ok((ledger, kept.rows))
+    }
+
+    /// Keeps a trial: once this returns, killing the process does not lose it.
+    pub(super) fn keep(&mut self, row: &TrialRow) -> Result<(), EvaluationError> {
+        let line = if self.headed { to_line(row) } else { to_csv(std::slice::from_ref(row)) };
+        let line = line.map_err(|error| self.unwritten(error))?;
+        self.headed = true;
+        self.write(&line)
+    }
+
+    fn cut(&mut self, whole: usize) -> Result<(), EvaluationError> {
+        let cut = self.file.set_len(whole as u64).and_then(|()| self.file.seek(SeekFrom::End(0)));
+        cut.map(|_| ()).map_err(EvaluationError::file(&self.path))
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), EvaluationError> {
+        self.file.write_all(bytes).map_err(EvaluationError::file(&self.path))
+    }
+
+    fn unwritten(&self, error: impl Into<std::io::Error>) -> EvaluationError {
+        EvaluationError::File { file: self.path.clone(), error: error.into() }
+    }
+}
+
+/// What a file of trials begins with.
+const MARK: &str = "# onetwo trials 1 ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(identity: &Identity) -> String {
+        format!("{MARK}{}\n", serde_json::to_string(identity).unwrap())
+    }
+
+    fn identity() -> Identity {
+        Identity {
+            program: "test".to_owned(),
+            settings: vec![("thr_c".to_owned(), "1500".to_owned())],
+            positioning: "dependent".to_owned(),
+            case_base: "00000000".to_owned(),
+            plan: Plan::paper(1).with_trials(1),
+        }
+    }
+
+    fn refused(text: &str) -> String {
+        parse(Path::new("x.csv"), text.as_bytes()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_file_torn_before_its_first_trial_holds_nothing() {
+        let head = text(&identity());
+        for torn in ["", "# one", head.trim_end(), &head, &format!("{head}trial,pro")] {
+            assert_eq!(parse(Path::new("x.csv"), torn.as_bytes()).unwrap(), None, "{torn}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_file_of_trials_is_refused_with_its_line() {
+        assert!(refused("a,b\n1,2\n").starts_with("x.csv:1: "));
+        assert!(refused(&format!("{MARK}{{}}\ntrial\n")).starts_with("x.csv:1: missing field `program`"));
+        let wrong = format!("{}trial,profile\n1,simulated\n", text(&identity()));
+        assert!(refused(&wrong).starts_with("x.csv:3: "), "{}", refused(&wrong));
+    }
+}

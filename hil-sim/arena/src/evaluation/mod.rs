@@ -1,0 +1,28 @@
+//! Do case-based attackers play better than reactive ones? The paper's evaluation: thousands of trials, its Tables 1 to 6 (§5).
+//!
+//! ```text
+//! Plan ─► Evaluation::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm
+//!                                                                     paper::rows ──────┘
+//! ```
+//! A [`Plan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for any number of threads,
+//! shards and interrupts. [`tables`] makes DESIGN §8's `tables.json` of them; [`compare`] and [`with_paper`] say what differs.
+
+mod comparison;
+mod error;
+mod ledger;
+mod paper;
+mod plan;
+mod row;
+mod runs;
+pub mod statistics;
+mod tables;
+mod words;
+
+pub use comparison::{Comparison, Measure, compare, with_paper};
+pub use error::EvaluationError;
+pub use ledger::{Identity, Kept, read};
+pub use paper::paper;
+pub use plan::{APPROACHES, Cell, Plan, Planned, Profile, Shard};
+pub use row::{TrialRow, csv_hash, to_csv};
+pub use runs::{Evaluation, Progress, merge};
+pub use tables::{TableRow, tables};

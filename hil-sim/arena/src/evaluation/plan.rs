@@ -1,0 +1,207 @@
+//! Which trials make an evaluation? Cells of (profile, opponents, scenario, approach), trials numbered through, a seed each.
+//!
+//! Common random numbers: the k-th trial of every approach has the same seed, so that approaches meet the same chances. A seed
+//! is enough to play a trial again alone: `onetwo trial --scenario S --opponents O --approach A --seed N`.
+
+use brain::Approach;
+use hil_sim::{Configuration, Fnv, Scenario};
+use serde::{Deserialize, Serialize};
+
+use super::words;
+
+/// The world trials are played in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Profile {
+    /// The paper's simulator: noiseless perception (§5.2).
+    Simulated,
+    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; checklist R40).
+    Robots,
+}
+
+/// Trials that differ in their seed alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cell {
+    /// The world.
+    pub profile: Profile,
+    /// Which opponents play.
+    pub configuration: Configuration,
+    /// Where everybody stands.
+    #[serde(with = "words::scenario")]
+    pub scenario: Scenario,
+    /// What leads the attackers.
+    #[serde(with = "words::approach")]
+    pub approach: Approach,
+    /// How many.
+    pub trials: u32,
+}
+
+/// All trials of an evaluation.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Where the seeds of trials come from.
+    pub seed: u64,
+    /// In the order of trials.
+    pub cells: Vec<Cell>,
+}
+
+/// A trial of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Planned {
+    /// Its number in the plan, from 0.
+    pub number: usize,
+    /// Its cell.
+    pub cell: Cell,
+    /// Its own seed.
+    pub seed: u64,
+}
+
+impl Plan {
+    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders, 30 a cell as its robots played.
+    pub fn paper(seed: u64) -> Self {
+        let cell = |profile, configuration, trials| {
+            move |scenario, approach| Cell { profile, configuration, scenario, approach, trials }
+        };
+        let dg = cell(Profile::Simulated, Configuration::DefenderGoalie, 500);
+        let two = cell(Profile::Simulated, Configuration::TwoDefenders, 200);
+        let robots = cell(Profile::Robots, Configuration::DefenderGoalie, 30);
+        let simulated = Scenario::PAPER.map(|scenario| APPROACHES.map(|approach| dg(scenario, approach)));
+        let against_two = Scenario::PAPER.map(|scenario| APPROACHES.map(|approach| two(scenario, approach)));
+        let played = [Scenario::DefenderAhead, Scenario::DefenderClose];
+        let played = played.map(|scenario| APPROACHES.map(|approach| robots(scenario, approach)));
+        let cells = simulated.into_iter().chain(against_two).chain(played).flatten().collect();
+        Self { seed, cells }
+    }
+
+    /// The same cells with that many trials each.
+    pub fn with_trials(mut self, trials: u32) -> Self {
+        for cell in &mut self.cells {
+            cell.trials = trials;
+        }
+        self
+    }
+
+    /// Number of trials.
+    pub fn len(&self) -> usize {
+        self.cells.iter().map(|cell| cell.trials as usize).sum()
+    }
+
+    /// There is nothing to play.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The trial of that number.
+    pub fn get(&self, number: usize) -> Option<Planned> {
+        let mut within = number;
+        for cell in &self.cells {
+            let trials = cell.trials as usize;
+            if within < trials {
+                return Some(Planned { number, cell: *cell, seed: self.seed_of(*cell, within as u32) });
+            }
+            within -= trials;
+        }
+        None
+    }
+
+    /// The trials of a shard, in order.
+    pub fn shard(&self, shard: Shard) -> impl Iterator<Item = Planned> + '_ {
+        (0..self.len()).filter(move |number| shard.has(*number)).filter_map(|number| self.get(number))
+    }
+
+    /// Neither the approach nor the profile enters: they meet the same chances.
+    fn seed_of(&self, cell: Cell, trial: u32) -> u64 {
+        let mut hash = Fnv::default();
+        hash.add(&self.seed.to_le_bytes());
+        hash.add(cell.configuration.word().as_bytes());
+        hash.add(cell.scenario.word().as_bytes());
+        hash.add(&trial.to_le_bytes());
+        let value = hash.value();
+        (value ^ (value >> SEED_BITS)) & ((1 << SEED_BITS) - 1)
+    }
+}
+
+/// A part of a plan: every n-th trial, so that all parts take about as long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// Everything.
+    pub const WHOLE: Self = Self { index: 1, of: 1 };
+
+    /// The part of that number, from 1, of so many.
+    pub fn new(index: usize, of: usize) -> Option<Self> {
+        (1..=of).contains(&index).then_some(Self { index, of })
+    }
+
+    /// As people write it: `2/3`.
+    pub fn from_word(word: &str) -> Option<Self> {
+        let (index, of) = word.split_once('/')?;
+        Self::new(index.parse().ok()?, of.parse().ok()?)
+    }
+
+    /// Does the trial of that number belong to it?
+    pub fn has(self, number: usize) -> bool {
+        number % self.of == self.index - 1
+    }
+
+    /// The name of its file.
+    pub fn file_name(self) -> String {
+        format!("trials-{}-of-{}.csv", self.index, self.of)
+    }
+}
+
+/// What the paper compares.
+pub const APPROACHES: [Approach; 2] = [Approach::Cases, Approach::Reactive];
+/// Seeds are short enough for every reader of JSON (53 bits) and for people.
+const SEED_BITS: u32 = 48;
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn the_papers_plan_has_its_5600_simulated_trials_and_120_of_robots() {
+        let plan = Plan::paper(1);
+        let of = |profile| {
+            let cells = plan.cells.iter().filter(|cell| cell.profile == profile);
+            cells.map(|cell| cell.trials).sum::<u32>()
+        };
+        assert_eq!((of(Profile::Simulated), of(Profile::Robots)), (5600, 120));
+        assert_eq!((plan.len(), plan.get(5719).unwrap().number), (5720, 5719));
+        assert_eq!(plan.get(5720), None);
+    }
+
+    #[test]
+    fn approaches_meet_the_same_chances_and_nothing_else_does() {
+        let plan = Plan::paper(1);
+        let seeds = |approach, profile| -> Vec<u64> {
+            let trials = plan.shard(Shard::WHOLE);
+            let own = trials.filter(|t| t.cell.approach == approach && t.cell.profile == profile);
+            own.map(|trial| trial.seed).collect()
+        };
+        let cases = seeds(Approach::Cases, Profile::Simulated);
+        assert_eq!(cases, seeds(Approach::Reactive, Profile::Simulated));
+        assert_eq!(cases.iter().collect::<BTreeSet<_>>().len(), 2800);
+        assert_ne!(plan.get(0).map(|t| t.seed), Plan::paper(2).get(0).map(|t| t.seed));
+    }
+
+    #[test]
+    fn shards_share_the_trials_among_them() {
+        let plan = Plan::paper(1).with_trials(3);
+        let mut all: Vec<_> = (1..=4)
+            .flat_map(|i| plan.shard(Shard::new(i, 4).unwrap()).map(|t| t.number).collect::<Vec<_>>())
+            .collect();
+        all.sort_unstable();
+        assert_eq!(all, (0..plan.len()).collect::<Vec<_>>());
+        assert_eq!(Shard::from_word("2/3"), Shard::new(2, 3));
+        for word in ["0/3", "4/3", "1/0", "1", "a/b", ""] {
+            assert_eq!(Shard::from_word(word), None, "{word}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What is kept of a trial? One row of `trials.csv`: which trial it was, and every measure of the paper (§5.1.4, §5.2.1, §5.4).
+//!
+//! Rows stand in the order of the plan, so that equal evaluations are equal files, however many processes played them.
+
+use brain::Approach;
+use hil_sim::{Configuration, Fnv, Outcome, Scenario};
+use serde::{Deserialize, Serialize};
+
+use super::plan::{Planned, Profile};
+use super::words;
+use crate::defaults::DefaultReport;
+use crate::report::TrialReport;
+
+/// A trial's measures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrialRow {
+    /// Its number in the plan, from 0.
+    pub trial: usize,
+    /// `simulated` or `robots`.
+    pub profile: Profile,
+    /// `dg` or `2d`.
+    pub configuration: Configuration,
+    /// 1 to 4, or `random`.
+    #[serde(with = "words::scenario")]
+    pub scenario: Scenario,
+    /// `cbr` or `reactive`.
+    #[serde(with = "words::approach")]
+    pub approach: Approach,
+    /// Plays it again.
+    pub seed: u64,
+    /// How it ended; against two defenders `goal` is the paper's "to goal".
+    pub outcome: Outcome,
+    /// Seconds from kick-off to that.
+    pub time_s: f64,
+    /// How often the defender had the ball.
+    pub possession_defender: u32,
+    /// How often the midfield defender had it.
+    pub possession_midfield: u32,
+    /// How often robot A backed up.
+    pub backups_a: u32,
+    /// How often robot B did.
+    pub backups_b: u32,
+    /// Who put the ball out; empty for every other outcome.
+    pub out_by: Option<String>,
+    /// Cases for one robot.
+    pub individual: u32,
+    /// Cases for several.
+    pub cooperative: u32,
+    /// Retrievals without a case.
+    pub none: u32,
+    /// Seconds of default behaviour; empty, as the next six, where no cases are played.
+    pub default_s: Option<f64>,
+    /// How many times it began.
+    pub default_spells: Option<u32>,
+    /// Retrievals that failed as the ball lay in no scope.
+    pub no_case_ball: Option<u32>,
+    /// As there were too few robots.
+    pub no_case_robots: Option<u32>,
+    /// As somebody had too far to go.
+    pub no_case_thr_c: Option<u32>,
+    /// As an opponent stood in the way.
+    pub no_case_path: Option<u32>,
+    /// As the case could not begin.
+    pub no_case_held: Option<u32>,
+    /// Equal for equal trials.
+    pub trace_hash: String,
+}
+
+impl TrialRow {
+    /// Of a trial that was played.
+    pub(super) fn new(planned: &Planned, report: &TrialReport) -> Self {
+        let backups = |robot: usize| report.backups.0.get(robot).copied().unwrap_or_default();
+        let default = report.default;
+        let cause = |of: fn(&DefaultReport) -> u32| default.as_ref().map(of);
+        Self {
+            trial: planned.number,
+            profile: planned.cell.profile,
+            configuration: planned.cell.configuration,
+            scenario: planned.cell.scenario,
+            approach: planned.cell.approach,
+            seed: planned.seed,
+            outcome: report.outcome,
+            time_s: report.time_s,
+            possession_defender: report.possession.defender,
+            possession_midfield: report.possession.midfield,
+            backups_a: backups(0),
+            backups_b: backups(1),
+            out_by: report.out_by.map(str::to_owned),
+            individual: report.cases.individual,
+            cooperative: report.cases.cooperative,
+            none: report.cases.none,
+            default_s: default.map(|default| default.time_s),
+            default_spells: cause(|default| default.spells),
+            no_case_ball: cause(|default| default.causes.ball),
+            no_case_robots: cause(|default| default.causes.robots),
+            no_case_thr_c: cause(|default| default.causes.thr_c),
+            no_case_path: cause(|default| default.causes.path),
+            no_case_held: cause(|default| default.causes.held),
+            trace_hash: report.trace_hash.clone(),
+        }
+    }
+
+    /// Is it a row of this trial?
+    pub(super) fn is_of(&self, planned: &Planned) -> bool {
+        let cell = &planned.cell;
+        let own = (self.profile, self.configuration, self.scenario, self.approach);
+        (self.trial, self.seed) == (planned.number, planned.seed)
+            && own == (cell.profile, cell.configuration, cell.scenario, cell.approach)
+    }
+
+    /// The paper's "to goal": goal or close; against two defenders, in the penalty area.
+    pub fn to_goal(&self) -> bool {
+        matches!(self.outcome, Outcome::Goal | Outcome::Close)
+    }
+}
+
+/// Rows as `trials.csv`, with their columns' names in the first line.
+pub fn to_csv(rows: &[TrialRow]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+/// One row without the columns' names, its end of line included.
+pub(super) fn to_line(row: &TrialRow) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.serialize(row)?;
+    writer.into_inner().map_err(|error| error.into_error().into())
+}
+
+/// The number that tells two evaluations apart: FNV-1a-64 of their `trials.csv`, 16 hexadecimal digits.
+pub fn csv_hash(csv: &[u8]) -> String {
+    let mut hash = Fnv::default();
+    hash.add(csv);
+    hash.to_string()
+}

@@ -1,0 +1,169 @@
+//! How are thousands of trials played? On all threads of the pool, each kept when it is over, resumed after an interrupt, merged.
+//!
+//! A trial depends on its place in the plan alone, and merged rows stand in the plan's order: the same evaluation gives the same
+//! bytes for any number of threads, shards and interrupts.
+
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+use brain::Positioning;
+use casebase::{CaseBase, Settings};
+use hil_sim::NativeBackend;
+use protocol::Duration;
+use rayon::prelude::*;
+
+use super::error::EvaluationError;
+use super::ledger::{Identity, Kept, Ledger};
+use super::plan::{Plan, Planned, Profile, Shard};
+use super::row::TrialRow;
+use crate::names::CaseNames;
+use crate::trial::{TrialConfig, positioning_word, run};
+
+/// Everything that decides the trials of an evaluation.
+#[derive(Clone, Debug)]
+pub struct Evaluation<'a> {
+    /// Which trials.
+    pub plan: Plan,
+    /// The case base in every robot.
+    pub base: CaseBase<'a>,
+    /// What its cases are called.
+    pub names: CaseNames,
+    /// How robots retrieve.
+    pub settings: Settings,
+    /// When a case's actions begin.
+    pub positioning: Positioning,
+    /// Version and commit of the program: trials of two programs are never mixed.
+    pub program: String,
+}
+
+/// How far a shard has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Trials over, those of earlier runs included.
+    pub done: usize,
+    /// Trials of the shard.
+    pub of: usize,
+}
+
+impl<'a> Evaluation<'a> {
+    /// What its files say they are of.
+    pub fn identity(&self) -> Identity {
+        let settings = self.settings.describe();
+        Identity {
+            program: self.program.clone(),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
+            positioning: positioning_word(self.positioning).to_owned(),
+            case_base: format!("{:08x}", self.base.hash()),
+            plan: self.plan.clone(),
+        }
+    }
+
+    /// A trial of the plan, ready to be played.
+    pub fn config(&self, planned: &Planned) -> TrialConfig<'a> {
+        let cell = &planned.cell;
+        let config = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, planned.seed);
+        let (noise, pause) = match cell.profile {
+            Profile::Simulated => (config.noise, config.pause_after_cycle),
+            Profile::Robots => (config.parameters.noise, PAUSE_OF_ROBOTS),
+        };
+        TrialConfig {
+            settings: self.settings.clone(),
+            positioning: self.positioning,
+            noise,
+            pause_after_cycle: pause,
+            ..config
+        }
+        .with_library(self.base, self.names.clone())
+    }
+
+    /// Plays it.
+    pub fn play(&self, planned: &Planned) -> Result<TrialRow, EvaluationError> {
+        let report = run(&self.config(planned), Box::new(NativeBackend::new(self.base)), &mut [])
+            .map_err(|error| EvaluationError::Trial { trial: planned.number, error })?;
+        Ok(TrialRow::new(planned, &report))
+    }
+
+    /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order.
+    ///
+    /// `progress` is told at the beginning and after every trial, and may stop the run: what is over is kept, and the next run of
+    /// the same shard into the same file goes on from there.
+    pub fn play_shard(
+        &self,
+        shard: Shard,
+        file: &Path,
+        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<TrialRow>, EvaluationError> {
+        let (ledger, kept) = Ledger::open(file, &self.identity())?;
+        let mut rows: BTreeMap<usize, TrialRow> = BTreeMap::new();
+        for row in kept {
+            insert(&mut rows, row)?;
+        }
+        let open: Vec<_> =
+            self.plan.shard(shard).filter(|planned| !rows.contains_key(&planned.number)).collect();
+        let of = self.plan.shard(shard).count();
+        let told = |done: usize| match progress(Progress { done, of }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(EvaluationError::Stopped),
+        };
+        let before = of - open.len();
+        told(before)?;
+        let keeper = Mutex::new((ledger, rows, before));
+        open.par_iter().try_for_each(|planned| {
+            let row = self.play(planned)?;
+            // A thread that panicked while it kept a trial stops the run anyway.
+            let mut keeper = keeper.lock().unwrap_or_else(PoisonError::into_inner);
+            let (ledger, rows, done) = &mut *keeper;
+            ledger.keep(&row)?;
+            rows.insert(row.trial, row);
+            *done += 1;
+            told(*done)
+        })?;
+        let (_, rows, _) = keeper.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(rows.into_values().filter(|row| shard.has(row.trial)).collect())
+    }
+}
+
+/// All trials of an evaluation from the files of its shards, in the plan's order.
+pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationError> {
+    let mut files = files.into_iter();
+    let first = files.next().ok_or(EvaluationError::Nothing)?;
+    let mut rows = BTreeMap::new();
+    for row in first.rows {
+        insert(&mut rows, row)?;
+    }
+    for file in files {
+        if file.identity != first.identity {
+            return Err(EvaluationError::Another(file.file));
+        }
+        for row in file.rows {
+            insert(&mut rows, row)?;
+        }
+    }
+    let of = first.identity.plan.len();
+    let missing = || (0..of).filter(|number| !rows.contains_key(number));
+    match missing().next() {
+        Some(first) => Err(EvaluationError::Missing { trials: missing().count(), of, first }),
+        None => Ok((first.identity, rows.into_values().collect())),
+    }
+}
+
+fn insert(rows: &mut BTreeMap<usize, TrialRow>, row: TrialRow) -> Result<(), EvaluationError> {
+    let trial = row.trial;
+    match rows.entry(trial) {
+        Entry::Vacant(place) => {
+            place.insert(row);
+            Ok(())
+        }
+        Entry::Occupied(known) if *known.get() == row => Ok(()),
+        Entry::Occupied(_) => Err(EvaluationError::Unlike { trial }),
+    }
+}
+
+/// How long the paper's robots stood still after every cycle (§5.3).
+const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+//! Are equal evaluations equal files, however they were played?
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use brain::Approach;
+use hil_sim::{Configuration, Scenario};
+
+use super::*;
+use crate::evaluation::ledger::read;
+use crate::evaluation::plan::{APPROACHES, Cell};
+use crate::evaluation::row::{csv_hash, to_csv};
+
+/// A folder of a test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("onetwo-evaluation-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn file(&self, shard: Shard) -> PathBuf {
+        self.0.join(shard.file_name())
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn evaluation() -> Evaluation<'static> {
+    let cell = |profile, scenario, approach| Cell {
+        profile,
+        configuration: Configuration::TwoDefenders,
+        scenario,
+        approach,
+        trials: 2,
+    };
+    let simulated = APPROACHES.map(|approach| cell(Profile::Simulated, Scenario::DefenderClose, approach));
+    let cells = simulated.into_iter().chain([cell(Profile::Robots, Scenario::Random, Approach::Cases)]);
+    Evaluation {
+        plan: Plan { seed: 7, cells: cells.collect() },
+        base: case_library::four_legged(),
+        names: CaseNames::default(),
+        settings: Settings::default(),
+        positioning: Positioning::default(),
+        program: "test".to_owned(),
+    }
+}
+
+fn hash(rows: &[TrialRow]) -> String {
+    csv_hash(&to_csv(rows).unwrap())
+}
+
+const GO_ON: &(dyn Fn(Progress) -> ControlFlow<()> + Sync) = &|_| ControlFlow::Continue(());
+
+fn played(folder: &Folder, shard: Shard, threads: usize) -> Vec<TrialRow> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| evaluation().play_shard(shard, &folder.file(shard), GO_ON)).unwrap()
+}
+
+#[test]
+fn threads_shards_and_interrupts_change_no_byte() {
+    let folder = Folder::new("same");
+    let one = played(&folder, Shard::WHOLE, 1);
+    assert_eq!(one.iter().map(|row| row.trial).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+    assert_eq!((one[0].seed, one[1].seed), (one[2].seed, one[3].seed), "common random numbers");
+    let expected = hash(&one);
+    assert_eq!(hash(&played(&Folder::new("two"), Shard::WHOLE, 2)), expected);
+
+    let thirds = Folder::new("thirds");
+    let shards = [1, 2, 3].map(|i| Shard::new(i, 3).unwrap());
+    let files = shards.map(|shard| {
+        assert_eq!(played(&thirds, shard, 2).len(), 2);
+        read(&thirds.file(shard)).unwrap().unwrap()
+    });
+    let (identity, merged) = merge(files.iter().rev().cloned().collect()).unwrap();
+    assert_eq!((hash(&merged), identity), (expected.clone(), evaluation().identity()));
+    let lacking = merge(files[..2].to_vec()).unwrap_err().to_string();
+    assert!(lacking.starts_with("2 of 6 trials are missing, the first is 2;"), "{lacking}");
+
+    // Stopped after two trials, killed in the middle of a line, gone on.
+    let torn = Folder::new("torn");
+    let file = torn.file(Shard::WHOLE);
+    let stop = |progress: Progress| {
+        if progress.done < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let stopped = pool.install(|| evaluation().play_shard(Shard::WHOLE, &file, &stop));
+    assert!(matches!(stopped, Err(EvaluationError::Stopped)), "{stopped:?}");
+    let kept = read(&file).unwrap().unwrap().rows;
+    assert_eq!(kept.len(), 2);
+    let whole = fs::read(&file).unwrap();
+    fs::write(&file, &whole[..whole.len() - 7]).unwrap();
+    assert_eq!(read(&file).unwrap().unwrap().rows, kept[..1]);
+    let told = AtomicUsize::new(0);
+    let count = |_| {
+        told.fetch_add(1, Ordering::Relaxed);
+        ControlFlow::Continue(())
+    };
+    let resumed = evaluation().play_shard(Shard::WHOLE, &file, &count).unwrap();
+    assert_eq!(hash(&resumed), expected);
+    assert_eq!(told.into_inner(), 1 + 5, "one trial of six was kept");
+    assert_eq!(read(&file).unwrap().unwrap().rows.len(), 6);
+}
+
+#[test]
+fn another_evaluation_is_not_mixed_in() {
+    let folder = Folder::new("another");
+    let file = folder.file(Shard::WHOLE);
+    let small = |seed| {
+        let mut small = evaluation();
+        small.plan.cells.truncate(1);
+        Evaluation { plan: Plan { seed, ..small.plan.with_trials(1) }, ..evaluation() }
+    };
+    small(1).play_shard(Shard::WHOLE, &file, GO_ON).unwrap();
+    let refused = small(2).play_shard(Shard::WHOLE, &file, GO_ON);
+    assert!(matches!(refused, Err(EvaluationError::Another(_))), "{refused:?}");
+
+    let kept = read(&file).unwrap().unwrap();
+    let mut unlike = kept.clone();
+    unlike.rows[0].time_s += 1.0;
+    assert!(matches!(merge(vec![kept.clone(), kept.clone()]), Ok((_, rows)) if rows == kept.rows));
+    assert!(matches!(merge(vec![kept.clone(), unlike]), Err(EvaluationError::Unlike { trial: 0 })));
+    assert!(matches!(merge(Vec::new()), Err(EvaluationError::Nothing)));
+}
+
+#[test]
+fn the_trial_of_a_row_is_played_again_by_its_seed() {
+    let evaluation = evaluation();
+    let planned = evaluation.plan.get(1).unwrap();
+    let row = evaluation.play(&planned).unwrap();
+    let cell = planned.cell;
+    let alone = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, row.seed);
+    let report = run(&alone, Box::new(NativeBackend::new(alone.base)), &mut []).unwrap();
+    assert_eq!(report.trace_hash, row.trace_hash);
+    let default = report.default.unwrap();
+    assert_eq!(default.causes.total(), report.cases.none);
+    assert!(default.time_s <= report.time_s);
+    assert_eq!(row.default_s, Some(default.time_s));
+}
