@@ -4,11 +4,19 @@ use crate::context::{Context, Failure, run};
 
 /// Draws every picture.
 pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
-    PICTURES.iter().try_for_each(|line| run(&mut context.cargo(&format!("run --release -- {line}"))))
+    PICTURES.iter().try_for_each(|line| run(&mut context.cargo(&format!("run --release -- {line}"))))?;
+    let line = "run --release -- cases render --out docs/case-problem.svg --problem";
+    run(context.cargo(line).arg(PROBLEM))
 }
 
 /// What the program is asked for each.
-const PICTURES: [&str; 1] = [
+const PICTURES: [&str; 5] = [
     // What README's first command plays.
     "play --svg docs/trial.svg",
+    "cases render center/pass-around --out docs/case.svg",
+    "cases render center/pass-around --out docs/case.png",
+    "cases render --sheet docs/cases-four-legged.svg",
+    "cases coverage --out docs/coverage-four-legged.svg",
 ];
+/// The situation of DESIGN §8: drawn over the case that is retrieved.
+const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;

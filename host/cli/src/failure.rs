@@ -31,6 +31,8 @@ pub(crate) enum Failure {
         league: String,
         /// Stored cases there are.
         stored: usize,
+        /// A name much like it.
+        near: Option<String>,
     },
     /// A problem to draw cannot be read.
     Problem(String),
@@ -123,7 +125,13 @@ impl fmt::Display for Failure {
                 let known: Vec<_> = case_library::LEAGUES.iter().map(|league| league.name).collect();
                 write!(f, "no built-in league {name:?}; --league takes one of: {}", known.join(", "))
             }
-            Self::UnknownCase { asked, league, stored } => match stored.checked_sub(1) {
+            Self::UnknownCase { asked, league, near: Some(near), .. } => {
+                write!(
+                    f,
+                    "no case {asked:?} in {league}; did you mean {near}? `onetwo cases list` tells all names"
+                )
+            }
+            Self::UnknownCase { asked, league, stored, near: None } => match stored.checked_sub(1) {
                 Some(last) => write!(
                     f,
                     "no case {asked:?} in {league}; take an id, 0 to {last}, or a region/name that `onetwo cases list` tells"

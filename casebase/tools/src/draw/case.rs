@@ -39,18 +39,32 @@ pub struct Overlay<'a> {
     pub settings: &'a Settings,
     /// What [`casebase::explain()`] says of the case.
     pub verdict: &'a Verdict,
+    /// The case's place among the candidates, from 1, and how many there are; none where it is no candidate.
+    pub rank: Option<(usize, usize)>,
 }
 
 /// The picture as an SVG of about 900 px, in mm.
 pub fn case_picture(picture: &CasePicture<'_>) -> String {
+    let half = field::half_extent(&picture.base.field());
+    let mut pen = scene(picture, 1.0);
+    caption(&mut pen, picture, half)
+}
+
+/// The field with the case, signs as much larger as `zoom` says; without heading, caption and letters on a small one.
+pub(super) fn small(picture: &CasePicture<'_>, zoom: f64) -> Svg {
+    scene(picture, zoom).svg
+}
+
+fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     let colors = picture.theme.colors();
-    let [x, y] = field::half_extent(&picture.base.field());
-    let unit = 2.0 * x / 100.0;
+    let [x, _] = field::half_extent(&picture.base.field());
+    let unit = 2.0 * x / 100.0 * zoom;
     let mut pen = Pen { svg: Svg::default(), labels: Labels::default(), colors, unit };
     field::draw(&mut pen.svg, &picture.base.field(), colors);
     let settings = picture.overlay.map_or_else(Settings::default, |overlay| overlay.settings.clone());
     let ball = picture.overlay.map_or(picture.case.ball(), |overlay| overlay.problem.ball);
     let scene = Scene { picture, settings: &settings, ball };
+    scene.reserve(&mut pen);
     scene.ball_scope(&mut pen);
     scene.opponents(&mut pen);
     scene.legs(&mut pen);
@@ -60,9 +74,12 @@ pub fn case_picture(picture: &CasePicture<'_>) -> String {
         scene.situation(&mut pen, overlay);
     }
     pen.ball(at(ball));
-    scene.ring_names(&mut pen);
-    std::mem::take(&mut pen.labels).write(&mut pen.svg, unit * 1.4, colors.carpet);
-    caption(pen, picture, [x, y])
+    let mut labels = std::mem::take(&mut pen.labels);
+    labels.write(&mut pen.svg, unit * 1.4, colors.carpet);
+    if zoom <= 1.0 {
+        scene.ring_names(&mut pen, &mut labels);
+    }
+    pen
 }
 
 /// A case for a ball at one place.
@@ -91,38 +108,71 @@ impl Scene<'_, '_> {
         }
     }
 
-    /// The letters of the intervals: on a slant, away from the ball's robot and from where the ball goes.
-    fn ring_names(&self, pen: &mut Pen) {
+    /// Where signs will lie: numbers of legs, names and letters keep clear of them.
+    fn reserve(&self, pen: &mut Pen) {
+        let unit = pen.unit;
+        pen.labels.keep_free(at(self.ball), unit * 0.8);
+        for robot in self.picture.case.robots() {
+            pen.labels.keep_free(at(self.adapted(robot)), unit * 1.9);
+        }
+        let moved = self.scopes_moved();
+        for (place, _) in self.picture.case.opponents() {
+            pen.labels.keep_free(at(place.plus(moved)), unit * 1.5);
+        }
+        if let Some(Overlay { problem, .. }) = &self.picture.overlay {
+            for place in problem.teammates.iter().map(|(_, place)| place).chain(&problem.opponents) {
+                pen.labels.keep_free(at(*place), unit * 1.9);
+            }
+        }
+    }
+
+    /// The letters of the intervals: on the first ray where none lies on a sign or on another, else each where it can;
+    /// a letter for which there is no room is left out.
+    fn ring_names(&self, pen: &mut Pen, labels: &mut Labels) {
         let case = &self.picture.case;
         let (center, scope) = (at(case.ball()), case.ball_scope());
-        let getter = at(case.position(case.getter()));
-        let right = if getter[0] <= center[0] { SLANT[0] } else { -SLANT[0] };
-        let goes_up = case.legs(case.ball()).next().is_some_and(|leg| leg.to[1] >= leg.from[1]);
-        let up = if goes_up { -SLANT[1] } else { SLANT[1] };
-        let size = pen.unit * 1.1;
-        let font = Font { size, fill: pen.colors.faint, bold: false, halo: Some(pen.colors.carpet) };
-        let mut inner = 0.0;
-        for (similarity, letter) in INTERVALS {
-            let outer = f64::sqrt(-f64::ln(similarity));
-            let place = |share: f64| {
-                [center[0] + right * share * f64::from(scope.x), center[1] + up * share * f64::from(scope.y)]
-            };
-            let [x, y] = place(f64::midpoint(inner, outer));
-            pen.svg.text([x, y - size * 0.35], letter, Anchor::Middle, font);
-            inner = outer;
+        let size = pen.unit * 1.3;
+        let half = size * 0.42;
+        let border = f64::from(self.settings.limit()).sqrt();
+        let rings = INTERVALS.map(|(similarity, _)| f64::sqrt(-f64::ln(similarity)));
+        let letters = INTERVALS.map(|(_, letter)| letter).into_iter().chain(["L"]);
+        // Middles of the bands; the outermost is thinner than a letter, its name stands outside.
+        let shares = [0.5 * rings[0], f64::midpoint(rings[0], rings[1]), f64::midpoint(rings[1], rings[2])];
+        let place = |degrees: i32, band: usize| -> At {
+            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+            let [x, y] = [f64::from(scope.x) * cos, f64::from(scope.y) * sin];
+            let share = shares.get(band).copied().unwrap_or(border + size * 0.7 / x.hypot(y));
+            [center[0] + x * share, center[1] + y * share]
+        };
+        let clear = |degrees: &i32| {
+            let places: Vec<_> = (0..4).map(|band| place(*degrees, band)).collect();
+            let apart = places
+                .windows(2)
+                .all(|pair| (0..2).any(|axis| (pair[0][axis] - pair[1][axis]).abs() >= 2.0 * half));
+            apart && places.iter().all(|place| labels.free([*place], half).is_some())
+        };
+        let ray = RAYS.iter().find(|degrees| clear(degrees)).copied();
+        let font = Font { size, fill: pen.colors.ink, bold: false, halo: Some(pen.colors.carpet) };
+        for (band, letter) in letters.enumerate() {
+            let places = ray.iter().chain(&RAYS).map(|degrees| place(*degrees, band));
+            if let Some([x, y]) = labels.free(places, half) {
+                labels.keep_free([x, y], half);
+                pen.svg.text([x, y - size * 0.36], letter, Anchor::Middle, font);
+            }
         }
-        // The outermost band is thinner than a letter: its name stands outside.
-        let [rx, ry] = ring(scope, f64::from(self.settings.limit()));
-        let [x, y] = [center[0] + right * rx + right.signum() * size * 0.6, center[1] + up * ry];
-        pen.svg.text([x, y - size * 0.35 + up.signum() * size * 0.4], "L", Anchor::Middle, font);
+    }
+
+    /// By how much the opponents' scopes move with the ball.
+    fn scopes_moved(&self) -> PointMm {
+        match self.settings.scopes {
+            ScopeRule::Translated => self.picture.case.shift(self.ball),
+            ScopeRule::Absolute => PointMm::new(0, 0),
+        }
     }
 
     fn opponents(&self, pen: &mut Pen) {
         let Colors { opponent, .. } = pen.colors;
-        let moved = match self.settings.scopes {
-            ScopeRule::Translated => self.picture.case.shift(self.ball),
-            ScopeRule::Absolute => PointMm::new(0, 0),
-        };
+        let moved = self.scopes_moved();
         for (number, (place, scope)) in (1..).zip(self.picture.case.opponents()) {
             let center = at(place.plus(moved));
             let radii = ring(scope, f64::from(self.settings.limit()));
@@ -153,8 +203,13 @@ impl Scene<'_, '_> {
             );
             pen.svg.polygon(&corners, style);
             let (from, to) = (leg.from.map(f64::from), leg.to.map(f64::from));
-            pen.arrow(from, to, color, "");
-            let middle = [f64::midpoint(from[0], to[0]), f64::midpoint(from[1], to[1])];
+            let along = |share: f64| [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
+            // A robot that waits there would hide the head.
+            let length = distance(from, to);
+            let waits = |robot| distance(at(self.adapted(robot)), to) < pen.unit * 1.9;
+            let short = if self.picture.case.robots().any(waits) { pen.unit * 2.0 } else { 0.0 };
+            pen.arrow(from, along((1.0 - short / length).max(0.1)), color, "");
+            let middle = pen.labels.free(ALONG.map(along), pen.unit * 1.2).unwrap_or(along(ALONG[0]));
             let style = format!(r#"fill="{}" stroke="{color}" stroke-width="10""#, pen.colors.paper);
             pen.svg.circle(middle, pen.unit * 1.2, style);
             pen.labels.keep_free(middle, pen.unit * 1.2);
@@ -222,7 +277,7 @@ impl Scene<'_, '_> {
             let (Some(from), to) = (place(player), at(self.adapted(robot))) else { continue };
             let style = format!(r#"stroke="{color}" stroke-width="16""#);
             pen.svg.line(from, to, style);
-            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let length = distance(from, to);
             let middle = [f64::midpoint(from[0], to[0]), f64::midpoint(from[1], to[1])];
             pen.labels.name(middle, pen.unit * 0.4, format!("{length:.0} mm"), color);
         }
@@ -298,7 +353,7 @@ impl Pen {
     }
 }
 
-fn caption(mut pen: Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String {
+fn caption(pen: &mut Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String {
     let (unit, colors, case) = (pen.unit, pen.colors, &picture.case);
     let font = Font { size: unit * 2.4, fill: colors.ink, bold: true, halo: None };
     pen.svg.text([-x, y + unit * 1.6], picture.name, Anchor::Start, font);
@@ -306,7 +361,7 @@ fn caption(mut pen: Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String 
     let side = format!("{} · id {} · attacks to the {towards}", case.symmetry().word(), case.id());
     let font = Font { size: unit * 1.7, fill: colors.faint, bold: false, halo: None };
     pen.svg.text([x, y + unit * 1.6], &side, Anchor::End, font);
-    let verdict = picture.overlay.map(|overlay| words::verdict(overlay.verdict));
+    let verdict = picture.overlay.map(|overlay| words::verdict(overlay.verdict, overlay.rank));
     let mut below = -y - unit * 0.6;
     for text in [Some(picture.intent.to_owned()), verdict, Some(LEGEND.to_owned())].into_iter().flatten() {
         for line in wrapped(&text, font.size, 2.0 * x) {
@@ -317,7 +372,7 @@ fn caption(mut pen: Pen, picture: &CasePicture<'_>, [x, y]: [f64; 2]) -> String 
     }
     let px_per_mm = 900.0 / (2.0 * (x + unit * 2.0));
     let (lower, upper) = ([-x - unit * 2.0, below - unit * 1.5], [x + unit * 2.0, y + unit * 5.0]);
-    pen.svg.finish(lower, upper, px_per_mm, colors.paper, picture.name)
+    std::mem::take(&mut pen.svg).finish(lower, upper, px_per_mm, colors.paper, picture.name)
 }
 
 /// The corners of a leg as retrieval sees it: as wide as where μ falls to the threshold; none without a length.
@@ -339,16 +394,22 @@ fn within([x, y]: At, center: At, radii: [f64; 2]) -> bool {
     ((x - center[0]) / radii[0]).powi(2) + ((y - center[1]) / radii[1]).powi(2) < 1.0
 }
 
+fn distance(from: At, to: At) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
 fn at(point: PointMm) -> At {
     [f64::from(point.x), f64::from(point.y)]
 }
 
 /// Where a similarity interval ends, and its letter (DESIGN §4.3).
 const INTERVALS: [(f64, &str); 3] = [(0.8, "H"), (0.6, "h"), (0.4, "l")];
-/// Cosine and sine of the slant: 35 degrees off the length of the field.
-const SLANT: [f64; 2] = [0.819, 0.574];
+/// Where the letters of the intervals may stand around the ball, degrees, what reads best first.
+const RAYS: [i32; 16] = [-35, 35, -145, 145, 0, 180, -18, 18, -162, 162, -55, 55, -125, 125, -90, 90];
+/// Where the number of a leg may stand on it, as shares of its length.
+const ALONG: [f64; 7] = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74];
 const LEGEND: &str = "Circles: teammates, dashed where the case wants them. Squares: opponents, in their scopes. Orange: the ball and \
-     its scope, rings at similarity 0.8, 0.6, 0.4 and its border. Trapezoids: legs of the ball, in order. Dashed arrows: \
+     its scope, rings at similarity 0.8 (H within), 0.6 (h), 0.4 (l) and its border (L). Trapezoids: legs of the ball, in order. Dashed arrows: \
      ways of robots, dotted with the ball.";
 
 #[cfg(test)]

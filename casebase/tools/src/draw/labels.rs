@@ -29,18 +29,25 @@ impl Labels {
         self.waiting.push(Label { at, reach, text: text.into(), fill });
     }
 
+    /// The first of these places where a sign of this half width covers nothing told so far.
+    pub(super) fn free(&self, places: impl IntoIterator<Item = At>, half: f64) -> Option<At> {
+        places.into_iter().find(|[x, y]| {
+            let place = [[x - half, y - half], [x + half, y + half]];
+            !self.taken.iter().any(|other| overlap(&place, other))
+        })
+    }
+
     /// Writes all names, first come, first served; where every side is taken, above.
-    pub(super) fn write(self, svg: &mut Svg, size: f64, halo: &str) {
-        let mut taken = self.taken;
-        for label in &self.waiting {
-            let places = places(label, size);
-            let free = places.iter().find(|place| !taken.iter().any(|other| overlap(place, other)));
+    pub(super) fn write(&mut self, svg: &mut Svg, size: f64, halo: &str) {
+        for label in std::mem::take(&mut self.waiting) {
+            let places = places(&label, size);
+            let free = places.iter().find(|place| !self.taken.iter().any(|other| overlap(place, other)));
             let place = free.unwrap_or(&places[0]);
             let [[left, low], [right, _]] = *place;
             let font = Font { size, fill: label.fill, bold: false, halo: Some(halo) };
             let middle = f64::midpoint(left, right);
             svg.text([middle, low + size * 0.15], &label.text, Anchor::Middle, font);
-            taken.push(*place);
+            self.taken.push(*place);
         }
     }
 }
@@ -81,6 +88,7 @@ mod tests {
         let mut svg = Svg::default();
         labels.write(&mut svg, 10.0, "");
         let body = svg.finish([0.0; 2], [1.0; 2], 1.0, "", "");
+        assert_eq!(labels.free([[0.0, 16.0], [0.0, 40.0]], 4.0), Some([0.0, 40.0]));
         // The second goes below: baselines at 16 − 5 + 1.5 and −16 − 5 + 1.5 mm, told with y down.
         assert!(body.contains(r#"y="-12.5""#) && body.contains(r#"y="19.5""#), "{body}");
     }

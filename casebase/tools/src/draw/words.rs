@@ -3,12 +3,15 @@
 use casebase::Verdict;
 
 /// The verdict with its evidence.
-pub(super) fn verdict(verdict: &Verdict) -> String {
+pub(super) fn verdict(verdict: &Verdict, rank: Option<(usize, usize)>) -> String {
     match verdict {
-        Verdict::Candidate(found) => format!(
-            "Candidate: occupied opponent scopes {}, teammates {}, similarity {:.3}, cost {:.0} mm.",
-            found.conditions, found.teammates, found.similarity, found.cost
-        ),
+        Verdict::Candidate(found) => {
+            let rank = rank.map_or_else(String::new, |(rank, of)| format!(", rank {rank} of {of}"));
+            format!(
+                "Candidate{rank}: occupied opponent scopes {}, teammates {}, similarity {:.3}, cost {:.0} mm.",
+                found.conditions, found.teammates, found.similarity, found.cost
+            )
+        }
         Verdict::Ball { similarity, .. } => {
             format!("Not applicable: the ball lies outside its scope, similarity {similarity:.3}.")
         }

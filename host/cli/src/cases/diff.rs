@@ -44,11 +44,7 @@ pub(super) fn find(shelf: &Shelf, stored: usize, asked: &str) -> Result<CaseId, 
         let symmetry = Symmetry::ALL.into_iter().find(|symmetry| symmetry.word() == word)?;
         with(name, symmetry)
     });
-    mirrored.or_else(|| with(asked, Symmetry::Identity)).ok_or_else(|| Failure::UnknownCase {
-        asked: asked.to_owned(),
-        league: shelf.league().to_owned(),
-        stored,
-    })
+    mirrored.or_else(|| with(asked, Symmetry::Identity)).ok_or_else(|| super::show::unknown(shelf, asked))
 }
 
 impl<'a> Difference<'a> {

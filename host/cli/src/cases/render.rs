@@ -1,15 +1,15 @@
-//! What does a case look like, and a problem over it? An SVG on stdout or in a file (DESIGN §4.3).
+//! What does a case look like, and a problem over it? An SVG or PNG, alone or all on one page (DESIGN §4.3).
 
 use std::io::{self, Read, Write, stdin, stdout};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use case_tools::draw::{CasePicture, Overlay, Theme, case_picture};
-use casebase::{Problem, Verdict};
+use case_tools::draw::{CasePicture, Overlay, Theme, case_picture, sheet};
+use casebase::{Match, Problem, Symmetry, Verdict, rank_order};
 use clap::{Args, ValueEnum};
 
-use super::problem;
 use super::show::{find, unknown};
+use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
@@ -19,14 +19,20 @@ use crate::picture;
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
     /// `region/name` of a case (drawn as authored), or the id of a stored case; with --problem the retrieved one.
-    #[arg(value_name = "NAME|ID", required_unless_present = "problem")]
+    #[arg(value_name = "NAME|ID", required_unless_present_any = ["problem", "all", "sheet"])]
     case: Option<String>,
     /// A situation to draw over the case: a file, - for stdin, or the line of JSON itself.
     #[arg(long, value_name = "FILE|-|JSON")]
     problem: Option<String>,
-    /// Where to, an .svg or a .png; the SVG on stdout if left out.
-    #[arg(long, value_name = "FILE", value_parser = picture_file)]
+    /// Where to, an .svg or a .png; the SVG on stdout if left out. With --all a folder.
+    #[arg(long, value_name = "FILE|DIR")]
     out: Option<PathBuf>,
+    /// Draw every authored case into the folder --out, as region/name.svg.
+    #[arg(long, requires = "out", conflicts_with_all = ["case", "problem"])]
+    all: bool,
+    /// Draw all authored cases small on one page, an .svg or a .png.
+    #[arg(long, value_name = "FILE", value_parser = picture_file, conflicts_with_all = ["case", "problem"])]
+    sheet: Option<PathBuf>,
     /// What the picture is for.
     #[arg(long, value_enum, default_value = "light")]
     theme: ThemeWord,
@@ -43,55 +49,104 @@ enum ThemeWord {
     Print,
 }
 
-pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
-    let chosen = args.settings.choose()?;
-    let shelf = Shelf::open(&args.library)?;
-    let base = shelf.base();
-    let problem = args.problem.as_deref().map(read).transpose()?;
-    let case = match (&args.case, &problem) {
-        (Some(asked), _) => Some(find(&shelf, asked).ok_or_else(|| unknown(&shelf, asked))?),
-        (None, Some(problem)) => {
-            casebase::retrieve(&base, problem, &chosen.settings).best.and_then(|best| base.case(best.case))
-        }
-        (None, None) => None,
-    };
-    let case = case.ok_or(Failure::NoCaseFits)?;
-    let mut verdict = None;
-    if let Some(problem) = &problem {
-        casebase::explain(&base, problem, &chosen.settings, |id, said| {
-            if id == case.id() {
-                verdict = Some(said);
-            }
-        });
-        if verdict.is_none() {
-            return Err(Failure::OtherGoal(shelf.name(case.id()).to_owned()));
+impl From<ThemeWord> for Theme {
+    fn from(word: ThemeWord) -> Self {
+        match word {
+            ThemeWord::Light => Self::Light,
+            ThemeWord::Dark => Self::Dark,
+            ThemeWord::Print => Self::Print,
         }
     }
-    let overlay = problem.as_ref().zip(verdict.as_ref());
-    let settings = &chosen.settings;
-    let intent = shelf.intent(case.id()).unwrap_or_default();
-    let svg = case_picture(&CasePicture {
-        base,
-        case,
-        name: shelf.name(case.id()),
-        intent: &intent,
-        overlay: overlay.map(|(problem, verdict): (&Problem, &Verdict)| Overlay {
-            problem,
-            settings,
-            verdict,
-        }),
-        theme: match args.theme {
-            ThemeWord::Light => Theme::Light,
-            ThemeWord::Dark => Theme::Dark,
-            ThemeWord::Print => Theme::Print,
-        },
-    });
+}
+
+pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
+    let shelf = Shelf::open(&args.library)?;
+    if args.all || args.sheet.is_some() {
+        return every(args, &shelf);
+    }
+    let svg = one(args, &shelf)?;
     if let Some(file) = &args.out {
+        picture::named(&file.to_string_lossy(), &KINDS)
+            .map_err(|words| Failure::Picture { file: file.clone(), words })?;
         picture::write(file, &svg)?;
     } else {
         stdout().lock().write_all(svg.as_bytes()).map_err(Failure::Output)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// One case, alone or under a problem.
+fn one(args: &RenderArgs, shelf: &Shelf) -> Result<String, Failure> {
+    let chosen = args.settings.choose()?;
+    let settings = &chosen.settings;
+    let base = shelf.base();
+    let problem = args.problem.as_deref().map(read).transpose()?;
+    let case = match (&args.case, &problem) {
+        (Some(asked), _) => Some(find(shelf, asked).ok_or_else(|| unknown(shelf, asked))?),
+        (None, Some(problem)) => {
+            casebase::retrieve(&base, problem, settings).best.and_then(|best| base.case(best.case))
+        }
+        (None, None) => None,
+    };
+    let case = case.ok_or(Failure::NoCaseFits)?;
+    let mut verdicts = Vec::new();
+    if let Some(problem) = &problem {
+        casebase::explain(&base, problem, settings, |id, verdict| verdicts.push((id, verdict)));
+    }
+    let verdict = verdicts.iter().find(|(id, _)| *id == case.id()).map(|(_, verdict)| verdict);
+    if problem.is_some() && verdict.is_none() {
+        return Err(Failure::OtherGoal(shelf.name(case.id()).to_owned()));
+    }
+    let mut ranking: Vec<_> = verdicts.iter().filter_map(|(_, verdict)| candidate(verdict)).collect();
+    ranking.sort_by(|a, b| rank_order(a, b, settings));
+    let before = ranking.iter().position(|found| found.case == case.id());
+    let rank = before.map(|before| (before + 1, ranking.len()));
+    let overlay =
+        problem.as_ref().zip(verdict).map(|(problem, verdict)| Overlay { problem, settings, verdict, rank });
+    let intent = shelf.intent(case.id()).unwrap_or_default();
+    let (name, theme) = (shelf.name(case.id()), args.theme.into());
+    Ok(case_picture(&CasePicture { base, case, name, intent: &intent, overlay, theme }))
+}
+
+/// Every authored case: a file each, all on one page, or both.
+fn every(args: &RenderArgs, shelf: &Shelf) -> Result<ExitCode, Failure> {
+    let base = shelf.base();
+    let authored: Vec<_> = base.cases().filter(|case| case.symmetry() == Symmetry::Identity).collect();
+    let intents: Vec<_> = authored.iter().map(|case| shelf.intent(case.id()).unwrap_or_default()).collect();
+    let pictures: Vec<_> = authored
+        .iter()
+        .zip(&intents)
+        .map(|(case, intent)| CasePicture {
+            base,
+            case: *case,
+            name: shelf.name(case.id()),
+            intent,
+            overlay: None,
+            theme: args.theme.into(),
+        })
+        .collect();
+    if let Some(folder) = args.out.as_ref().filter(|_| args.all) {
+        for picture in &pictures {
+            let file = folder.join(format!("{}.svg", picture.name));
+            if let Some(folder) = file.parent() {
+                std::fs::create_dir_all(folder)
+                    .map_err(|error| Failure::Picture { file: file.clone(), words: error.to_string() })?;
+            }
+            picture::write(&file, &case_picture(picture))?;
+        }
+    }
+    if let Some(file) = &args.sheet {
+        let title = format!("{}: {}", shelf.league(), counted(pictures.len(), "case"));
+        picture::write(file, &sheet(&title, &pictures))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn candidate(verdict: &Verdict) -> Option<&Match> {
+    match verdict {
+        Verdict::Candidate(found) => Some(found),
+        _ => None,
+    }
 }
 
 /// The problem that the argument holds or names.
@@ -110,8 +165,10 @@ fn read(argument: &str) -> Result<Problem, Failure> {
 }
 
 fn picture_file(text: &str) -> Result<PathBuf, String> {
-    picture::named(text, &["svg", "png"])
+    picture::named(text, &KINDS)
 }
+
+const KINDS: [&str; 2] = ["svg", "png"];
 
 #[cfg(test)]
 mod tests {

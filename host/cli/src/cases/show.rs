@@ -40,8 +40,29 @@ pub(super) fn find<'a>(shelf: &'a Shelf, asked: &str) -> Option<Case<'a>> {
 
 pub(super) fn unknown(shelf: &Shelf, asked: &str) -> Failure {
     let base = shelf.base();
-    Failure::UnknownCase { asked: asked.to_owned(), league: shelf.league().to_owned(), stored: base.len() }
+    Failure::UnknownCase {
+        asked: asked.to_owned(),
+        league: shelf.league().to_owned(),
+        stored: base.len(),
+        near: near(&shelf.names(), asked),
+    }
 }
+
+/// The name most like `asked`, with or without its region.
+fn near(names: &[String], asked: &str) -> Option<String> {
+    let alike = |name: &String| {
+        let short = name.rsplit('/').next().unwrap_or(name);
+        [name, short]
+            .map(|name| strsim::normalized_damerau_levenshtein(name, asked))
+            .into_iter()
+            .fold(0.0, f64::max)
+    };
+    let best = names.iter().map(|name| (alike(name), name)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 >= ALIKE).then(|| best.1.clone())
+}
+
+/// Share of letters that two names have in common at least, to be taken for a slip of the pen.
+const ALIKE: f64 = 0.6;
 
 fn write_case(output: &mut impl Write, shelf: &Shelf, case: &Case<'_>) -> io::Result<()> {
     let base = shelf.base();
@@ -142,6 +163,14 @@ fn at(point: PointMm) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slip_of_the_pen_is_told_the_name_meant() {
+        let names = ["center/pass-around", "front/shot"].map(str::to_owned);
+        assert_eq!(near(&names, "center/pas-around").as_deref(), Some("center/pass-around"));
+        assert_eq!(near(&names, "shto").as_deref(), Some("front/shot"));
+        assert_eq!(near(&names, "goalie"), None);
+    }
 
     #[test]
     fn left_is_told_as_left() {

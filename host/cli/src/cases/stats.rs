@@ -31,13 +31,12 @@ pub(super) fn run(args: &StatsArgs) -> Result<ExitCode, Failure> {
     let names = trial.shelf.names();
     let only = match &args.case {
         None => None,
-        Some(asked) => {
-            Some(names.iter().position(|name| name == asked).ok_or_else(|| Failure::UnknownCase {
-                asked: asked.clone(),
-                league: trial.shelf.league().to_owned(),
-                stored: trial.shelf.base().len(),
-            })?)
-        }
+        Some(asked) => Some(
+            names
+                .iter()
+                .position(|name| name == asked)
+                .ok_or_else(|| super::show::unknown(&trial.shelf, asked))?,
+        ),
     };
     let (tally, _) = trial.count()?;
     let pairs = shared(&tally);

@@ -6,5 +6,6 @@ mod inspect;
 mod new;
 mod oracle;
 mod play;
+mod render;
 mod retrieve;
 mod survey;

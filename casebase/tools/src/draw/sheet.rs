@@ -1,0 +1,66 @@
+//! What does a whole library look like? Every case small on one page, grouped by region.
+
+use super::case::{CasePicture, small};
+use super::field;
+use super::svg::{Anchor, Font, Svg};
+use super::theme::Theme;
+
+/// The cases as small pictures on one page, in the order given; a change of region begins a row. Scopes and signs are as
+/// in [`case_picture`](super::case_picture), without letters, intents and captions.
+pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
+    let mut page = Svg::default();
+    let colors = pictures.first().map_or(Theme::default(), |picture| picture.theme).colors();
+    let [x, y] = pictures.first().map_or([1.0; 2], |picture| field::half_extent(&picture.base.field()));
+    let (gap, text) = (x * 0.09, x * 0.12);
+    let step = [2.0 * x + gap, 2.0 * y + gap + text * 1.4];
+    let heading = |size: f64| Font { size, fill: colors.ink, bold: true, halo: None };
+    page.text([0.0, 0.0], title, Anchor::Start, heading(text * 1.5));
+    let mut down = -text;
+    let mut column = 0;
+    let mut before = None;
+    for picture in pictures {
+        let (region, name) = picture.name.split_once('/').unwrap_or(("", picture.name));
+        if before != Some(region) {
+            if column > 0 {
+                down -= step[1];
+            }
+            (column, before) = (0, Some(region));
+            down -= text * 1.7;
+            page.text([0.0, down], region, Anchor::Start, heading(text * 1.3));
+        } else if column == COLUMNS {
+            (column, down) = (0, down - step[1]);
+        }
+        let left = step[0] * f64::from(column);
+        let font = Font { size: text, fill: colors.ink, bold: false, halo: None };
+        page.text([left, down - text * 1.4], name, Anchor::Start, font);
+        page.inset(&small(picture, ZOOM), [left + x, down - text * 1.8 - y]);
+        column += 1;
+    }
+    down -= step[1];
+    let right = step[0] * f64::from(COLUMNS) - gap;
+    let font = Font { size: text, fill: colors.faint, bold: false, halo: None };
+    page.text([0.0, down - text], LEGEND, Anchor::Start, font);
+    let edge = gap;
+    let lower = [-edge, down - text - edge];
+    page.finish(lower, [right + edge, text * 1.6 + edge], PANEL_PX / (2.0 * x), colors.paper, title)
+}
+
+/// Pictures in a row.
+const COLUMNS: u32 = 8;
+/// How much larger signs are than on a picture of its own: so that they can be told at a quarter of its size.
+const ZOOM: f64 = 1.7;
+/// How wide one is on a screen, px.
+const PANEL_PX: f64 = 220.0;
+const LEGEND: &str = "Orange: the ball, and where it may lie. Blue: robots. Grey: opponents in their scopes. \
+     Green: the path of the ball, leg by leg. Dashed arrows: ways of robots.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_library_without_a_case_has_an_empty_sheet() {
+        let svg = sheet("none & nothing", &[]);
+        assert!(svg.contains("none &amp; nothing") && svg.ends_with("</svg>\n"));
+    }
+}

@@ -1,0 +1,39 @@
+//! Does `onetwo cases render` draw what it is asked for, and say so where it cannot? (DESIGN §8)
+
+use std::fs;
+
+use crate::common::{PROBLEM, cases, worked_example};
+
+#[test]
+fn a_library_is_drawn_as_files_and_on_one_page() {
+    let folder = worked_example("render-all");
+    let (out, page) = (folder.with_extension("out"), folder.with_extension("svg"));
+    let [out, page] = [&out, &page].map(|path| path.to_str().unwrap());
+    let run = cases("render", &folder, &["--all", "--out", out, "--sheet", page], "");
+    assert_eq!((run.code, run.stderr.as_str()), (0, ""));
+    let one = fs::read_to_string(format!("{out}/center/pass-around.svg")).unwrap();
+    assert!(one.contains("pass around it and shoot") && one.contains(">tm2</text>"));
+    let all = fs::read_to_string(page).unwrap();
+    assert!(all.contains(">render-all: 1 case</text>") && all.contains(">pass-around</text>"), "{all}");
+}
+
+#[test]
+fn a_problem_over_its_case_tells_the_rank() {
+    let run = cases("render", &worked_example("render-rank"), &["--problem", PROBLEM], "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("Candidate, rank 1 of 1: occupied opponent scopes 1, teammates 2"));
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told_with_the_mend() {
+    let folder = worked_example("render-wrong");
+    let out = folder.with_extension("jpg");
+    for (arguments, words) in [
+        (vec!["center/pas-around"], "did you mean center/pass-around?"),
+        (vec!["0", "--out", out.to_str().unwrap()], "expected a name that ends in .svg or .png"),
+        (vec!["0", "--problem", "{}"], "--problem: "),
+    ] {
+        let run = cases("render", &folder, &arguments, "");
+        assert!(run.code == 1 && run.stderr.contains(words), "{arguments:?}: {}", run.stderr);
+    }
+}
