@@ -125,19 +125,18 @@ impl fmt::Display for Failure {
                 let known: Vec<_> = case_library::LEAGUES.iter().map(|league| league.name).collect();
                 write!(f, "no built-in league {name:?}; --league takes one of: {}", known.join(", "))
             }
-            Self::UnknownCase { asked, league, near: Some(near), .. } => {
-                write!(
-                    f,
-                    "no case {asked:?} in {league}; did you mean {near}? `onetwo cases list` tells all names"
-                )
+            Self::UnknownCase { asked, league, stored, near } => {
+                write!(f, "no case {asked:?} in {league}; ")?;
+                if let Some(near) = near {
+                    write!(f, "did you mean {near}? Else ")?;
+                }
+                match stored.checked_sub(1) {
+                    Some(last) => {
+                        write!(f, "take an id, 0 to {last}, or a region/name that `onetwo cases list` tells")
+                    }
+                    None => f.write_str("the library holds no case"),
+                }
             }
-            Self::UnknownCase { asked, league, stored, near: None } => match stored.checked_sub(1) {
-                Some(last) => write!(
-                    f,
-                    "no case {asked:?} in {league}; take an id, 0 to {last}, or a region/name that `onetwo cases list` tells"
-                ),
-                None => write!(f, "no case {asked:?} in {league}; the library holds no case"),
-            },
             Self::Problem(words) => f.write_str(words),
             Self::NoCaseFits => {
                 f.write_str("no case fits the problem; name a case to see why, or ask `onetwo cases explain`")

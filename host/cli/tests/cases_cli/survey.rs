@@ -79,7 +79,7 @@ fn what_cannot_be_counted_is_refused_in_words() {
         ("coverage", &folder, &["--cell=-5"], 2, "-5 is not in 1..="),
         ("coverage", &folder, &["--cell", "1"], 1, "take a larger edge"),
         ("coverage", &folder, &["--jobs", "0"], 2, "0 is not in 1..="),
-        ("coverage", &folder, &["--out", "map.gif"], 2, "expected FILE.svg or FILE.csv"),
+        ("coverage", &folder, &["--out", "map.gif"], 2, "expected a name that ends in .svg or .png or .csv"),
         ("coverage", &folder, &["--defending", "blue"], 2, "expected yellow"),
         ("stats", &folder, &["--case", "front/none"], 1, "no case \"front/none\""),
         ("stats", &empty, &[], 1, "holds no case"),
