@@ -1,0 +1,74 @@
+//! Is the built-in library for division B what it says, judged by the oracle? No simulator plays it yet: its plans are read.
+//!
+//! Rules it must keep (ssl-rules, 2026): nobody of ours touches the ball in their defence area (1 m deep, 2 m wide), and a ball is
+//! dribbled for less than a metre.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use match_tests::oracle::library::{Action, Library, Point};
+use match_tests::oracle::problem::Problem;
+use match_tests::oracle::{Rules, retrieve};
+
+/// Cases the league begins with, at least.
+const AUTHORED_MIN: usize = 16;
+/// Regions of the paper.
+const REGIONS: [&str; 6] = ["back", "center", "corner", "front", "front-side", "side"];
+/// The longest dribble, mm.
+const DRIBBLE_MAX: f64 = 1000.0;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../casebase/library/cases/division-b")
+}
+
+fn division_b() -> Library {
+    Library::read(&folder()).expect("the built-in library is readable")
+}
+
+#[test]
+fn it_has_gameplays_for_two_and_three_robots_in_every_region_and_lint_finds_nothing() {
+    let library = division_b();
+    let authored = library.cases.len() / 4;
+    assert!(authored >= AUTHORED_MIN, "{authored} cases");
+    assert!(library.cases.iter().all(|case| (2..=3).contains(&case.robots.len())));
+    assert!(library.cases.iter().any(|case| case.robots.len() == 3));
+    let regions: BTreeSet<_> = library.cases.iter().filter_map(|case| case.name.split('/').next()).collect();
+    assert_eq!(regions, BTreeSet::from(REGIONS));
+    let built = case_tools::load(&folder()).expect("no errors");
+    assert!(built.findings.is_empty(), "{:?}", built.findings);
+    assert!(case_library::LEAGUES.iter().any(|league| league.name == "division-b"));
+}
+
+#[test]
+fn every_case_in_every_symmetry_is_retrieved_from_its_own_situation() {
+    let library = division_b();
+    for case in &library.cases {
+        let winner = retrieve(&library, &Problem::own_situation(case), &Rules::default()).winner;
+        let winner = winner.unwrap_or_else(|| panic!("{} blocks itself", case.name));
+        assert_eq!(library.cases[winner.id].name, case.name, "{} is beaten", case.symmetry);
+        assert_eq!(winner.conditions, case.opponents.len(), "{} {}", case.name, case.symmetry);
+    }
+}
+
+#[test]
+fn nobody_plays_the_ball_in_their_defence_area_or_dribbles_for_a_metre() {
+    for case in division_b().cases {
+        let attack = case.defending.attack();
+        let in_their_area = |at: Point| at.x * attack > 3500 && at.y.abs() < 1000;
+        assert!(!in_their_area(case.ball), "{}: the ball", case.name);
+        for robot in &case.robots {
+            assert!(!in_their_area(robot.at), "{}: a robot", case.name);
+            for action in &robot.gameplay {
+                match *action {
+                    Action::DribbleTo(to) => {
+                        let way = ((to.x - case.ball.x) as f64).hypot((to.y - case.ball.y) as f64);
+                        assert!(way < DRIBBLE_MAX, "{}: {way} mm", case.name);
+                        assert!(!in_their_area(to), "{}: a dribble", case.name);
+                    }
+                    Action::GoTo(to) => assert!(!in_their_area(to), "{}: a run", case.name),
+                    _ => {}
+                }
+            }
+        }
+    }
+}
