@@ -58,18 +58,16 @@ impl Nearest {
 
 /// The nearest robot to each place; `None` where nobody can reach one of them within `limit` mm: then every
 /// correspondence exceeds it.
-#[inline]
+#[inline(always)]
 pub(crate) fn nearest(
     robots: &[(RobotId, [f32; 2])],
     places: impl Iterator<Item = [f32; 2]>,
     limit: f32,
 ) -> Option<Nearest> {
-    let mut found = Nearest {
-        assignment: Assignment { players: Vec::new(), cost: 0.0, farthest: 0, distance: -1.0 },
-        distinct: true,
-    };
-    let assignment = &mut found.assignment;
-    let mut taken = 0_u16;
+    let mut players = Vec::new();
+    let (mut cost, mut farthest, mut longest) = (0.0, 0, -1.0);
+    let mut distinct = true;
+    let mut taken = 0_u32;
     for (part, place) in places.enumerate() {
         let (mut least, mut second, mut player) = (f32::INFINITY, f32::INFINITY, None);
         for (id, at) in robots {
@@ -88,15 +86,15 @@ pub(crate) fn nearest(
         }
         let next = distance + TOLD_APART_MM;
         let bit = 1 << player.index();
-        found.distinct &= second > next * next && taken & bit == 0;
+        distinct &= second > next * next && taken & bit == 0;
         taken |= bit;
-        assignment.players.push(player).ok()?;
-        assignment.cost += distance;
-        if distance > assignment.distance {
-            (assignment.farthest, assignment.distance) = (part, distance);
+        players.push(player).ok()?;
+        cost += distance;
+        if distance > longest {
+            (farthest, longest) = (part, distance);
         }
     }
-    Some(found)
+    Some(Nearest { assignment: Assignment { players, cost, farthest, distance: longest }, distinct })
 }
 
 /// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings constrain the
@@ -140,23 +138,27 @@ pub(crate) fn assign_within(distances: &Distances, rule: CostRule, limit: f32) -
 fn least_sum(distances: &Distances, limit: f32) -> Option<u16> {
     let full = full_set(distances)?;
     // For every set of parts: the least sum so far and the ids that make it, the sum above the ids.
-    let mut best = [u64::MAX; SETS];
+    let mut best = [NEVER; SETS];
     best[0] = 0;
     for (player, column) in &distances.columns {
+        let mut with = [NEVER; TEAMMATES_MAX];
+        for (part, (with, distance)) in with.iter_mut().zip(column).enumerate().take(distances.parts) {
+            if *distance <= limit {
+                *with = u64::from(fixed(*distance)) << 16 | u64::from(shifted(*player, part));
+            }
+        }
         for set in (1..=full).rev() {
-            for part in 0..distances.parts {
-                let before = best[set & !(1 << part) & (SETS - 1)];
-                let distance = column[part & (TEAMMATES_MAX - 1)];
-                if set & (1 << part) != 0 && before != u64::MAX && distance <= limit {
-                    let with =
-                        before + (u64::from(fixed(distance)) << 16) + u64::from(shifted(*player, part));
-                    best[set & (SETS - 1)] = best[set & (SETS - 1)].min(with);
+            let mut least = best[set & (SETS - 1)];
+            for (part, with) in with.iter().enumerate() {
+                if set & (1 << part) != 0 {
+                    least = least.min(best[(set ^ (1 << part)) & (SETS - 1)] + with);
                 }
             }
+            best[set & (SETS - 1)] = least;
         }
     }
     let least = best[full & (SETS - 1)];
-    (least != u64::MAX).then_some(least as u16)
+    (least < NEVER).then_some(least as u16)
 }
 
 /// The least possible maximum.
@@ -225,6 +227,8 @@ fn digit(packed: u16, part: usize) -> u8 {
 
 /// Above the 1/256 mm within which distances count as equal, and above the rounding of those that can matter.
 const TOLD_APART_MM: f32 = 0.02;
+/// Above every sum, and five of it still fit.
+const NEVER: u64 = 1 << 60;
 /// Sets of parts.
 const SETS: usize = 1 << TEAMMATES_MAX;
 

@@ -86,7 +86,8 @@ pub fn explain(
     settings: &Settings,
     mut sink: impl FnMut(CaseId, Verdict),
 ) {
-    let query = Query::new(problem, settings);
+    let mut query = Query::new(problem, settings);
+    query.fill();
     for case in base.cases().filter(|case| case.defending() == problem.defending) {
         let Some(stored) = case.stored() else { continue };
         sink(case.id(), judge(base, &query, &case, &stored));

@@ -101,7 +101,6 @@ impl Tube {
     }
 
     /// (v/ρ)², the negated exponent of μ; `None` where μ is 0 because the point is not abreast of the leg.
-    #[inline]
     fn exponent(&self, point: [f32; 2]) -> Option<f32> {
         let Products { squared, cross, radius, .. } = self.products(point)?;
         Some(cross * cross / (squared * radius * radius))
@@ -220,7 +219,7 @@ pub(crate) fn least_exponent(
 }
 
 /// Does any opponent stand in a leg, the legs taken as stored and each free or not? Opponents relative to the ball.
-#[inline]
+#[inline(always)]
 pub(crate) fn is_crisply_blocked(
     case: &Stored<'_, '_>,
     ball: PointMm,
@@ -233,9 +232,6 @@ pub(crate) fn is_crisply_blocked(
         rest = tube.to;
         let d = [tube.to[0] - tube.from[0], tube.to[1] - tube.from[1]];
         let squared = d[0] * d[0] + d[1] * d[1];
-        let widest = tube.r_min.max(tube.r_max);
-        // Nobody farther from the axis is inside, whatever the rounding.
-        let reach = squared * (widest * widest * limit * ROUNDING);
         for opponent in opponents {
             let q = [opponent[0] - tube.from[0], opponent[1] - tube.from[1]];
             let along = d[0] * q[0] + d[1] * q[1];
@@ -243,6 +239,9 @@ pub(crate) fn is_crisply_blocked(
                 continue;
             }
             let cross = d[0] * q[1] - d[1] * q[0];
+            let widest = if tube.r_min > tube.r_max { tube.r_min } else { tube.r_max };
+            // Nobody farther from the axis is inside, whatever the rounding.
+            let reach = squared * (widest * widest * limit * ROUNDING);
             if cross * cross <= reach && tube.exponent(*opponent).is_some_and(|exponent| exponent < limit) {
                 return true;
             }

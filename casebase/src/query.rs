@@ -8,12 +8,12 @@ use protocol::RobotId;
 
 use crate::action::TEAMMATES_MAX;
 use crate::case::{Case, widen};
-use crate::correspondence::{Assignment, Distances, Nearest, nearest};
+use crate::correspondence::{Assignment, Distances, Nearest, assign, nearest};
 use crate::path::{conditions, freedom, is_blocking, is_crisply_blocked, least_exponent};
 use crate::point::gauss_exponent;
 use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
 use crate::rank::{Key, Match};
-use crate::settings::{FreePathRule, OutOfField, ScopeRule, Settings};
+use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, ScopeRule, Settings};
 use crate::stored::Stored;
 use crate::{CaseRobot, PointMm};
 
@@ -28,14 +28,22 @@ pub(crate) struct Query<'p> {
 }
 
 impl<'p> Query<'p> {
+    /// Without places yet: [`Query::fill`] puts them in, where the query lies, as it is long to move.
+    #[inline]
     pub(crate) fn new(problem: &'p Problem, settings: &'p Settings) -> Self {
-        let relative = |place: &PointMm| place.minus(problem.ball).to_f32();
-        Self {
-            problem,
-            settings,
-            limit: settings.limit(),
-            teammates: problem.teammates.iter().map(|(id, place)| (*id, relative(place))).collect(),
-            opponents: problem.opponents.iter().map(relative).collect(),
+        Self { problem, settings, limit: settings.limit(), teammates: Vec::new(), opponents: Vec::new() }
+    }
+
+    /// Puts the problem's places in.
+    #[inline]
+    pub(crate) fn fill(&mut self) {
+        let ball = self.problem.ball;
+        // Both lists have the capacity of the problem's: every push fits.
+        for (id, place) in &self.problem.teammates {
+            let _ = self.teammates.push((*id, place.minus(ball).to_f32()));
+        }
+        for place in &self.problem.opponents {
+            let _ = self.opponents.push(place.minus(ball).to_f32());
         }
     }
 
@@ -55,8 +63,11 @@ impl<'p> Query<'p> {
     }
 
     /// How many of the case's opponent scopes are occupied; `None` once more than `missing_max` are known not to be.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn conditions(&self, case: &Stored<'_, '_>, missing_max: u8) -> Option<u8> {
+        if case.opponents_count() == 0 {
+            return Some(0);
+        }
         let moved_by = match self.settings.scopes {
             ScopeRule::Translated => PointMm::new(0, 0),
             ScopeRule::Absolute => widen(case.gate.ball).minus(self.problem.ball),
@@ -65,14 +76,20 @@ impl<'p> Query<'p> {
     }
 
     /// How free the ball's path is; `None` where it is blocked.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn freedom(&self, case: &Stored<'_, '_>) -> Option<f32> {
         let Self { problem, settings, .. } = self;
         if settings.free_path == FreePathRule::Crisp && settings.out_of_field != OutOfField::Clamp {
             let blocked = is_crisply_blocked(case, problem.ball, &self.opponents, self.limit);
             return (!blocked).then_some(1.0);
         }
-        let least = least_exponent(case, problem.ball, &self.opponents, settings);
+        self.degree_of_freedom(case)
+    }
+
+    /// The same where paths are fuzzy or positions clamped.
+    #[inline(never)]
+    fn degree_of_freedom(&self, case: &Stored<'_, '_>) -> Option<f32> {
+        let least = least_exponent(case, self.problem.ball, &self.opponents, self.settings);
         if least.is_some_and(|exponent| is_blocking(exponent, self.settings)) {
             return None;
         }
@@ -93,10 +110,26 @@ impl<'p> Query<'p> {
     }
 
     /// Who is nearest to each part; `None` where nobody is near enough to one.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn nearest(&self, case: &Stored<'_, '_>) -> Option<Nearest> {
         let places = case.positions().iter().map(|at| self.place(case, *at));
         nearest(&self.teammates, places, self.settings.travel_max_mm)
+    }
+
+    /// The cheapest correspondence, where nobody in it has too far to go.
+    #[inline]
+    pub(crate) fn cheapest(&self, case: &Stored<'_, '_>, nearest: Nearest) -> Option<Assignment> {
+        let settings = self.settings;
+        let plain =
+            settings.cost == CostRule::Sum && settings.correspondence == CorrespondenceRule::MinThenTest;
+        let quick = if plain { nearest.if_distinct() } else { None };
+        let found = quick.or_else(|| self.search(case))?;
+        (found.distance <= settings.travel_max_mm).then_some(found)
+    }
+
+    #[inline(never)]
+    fn search(&self, case: &Stored<'_, '_>) -> Option<Assignment> {
+        assign(&self.distances(case), self.settings)
     }
 
     /// How far every present robot is from every adapted position.

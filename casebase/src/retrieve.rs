@@ -8,11 +8,10 @@ use core::ops::ControlFlow;
 
 use protocol::CaseId;
 
-use crate::correspondence::{Assignment, Nearest, assign};
 use crate::problem::Problem;
 use crate::query::{Found, Query};
 use crate::rank::{Key, Match, interval, key_order};
-use crate::settings::{CorrespondenceRule, CostRule, Criterion, FreePathRule, OutOfField, Settings};
+use crate::settings::{CostRule, Criterion, FreePathRule, OutOfField, Settings};
 use crate::stored::Stored;
 use crate::table::CaseBase;
 
@@ -27,7 +26,8 @@ pub struct Retrieval {
 
 /// The best case and the number of candidates.
 pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Retrieval {
-    let query = Query::new(problem, settings);
+    let mut query = Query::new(problem, settings);
+    query.fill();
     let mut best: Option<Found> = None;
     let mut candidates = 0;
     each_near(base, &query, |case| {
@@ -43,19 +43,28 @@ pub fn retrieve(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> 
 }
 
 /// The best case alone, without counting the candidates: cases that cannot win are not looked into.
+#[inline(never)]
 pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> Option<Match> {
     if !can_be_bounded(settings) {
         return retrieve(base, problem, settings).best;
     }
-    let query = Query::new(problem, settings);
+    let mut query = Query::new(problem, settings);
+    query.fill();
+    // The lists of the index fall in the order of promises; without it there is one list in no useful order.
+    let in_order = CaseBase::index_serves(query.limit);
     let mut best = Best::default();
     each_near(base, &query, |case| {
-        // The lists of the index fall in just this order: what follows in this one promises no more.
-        if Class::promise(case) < best.class && CaseBase::index_serves(query.limit) {
+        if in_order && Class::promise(case) < best.class {
             return ControlFlow::Break(());
         }
-        if let Some(exponent) = query.ball_inside(case) {
-            best.look_at(&query, case, exponent);
+        // The cheapest question first: it needs the case's counts alone.
+        if query.robots_suffice(case)
+            && let Some(exponent) = query.ball_inside(case)
+        {
+            let allowed = Class::of(case, case.opponents_count(), interval(exponent));
+            if allowed >= best.class {
+                best.look_at(&query, case, exponent, allowed);
+            }
         }
         ControlFlow::Continue(())
     });
@@ -67,14 +76,22 @@ pub fn retrieve_best(base: &CaseBase<'_>, problem: &Problem, settings: &Settings
 struct Class(u32);
 
 impl Class {
-    fn new(conditions: u8, teammates: u8, interval: u8) -> Self {
-        Self(u32::from(conditions) << 8 | u32::from(teammates) << 4 | (3 - u32::from(interval & 3)))
+    #[inline]
+    fn of(case: &Stored<'_, '_>, conditions: u8, interval: u8) -> Self {
+        let teammates = u32::from(case.teammates());
+        Self(u32::from(conditions) << 8 | teammates << 4 | (3 - u32::from(interval & 3)))
     }
 
     /// The best the case could come to, wherever the ball lies.
     #[inline]
     fn promise(case: &Stored<'_, '_>) -> Self {
-        Self::new(case.opponents_count(), case.teammates(), 0)
+        Self::of(case, case.opponents_count(), 0)
+    }
+
+    /// The same with other conditions.
+    #[inline]
+    fn with(self, conditions: u8) -> Self {
+        Self(self.0 & 0xff | u32::from(conditions) << 8)
     }
 }
 
@@ -86,18 +103,14 @@ struct Best {
 }
 
 impl Best {
-    /// A case whose ball scope holds the ball: takes it over if it is a better candidate.
+    /// A case with robots enough and the ball in its scope, which could come to `allowed`, no less than the best: takes it
+    /// over if it is a better candidate.
     #[inline(never)]
-    fn look_at(&mut self, query: &Query<'_>, case: &Stored<'_, '_>, exponent: f32) {
-        let (opponents, teammates, interval) = (case.opponents_count(), case.teammates(), interval(exponent));
-        let allowed = Class::new(opponents, teammates, interval);
-        if allowed < self.class || !query.robots_suffice(case) {
-            return;
-        }
+    fn look_at(&mut self, query: &Query<'_>, case: &Stored<'_, '_>, exponent: f32, allowed: Class) {
         // So many of its scopes may be empty before it is behind.
         let missing_max = ((allowed.0 - self.class.0) >> 8) as u8;
         let Some(conditions) = query.conditions(case, missing_max) else { return };
-        let class = Class::new(conditions, teammates, interval);
+        let class = allowed.with(conditions);
         let Some(free) = query.freedom(case) else { return };
         let Some(nearest) = query.nearest(case) else { return };
         if let Some(found) = self.found.as_ref().filter(|_| class == self.class)
@@ -105,11 +118,14 @@ impl Best {
         {
             return;
         }
-        let Some(assignment) = cheapest(query, case, nearest) else { return };
-        let key = Key { conditions, teammates, free, exponent, cost: assignment.cost, case: case.id.0 };
+        let Some(assignment) = query.cheapest(case, nearest) else { return };
+        let (teammates, case) = (case.teammates(), case.id.0);
+        let key = Key { conditions, teammates, free, exponent, cost: assignment.cost, case };
         let found = Found { key, assignment };
-        if keep_better(&mut self.found, found, query.settings) {
-            self.class = class;
+        if class > self.class {
+            (self.class, self.found) = (class, Some(found));
+        } else {
+            keep_better(&mut self.found, found, query.settings);
         }
     }
 }
@@ -156,24 +172,12 @@ fn candidate(query: &Query<'_>, case: &Stored<'_, '_>, exponent: f32) -> Option<
     }
     let free = query.freedom(case)?;
     let nearest = query.nearest(case)?;
-    let assignment = cheapest(query, case, nearest)?;
+    let assignment = query.cheapest(case, nearest)?;
     Some(query.found(case, exponent, free, assignment))
 }
 
-/// The cheapest correspondence, where nobody in it has too far to go.
-fn cheapest(query: &Query<'_>, case: &Stored<'_, '_>, nearest: Nearest) -> Option<Assignment> {
-    let settings = query.settings;
-    let plain = settings.cost == CostRule::Sum && settings.correspondence == CorrespondenceRule::MinThenTest;
-    let quick = if plain { nearest.if_distinct() } else { None };
-    let found = quick.or_else(|| assign(&query.distances(case), settings))?;
-    (found.distance <= settings.travel_max_mm).then_some(found)
-}
-
-/// Whether the new one is the better one.
-fn keep_better(best: &mut Option<Found>, found: Found, settings: &Settings) -> bool {
-    let is_better = best.as_ref().is_none_or(|best| key_order(&found.key, &best.key, settings).is_lt());
-    if is_better {
+fn keep_better(best: &mut Option<Found>, found: Found, settings: &Settings) {
+    if best.as_ref().is_none_or(|best| key_order(&found.key, &best.key, settings).is_lt()) {
         *best = Some(found);
     }
-    is_better
 }

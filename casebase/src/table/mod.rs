@@ -315,8 +315,8 @@ pub const HASHED_FROM: usize = 12;
 #[inline]
 pub(crate) fn part<T>(pool: &[T], start: u32, count: u8, copy: u16) -> &[T] {
     let count = usize::from(count);
-    let from = (start as usize).saturating_add(usize::from(copy) * count);
-    pool.get(from..from.saturating_add(count)).unwrap_or(&[])
+    let from = (start as usize).wrapping_add(usize::from(copy) * count);
+    pool.get(from..).and_then(|rest| rest.get(..count)).unwrap_or(&[])
 }
 
 static EMPTY_HEADER: Header = Header {
