@@ -8,9 +8,10 @@ use casebase::{
 };
 
 use crate::codes::code;
-use crate::document::{COORDINATES, Reader, Table, Value};
+use crate::document::{Reader, Table, Value};
 use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
+use crate::keys::{self, COORDINATES};
 use crate::league::League;
 
 /// A case as somebody wrote it. Spans are places in its file.
@@ -106,12 +107,12 @@ impl Script for Mirrored<'_> {
 }
 
 fn read_case(reader: &mut Reader<'_>, root: &Table<'_, '_>, league: Option<&League>) -> Option<Authored> {
-    root.refuse_others(reader, &["intent", "defending", "ball", "teammates", "opponents"]);
+    root.refuse_others(reader, keys::CASE);
     let intent = root.required(reader, "intent").and_then(|value| reader.text(value, "intent"));
     let defending = root.required(reader, "defending").and_then(|value| read_defending(reader, value));
     let ball = root.required(reader, "ball").and_then(|value| {
         let ball = reader.table(value, "ball")?;
-        ball.refuse_others(reader, &["at", "scope"]);
+        ball.refuse_others(reader, keys::SCOPED);
         let (at, scope) = (ball.point(reader, "at"), read_scope(reader, &ball));
         Some((at?, scope?))
     });
@@ -197,7 +198,7 @@ fn read_teammate(
     league: Option<&League>,
 ) -> Option<Teammate> {
     let table = reader.table(value, robot.to_string())?;
-    table.refuse_others(reader, &["at", "gameplay"]);
+    table.refuse_others(reader, keys::TEAMMATE);
     let at = table.point(reader, "at");
     let gameplay = table.required(reader, "gameplay").and_then(|value| {
         let list = reader.list(value, &table.name_of("gameplay"))?;
@@ -262,7 +263,7 @@ fn read_turn(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str) -> Optio
         }
         [("face", _, point)] => reader.point(point, name).map(TurnTarget::Face),
         _ => {
-            let unknown = entries.iter().find(|(key, ..)| !["heading_deg", "face"].contains(key));
+            let unknown = entries.iter().find(|(key, ..)| !keys::TURN.contains(key));
             let (code, span) = unknown
                 .map_or((code::WRONG_TYPE, value.span()), |(_, span, _)| (code::UNKNOWN_KEY, span.clone()));
             let message = format!("{name} has {} keys", entries.len());
@@ -316,7 +317,7 @@ fn read_opponents(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<Vec<O
         .enumerate()
         .map(|(i, value)| {
             let table = reader.table(value, format!("opp{}", i + 1))?;
-            table.refuse_others(reader, &["at", "scope"]);
+            table.refuse_others(reader, keys::SCOPED);
             let (at, scope) = (table.point(reader, "at"), read_scope(reader, &table));
             let ((at, span), scope) = (at?, scope?);
             Some(Opponent { at, span, scope })

@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::codes::code;
 use crate::files::SourceFile;
 use crate::finding::{Finding, Severity};
+use crate::keys::COORDINATES;
 
 /// A file being read: where complaints go.
 pub(crate) struct Reader<'f> {
@@ -209,11 +210,6 @@ impl<'t, 'i> Table<'t, 'i> {
         entries
     }
 }
-
-/// Coordinates and radii in files, mm: a kilometre either way, so that no sum of a few of them overflows.
-pub(crate) const COORDINATES: RangeInclusive<i32> = -1_000_000..=1_000_000;
-/// What must be above 0, mm.
-pub(crate) const POSITIVE: RangeInclusive<i32> = 1..=1_000_000;
 
 fn described(value: &DeValue<'_>) -> String {
     match value {

@@ -5,9 +5,10 @@ use casebase::walk::Kicks;
 use casebase::{FieldMm, Kick, KickAim, KickId, Pass, Primitive};
 
 use crate::codes::code;
-use crate::document::{COORDINATES, POSITIVE, Reader, Table, Value};
+use crate::document::{Reader, Table, Value};
 use crate::files::SourceFile;
 use crate::finding::Finding;
+use crate::keys::{self, COORDINATES, DEGREES, INNER, POSITIVE, SIDES};
 use crate::lineup::Lineup;
 
 /// A league's rules.
@@ -58,7 +59,7 @@ impl Kicks for League {
 }
 
 fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> {
-    root.refuse_others(reader, &["field", "pass", "kicks", "problems"]);
+    root.refuse_others(reader, keys::LEAGUE);
     let field = root.required(reader, "field").and_then(|value| read_field(reader, value));
     let pass = root.required(reader, "pass").and_then(|value| read_pass(reader, value));
     let lineup = root.optional("problems").and_then(|value| Lineup::read(reader, value));
@@ -93,7 +94,7 @@ fn read_league(reader: &mut Reader<'_>, root: &Table<'_, '_>) -> Option<League> 
 
 fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> {
     let table = reader.table(value, "field")?;
-    table.refuse_others(reader, &["length", "width", "margin", "goal_width", "penalty_area"]);
+    table.refuse_others(reader, keys::FIELD);
     let length = table.whole(reader, "length", &SIDES);
     let width = table.whole(reader, "width", &SIDES);
     let margin =
@@ -101,7 +102,7 @@ fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> 
     let goal_width = table.whole(reader, "goal_width", &INNER);
     let area = table.required(reader, "penalty_area").and_then(|value| {
         let area = reader.table(value, "field.penalty_area")?;
-        area.refuse_others(reader, &["depth", "width"]);
+        area.refuse_others(reader, keys::PENALTY_AREA);
         let (depth, width) = (area.whole(reader, "depth", &INNER), area.whole(reader, "width", &INNER));
         Some((depth?, width?))
     });
@@ -112,7 +113,7 @@ fn read_field(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<FieldMm> 
 
 fn read_pass(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Pass> {
     let table = reader.table(value, "pass")?;
-    table.refuse_others(reader, &["r_min", "r_max"]);
+    table.refuse_others(reader, keys::PASS);
     let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
     Some(Pass { r_min: r_min?, r_max: r_max? })
 }
@@ -122,7 +123,7 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
     let (r_min, r_max) = (table.whole(reader, "r_min", &POSITIVE), table.whole(reader, "r_max", &POSITIVE));
     let primitive = table.optional("primitive").and_then(|value| read_primitive(reader, name, value));
     let aim = if let Some(value) = table.optional("aim") {
-        table.refuse_others(reader, &["aim", "offset", "r_min", "r_max", "primitive"]);
+        table.refuse_others(reader, keys::KICK_AT_GOAL);
         let word = reader.text(value, &table.name_of("aim"))?;
         if word != "goal" {
             let message = format!("{name} aims at {word:?}");
@@ -138,7 +139,7 @@ fn read_kick(reader: &mut Reader<'_>, name: &str, value: Value<'_, '_>) -> Optio
             table.optional("offset").map_or(Some(0), |value| reader.whole(value, "offset", &COORDINATES));
         KickAim::Goal { offset_mm: offset? }
     } else {
-        table.refuse_others(reader, &["heading_deg", "length", "r_min", "r_max", "primitive"]);
+        table.refuse_others(reader, keys::KICK_AHEAD);
         let degrees = table.whole(reader, "heading_deg", &DEGREES);
         let length_mm = table.whole(reader, "length", &(0..=*POSITIVE.end()));
         KickAim::Heading { degrees: degrees?, length_mm: length_mm? }
@@ -177,10 +178,3 @@ fn are_partners(kick: Kick, other: Kick) -> bool {
     };
     opposite && kick.r_min == other.r_min && kick.r_max == other.r_max && (!own_image || kick == other)
 }
-
-/// Sides of a field, mm: what the table's positions can hold.
-const SIDES: std::ops::RangeInclusive<i32> = 1..=30_000;
-/// Dimensions within a field, mm.
-const INNER: std::ops::RangeInclusive<i32> = 0..=30_000;
-/// Headings: several turns either way.
-const DEGREES: std::ops::RangeInclusive<i32> = -3600..=3600;

@@ -17,6 +17,7 @@ mod encode;
 mod files;
 mod finding;
 mod grid;
+pub mod keys;
 mod league;
 mod library;
 mod lineup;

@@ -12,6 +12,7 @@ use casebase::{FieldMm, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, PointMm};
 
 use crate::codes::code;
 use crate::document::{Reader, Table, Value};
+use crate::keys;
 
 /// Where the robots of a drawn problem may stand.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,7 +69,7 @@ impl Lineup {
     /// What `[problems]` says; `None` with findings where it cannot be used.
     pub(crate) fn read(reader: &mut Reader<'_>, value: Value<'_, '_>) -> Option<Self> {
         let table = reader.table(value, "problems")?;
-        table.refuse_others(reader, &["teammates", "opponents"]);
+        table.refuse_others(reader, keys::PROBLEMS);
         let teammates = table.required(reader, "teammates")?;
         let list = areas(reader, teammates, "problems.teammates", PROBLEM_TEAMMATES_MAX)?;
         if list.is_empty() {
@@ -115,7 +116,7 @@ fn areas(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str, most: usize)
 
 fn read_area(reader: &mut Reader<'_>, value: Value<'_, '_>, name: &str) -> Option<Rectangle> {
     let table = reader.table(value, name)?;
-    table.refuse_others(reader, &["x", "y"]);
+    table.refuse_others(reader, keys::RECTANGLE);
     let (x, y) = (range(reader, &table, "x"), range(reader, &table, "y"));
     Some(Rectangle { x: x?, y: y? })
 }

@@ -12,6 +12,7 @@ mod play;
 mod problem;
 mod render;
 mod retrieve;
+mod schema;
 mod show;
 mod stats;
 mod survey;
@@ -35,6 +36,8 @@ pub(crate) enum CasesVerb {
     /// What would a case for this situation look like? Writes a first draft to author from.
     #[command(after_help = PROBLEM_HELP)]
     New(new::NewArgs),
+    /// What may stand in a case file, or in league.toml? A JSON schema, for editors that complete and check by one.
+    Schema(schema::SchemaArgs),
     /// Does each case work? Plays it from its own situation, many times, against standing and playing opponents.
     Play(play::PlayArgs),
     /// Which case fits each situation? Problems on stdin, answers on stdout, one JSON object a line.
@@ -58,6 +61,7 @@ pub(crate) fn run(verb: &CasesVerb) -> Result<ExitCode, Failure> {
         CasesVerb::List(args) => list::run(args),
         CasesVerb::Show(args) => show::run(args),
         CasesVerb::New(args) => new::run(args),
+        CasesVerb::Schema(args) => schema::run(args),
         CasesVerb::Play(args) => play::run(args),
         CasesVerb::Retrieve(args) => retrieve::run(args),
         CasesVerb::Explain(args) => explain::run(args),

@@ -8,4 +8,5 @@ mod oracle;
 mod play;
 mod render;
 mod retrieve;
+mod schema;
 mod survey;

@@ -1,0 +1,46 @@
+//! Which keys do case files and `league.toml` have? (DESIGN §4.1) The reader refuses all others, and the JSON schema for
+//! editors is made from them. mm, whole degrees.
+
+use std::ops::RangeInclusive;
+
+/// A case file.
+pub const CASE: &[&str] = &["intent", "defending", "ball", "teammates", "opponents"];
+/// `ball` of a case, and each of its opponents: a place and a scope.
+pub const SCOPED: &[&str] = &["at", "scope"];
+/// A robot of a case.
+pub const TEAMMATE: &[&str] = &["at", "gameplay"];
+/// Actions that are a word alone.
+pub const WORDS: &[&str] = &["wait", "get_ball"];
+/// Actions that are a table of one key.
+pub const ACTIONS: &[&str] = &["go_to_point", "turn", "dribble_to", "pass_ball", "receive_ball", "kick"];
+/// Directions of a `turn`, one of them.
+pub const TURN: &[&str] = &["heading_deg", "face"];
+/// `league.toml`.
+pub const LEAGUE: &[&str] = &["field", "pass", "kicks", "problems"];
+/// `[field]`.
+pub const FIELD: &[&str] = &["length", "width", "margin", "goal_width", "penalty_area"];
+/// `penalty_area` of `[field]`.
+pub const PENALTY_AREA: &[&str] = &["depth", "width"];
+/// `[pass]`.
+pub const PASS: &[&str] = &["r_min", "r_max"];
+/// `[kicks.KIND]` at the goal.
+pub const KICK_AT_GOAL: &[&str] = &["aim", "offset", "r_min", "r_max", "primitive"];
+/// `[kicks.KIND]` along a heading.
+pub const KICK_AHEAD: &[&str] = &["heading_deg", "length", "r_min", "r_max", "primitive"];
+/// `[problems]`.
+pub const PROBLEMS: &[&str] = &["teammates", "opponents"];
+/// A rectangle of `[problems]`.
+pub const RECTANGLE: &[&str] = &["x", "y"];
+/// What may be left out, wherever it stands.
+pub const OPTIONAL: &[&str] = &["opponents", "margin", "offset", "primitive", "kicks", "problems"];
+
+/// Coordinates and radii in files, mm: a kilometre either way, so that no sum of a few of them overflows.
+pub const COORDINATES: RangeInclusive<i32> = -1_000_000..=1_000_000;
+/// What must be above 0, mm.
+pub const POSITIVE: RangeInclusive<i32> = 1..=1_000_000;
+/// Sides of a field, mm: what the table's positions can hold.
+pub const SIDES: RangeInclusive<i32> = 1..=30_000;
+/// Dimensions within a field, mm.
+pub const INNER: RangeInclusive<i32> = 0..=30_000;
+/// Headings of kicks: several turns either way.
+pub const DEGREES: RangeInclusive<i32> = -3600..=3600;

@@ -1,0 +1,148 @@
+//! What may stand in a case file, or in `league.toml`? A JSON schema (draft 2020-12) from the names and ranges the reader
+//! knows, for editors. It says what a file may look like; what a plan must be is for `cases check`.
+
+use std::ops::RangeInclusive;
+use std::process::ExitCode;
+
+use case_tools::keys;
+use casebase::{
+    GoalEnd, OPPONENTS_MAX, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Primitive, TEAMMATES_MAX,
+};
+use clap::Args;
+use serde_json::{Map, Value, json};
+
+use super::answer::write_line;
+use crate::Failure;
+
+/// What `cases schema` may be told.
+#[derive(Debug, Args)]
+pub(crate) struct SchemaArgs {
+    /// Of league.toml instead of a case file.
+    #[arg(long)]
+    league_file: bool,
+}
+
+pub(super) fn run(args: &SchemaArgs) -> Result<ExitCode, Failure> {
+    let mut schema = if args.league_file { league() } else { case() };
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+    schema["title"] = if args.league_file { "league.toml of onetwo" } else { "A case of onetwo" }.into();
+    write_line(&mut std::io::stdout().lock(), &schema).map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn case() -> Value {
+    object(keys::CASE, |key| match key {
+        "intent" => json!({ "type": "string", "description": "In a sentence, what the case is for." }),
+        "defending" => json!({
+            "enum": [GoalEnd::Negative.word(), GoalEnd::Positive.word()],
+            "description": "yellow: the goal at -x (attacks towards +x); cyan: the goal at +x.",
+        }),
+        "ball" => scoped(),
+        "teammates" => list(&teammate(), 1, TEAMMATES_MAX),
+        _ => list(&scoped(), 0, OPPONENTS_MAX),
+    })
+}
+
+fn scoped() -> Value {
+    object(keys::SCOPED, |key| match key {
+        "at" => point("[x, y] in mm, field frame."),
+        _ => pair(&keys::POSITIVE, "Radii [x, y] in mm."),
+    })
+}
+
+fn teammate() -> Value {
+    object(keys::TEAMMATE, |key| match key {
+        "at" => point("[x, y] in mm, field frame."),
+        _ => json!({ "type": "array", "items": action() }),
+    })
+}
+
+fn action() -> Value {
+    let tables = keys::ACTIONS.iter().map(|word| {
+        object(&[word], |key| match key {
+            "turn" => any(keys::TURN.iter().map(|way| object(&[way], turn))),
+            "pass_ball" | "receive_ball" => {
+                json!({ "type": "integer", "minimum": 1, "maximum": TEAMMATES_MAX, "description": "Robot of the case." })
+            }
+            "kick" => json!({ "type": "string", "description": "A kind of kick of league.toml." }),
+            _ => point("[x, y] in mm, field frame."),
+        })
+    });
+    any(std::iter::once(json!({ "enum": keys::WORDS })).chain(tables))
+}
+
+fn turn(way: &str) -> Value {
+    match way {
+        "face" => point("[x, y] in mm, field frame."),
+        _ => integer(&keys::COORDINATES, "Degrees from the direction of attack, left > 0."),
+    }
+}
+
+fn league() -> Value {
+    object(keys::LEAGUE, |key| match key {
+        "field" => object(keys::FIELD, |key| match key {
+            "length" | "width" => integer(&keys::SIDES, "mm"),
+            "penalty_area" => object(keys::PENALTY_AREA, |_| integer(&keys::INNER, "mm")),
+            _ => integer(&keys::INNER, "mm"),
+        }),
+        "pass" => object(keys::PASS, |_| integer(&keys::POSITIVE, "Radius in mm.")),
+        "kicks" => {
+            let kinds = [keys::KICK_AT_GOAL, keys::KICK_AHEAD];
+            json!({ "type": "object", "additionalProperties": any(kinds.map(|kind| object(kind, kick))) })
+        }
+        _ => object(keys::PROBLEMS, |key| match key {
+            "teammates" => list(&rectangle(), 1, PROBLEM_TEAMMATES_MAX),
+            _ => {
+                json!({ "type": "array", "items": list(&rectangle(), 0, PROBLEM_OPPONENTS_MAX), "minItems": 1 })
+            }
+        }),
+    })
+}
+
+fn kick(key: &str) -> Value {
+    match key {
+        "aim" => json!({ "const": "goal" }),
+        "offset" => integer(&keys::COORDINATES, "mm along the goal line, left > 0 seen in attack."),
+        "primitive" => {
+            // An unknown word is doubtful to `cases check`, not wrong.
+            let known = Primitive::ALL.map(Primitive::word).into_iter().filter(|word| !word.is_empty());
+            json!({ "type": "string", "examples": known.collect::<Vec<_>>() })
+        }
+        "heading_deg" => integer(&keys::DEGREES, "Degrees from the direction of attack, left > 0."),
+        "length" => integer(&(0..=*keys::POSITIVE.end()), "mm"),
+        _ => integer(&keys::POSITIVE, "Radius in mm."),
+    }
+}
+
+fn rectangle() -> Value {
+    object(keys::RECTANGLE, |_| pair(&keys::COORDINATES, "[from, to] in mm, seen in attack towards +x."))
+}
+
+/// A table of these keys and no others.
+fn object(known: &[&str], schema: impl Fn(&str) -> Value) -> Value {
+    let properties: Map<_, _> = known.iter().map(|key| ((*key).to_owned(), schema(key))).collect();
+    // The two lists of `[problems]` must both be there; a case may do without opponents.
+    let optional = |key: &&&str| keys::OPTIONAL.contains(key) && known != keys::PROBLEMS;
+    let required: Vec<_> = known.iter().filter(|key| !optional(key)).collect();
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+fn any(schemas: impl IntoIterator<Item = Value>) -> Value {
+    json!({ "anyOf": schemas.into_iter().collect::<Vec<_>>() })
+}
+
+fn list(items: &Value, least: usize, most: usize) -> Value {
+    json!({ "type": "array", "items": items, "minItems": least, "maxItems": most })
+}
+
+fn point(told: &str) -> Value {
+    pair(&keys::COORDINATES, told)
+}
+
+fn pair(range: &RangeInclusive<i32>, told: &str) -> Value {
+    json!({ "type": "array", "items": integer(range, "mm"), "minItems": 2, "maxItems": 2, "description": told })
+}
+
+fn integer(range: &RangeInclusive<i32>, told: &str) -> Value {
+    json!({ "type": "integer", "minimum": range.start(), "maximum": range.end(), "description": told })
+}
