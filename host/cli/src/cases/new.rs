@@ -22,7 +22,7 @@ pub(crate) struct NewArgs {
     /// The situation: a file with one problem, or - for stdin.
     #[arg(long, value_name = "FILE|-")]
     from: PathBuf,
-    /// The file to write: <region>/<name>.toml in a league's folder; stdout unless told.
+    /// The file to write: `<region>/<name>.toml` in a league's folder; stdout unless told.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Write over a file that is there.
