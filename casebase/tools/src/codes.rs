@@ -19,7 +19,7 @@ macro_rules! codes {
     ($($name:ident $code:literal $severity:ident $meaning:literal)*) => {
         /// The codes of all findings.
         pub mod code {
-            $(#[doc = $meaning] pub const $name: &str = $code;)*
+            $(#[doc = concat!("`", $code, "`: see [`CODES`](super::CODES).")] pub const $name: &str = $code;)*
         }
 
         /// Every kind of finding: errors first.
