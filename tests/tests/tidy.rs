@@ -264,13 +264,14 @@ const PURE: [&str; 9] =
     ["nalgebra", "libm", "micromath", "heapless", "serde", "postcard", "siphasher", "zerocopy", "defmt"];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 22] = [
+const LOWEST_FIRST: [&str; 23] = [
     "geometry",
     "rules",
     "protocol",
     "motion",
     "ssl",
     "casebase",
+    "drawing",
     "case-tools",
     "case-library",
     "retrieval-bench",

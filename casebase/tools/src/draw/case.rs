@@ -7,10 +7,9 @@ use casebase::{
     adapted_position,
 };
 
-use super::field;
+use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, half_extent, wrapped};
+
 use super::labels::Labels;
-use super::svg::{Anchor, At, Font, Svg, wrapped};
-use super::theme::{Colors, Theme};
 use super::words;
 
 /// A case to be drawn.
@@ -45,7 +44,7 @@ pub struct Overlay<'a> {
 
 /// The picture as an SVG of about 900 px, in mm.
 pub fn case_picture(picture: &CasePicture<'_>) -> String {
-    let half = field::half_extent(&picture.base.field());
+    let half = half_extent(&picture.base.field());
     let mut pen = scene(picture, 1.0);
     caption(&mut pen, picture, half)
 }
@@ -57,10 +56,10 @@ pub(super) fn small(picture: &CasePicture<'_>, zoom: f64) -> Svg {
 
 fn scene<'p>(picture: &'p CasePicture<'p>, zoom: f64) -> Pen {
     let colors = picture.theme.colors();
-    let [x, _] = field::half_extent(&picture.base.field());
+    let [x, _] = half_extent(&picture.base.field());
     let unit = 2.0 * x / 100.0 * zoom;
     let mut pen = Pen { svg: Svg::default(), labels: Labels::default(), colors, unit };
-    field::draw(&mut pen.svg, &picture.base.field(), colors);
+    draw_field(&mut pen.svg, &picture.base.field(), colors);
     let settings = picture.overlay.map_or_else(Settings::default, |overlay| overlay.settings.clone());
     let ball = picture.overlay.map_or(picture.case.ball(), |overlay| overlay.problem.ball);
     let scene = Scene { picture, settings: &settings, ball };
@@ -337,19 +336,9 @@ impl Pen {
 
     /// An arrow whose head's tip is at `to`; nothing where it has no length.
     fn arrow(&mut self, from: At, to: At, color: &str, dash: &str) {
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-        let length = dx.hypot(dy);
-        let head = self.unit * 1.8;
-        if length < 1.0 {
-            return;
+        if distance(from, to) >= 1.0 {
+            self.svg.arrow(from, to, self.unit * 1.8, color, format_args!(r#"stroke-width="18" {dash}"#));
         }
-        let (ux, uy) = (dx / length, dy / length);
-        let back = [to[0] - ux * head, to[1] - uy * head];
-        self.svg.line(from, back, format!(r#"stroke="{color}" stroke-width="18" {dash}"#));
-        let side = head * 0.42;
-        let corners =
-            [to, [back[0] - uy * side, back[1] + ux * side], [back[0] + uy * side, back[1] - ux * side]];
-        self.svg.polygon(&corners, format!(r#"fill="{color}""#));
     }
 }
 

@@ -1,10 +1,7 @@
 //! Where on the field is how much? A grid of values over the field with its legend and caption, as an SVG.
 
 use casebase::{FieldMm, PointMm};
-
-use super::field;
-use super::svg::{Anchor, At, Font, Svg, wrapped};
-use super::theme::{Colors, Theme};
+use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};
 
 /// A grid of values over the field.
 #[derive(Clone, Debug)]
@@ -77,12 +74,12 @@ pub fn heat_maps(maps: &[HeatMap<'_>]) -> String {
 fn panel(map: &HeatMap<'_>) -> (Svg, At, At) {
     let colors = map.theme.colors();
     let mut svg = Svg::default();
-    let [x, y] = field::half_extent(&map.field);
+    let [x, y] = half_extent(&map.field);
     let unit = 2.0 * x / 100.0;
-    field::draw(&mut svg, &map.field, colors);
+    draw_field(&mut svg, &map.field, colors);
     cells(&mut svg, map, colors);
     let mut over = Svg::default();
-    field::lines(&mut over, &map.field, colors, "#000000");
+    field_lines(&mut over, &map.field, colors, "#000000");
     svg.group_with(&over, LINES_OPACITY);
     let font = Font { size: unit * 2.6, fill: colors.ink, bold: true, halo: None };
     svg.text([-x, y + unit * 1.6], map.title, Anchor::Start, font);
@@ -189,7 +186,7 @@ fn list(svg: &mut Svg, colors: &Colors, names: &[&str], [x, y]: [f64; 2], half: 
     let (mut across, mut down) = (x, y);
     let known = names.iter().zip(CATEGORIES).map(|(name, fill)| (*name, fill));
     for (name, fill) in known.chain([("not known", colors.unknown)]) {
-        let wide = unit * 6.0 + super::svg::width(name, font.size);
+        let wide = unit * 6.0 + width(name, font.size);
         if across > x && across + wide > half {
             (across, down) = (x, down - unit * 3.0);
         }

@@ -1,6 +1,6 @@
 //! Where do names go so that none lies on another? Signs are told first, then each name takes the first free side.
 
-use super::svg::{Anchor, At, Font, Svg, width};
+use drawing::{Anchor, At, Font, Svg, width};
 
 /// Names waiting for their places, and what is taken already. mm.
 #[derive(Debug, Default)]

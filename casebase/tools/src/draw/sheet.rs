@@ -1,16 +1,15 @@
 //! What does a whole library look like? Every case small on one page, grouped by region.
 
+use drawing::{Anchor, Font, Svg, Theme, half_extent};
+
 use super::case::{CasePicture, small};
-use super::field;
-use super::svg::{Anchor, Font, Svg};
-use super::theme::Theme;
 
 /// The cases as small pictures on one page, in the order given; a change of region begins a row. Scopes and signs are as
 /// in [`case_picture`](super::case_picture), without letters, intents and captions.
 pub fn sheet(title: &str, pictures: &[CasePicture<'_>]) -> String {
     let mut page = Svg::default();
     let colors = pictures.first().map_or(Theme::default(), |picture| picture.theme).colors();
-    let [x, y] = pictures.first().map_or([1.0; 2], |picture| field::half_extent(&picture.base.field()));
+    let [x, y] = pictures.first().map_or([1.0; 2], |picture| half_extent(&picture.base.field()));
     let (gap, text) = (x * 0.09, x * 0.12);
     let step = [2.0 * x + gap, 2.0 * y + gap + text * 1.4];
     let heading = |size: f64| Font { size, fill: colors.ink, bold: true, halo: None };

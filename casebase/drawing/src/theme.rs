@@ -14,25 +14,38 @@ pub enum Theme {
 
 /// The colours of a theme, as SVG writes them.
 #[derive(Debug)]
-pub(super) struct Colors {
-    pub(super) paper: &'static str,
-    pub(super) carpet: &'static str,
-    pub(super) line: &'static str,
-    pub(super) ink: &'static str,
-    pub(super) faint: &'static str,
-    pub(super) ball: &'static str,
-    pub(super) team: &'static str,
-    pub(super) opponent: &'static str,
-    pub(super) path: &'static str,
-    pub(super) warning: &'static str,
-    pub(super) yellow: &'static str,
-    pub(super) cyan: &'static str,
+pub struct Colors {
+    /// The page.
+    pub paper: &'static str,
+    /// The field.
+    pub carpet: &'static str,
+    /// The lines on it.
+    pub line: &'static str,
+    /// Text.
+    pub ink: &'static str,
+    /// Text that may be overlooked.
+    pub faint: &'static str,
+    /// The ball.
+    pub ball: &'static str,
+    /// The attackers.
+    pub team: &'static str,
+    /// The opponents.
+    pub opponent: &'static str,
+    /// The ball's way.
+    pub path: &'static str,
+    /// What is wrong.
+    pub warning: &'static str,
+    /// The goal at −x, as the paper names it.
+    pub yellow: &'static str,
+    /// The goal at +x.
+    pub cyan: &'static str,
     /// Where a heat map knows nothing.
-    pub(super) unknown: &'static str,
+    pub unknown: &'static str,
 }
 
 impl Theme {
-    pub(super) const fn colors(self) -> &'static Colors {
+    /// Its colours.
+    pub const fn colors(self) -> &'static Colors {
         match self {
             Self::Light => &LIGHT,
             Self::Dark => &DARK,

@@ -6,13 +6,13 @@ use super::svg::Svg;
 use super::theme::Colors;
 
 /// The part of the page that the field with its goals and margin takes: from −x, −y to +x, +y, mm.
-pub(super) fn half_extent(field: &FieldMm) -> [f64; 2] {
+pub fn half_extent(field: &FieldMm) -> [f64; 2] {
     let room = |side: i32| f64::from(side) * 0.5 + f64::from(field.margin.max(ROOM));
     [room(field.length), room(field.width)]
 }
 
 /// Carpet, then lines and goals.
-pub(super) fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
+pub fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
     let [x, y] = half_extent(field);
     let Colors { carpet, .. } = colors;
     svg.rect([-x, -y], [x, y], format_args!(r#"fill="{carpet}""#));
@@ -20,7 +20,7 @@ pub(super) fn draw(svg: &mut Svg, field: &FieldMm, colors: &Colors) {
 }
 
 /// Lines and goals alone, over what is there.
-pub(super) fn lines(svg: &mut Svg, field: &FieldMm, colors: &Colors, line: &str) {
+pub fn lines(svg: &mut Svg, field: &FieldMm, colors: &Colors, line: &str) {
     let [x, y] = [f64::from(field.length) * 0.5, f64::from(field.width) * 0.5];
     let style = format!(r#"fill="none" stroke="{line}" stroke-width="{LINE}""#);
     for (sign, fill) in [(-1.0, colors.yellow), (1.0, colors.cyan)] {

@@ -1,71 +1,106 @@
-//! How do millimetres of the field become shapes of an SVG? Elements under a growing string; the one place where y turns.
+//! How do places become shapes of an SVG? Elements under a growing string; the one place where y turns.
 //!
-//! Everything is told in mm with y up, text beside the field included; the viewBox is in mm too.
+//! Pictures of the field are told in mm with y up, text beside the field included; charts in px. The viewBox is in the same unit.
 
 use std::fmt::{Display, Write as _};
 
-/// A place: mm, +y up.
-pub(super) type At = [f64; 2];
+/// A place: mm or px, +y up.
+pub type At = [f64; 2];
 
 /// An SVG under construction.
 #[derive(Debug, Default)]
-pub(super) struct Svg {
+pub struct Svg {
     body: String,
 }
 
 /// Where a text's anchor is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub enum Anchor {
+    /// At its beginning.
     Start,
+    /// At its middle.
     Middle,
+    /// At its end.
     End,
 }
 
-/// How a text looks: size in mm, colour, weight.
+/// How a text looks.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Font<'a> {
-    pub(super) size: f64,
-    pub(super) fill: &'a str,
-    pub(super) bold: bool,
+pub struct Font<'a> {
+    /// Height.
+    pub size: f64,
+    /// Colour.
+    pub fill: &'a str,
+    /// Weight.
+    pub bold: bool,
     /// A line of this colour around the letters, so that they can be read over anything.
-    pub(super) halo: Option<&'a str>,
+    pub halo: Option<&'a str>,
 }
 
 impl Svg {
     /// A rectangle between two opposite corners; `style` is SVG attributes, here and below.
-    pub(super) fn rect(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
+    pub fn rect(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
         let (left, top, width, height) = (x.min(to_x), -y.max(to_y), (to_x - x).abs(), (to_y - y).abs());
         self.element(format_args!(
             r#"<rect x="{left:.1}" y="{top:.1}" width="{width:.1}" height="{height:.1}" {style}/>"#
         ));
     }
 
-    pub(super) fn ellipse(&mut self, [x, y]: At, [rx, ry]: At, style: impl Display) {
+    /// An ellipse by its centre and radii.
+    pub fn ellipse(&mut self, [x, y]: At, [rx, ry]: At, style: impl Display) {
         let y = -y;
         self.element(format_args!(r#"<ellipse cx="{x:.1}" cy="{y:.1}" rx="{rx:.1}" ry="{ry:.1}" {style}/>"#));
     }
 
-    pub(super) fn circle(&mut self, at: At, radius: f64, style: impl Display) {
+    /// A circle.
+    pub fn circle(&mut self, at: At, radius: f64, style: impl Display) {
         self.ellipse(at, [radius, radius], style);
     }
 
-    pub(super) fn line(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
+    /// A straight line.
+    pub fn line(&mut self, [x, y]: At, [to_x, to_y]: At, style: impl Display) {
         let (y, to_y) = (-y, -to_y);
         self.element(format_args!(
             r#"<line x1="{x:.1}" y1="{y:.1}" x2="{to_x:.1}" y2="{to_y:.1}" {style}/>"#
         ));
     }
 
-    pub(super) fn polygon(&mut self, corners: &[At], style: impl Display) {
-        let mut points = String::new();
-        for [x, y] in corners {
-            let gap = if points.is_empty() { "" } else { " " };
-            let _ = write!(points, "{gap}{x:.1},{:.1}", -y);
+    /// Straight stretches through these places, not closed; nothing for fewer than two.
+    pub fn polyline(&mut self, places: &[At], style: impl Display) {
+        if places.len() > 1 {
+            self.element(format_args!(r#"<polyline points="{}" fill="none" {style}/>"#, points(places)));
         }
-        self.element(format_args!(r#"<polygon points="{points}" {style}/>"#));
     }
 
-    pub(super) fn text(&mut self, [x, y]: At, text: &str, anchor: Anchor, font: Font<'_>) {
+    /// An arrow whose head, that long but no longer than the arrow, has its tip at `to`; nothing without a length.
+    pub fn arrow(&mut self, from: At, to: At, head: f64, color: &str, line: impl Display) {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy);
+        if length <= 0.0 {
+            return;
+        }
+        let head = head.min(length);
+        let (ux, uy) = (dx / length, dy / length);
+        let back = [to[0] - ux * head, to[1] - uy * head];
+        self.line(from, back, format_args!(r#"stroke="{color}" {line}"#));
+        self.arrowhead(to, [ux, uy], head, color);
+    }
+
+    /// A filled head that points in the direction of the unit vector `along`, its tip at `to`.
+    pub fn arrowhead(&mut self, to: At, [ux, uy]: At, head: f64, color: &str) {
+        let (back, side) = ([to[0] - ux * head, to[1] - uy * head], head * 0.42);
+        let corners =
+            [to, [back[0] - uy * side, back[1] + ux * side], [back[0] + uy * side, back[1] - ux * side]];
+        self.polygon(&corners, format_args!(r#"fill="{color}""#));
+    }
+
+    /// A closed figure.
+    pub fn polygon(&mut self, corners: &[At], style: impl Display) {
+        self.element(format_args!(r#"<polygon points="{}" {style}/>"#, points(corners)));
+    }
+
+    /// A line of text on the baseline at `at`.
+    pub fn text(&mut self, [x, y]: At, text: &str, anchor: Anchor, font: Font<'_>) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -85,28 +120,34 @@ impl Svg {
     }
 
     /// `inner` with its origin at `at`.
-    pub(super) fn inset(&mut self, inner: &Self, [x, y]: At) {
+    pub fn inset(&mut self, inner: &Self, [x, y]: At) {
         let (body, y) = (&inner.body, -y);
         self.element(format_args!("<g transform=\"translate({x:.1} {y:.1})\">\n{body}</g>"));
     }
 
+    /// `inner`, drawn with these attributes.
+    pub fn group(&mut self, inner: &Self, style: impl Display) {
+        let body = &inner.body;
+        self.element(format_args!("<g {style}>\n{body}</g>"));
+    }
+
     /// `inner` over what is there, as opaque as that.
-    pub(super) fn group_with(&mut self, inner: &Self, opacity: &str) {
+    pub fn group_with(&mut self, inner: &Self, opacity: &str) {
         let body = &inner.body;
         self.element(format_args!("<g opacity=\"{opacity}\">\n{body}</g>"));
     }
 
-    /// The whole picture: what lies between the two corners, `px_per_mm` large on a screen.
-    pub(super) fn finish(
+    /// The whole picture: what lies between the two corners, `px_per_unit` large on a screen.
+    pub fn finish(
         self,
         [left, bottom]: At,
         [right, top]: At,
-        px_per_mm: f64,
+        px_per_unit: f64,
         paper: &str,
         title: &str,
     ) -> String {
         let (width, height, y) = (right - left, top - bottom, -top);
-        let (w, h) = (width * px_per_mm, height * px_per_mm);
+        let (w, h) = (width * px_per_unit, height * px_per_unit);
         let (title, body) = (escaped(title), self.body);
         format!(
             concat!(
@@ -129,9 +170,19 @@ impl Svg {
         )
     }
 
-    fn element(&mut self, element: impl Display) {
+    /// One element of which there is no other way to say it; the caller escapes what comes from outside.
+    pub fn element(&mut self, element: impl Display) {
         let _ = writeln!(self.body, "{element}");
     }
+}
+
+fn points(places: &[At]) -> String {
+    let mut points = String::new();
+    for [x, y] in places {
+        let gap = if points.is_empty() { "" } else { " " };
+        let _ = write!(points, "{gap}{x:.1},{:.1}", -y);
+    }
+    points
 }
 
 /// Text from outside cannot break the picture: XML's signs are escaped, what XML forbids is left out.
@@ -140,13 +191,13 @@ fn escaped(text: &str) -> String {
     allowed.collect::<String>().replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// About how wide a text is, mm: the mean advance of a wide sans-serif.
-pub(super) fn width(text: &str, size: f64) -> f64 {
+/// About how wide a text is, in the unit of its size: the mean advance of a wide sans-serif.
+pub fn width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * size * 0.57
 }
 
-/// `text` in lines of at most `room` mm.
-pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+/// `text` in lines of at most that room.
+pub fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {
@@ -171,6 +222,18 @@ mod tests {
         let mut svg = Svg::default();
         svg.circle([100.0, 250.0], 30.0, "");
         assert!(svg.body.contains(r#"cx="100.0" cy="-250.0" rx="30.0""#), "{}", svg.body);
+    }
+
+    #[test]
+    fn an_arrow_ends_at_its_tip() {
+        let mut svg = Svg::default();
+        svg.arrow([0.0, 0.0], [100.0, 0.0], 20.0, "red", "");
+        // The head's foot is 20 back and 0.42 × 20 to either side.
+        assert!(svg.body.contains(r#"x2="80.0" y2="-0.0""#), "{}", svg.body);
+        assert!(svg.body.contains(r#"points="100.0,-0.0 80.0,-8.4 80.0,8.4""#), "{}", svg.body);
+        let mut short = Svg::default();
+        short.arrow([5.0, 5.0], [5.0, 5.0], 20.0, "red", "");
+        assert_eq!(short.body, "");
     }
 
     #[test]
