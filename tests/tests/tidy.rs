@@ -264,7 +264,7 @@ const PURE: [&str; 9] =
     ["nalgebra", "libm", "micromath", "heapless", "serde", "postcard", "siphasher", "zerocopy", "defmt"];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 23] = [
+const LOWEST_FIRST: [&str; 24] = [
     "geometry",
     "rules",
     "protocol",
@@ -284,6 +284,7 @@ const LOWEST_FIRST: [&str; 23] = [
     "virtual-robot",
     "host",
     "arena",
+    "report",
     "onetwo",
     "match-tests",
     "xtask",

@@ -21,7 +21,7 @@ impl Count {
     }
 }
 
-/// From where to where a share may lie, 0 to 1.
+/// From where to where a value may lie: a share from 0 to 1, a mean or a difference in its own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Its lower end.
@@ -40,6 +40,26 @@ pub fn wilson(count: Count, confidence: f64) -> Option<Interval> {
     let scale = 1.0 + z * z / n;
     let end = |value: f64| (value / scale).clamp(0.0, 1.0);
     Some(Interval { low: end(centre - reach), high: end(centre + reach) })
+}
+
+/// How much greater the first share is than the second, at least and at most, −1 to 1: Newcombe's score interval (1998, method
+/// 10), made of Wilson's; `None` as there.
+pub fn newcombe(first: Count, second: Count, confidence: f64) -> Option<Interval> {
+    let (a, b) = (first.share()?, second.share()?);
+    let (own, other) = (wilson(first, confidence)?, wilson(second, confidence)?);
+    let reach = |x: f64, y: f64| (x * x + y * y).sqrt();
+    Some(Interval {
+        low: a - b - reach(a - own.low, other.high - b),
+        high: a - b + reach(own.high - a, b - other.low),
+    })
+}
+
+/// Student's interval of a mean; `None` where the spread is not known or the confidence is not between 0 and 1.
+pub fn student(sample: Sample, confidence: f64) -> Option<Interval> {
+    let sd = sample.sd.filter(|_| sample.n > 1 && confidence > 0.0 && confidence < 1.0)?;
+    let student = StudentsT::new(0.0, 1.0, f64::from(sample.n - 1)).ok()?;
+    let reach = student.inverse_cdf(f64::midpoint(1.0, confidence)) * sd / f64::from(sample.n).sqrt();
+    Some(Interval { low: sample.mean - reach, high: sample.mean + reach })
 }
 
 /// What a test says.
@@ -152,6 +172,31 @@ mod tests {
         }
         assert_eq!(wilson(count(0, 0), 0.95), None);
         assert_eq!(wilson(count(1, 2), 1.0), None);
+    }
+
+    #[test]
+    fn newcombes_interval_of_a_difference_is_the_published_one() {
+        // Newcombe 1998 (differences), table II, method 10: 56/70 − 48/80, 9/10 − 3/10, 10/10 − 0/20.
+        for (first, second, low, high) in [
+            ((56, 70), (48, 80), 0.0524, 0.3339),
+            ((9, 10), (3, 10), 0.1705, 0.8090),
+            ((10, 10), (0, 20), 0.6791, 1.0),
+        ] {
+            let interval = newcombe(count(first.0, first.1), count(second.0, second.1), 0.95).unwrap();
+            near(interval.low, low, 5e-5);
+            near(interval.high, high, 5e-5);
+        }
+        assert_eq!(newcombe(count(1, 2), count(0, 0), 0.95), None);
+    }
+
+    #[test]
+    fn students_interval_agrees_with_a_hand_calculation() {
+        // 20.5 ± 2.2622 × 1.3 / √10: t of 9 degrees of freedom from any table.
+        let interval = student(sample(10, 20.5, 1.3), 0.95).unwrap();
+        near(interval.low, 20.5 - 0.92997, 1e-4);
+        near(interval.high, 20.5 + 0.92997, 1e-4);
+        assert_eq!(student(Sample { n: 1, mean: 1.0, sd: None }, 0.95), None);
+        assert_eq!(student(sample(10, 1.0, 1.0), 1.0), None);
     }
 
     #[test]

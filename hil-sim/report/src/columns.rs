@@ -1,0 +1,158 @@
+//! Which columns has each of the paper's tables, and what stands in a row's? The one list that page, plots and Markdown share.
+
+use arena::evaluation::statistics::{Interval, newcombe, student, wilson};
+use arena::evaluation::{Measure, TableRow};
+
+/// A column of a table.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Column {
+    pub(crate) head: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) decimals: usize,
+    pub(crate) kind: Kind,
+}
+
+/// Where its values come from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// Something that is tested.
+    Measured(Measure),
+    /// Something that is only told.
+    Told(fn(&TableRow) -> Option<f64>),
+}
+
+impl Column {
+    const fn share(head: &'static str, measure: Measure) -> Self {
+        Self { head, unit: "%", decimals: 1, kind: Kind::Measured(measure) }
+    }
+
+    const fn mean(head: &'static str, unit: &'static str, measure: Measure) -> Self {
+        Self { head, unit, decimals: 2, kind: Kind::Measured(measure) }
+    }
+
+    const fn told(
+        head: &'static str,
+        unit: &'static str,
+        decimals: usize,
+        of: fn(&TableRow) -> Option<f64>,
+    ) -> Self {
+        Self { head, unit, decimals, kind: Kind::Told(of) }
+    }
+
+    /// Its value in a row.
+    pub(crate) fn value(&self, row: &TableRow) -> Option<f64> {
+        match self.kind {
+            Kind::Measured(measure) => measure.value(row),
+            Kind::Told(of) => of(row),
+        }
+    }
+
+    /// The 95 % interval of its value, in its unit.
+    pub(crate) fn interval(&self, row: &TableRow) -> Option<Interval> {
+        let Kind::Measured(measure) = self.kind else { return None };
+        interval(measure, row)
+    }
+
+    /// The standard deviation of its values, where that is known.
+    pub(crate) fn spread(&self, row: &TableRow) -> Option<f64> {
+        let Kind::Measured(measure) = self.kind else { return None };
+        measure.sample(row)?.sd
+    }
+
+    pub(crate) fn is_share(&self) -> bool {
+        self.unit == "%"
+    }
+}
+
+/// The 95 % interval of a measure: Wilson's of a share, in percent, Student's of a mean.
+pub(crate) fn interval(measure: Measure, row: &TableRow) -> Option<Interval> {
+    match measure.count(row) {
+        Some(count) => percent(wilson(count, CONFIDENCE)?),
+        None => student(measure.sample(row)?, CONFIDENCE),
+    }
+}
+
+/// The 95 % interval of the difference of two shares, in points.
+pub(crate) fn difference(measure: Measure, first: &TableRow, second: &TableRow) -> Option<Interval> {
+    percent(newcombe(measure.count(first)?, measure.count(second)?, CONFIDENCE)?)
+}
+
+#[allow(clippy::unnecessary_wraps, reason = "both callers are of options")]
+fn percent(Interval { low, high }: Interval) -> Option<Interval> {
+    Some(Interval { low: 100.0 * low, high: 100.0 * high })
+}
+
+/// The columns of a table; one that nobody has a value for is left out, and timeouts where there are none.
+pub(crate) fn columns(table: u8, rows: &[&TableRow]) -> Vec<Column> {
+    let all = match table {
+        1 => &TABLE_1[..],
+        2 => &TABLE_2,
+        3 => &TABLE_3,
+        4 => &TABLE_4,
+        5 => &TABLE_5,
+        _ => &TABLE_6,
+    };
+    let told = |column: &&Column| {
+        let least = if column.head == "timeout" && table != 4 { 0.0 } else { -1.0 };
+        rows.iter().any(|row| column.value(row).is_some_and(|value| value > least))
+    };
+    all.iter().filter(told).copied().collect()
+}
+
+/// B's share of all backing up, percent.
+fn share_b(row: &TableRow) -> Option<f64> {
+    let (a, b) = (row.backups_a?, row.backups_b?);
+    (a + b > 0.0).then(|| 100.0 * b / (a + b))
+}
+
+/// Cooperative cases among those used, percent.
+fn cooperative(row: &TableRow) -> Option<f64> {
+    let used = used(row)?;
+    (used > 0.0).then(|| 100.0 * row.cooperative.unwrap_or_default() / used)
+}
+
+fn used(row: &TableRow) -> Option<f64> {
+    Some(row.individual? + row.cooperative?)
+}
+
+/// What the whole report is sure with.
+pub(crate) const CONFIDENCE: f64 = 0.95;
+
+const GOAL: Column = Column::share("goal", Measure::Goal);
+const CLOSE: Column = Column::share("close", Measure::Close);
+const BLOCK: Column = Column::share("block", Measure::Block);
+const OUT: Column = Column::share("out", Measure::Out);
+const TIMEOUT: Column = Column::share("timeout", Measure::Timeout);
+const TO_GOAL: Column = Column::share("to goal", Measure::ToGoal);
+const POSSESSION: Column = Column::mean("possession", "a trial", Measure::Possession);
+const MIDFIELD: Column = Column::mean("midfield's possession", "a trial", Measure::MidfieldPossession);
+const DEFENDER: Column = Column::mean("defender's possession", "a trial", Measure::Possession);
+const TIME: Column = Column::mean("time", "s", Measure::Time);
+
+const TABLE_1: [Column; 8] = [GOAL, CLOSE, BLOCK, OUT, TIMEOUT, TO_GOAL, POSSESSION, TIME];
+const TABLE_2: [Column; 3] = [
+    Column::told("A backs up", "a trial", 1, |row| row.backups_a),
+    Column::told("B backs up", "a trial", 1, |row| row.backups_b),
+    Column::told("B's share", "%", 0, share_b),
+];
+const TABLE_3: [Column; 6] = [
+    Column::told("individual", "a trial", 1, |row| row.individual),
+    Column::told("cooperative", "a trial", 1, |row| row.cooperative),
+    Column::told("all", "a trial", 1, used),
+    Column::told("cooperative's share", "%", 0, cooperative),
+    Column::told("no case found", "a trial", 1, |row| row.none),
+    Column::told("time without a case", "%", 1, |row| row.default_time),
+];
+const TABLE_4: [Column; 3] = [TO_GOAL, OUT, TIMEOUT];
+const TABLE_5: [Column; 3] = [MIDFIELD, DEFENDER, TIME];
+const TABLE_6: [Column; 9] = [
+    GOAL,
+    CLOSE,
+    BLOCK,
+    OUT,
+    TIMEOUT,
+    TO_GOAL,
+    Column::told("out by opponents", "trials", 0, |row| row.out_by_opponents.map(f64::from)),
+    Column::told("out by attackers", "trials", 0, |row| row.out_by_attackers.map(f64::from)),
+    POSSESSION,
+];

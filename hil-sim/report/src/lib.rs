@@ -1,0 +1,133 @@
+//! What did the evaluation come to, for people? One page beside the paper's numbers, its plots as files, and its part of the
+//! documentation. Runs on the PC.
+//!
+//! ```text
+//! tables, paper, comparisons, claims, facts ─┬─► html()      one file: no network, no scripts; light, dark, paper
+//! Mapper: trials played again ─► Map ────────┼─► pictures()  the same plots and maps, one SVG each
+//!                                            └─► markdown()  docs/evaluation.md, between its markers
+//! ```
+//! Numbers come from `arena::evaluation` and are shown, never changed: what a table prints is rounded for the reader, and
+//! every interval and p stands beside its number.
+
+mod columns;
+mod map;
+mod markdown;
+mod numbers;
+mod page;
+mod plot;
+mod style;
+mod table;
+mod words;
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use arena::evaluation::{Comparison, TableRow};
+
+pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
+pub use markdown::{MarkerError, between_markers};
+
+/// Everything a report is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// Our rows of the paper's tables.
+    pub rows: &'a [TableRow],
+    /// The paper's own.
+    pub paper: &'a [TableRow],
+    /// Ours against the paper's, measure by measure.
+    pub with_paper: &'a [Comparison],
+    /// Our approaches against each other, pair by pair.
+    pub between: &'a [Comparison],
+    /// The paper's approaches against each other.
+    pub papers_between: &'a [Comparison],
+    /// What the paper says in prose, and whether the numbers bear it out.
+    pub claims: &'a [Claim],
+    /// Everything that decided the trials: parameters, options, hashes, commit.
+    pub facts: &'a [Facts],
+    /// Where the ball was and who passed to whom, one a cell.
+    pub maps: &'a [Map],
+}
+
+/// Something the paper says of its results.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// Its short name.
+    pub id: String,
+    /// Where the paper says it: `5.2.1`.
+    pub section: String,
+    /// What it says, in our words.
+    pub sentence: String,
+    /// What our trials say to it.
+    pub ours: Judgement,
+    /// What the paper's own tables say to it.
+    pub paper: Judgement,
+}
+
+/// Whether numbers bear a claim out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Judgement {
+    /// Do they?
+    pub verdict: Verdict,
+    /// The numbers.
+    pub evidence: String,
+}
+
+/// Whether numbers bear a claim out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// They do.
+    Supported,
+    /// They say the opposite.
+    Contradicted,
+    /// They cannot tell.
+    Undecided,
+}
+
+/// What decided the trials, under one heading.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// The heading.
+    pub title: String,
+    /// Name and value.
+    pub entries: Vec<(String, String)>,
+}
+
+/// A picture with the name of its file, without an ending.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// `table-1-outcomes`.
+    pub name: String,
+    /// It, as SVG.
+    pub svg: String,
+}
+
+impl Report<'_> {
+    /// The whole report in one file.
+    pub fn html(&self) -> String {
+        page::page(self).into_string()
+    }
+
+    /// Plots, then maps.
+    pub fn pictures(&self) -> Vec<Picture> {
+        let plots = plot::figures(self).into_iter().map(|figure| figure.picture());
+        plots.chain(map::sheets(self.maps)).collect()
+    }
+
+    /// Tables and claims for the documentation; pictures are named relative to `pictures`, say `pictures/`.
+    pub fn markdown(&self, pictures: &str) -> String {
+        markdown::markdown(self, pictures)
+    }
+
+    /// `report.html` and `plots/*.svg` under `folder`; gives what was drawn.
+    pub fn write(&self, folder: &Path) -> io::Result<Vec<Picture>> {
+        let plots = folder.join("plots");
+        fs::create_dir_all(&plots)?;
+        let pictures = self.pictures();
+        for picture in &pictures {
+            fs::write(plots.join(format!("{}.svg", picture.name)), &picture.svg)?;
+        }
+        fs::write(folder.join("report.html"), self.html())?;
+        Ok(pictures)
+    }
+}

@@ -1,0 +1,300 @@
+//! What do a cell's maps look like? The ball's seconds as shades, passes as arrows, ends by outcome, on the field.
+
+use std::fmt::Write as _;
+
+use casebase::FieldMm;
+use drawing::{Anchor, Font, Svg, Theme, draw_field, field_lines, half_extent};
+use geometry::{Field, Point};
+use hil_sim::{Configuration, Outcome, Scenario};
+use maud::{Markup, PreEscaped, html};
+
+use super::{EDGE, Map, PassKind};
+use crate::{Picture, words};
+
+/// The maps of a page: a scenario a row, an approach a column.
+pub(crate) fn html(maps: &[Map]) -> Markup {
+    html! {
+        div.keys { @for (sign, word) in signs() { span.key { (PreEscaped(sign)) (word) } } }
+        div.keys { span.key { "ball, seconds a trial in a square of 10 cm" } (PreEscaped(scale_svg())) }
+        @for (configuration, scenario, row) in rows(maps) {
+            h3 { (words::scenario(scenario)) ", against " (words::opponents(configuration)) small { (trials(&row)) } }
+            div.maps { @for map in &row {
+                figure {
+                    figcaption style={ "--approach:" (words::color(map.cell.approach)) } {
+                        (words::approach(map.cell.approach)) small { (told(map)) }
+                    }
+                    (PreEscaped(alone(&passes(map), map, "Passes and ends")))
+                    (PreEscaped(alone(&heat(map), map, "The ball")))
+                }
+            } }
+        }
+    }
+}
+
+/// One picture a configuration: passes on the left, the ball on the right, for files.
+pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
+    let mut pictures = Vec::new();
+    for (configuration, scenario, row) in rows(maps) {
+        let colors = Theme::Light.colors();
+        let mut svg = Svg::default();
+        let Some([x, y]) = row.first().map(|map| half_extent(&map.field)) else { continue };
+        let (gap, size) = (x * 0.08, x * 0.075);
+        let against = words::opponents(configuration);
+        let title = format!("{}, against {against}: {}", words::scenario(scenario), trials(&row));
+        let heading = Font { size: size * 1.3, fill: colors.ink, bold: true, halo: None };
+        svg.text([-x, size], &title, Anchor::Start, heading);
+        let mut down = -size * 0.4;
+        for map in &row {
+            let fill = words::color(map.cell.approach);
+            let font = Font { size, fill, bold: true, halo: None };
+            let name = words::approach(map.cell.approach);
+            svg.text([-x, down - size], name, Anchor::Start, font);
+            let after = -x + drawing::width(name, size) * 1.15 + size;
+            let font = Font { size: size * 0.8, fill: colors.faint, bold: false, halo: None };
+            svg.text([after, down - size], &told(map), Anchor::Start, font);
+            let middle = down - size * 1.6 - y;
+            svg.inset(&passes(map), [0.0, middle]);
+            svg.inset(&heat(map), [2.0 * x + gap, middle]);
+            down = middle - y - size * 0.6;
+        }
+        let right = 3.0 * x + gap;
+        down = legend(&mut svg, [-x, down - size * 0.5], [x + gap, right], size * 0.85);
+        let lower = [-x - gap, down - gap];
+        let picture = svg.finish(
+            lower,
+            [right + gap, size * 2.6 + gap * 0.3],
+            SHEET_PX / (4.0 * x),
+            colors.paper,
+            &title,
+        );
+        let name = format!("maps-{}-{}", configuration.word(), scenario.word());
+        pictures.push(Picture { name, svg: picture });
+    }
+    pictures
+}
+
+/// Maps by configuration and scenario, in their order.
+fn rows(maps: &[Map]) -> Vec<(Configuration, Scenario, Vec<&Map>)> {
+    let mut rows: Vec<(Configuration, Scenario, Vec<&Map>)> = Vec::new();
+    for map in maps {
+        let (configuration, scenario) = (map.cell.configuration, map.cell.scenario);
+        match rows.iter_mut().find(|(c, s, _)| (*c, *s) == (configuration, scenario)) {
+            Some((_, _, row)) => row.push(map),
+            None => rows.push((configuration, scenario, vec![map])),
+        }
+    }
+    rows
+}
+
+/// `61 of 140 passes completed, 12 by chance`.
+fn told(map: &Map) -> String {
+    let count = |kind| map.passes.iter().filter(|pass| pass.kind == kind).count();
+    let [completed, lost, chance] = [PassKind::Completed, PassKind::Lost, PassKind::Chance].map(count);
+    match completed + lost {
+        0 => format!("no passes, {chance} by chance"),
+        meant => format!("{completed} of {meant} passes completed, {chance} by chance"),
+    }
+}
+
+/// `the first 100 trials`; a cell may have fewer.
+fn trials(row: &[&Map]) -> String {
+    let most = row.iter().map(|map| map.trials).max().unwrap_or_default();
+    format!("the first {most} trials of each")
+}
+
+/// The ball's seconds.
+fn heat(map: &Map) -> Svg {
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    draw_field(&mut svg, &map.field, colors);
+    let mut squares: [String; SHADES.len()] = Default::default();
+    let (left, low) = (-f64::from(map.field.length) * 0.5, -f64::from(map.field.width) * 0.5);
+    for (i, seconds) in map.seconds.iter().enumerate() {
+        let Some(shade) = shade(seconds / f64::from(map.trials.max(1))) else { continue };
+        let (column, row) = (i % map.columns(), i / map.columns());
+        let (x, top) = (left + column as f64 * EDGE, -(low + (row + 1) as f64 * EDGE));
+        let _ = write!(squares[shade], "M{x:.0} {top:.0}h{EDGE:.0}v{EDGE:.0}h-{EDGE:.0}z");
+    }
+    for (path, fill) in squares.iter().zip(SHADES).filter(|(path, _)| !path.is_empty()) {
+        svg.element(format_args!(
+            r#"<path d="{path}" fill="{fill}" stroke="{fill}" stroke-width="3" shape-rendering="crispEdges"/>"#
+        ));
+    }
+    let mut over = Svg::default();
+    field_lines(&mut over, &map.field, colors, colors.ink);
+    svg.group_with(&over, "0.45");
+    svg
+}
+
+/// Which shade so many seconds a trial have; none for next to nothing.
+fn shade(seconds: f64) -> Option<usize> {
+    STEPS.iter().rposition(|least| seconds >= *least)
+}
+
+/// Passes and where trials ended.
+fn passes(map: &Map) -> Svg {
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    draw_field(&mut svg, &map.field, colors);
+    for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
+        let mut arrows = Svg::default();
+        for pass in map.passes.iter().filter(|pass| pass.kind == kind) {
+            arrow(&mut arrows, millimetres(pass.from), millimetres(pass.to), kind);
+        }
+        // Where many lie on each other it is darker.
+        svg.group(&arrows, r#"stroke-opacity="0.38" fill-opacity="0.55""#);
+    }
+    for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
+        for (place, _) in map.ends.iter().filter(|(_, own)| *own == outcome) {
+            end(&mut svg, shown(&map.field, millimetres(*place)), outcome);
+        }
+    }
+    svg
+}
+
+fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2], kind: PassKind) {
+    let (color, style) = match kind {
+        PassKind::Completed => (COMPLETED, r#"stroke-width="14""#),
+        PassKind::Lost => (LOST, r#"stroke-width="11" stroke-dasharray="34 26""#),
+        PassKind::Chance => (CHANCE, r#"stroke-width="11""#),
+    };
+    svg.arrow(from, to, 85.0, color, style);
+}
+
+/// The sign of an outcome.
+fn end(svg: &mut Svg, [x, y]: [f64; 2], outcome: Outcome) {
+    let colors = Theme::Light.colors();
+    let ink = colors.ink;
+    match outcome {
+        Outcome::Goal => {
+            svg.circle([x, y], 52.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="12""#, colors.ball));
+        }
+        Outcome::Close => {
+            svg.circle([x, y], 46.0, format!(r#"fill="none" stroke="{}" stroke-width="22""#, colors.ball));
+        }
+        Outcome::Block => {
+            let style = format!(r#"fill="{}" stroke="{}" stroke-width="8""#, colors.opponent, colors.carpet);
+            svg.rect([x - 36.0, y - 36.0], [x + 36.0, y + 36.0], style);
+        }
+        Outcome::Out => {
+            let style = format!(r#"stroke="{ink}" stroke-width="15" stroke-opacity="0.75""#);
+            svg.line([x - 32.0, y - 32.0], [x + 32.0, y + 32.0], &style);
+            svg.line([x - 32.0, y + 32.0], [x + 32.0, y - 32.0], &style);
+        }
+        Outcome::Timeout => {
+            svg.circle([x, y], 26.0, format!(r#"fill="{}" stroke="{ink}" stroke-width="9""#, colors.carpet));
+        }
+    }
+}
+
+/// A place on the picture: what lies farther out stands at its edge.
+fn shown(field: &FieldMm, [x, y]: [f64; 2]) -> [f64; 2] {
+    let [right, top] = half_extent(field).map(|half| half - 50.0);
+    [x.clamp(-right, right), y.clamp(-top, top)]
+}
+
+fn millimetres(place: Point<Field>) -> [f64; 2] {
+    [f64::from(place.x()) * 1000.0, f64::from(place.y()) * 1000.0]
+}
+
+/// A map as a picture of its own.
+fn alone(svg: &Svg, map: &Map, title: &str) -> String {
+    let [x, y] = half_extent(&map.field);
+    let mut page = Svg::default();
+    page.inset(svg, [0.0, 0.0]);
+    page.finish([-x, -y], [x, y], PAGE_PX / (2.0 * x), Theme::Light.colors().paper, title)
+}
+
+/// What the signs mean, in the order of the legend.
+fn signs() -> Vec<(String, &'static str)> {
+    let paper = Theme::Light.colors().paper;
+    let drawn = entries().into_iter().map(|(sign, word)| {
+        let mut svg = Svg::default();
+        svg.inset(&sign, [0.0, 0.0]);
+        (svg.finish([-160.0, -70.0], [160.0, 70.0], 0.11, paper, word), word)
+    });
+    drawn.collect()
+}
+
+fn entries() -> Vec<(Svg, &'static str)> {
+    let arrows = [
+        (PassKind::Completed, "pass completed"),
+        (PassKind::Lost, "pass lost"),
+        (PassKind::Chance, "kick that came to a teammate"),
+    ];
+    let ends = [
+        (Outcome::Goal, "goal"),
+        (Outcome::Close, "close"),
+        (Outcome::Block, "block"),
+        (Outcome::Out, "out"),
+        (Outcome::Timeout, "timeout"),
+    ];
+    let arrows = arrows.into_iter().map(|(kind, word)| {
+        let mut svg = Svg::default();
+        arrow(&mut svg, [-140.0, 0.0], [150.0, 0.0], kind);
+        (svg, word)
+    });
+    let ends = ends.into_iter().map(|(outcome, word)| {
+        let mut svg = Svg::default();
+        end(&mut svg, [60.0, 0.0], outcome);
+        (svg, word)
+    });
+    arrows.chain(ends).collect()
+}
+
+/// Signs from `left`, the scale from `from`; gives where they end.
+fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f64) -> f64 {
+    let colors = Theme::Light.colors();
+    let font = Font { size, fill: colors.ink, bold: false, halo: None };
+    let (mut across, mut down) = (left, top - size * 1.2);
+    for (sign, word) in entries() {
+        let wide = 420.0 + drawing::width(word, size);
+        if across > left && across + wide > from - size {
+            (across, down) = (left, down - size * 1.8);
+        }
+        svg.inset(&sign, [across + 150.0, down + size * 0.35]);
+        svg.text([across + 340.0, down], word, Anchor::Start, font);
+        across += wide;
+    }
+    svg.inset(&scale(right - from, size), [from, top]);
+    down - size * 0.5
+}
+
+/// The shades with the seconds each begins at.
+fn scale(width: f64, size: f64) -> Svg {
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    let step = width / SHADES.len() as f64;
+    let font = Font { size, fill: colors.ink, bold: false, halo: None };
+    for (i, (fill, least)) in SHADES.iter().zip(STEPS).enumerate() {
+        let x = step * i as f64;
+        svg.rect([x, 0.0], [x + step, -size], format!(r#"fill="{fill}""#));
+        svg.text([x, -size * 2.2], &least.to_string(), Anchor::Start, font);
+    }
+    svg.text(
+        [0.0, -size * 3.6],
+        "the ball: seconds a trial in a square of 10 cm, at least",
+        Anchor::Start,
+        font,
+    );
+    svg
+}
+
+fn scale_svg() -> String {
+    let svg = scale(330.0, 12.0);
+    svg.finish([0.0, -29.0], [340.0, 1.0], 1.0, Theme::Light.colors().paper, "seconds a trial")
+}
+
+/// From near the carpet's lightness evenly to dark: one hue, so that more is darker to every eye.
+pub(crate) const SHADES: [&str; 7] =
+    ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
+/// Seconds a trial from which on a square has each shade.
+const STEPS: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+const COMPLETED: &str = "#1b1b1b";
+/// Reddish purple (Okabe and Ito), darker.
+pub(crate) const LOST: &str = "#b3367d";
+pub(crate) const CHANCE: &str = "#2f6fb7";
+/// How wide a map is on a page, px.
+const PAGE_PX: f64 = 560.0;
+/// How wide a sheet of two beside each other is, px.
+const SHEET_PX: f64 = 1100.0;

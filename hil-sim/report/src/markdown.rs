@@ -1,0 +1,161 @@
+//! What stands in the documentation? The tables in few columns, the claims, the pictures; between two markers of a file.
+
+use std::fmt;
+use std::fmt::Write as _;
+
+use crate::table::{Cell, Line, LineKind, Table, tables};
+use crate::{Claim, Report, Verdict, words};
+
+/// Tables, claims and pictures as Markdown.
+pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
+    let mut text = String::new();
+    let figures = crate::plot::figures(report);
+    for table in tables(report) {
+        let number = table.number;
+        let _ = writeln!(text, "### Table {number}: {}\n", words::table(number));
+        let _ = writeln!(text, "{}\n", words::note(number));
+        own(&mut text, &table);
+        against(&mut text, &table);
+        for figure in figures.iter().filter(|figure| figure.table == number) {
+            let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);
+        }
+    }
+    if !report.claims.is_empty() {
+        claims(&mut text, report.claims);
+    }
+    text
+}
+
+/// Ours, the paper's in italics behind it.
+fn own(text: &mut String, table: &Table) {
+    let heads = table.columns.iter().map(|column| format!("{} ({})", column.head, column.unit));
+    head(text, &["scenario", "attackers", "trials"], heads);
+    for block in &table.blocks {
+        let mut lines = block.lines.iter().peekable();
+        while let Some(line) = lines.next() {
+            let LineKind::Ours(trials) = line.kind else { continue };
+            let paper = lines.next_if(|line| matches!(line.kind, LineKind::Paper(_)));
+            let less = lines.next_if(|line| line.kind == LineKind::Difference);
+            let scenario = words::scenario(block.scenario);
+            let _ = write!(text, "| {scenario} | {} | {trials} |", words::approach(line.approach));
+            for (i, cell) in line.cells.iter().enumerate() {
+                let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
+                let printed = printed.map_or(String::new(), |cell| format!(" *{}*", cell.value));
+                let marks = less.and_then(|line| line.cells.get(i)).map_or("", |cell| cell.marks);
+                let _ = write!(text, " {}{}{printed} |", cell.value, escaped(marks));
+            }
+            text.push('\n');
+        }
+    }
+    text.push('\n');
+}
+
+/// One approach less another, the paper's in italics behind it.
+fn against(text: &mut String, table: &Table) {
+    let pair = |line: &&Line| matches!(line.kind, LineKind::Against(_));
+    let tested = |line: &Line| line.cells.iter().any(|cell| !cell.beside.is_empty());
+    if !table.blocks.iter().flat_map(|block| &block.lines).filter(pair).any(tested) {
+        return;
+    }
+    let heads = table.columns.iter().map(|column| format!("{} ({})", column.head, column.unit));
+    head(text, &["scenario", "difference"], heads);
+    for block in &table.blocks {
+        let mut lines = block.lines.iter().peekable();
+        while let Some(line) = lines.next() {
+            let LineKind::Against(_) = line.kind else { continue };
+            let paper = lines.next_if(|line| matches!(line.kind, LineKind::PaperAgainst(_)));
+            let _ = write!(text, "| {} | {} |", words::scenario(block.scenario), line.label());
+            let both = |cell: &Cell| format!("{}{}", cell.value, escaped(cell.marks));
+            for (i, cell) in line.cells.iter().enumerate() {
+                let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());
+                let printed = printed.map_or(String::new(), |cell| format!(" *{}*", both(cell)));
+                let _ = write!(text, " {}{printed} |", both(cell));
+            }
+            text.push('\n');
+        }
+    }
+    text.push('\n');
+}
+
+fn claims(text: &mut String, claims: &[Claim]) {
+    text.push_str("### What the paper says, and what the numbers say\n\n");
+    text.push_str("| § | claim | our trials | the paper’s own tables |\n|---|---|---|---|\n");
+    for claim in claims {
+        let cell = |words: &str| words.replace('|', "\\|").replace('\n', " ");
+        let said = |judgement: &crate::Judgement| {
+            format!("**{}**: {}", word(judgement.verdict), cell(&judgement.evidence))
+        };
+        let (section, sentence) = (&claim.section, cell(&claim.sentence));
+        let _ = writeln!(text, "| {section} | {sentence} | {} | {} |", said(&claim.ours), said(&claim.paper));
+    }
+    text.push('\n');
+}
+
+pub(crate) const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Supported => "supported",
+        Verdict::Contradicted => "contradicted",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// A row of heads, the first ones to the left, numbers to the right.
+fn head(text: &mut String, names: &[&str], numbers: impl Iterator<Item = String> + Clone) {
+    for name in names.iter().map(ToString::to_string).chain(numbers.clone()) {
+        let _ = write!(text, "| {name} ");
+    }
+    text.push_str("|\n");
+    for _ in names {
+        text.push_str("|---");
+    }
+    for _ in numbers {
+        text.push_str("|---:");
+    }
+    text.push_str("|\n");
+}
+
+/// Stars that stay stars.
+fn escaped(marks: &str) -> String {
+    marks.replace('*', "\\*")
+}
+
+/// A file's text with everything between its markers replaced.
+pub fn between_markers(text: &str, generated: &str) -> Result<String, MarkerError> {
+    let begin = text.find(BEGIN).ok_or(MarkerError::Missing(BEGIN))? + BEGIN.len();
+    let end = text[begin..].find(END).ok_or(MarkerError::Missing(END))? + begin;
+    Ok(format!("{}\n\n{}\n\n{}", &text[..begin], generated.trim(), &text[end..]))
+}
+
+/// A file lacks a marker.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MarkerError {
+    /// This one.
+    Missing(&'static str),
+}
+
+impl fmt::Display for MarkerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Missing(marker) = self;
+        write!(f, "there is no line `{marker}`; the figures stand between `{BEGIN}` and `{END}`")
+    }
+}
+
+impl std::error::Error for MarkerError {}
+
+const BEGIN: &str = "<!-- figures: written by `cargo xtask evaluation` -->";
+const END: &str = "<!-- end of figures -->";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_stands_between_the_markers_is_replaced() {
+        let text = format!("before\n{BEGIN}\nold\n{END}\nafter\n");
+        let once = between_markers(&text, "new\n").unwrap();
+        assert_eq!(once, format!("before\n{BEGIN}\n\nnew\n\n{END}\nafter\n"));
+        assert_eq!(between_markers(&once, "new\n").unwrap(), once);
+        assert_eq!(between_markers("nothing", "new"), Err(MarkerError::Missing(BEGIN)));
+        assert_eq!(between_markers(&format!("{END}{BEGIN}"), "new"), Err(MarkerError::Missing(END)));
+    }
+}
