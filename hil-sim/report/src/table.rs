@@ -216,7 +216,7 @@ impl Line {
     fn html(&self) -> Markup {
         html! {
             tr class=(self.class()) {
-                th.name scope="row" style={ "--approach:" (words::color(self.approach)) } {
+                th.name scope="row" style=(words::css(self.approach)) {
                     (self.label())
                     @if let LineKind::Ours(trials) | LineKind::Paper(trials) = self.kind {
                         small { (trials) " trials" }

@@ -21,6 +21,11 @@ pub(crate) fn color(approach: Approach) -> &'static str {
     }
 }
 
+/// The same colour for the page, which turns it over to the dark one itself.
+pub(crate) fn css(approach: Approach) -> String {
+    format!("--approach:var(--{})", approach_word(approach))
+}
+
 /// Of two approaches the one a difference begins with: what goes beyond the paper is held against the paper's, not it against that.
 pub(crate) fn oriented((first, second): (Approach, Approach)) -> (Approach, Approach) {
     if approach_word(second) == "hybrid" { (second, first) } else { (first, second) }

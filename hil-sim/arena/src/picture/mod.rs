@@ -5,9 +5,8 @@
 //! it. Numbers stand where the ball was when a gameplay began; the list below says which. Colours are Okabe and Ito's, told
 //! apart by every eye.
 
-mod canvas;
-mod field;
 mod legend;
+mod page;
 
 use geometry::{Field, Point, Pose};
 use hil_sim::{Configuration, Role, Scenario};
@@ -16,43 +15,44 @@ use rules::League;
 use crate::names::letter;
 use crate::recording::{Recording, Sample, Start};
 use crate::report::TrialReport;
-use canvas::{Canvas, Px, SCALE};
+use drawing::{Anchor, Font};
+
+use page::{Page, Px, SCALE, bold, font};
 
 /// The picture of a trial that has ended; an empty field for a recording of nothing.
 pub fn picture(recording: &Recording) -> String {
-    let mut canvas = Canvas::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
-    field::draw(&mut canvas);
+    let mut page = Page::new(Px::new(WIDTH * 0.5, HEADER + HALF_HEIGHT));
     let starts = shown_starts(recording);
     let Some((first, last)) = recording.samples.first().zip(recording.samples.last()) else {
-        return canvas.finish(WIDTH, HEADER + 2.0 * HALF_HEIGHT, "a trial");
+        return page.finish(WIDTH, HEADER + 2.0 * HALF_HEIGHT, "a trial");
     };
     let attackers = recording.cast.attackers.len();
     for robot in 0..first.robots.len() {
-        track(&mut canvas, recording, robot);
+        track(&mut page, recording, robot);
     }
-    ball_path(&mut canvas, recording);
+    ball_path(&mut page, recording);
     let mut taken = Vec::new();
     for (robot, (start, end)) in first.robots.iter().zip(&last.robots).enumerate() {
         let actor = Actor { robot, attackers, recording };
-        taken.extend([canvas.place(start.position), canvas.place(end.position)]);
-        actor.draw(&mut canvas, start, false);
-        actor.draw(&mut canvas, end, true);
+        taken.extend([page.place(start.position), page.place(end.position)]);
+        actor.draw(&mut page, start, false);
+        actor.draw(&mut page, end, true);
     }
-    ball(&mut canvas, first.ball, false);
-    ball(&mut canvas, last.ball, true);
-    taken.extend([canvas.place(first.ball), canvas.place(last.ball)]);
-    seconds(&mut canvas, &recording.samples, &mut taken);
+    ball(&mut page, first.ball, false);
+    ball(&mut page, last.ball, true);
+    taken.extend([page.place(first.ball), page.place(last.ball)]);
+    seconds(&mut page, &recording.samples, &mut taken);
     for (number, start) in starts.iter().enumerate() {
-        let at = canvas.place(start.ball);
-        badge(&mut canvas, number + 1, at, &mut taken);
+        let at = page.place(start.ball);
+        badge(&mut page, number + 1, at, &mut taken);
     }
     let bottom = HEADER + 2.0 * HALF_HEIGHT;
-    let height = legend::draw(&mut canvas, recording, &starts, WIDTH, bottom);
+    let height = legend::draw(&mut page, recording, &starts, WIDTH, bottom);
     let title = recording.report.as_ref().map_or_else(|| "a trial".to_owned(), title);
     if let Some(report) = &recording.report {
-        header(&mut canvas, report);
+        header(&mut page, report);
     }
-    canvas.finish(WIDTH, height, &title)
+    page.finish(WIDTH, height, &title)
 }
 
 /// The gameplays that lived long enough to be seen.
@@ -71,7 +71,7 @@ fn title(report: &TrialReport) -> String {
     }
 }
 
-fn header(canvas: &mut Canvas, report: &TrialReport) {
+fn header(page: &mut Page, report: &TrialReport) {
     let opponents = match report.opponents {
         Configuration::DefenderGoalie => "a defender and a goalie",
         Configuration::TwoDefenders => "two defenders",
@@ -81,32 +81,27 @@ fn header(canvas: &mut Canvas, report: &TrialReport) {
         format!("{approach} attackers, playing to the right, against {opponents} · seed {}", report.seed);
     let outcome = format!("{} after {:.1} s", report.outcome.word(), report.time_s);
     let (left, right) = (SIDE, WIDTH - SIDE);
-    canvas.text(
-        Px::new(left, 34.0),
-        &title(report),
-        format!(r#"font-size="21" font-weight="bold" fill="{INK}""#),
-    );
-    canvas.text(Px::new(left, 56.0), &below, format!(r#"font-size="14" fill="{FAINT}""#));
-    let style = format!(r#"font-size="21" font-weight="bold" fill="{INK}" text-anchor="end""#);
-    canvas.text(Px::new(right, 34.0), &outcome, style);
+    page.text(Px::new(left, 34.0), &title(report), Anchor::Start, bold(21.0, INK));
+    page.text(Px::new(left, 56.0), &below, Anchor::Start, font(14.0, FAINT));
+    page.text(Px::new(right, 34.0), &outcome, Anchor::End, bold(21.0, INK));
     if let Some(by) = report.out_by {
-        let style = format!(r#"font-size="14" fill="{FAINT}" text-anchor="end""#);
-        canvas.text(Px::new(right, 56.0), &format!("last touched by the {by}"), style);
+        let by = format!("last touched by the {by}");
+        page.text(Px::new(right, 56.0), &by, Anchor::End, font(14.0, FAINT));
     }
 }
 
 /// Where a robot went.
-fn track(canvas: &mut Canvas, recording: &Recording, robot: usize) {
+fn track(page: &mut Page, recording: &Recording, robot: usize) {
     let places =
         recording.samples.iter().filter_map(|sample| sample.robots.get(robot)).map(|pose| pose.position);
-    let points = thinned(canvas, places);
+    let points = thinned(page, places);
     let color = color(robot, recording.cast.attackers.len());
     let style = format!(r#"stroke="{color}" stroke-width="2" stroke-opacity="0.45" stroke-linejoin="round""#);
-    canvas.path(&points, style);
+    page.path(&points, &style);
 }
 
 /// The ball's path in stretches of one carrier or one sender each.
-fn ball_path(canvas: &mut Canvas, recording: &Recording) {
+fn ball_path(page: &mut Page, recording: &Recording) {
     let attackers = recording.cast.attackers.len();
     let mut kicks = recording.kicks.iter().peekable();
     let mut sender = None;
@@ -126,22 +121,22 @@ fn ball_path(canvas: &mut Canvas, recording: &Recording) {
         }
     }
     for (control, places) in &stretches {
-        let points = thinned(canvas, places.iter().copied());
+        let points = thinned(page, places.iter().copied());
         match *control {
             Control::Carried(robot) => {
                 let color = color(robot, attackers);
                 let style = format!(
                     r#"stroke="{color}" stroke-width="6" stroke-linecap="round" stroke-linejoin="round""#
                 );
-                canvas.path(&points, style);
+                page.path(&points, &style);
             }
             Control::Rolls(sender) => {
                 let color = sender.map_or(INK, |robot| color(robot, attackers));
                 let style = format!(
                     r#"stroke="{color}" stroke-width="4.5" stroke-linecap="round" stroke-dasharray="0.1 9" stroke-linejoin="round""#
                 );
-                canvas.path(&points, style);
-                arrow_on(canvas, &points, color);
+                page.path(&points, &style);
+                arrow_on(page, &points, color);
             }
         }
     }
@@ -156,7 +151,7 @@ enum Control {
 }
 
 /// An arrowhead half way along a path that is long enough for one.
-fn arrow_on(canvas: &mut Canvas, points: &[Px], color: &str) {
+fn arrow_on(page: &mut Page, points: &[Px], color: &str) {
     let length: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     if length < SHORTEST_ARROW {
         return;
@@ -165,7 +160,7 @@ fn arrow_on(canvas: &mut Canvas, points: &[Px], color: &str) {
     for pair in points.windows(2) {
         gone += pair[0].distance(pair[1]);
         if gone >= length * 0.5 {
-            return canvas.arrowhead(pair[1], (pair[1].x - pair[0].x, pair[1].y - pair[0].y), 15.0, color);
+            return page.arrowhead(pair[1], (pair[1].x - pair[0].x, pair[1].y - pair[0].y), 15.0, color);
         }
     }
 }
@@ -178,23 +173,22 @@ struct Actor<'a> {
 }
 
 impl Actor<'_> {
-    fn draw(&self, canvas: &mut Canvas, pose: &Pose<Field>, filled: bool) {
-        let at = canvas.place(pose.position);
+    fn draw(&self, page: &mut Page, pose: &Pose<Field>, filled: bool) {
+        let at = page.place(pose.position);
         let color = color(self.robot, self.attackers);
         let radius = League::FourLegged.robot().radius * SCALE;
         let (fill, ink) = if filled { (color, "white") } else { ("white", color) };
         let style = format!(r#"fill="{fill}" stroke="{color}" stroke-width="2.5""#);
         let (sin, cos) = pose.heading.sin_cos();
         let nose = at.moved(cos * (radius + 8.0), -sin * (radius + 8.0));
-        canvas.line(at, nose, format!(r#"stroke="{color}" stroke-width="4" stroke-linecap="round""#));
+        page.line(at, nose, &format!(r#"stroke="{color}" stroke-width="4" stroke-linecap="round""#));
         if self.robot < self.attackers {
-            canvas.circle(at, radius, style);
+            page.circle(at, radius, &style);
         } else {
             let half = radius * 0.9;
-            canvas.rect(at.moved(-half, -half), 2.0 * half, 2.0 * half, format!(r#"{style} rx="3""#));
+            page.rect(at.moved(-half, -half), 2.0 * half, 2.0 * half, &format!(r#"{style} rx="3""#));
         }
-        let style = format!(r#"font-size="17" font-weight="bold" text-anchor="middle" fill="{ink}""#);
-        canvas.text(at.moved(0.0, 6.0), &self.letter(), style);
+        page.text(at.moved(0.0, 6.0), &self.letter(), Anchor::Middle, bold(17.0, ink));
     }
 
     fn letter(&self) -> String {
@@ -208,28 +202,27 @@ impl Actor<'_> {
     }
 }
 
-fn ball(canvas: &mut Canvas, at: Point<Field>, filled: bool) {
+fn ball(page: &mut Page, at: Point<Field>, filled: bool) {
     let fill = if filled { BALL } else { "white" };
     let style = format!(r#"fill="{fill}" stroke="{INK}" stroke-width="2""#);
-    let at = canvas.place(at);
-    canvas.circle(at, League::FourLegged.ball().radius * SCALE, style);
+    let at = page.place(at);
+    page.circle(at, League::FourLegged.ball().radius * SCALE, &style);
 }
 
 /// Small times along the ball's path, where the ball has moved since the last.
-fn seconds(canvas: &mut Canvas, samples: &[Sample], taken: &mut Vec<Px>) {
+fn seconds(page: &mut Page, samples: &[Sample], taken: &mut Vec<Px>) {
     let mut last: Option<Px> = None;
     let mut next = EVERY;
     for sample in samples {
         if sample.time < next {
             continue;
         }
-        let at = canvas.place(sample.ball);
+        let at = page.place(sample.ball);
         if last.is_none_or(|last| last.distance(at) > 40.0) {
             let spot = free_spot(at, 22.0, taken);
-            let halo = r#"stroke="white" stroke-opacity="0.8" stroke-width="4" paint-order="stroke""#;
-            let style = format!(r#"font-size="12" fill="{INK}" text-anchor="middle" {halo}"#);
-            canvas.circle(at, 2.6, format!(r#"fill="{INK}""#));
-            canvas.text(spot.moved(0.0, 4.0), &format!("{next:.0} s"), style);
+            let letters = Font { halo: Some(CARPET), ..font(12.0, INK) };
+            page.circle(at, 2.6, &format!(r#"fill="{INK}""#));
+            page.text(spot.moved(0.0, 4.0), &format!("{next:.0} s"), Anchor::Middle, letters);
             taken.push(spot);
             last = Some(at);
         }
@@ -238,10 +231,10 @@ fn seconds(canvas: &mut Canvas, samples: &[Sample], taken: &mut Vec<Px>) {
 }
 
 /// A numbered disc near `at`, tied to it.
-fn badge(canvas: &mut Canvas, number: usize, at: Px, taken: &mut Vec<Px>) {
+fn badge(page: &mut Page, number: usize, at: Px, taken: &mut Vec<Px>) {
     let spot = free_spot(at, 34.0, taken);
-    canvas.line(at, spot, format!(r#"stroke="{INK}" stroke-width="1""#));
-    legend::number(canvas, spot, number);
+    page.line(at, spot, &format!(r#"stroke="{INK}" stroke-width="1""#));
+    legend::number(page, spot, number);
     taken.push(spot);
 }
 
@@ -265,11 +258,11 @@ fn free_spot(at: Px, away: f32, taken: &[Px]) -> Px {
 }
 
 /// Places with at least two centimetres between them, the last one always kept.
-fn thinned(canvas: &Canvas, places: impl Iterator<Item = Point<Field>>) -> Vec<Px> {
+fn thinned(page: &Page, places: impl Iterator<Item = Point<Field>>) -> Vec<Px> {
     let mut points: Vec<Px> = Vec::new();
     let mut skipped = None;
     for place in places {
-        let point = canvas.place(place);
+        let point = page.place(place);
         skipped = points.last().is_some_and(|last| last.distance(point) < 0.02 * SCALE).then_some(point);
         if skipped.is_none() {
             points.push(point);
@@ -292,6 +285,8 @@ const ATTACKERS: [&str; 4] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"];
 const OPPONENTS: [&str; 2] = ["#5f6368", "#303336"];
 const INK: &str = "#202124";
 const FAINT: &str = "#5f6368";
+/// The field's, behind letters on it.
+const CARPET: &str = "#e3eedd";
 /// Orange (Okabe and Ito), as the league's ball.
 const BALL: &str = "#E69F00";
 /// Width of the picture, px.
@@ -301,7 +296,7 @@ const SIDE: f32 = 18.0;
 /// Height of the title, px.
 const HEADER: f32 = 72.0;
 /// Half the height of the carpet shown, px.
-const HALF_HEIGHT: f32 = 2.0 * SCALE;
+const HALF_HEIGHT: f32 = 2.06 * SCALE;
 /// Seconds between times along the ball's path.
 const EVERY: f32 = 5.0;
 /// A gameplay superseded sooner than this left nothing to see, s.

@@ -20,7 +20,7 @@ pub(crate) fn html(maps: &[Map]) -> Markup {
             h3 { (words::scenario(scenario)) ", against " (words::opponents(configuration)) small { (trials(&row)) } }
             div.maps { @for map in &row {
                 figure {
-                    figcaption style={ "--approach:" (words::color(map.cell.approach)) } {
+                    figcaption style=(words::css(map.cell.approach)) {
                         (words::approach(map.cell.approach)) small { (told(map)) }
                     }
                     (PreEscaped(alone(&passes(map), map, "Passes and ends")))
@@ -41,7 +41,7 @@ pub(crate) fn sheets(maps: &[Map]) -> Vec<Picture> {
         let (gap, size) = (x * 0.08, x * 0.075);
         let against = words::opponents(configuration);
         let title = format!("{}, against {against}: {}", words::scenario(scenario), trials(&row));
-        let heading = Font { size: size * 1.3, fill: colors.ink, bold: true, halo: None };
+        let heading = Font { size: size * 1.1, fill: colors.ink, bold: true, halo: None };
         svg.text([-x, size], &title, Anchor::Start, heading);
         let mut down = -size * 0.4;
         for map in &row {
@@ -248,9 +248,9 @@ fn legend(svg: &mut Svg, [left, top]: [f64; 2], [from, right]: [f64; 2], size: f
     let font = Font { size, fill: colors.ink, bold: false, halo: None };
     let (mut across, mut down) = (left, top - size * 1.2);
     for (sign, word) in entries() {
-        let wide = 420.0 + drawing::width(word, size);
+        let wide = 470.0 + drawing::width(word, size);
         if across > left && across + wide > from - size {
-            (across, down) = (left, down - size * 1.8);
+            (across, down) = (left, down - size * 1.9);
         }
         svg.inset(&sign, [across + 150.0, down + size * 0.35]);
         svg.text([across + 340.0, down], word, Anchor::Start, font);

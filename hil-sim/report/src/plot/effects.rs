@@ -46,7 +46,9 @@ pub(super) fn figure(report: &Report<'_>) -> Figure {
     let all = || groups.iter().flat_map(|(_, _, rows)| rows.iter().flat_map(|(_, effects)| effects));
     let low = all().map(|effect| effect.low).fold(0.0, f64::min);
     let high = all().map(|effect| effect.high).fold(0.0, f64::max);
-    let axis = Axis::between(low, high, LEFT, PANEL - RIGHT);
+    // Room for the numbers beside the whiskers.
+    let room = (high - low) * 0.14;
+    let axis = Axis::between(low - room, high + room, LEFT, PANEL - RIGHT);
     let panels = groups.iter().map(|(table, measure, rows)| panel(*table, *measure, rows, axis)).collect();
     let title = "What one approach has more or less than another, with 95 % intervals".to_owned();
     Figure { table: 0, name: "differences".to_owned(), title, keys, panels }
@@ -105,7 +107,10 @@ fn panel(table: u8, measure: Measure, rows: &[(Scenario, Vec<Effect>)], axis: Ax
             svg.circle([axis.place(effect.value), y], 4.2, style(effect.first, effect.ours));
             let fill = if effect.ours { colors.ink } else { colors.faint };
             let font = Font { size: 10.5, fill, bold: effect.ours, halo: Some(colors.paper) };
-            svg.text([high + 6.0, y - 3.8], &numbers::signed(effect.value, 1), Anchor::Start, font);
+            // Away from zero, whose line would cross it.
+            let (x, anchor) =
+                if effect.value < 0.0 { (low - 6.0, Anchor::End) } else { (high + 6.0, Anchor::Start) };
+            svg.text([x, y - 3.8], &numbers::signed(effect.value, 1), anchor, font);
         }
         top -= group;
     }
@@ -119,9 +124,9 @@ fn panel(table: u8, measure: Measure, rows: &[(Scenario, Vec<Effect>)], axis: Ax
 }
 
 /// Where the axis begins, px: after the scenarios' names.
-const LEFT: f64 = 134.0;
-/// Room for the numbers behind the last dot, px.
-const RIGHT: f64 = 46.0;
+const LEFT: f64 = 150.0;
+/// Room for the axis' last number, px.
+const RIGHT: f64 = 14.0;
 /// Height of a difference with the gap to the next, px.
 const DOT: f64 = 13.0;
 /// Between scenarios, px.
