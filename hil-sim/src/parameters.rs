@@ -7,10 +7,10 @@
 use std::fmt;
 use std::sync::LazyLock;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The numbers of one league.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
     /// The ball on the carpet.
@@ -32,7 +32,7 @@ pub struct Parameters {
 }
 
 /// The ball on the carpet.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallParameters {
     /// m/s², constant until rest.
@@ -42,7 +42,7 @@ pub struct BallParameters {
 }
 
 /// Limits of walking.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct WalkParameters {
     /// m/s ahead.
@@ -58,7 +58,7 @@ pub struct WalkParameters {
 }
 
 /// Limits of walking with the ball.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CarryParameters {
     /// m/s in any direction.
@@ -68,7 +68,7 @@ pub struct CarryParameters {
 }
 
 /// The grab.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrabParameters {
     /// s.
@@ -88,7 +88,7 @@ pub struct GrabParameters {
 }
 
 /// The kicks.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct KickParameters {
     /// s from order to ball contact.
@@ -114,7 +114,7 @@ pub struct KickParameters {
 }
 
 /// The scripted opponents.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpponentParameters {
     /// m, centre to centre: the ball can be cleared.
@@ -134,7 +134,7 @@ pub struct OpponentParameters {
 }
 
 /// A rectangle of the field, m: from and to along x and y.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
     /// From, to.
@@ -144,7 +144,7 @@ pub struct Region {
 }
 
 /// When a trial ends and what counts.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct RefereeParameters {
     /// m beside a goalpost that still count as close.
@@ -160,7 +160,7 @@ pub struct RefereeParameters {
 }
 
 /// Standard deviations of what robots perceive.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
     /// Of the own position, m.

@@ -34,11 +34,15 @@ impl Table {
     }
 }
 
-/// The table of cases that passed every check, in the order of their ids.
-pub(crate) fn encode(league: &League, cases: &[Authored]) -> Table {
+/// The table of cases that passed every check, in the order of their ids; without symmetry, mirror images are there and never found.
+pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Table {
     let mut pools = Pools::default();
     for case in cases {
         pools.add(case, league);
+    }
+    if !symmetry {
+        let images = pools.gates.iter_mut().enumerate().filter(|(id, _)| !id.is_multiple_of(4));
+        images.for_each(|(_, gate)| *gate = NOWHERE);
     }
     let index = grid::build(league.field, cases);
     let kicks: Vec<_> = league.kicks.iter().map(|(_, kick)| RawKick::encode(*kick)).collect();
@@ -83,6 +87,9 @@ pub(crate) fn encode(league: &League, cases: &[Authored]) -> Table {
     header.hash = content_hash(&[&header.as_bytes()[HASHED_FROM..], &body].concat());
     Table::aligned(&[header.as_bytes(), &body].concat())
 }
+
+/// A scope of a millimetre farther out than any ball: fields are at most 30 m long.
+const NOWHERE: Gate = Gate { ball: [i16::MAX; 2], inverse_scope: [1.0; 2] };
 
 /// The growing sections of the table.
 #[derive(Default)]

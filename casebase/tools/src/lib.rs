@@ -33,7 +33,7 @@ pub use encode::Table;
 pub use files::{Files, SourceFile};
 pub use finding::{Finding, Severity};
 pub use league::League;
-pub use library::{Library, Place, build, load, load_telling};
+pub use library::{Library, Place, Reduction, build, build_reduced, load, load_telling};
 pub use lineup::{Lineup, Rectangle};
 pub use sample::Sampler;
 pub use sampled::never_retrieved;

@@ -55,15 +55,38 @@ pub fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
 
 /// The same; `tell` learns how many steps are done, of how many: two a case file.
 pub fn load_telling(folder: &Path, tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
-    build_telling(&Files::read(folder)?, tell)
+    build_telling(&Files::read(folder)?, Reduction::NONE, tell)
+}
+
+/// What of its cases a library keeps: less, to see what it is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reduction {
+    /// Mirror images (paper §2.4); without them only authored cases are ever found, under their own ids.
+    pub symmetry: bool,
+    /// Opponents and their scopes (paper §2.1).
+    pub opponents: bool,
+}
+
+impl Reduction {
+    /// Everything.
+    pub const NONE: Self = Self { symmetry: true, opponents: true };
+}
+
+/// The library of files that were read, with no more than that of its cases; nobody doubts what is left.
+pub fn build_reduced(files: &Files, reduction: Reduction) -> Result<Library, Vec<Finding>> {
+    build_telling(files, reduction, |_, _| {})
 }
 
 /// The library of files that were read.
 pub fn build(files: &Files) -> Result<Library, Vec<Finding>> {
-    build_telling(files, |_, _| {})
+    build_telling(files, Reduction::NONE, |_, _| {})
 }
 
-fn build_telling(files: &Files, mut tell: impl FnMut(usize, usize)) -> Result<Library, Vec<Finding>> {
+fn build_telling(
+    files: &Files,
+    reduction: Reduction,
+    mut tell: impl FnMut(usize, usize),
+) -> Result<Library, Vec<Finding>> {
     let steps = 2 * files.cases.len();
     let (league, mut findings) = League::read(&files.rules);
     let mut cases = Vec::new();
@@ -85,8 +108,13 @@ fn build_telling(files: &Files, mut tell: impl FnMut(usize, usize)) -> Result<Li
     else {
         return Err(in_order(findings));
     };
+    if !reduction.opponents {
+        for case in &mut cases {
+            case.opponents.clear();
+        }
+    }
     let largest = cases.iter().map(|case| case.teammates.len()).max().unwrap_or(0);
-    let table = encode(&league, &cases);
+    let table = encode(&league, &cases, reduction.symmetry);
     let mut library = Library {
         league: files.league.clone(),
         table,
@@ -98,9 +126,11 @@ fn build_telling(files: &Files, mut tell: impl FnMut(usize, usize)) -> Result<Li
         lineup: league.lineup.clone().unwrap_or_else(|| Lineup::guess(league.field, largest)),
         findings,
     };
-    let doubts =
-        warnings(files, &cases, &library.base(), &league, |done| tell(files.cases.len() + done, steps));
-    library.note(doubts);
+    if reduction == Reduction::NONE {
+        let doubts =
+            warnings(files, &cases, &library.base(), &league, |done| tell(files.cases.len() + done, steps));
+        library.note(doubts);
+    }
     Ok(library)
 }
 

@@ -32,6 +32,22 @@ pub enum CycleEnd {
 }
 
 impl CycleEnd {
+    /// The words of all ends that a play of a case can have.
+    pub const WORDS: [&'static str; 12] = [
+        "finished",
+        "ball-out-of-scope",
+        "path-blocked",
+        "robot-lost",
+        "action-failed",
+        "opponent-on-ball",
+        "ball-at-rest",
+        "timeout",
+        "no-decision",
+        "unknown-case",
+        "superseded",
+        "trial-over",
+    ];
+
     /// Its word in reports.
     pub const fn word(self) -> &'static str {
         match self {
@@ -186,6 +202,27 @@ mod tests {
         log.hear(0.0, &state(1, Decision::Closed(Closure::NoCase)));
         assert!(log.cycles()[0].no_case && log.cycles()[0].play.is_none());
         assert_eq!(log.cycles()[0].end.unwrap().1.word(), "no-case");
+    }
+
+    #[test]
+    fn the_list_of_words_has_every_end_of_a_play() {
+        use AbortReason as Why;
+        let by = robot(1);
+        let aborted = [
+            Why::BallOutOfScope,
+            Why::PathBlocked,
+            Why::RobotLost,
+            Why::ActionFailed,
+            Why::OpponentOnBall,
+            Why::BallAtRest,
+            Why::Timeout,
+            Why::NoDecision,
+            Why::UnknownCase,
+        ];
+        let aborted = aborted.map(|reason| CycleEnd::Closed(Closure::Aborted { by, reason }));
+        let all = [CycleEnd::Closed(Closure::Finished)].into_iter().chain(aborted);
+        let all = all.chain([CycleEnd::Superseded, CycleEnd::TrialOver]);
+        assert_eq!(all.map(CycleEnd::word).collect::<Vec<_>>(), CycleEnd::WORDS);
     }
 
     #[test]

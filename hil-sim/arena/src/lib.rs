@@ -30,4 +30,6 @@ pub use recording::{Kick, Recording, Sample, Start};
 pub use rehearsal::{Attempt, Opposition, Rehearsal, Retrieved, Score, markdown};
 pub use report::{Backups, CaseCounts, CycleReport, Possession, TrialReport};
 pub use story::Story;
-pub use trial::{Moment, TEAM, TrialConfig, Watcher, approach_from_word, approach_word, run};
+pub use trial::{
+    APPROACHES, Moment, TEAM, TrialConfig, Watcher, approach_from_word, approach_word, positioning_word, run,
+};

@@ -42,6 +42,11 @@ impl CaseNames {
         Self(names.into_iter().map(Into::into).collect())
     }
 
+    /// All of them.
+    pub fn all(&self) -> &[String] {
+        &self.0
+    }
+
     /// The authored name of a stored case; its number where the library has no such case.
     pub fn of(&self, case: CaseId) -> String {
         self.0.get(usize::from(case.0 / 4)).cloned().unwrap_or_else(|| format!("case {case}"))

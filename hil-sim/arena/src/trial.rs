@@ -299,11 +299,14 @@ pub const fn approach_word(approach: Approach) -> &'static str {
 
 /// The approach of that word.
 pub fn approach_from_word(word: &str) -> Option<Approach> {
-    [Approach::Cases, Approach::Reactive].into_iter().find(|approach| approach_word(*approach) == word)
+    APPROACHES.into_iter().find(|approach| approach_word(*approach) == word)
 }
 
+/// All approaches, in the order of tables: the paper's two first.
+pub const APPROACHES: [Approach; 2] = [Approach::Cases, Approach::Reactive];
+
 /// The word of a positioning in options and reports.
-pub(crate) const fn positioning_word(positioning: Positioning) -> &'static str {
+pub const fn positioning_word(positioning: Positioning) -> &'static str {
     match positioning {
         Positioning::Dependent => "dependent",
         Positioning::Independent => "independent",

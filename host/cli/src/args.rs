@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::Failure;
 use crate::cases::CasesVerb;
+use crate::evaluate::EvaluateArgs;
 use crate::trial::TrialArgs;
 
 /// Case-based robot soccer: robots that choose a gameplay together and play it.
@@ -24,6 +25,8 @@ pub(crate) enum Verb {
     Play(TrialArgs),
     /// One trial of the paper.
     Trial(TrialArgs),
+    /// The paper's tables: thousands of trials, beside what the paper measured.
+    Evaluate(EvaluateArgs),
     /// Check, list, show, retrieve and explain cases.
     Cases {
         #[command(subcommand)]

@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::evaluation::EvaluationError;
 use case_tools::{Finding, Severity};
 use casebase::SettingError;
 use hil_sim::SimulationError;
@@ -78,6 +79,10 @@ pub(crate) enum Failure {
     Draft(String),
     /// Threads cannot be started.
     Threads(String),
+    /// An evaluation could not be played, kept or put together.
+    Evaluation(EvaluationError),
+    /// The filters of an evaluation leave nothing.
+    NoTrials,
     /// Announced, but not built yet.
     NotBuilt(&'static str),
     /// Stdin could not be read.
@@ -102,6 +107,12 @@ impl Failure {
         }
         eprintln!("error: {self}");
         ExitCode::FAILURE
+    }
+}
+
+impl From<EvaluationError> for Failure {
+    fn from(error: EvaluationError) -> Self {
+        Self::Evaluation(error)
     }
 }
 
@@ -163,6 +174,11 @@ impl fmt::Display for Failure {
                 f,
                 "the cases of {league} cannot be played: the simulator plays on the four-legged league's field of \
                  5400 x 3600 mm, and theirs is another; take --league four-legged or a library for that field"
+            ),
+            Self::Evaluation(error) => write!(f, "{error}"),
+            Self::NoTrials => f.write_str(
+                "no trial is left: robots' trials (--profile robots) are of scenarios 3 and 4 against dg; \
+                 leave out a filter",
             ),
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::NotBuilt(what) => write!(f, "{what} is not built yet; README says what is"),

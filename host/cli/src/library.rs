@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use case_library::{LEAGUES, League};
-use case_tools::{Finding, Library};
+use case_tools::{Files, Finding, Library, Reduction};
 use casebase::{CaseBase, KickId, Symmetry};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use protocol::CaseId;
@@ -31,6 +31,29 @@ impl Shelf {
                 .map(Self::built_in)
                 .ok_or_else(|| Failure::UnknownLeague(args.league.clone())),
         }
+    }
+
+    /// The same with no more than that of its cases.
+    pub(crate) fn open_reduced(args: &LibraryArgs, reduction: Reduction) -> Result<Self, Failure> {
+        let whole = Self::open(args)?;
+        if reduction == Reduction::NONE {
+            return Ok(whole);
+        }
+        let refused = |findings| Failure::FaultyLibrary {
+            folder: args.folder.library.clone().unwrap_or_else(|| args.league.clone().into()),
+            findings,
+        };
+        let files = match (&args.folder.library, &whole) {
+            (Some(folder), _) => Files::read(folder).map_err(refused)?,
+            (None, Self::BuiltIn(league, _)) => {
+                let cases = league.names.iter().zip(league.sources).map(|(name, text)| (*name, *text));
+                Files::from_texts(league.name, league.rules, &cases.collect::<Vec<_>>())
+            }
+            (None, Self::Folder(..)) => return Ok(whole),
+        };
+        let library = case_tools::build_reduced(&files, reduction).map_err(refused)?;
+        let library: &'static Library = Box::leak(Box::new(library));
+        Ok(Self::Folder(library, library.base()))
     }
 
     /// One league's folder.

@@ -6,9 +6,11 @@
 
 mod args;
 mod cases;
+mod evaluate;
 mod failure;
 mod library;
 mod picture;
+mod setup;
 mod trial;
 
 use std::process::ExitCode;
@@ -22,6 +24,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
         Verb::Play(args) => trial::run_with_picture(&args),
         Verb::Trial(args) => trial::run(&args),
+        Verb::Evaluate(args) => evaluate::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
     };
     outcome.unwrap_or_else(|failure| failure.report())

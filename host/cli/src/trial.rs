@@ -7,15 +7,16 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use arena::evaluation::Profile;
 use arena::{Recording, Story, TrialConfig, TrialReport, Watcher};
-use brain::{Approach, Positioning};
+use brain::Approach;
 use clap::{Args, ValueEnum};
 use firmware_build::Install;
-use hil_sim::{AirSettings, Backend, Configuration, NativeBackend, QemuBackend, Scenario};
+use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
 
 use crate::Failure;
-use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// What decides a trial.
 #[derive(Debug, Args)]
@@ -35,22 +36,14 @@ pub(crate) struct TrialArgs {
     /// Where the attackers' brains run.
     #[arg(long, value_enum, default_value_t = BackendWord::Native)]
     backend: BackendWord,
-    /// When a case's actions begin.
-    #[arg(long, value_enum, default_value_t = PositioningWord::Dependent)]
-    positioning: PositioningWord,
+    /// As the paper's simulator, or as its robots: noise in what they see, 5 s of standing still after every cycle.
+    #[arg(long, default_value = "simulated", value_parser = profile)]
+    profile: Profile,
     /// Attackers; the paper has 2.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=4))]
     robots: u8,
-    /// How many of them may retrieve; all unless told.
-    #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
-    retrievers: Option<u8>,
-    /// Share of packets lost, 0 to 1.
-    #[arg(long, default_value_t = 0.0, value_parser = share)]
-    loss: f32,
     #[command(flatten)]
-    library: LibraryArgs,
-    #[command(flatten)]
-    settings: SettingsArgs,
+    setup: SetupArgs,
     /// Print the report as JSON, and nothing else.
     #[arg(long)]
     json: bool,
@@ -77,15 +70,6 @@ enum BackendWord {
     Native,
     /// As the firmware image, each robot in a QEMU of its own.
     Qemu,
-}
-
-/// The paper's two positionings, on the command line.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum PositioningWord {
-    /// As soon as the robot that gets the ball is at its place.
-    Dependent,
-    /// When all are at their places.
-    Independent,
 }
 
 /// `onetwo trial`.
@@ -128,23 +112,14 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
         ApproachWord::Reactive => Approach::Reactive,
         ApproachWord::Hybrid => return Err(Failure::NotBuilt("--approach hybrid")),
     };
-    let chosen = args.settings.choose()?;
-    let shelf = Shelf::open(&args.library)?;
+    let robots = usize::from(args.robots);
+    let setup = args.setup.choose(robots)?;
+    let shelf = args.setup.open(&setup)?;
     let base = shelf.base();
     let names = arena::CaseNames::new(shelf.names());
-    let robots = usize::from(args.robots);
-    let config = TrialConfig {
-        settings: chosen.settings,
-        positioning: match args.positioning {
-            PositioningWord::Dependent => Positioning::Dependent,
-            PositioningWord::Independent => Positioning::Independent,
-        },
-        robots,
-        retrievers: args.retrievers.map_or(robots, usize::from).min(robots),
-        air: AirSettings::with_loss(args.loss),
-        ..TrialConfig::new(args.scenario, args.opponents, approach, args.seed)
-    }
-    .with_library(base, names);
+    let config =
+        TrialConfig { robots, ..TrialConfig::new(args.scenario, args.opponents, approach, args.seed) };
+    let config = args.profile.apply(setup.apply(config)).with_library(base, names);
     let backend: Box<dyn Backend<'_>> = match args.backend {
         BackendWord::Native => Box::new(NativeBackend::new(base)),
         BackendWord::Qemu => Box::new(qemu(args, &shelf)?),
@@ -158,10 +133,10 @@ fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
     let image = firmware_build::build_image(&firmware_build::workspace_root())
         .map_err(|error| Failure::Firmware(error.to_string()))?;
     let backend = QemuBackend::new(image);
-    match &args.library.folder.library {
-        None => Ok(backend),
-        Some(_) => backend.with_library(shelf.base().bytes()).map_err(|e| Failure::Firmware(e.to_string())),
+    if args.setup.is_built_in() {
+        return Ok(backend);
     }
+    backend.with_library(shelf.base().bytes()).map_err(|error| Failure::Firmware(error.to_string()))
 }
 
 impl TrialArgs {
@@ -175,35 +150,13 @@ impl TrialArgs {
             report.approach,
             self.seed
         );
-        for (flag, value, default) in [
-            ("--robots", self.robots.to_string(), "2"),
-            ("--retrievers", self.retrievers.map_or_else(String::new, |k| k.to_string()), ""),
-            ("--loss", self.loss.to_string(), "0"),
-            ("--positioning", report.positioning.to_owned(), "dependent"),
-            ("--league", self.library.league.clone(), "four-legged"),
-        ] {
-            if value != default {
-                let _ = write!(words, " {flag} {value}");
-            }
+        if self.profile == Profile::Robots {
+            words.push_str(" --profile robots");
         }
-        if let Some(folder) = &self.library.folder.library {
-            let _ = write!(words, " --library {}", folder.display());
+        if self.robots != 2 {
+            let _ = write!(words, " --robots {}", self.robots);
         }
-        for (name, value) in self.settings.given() {
-            let _ = write!(words, " --set {name}={value}");
-        }
+        words.push_str(&self.setup.words());
         words
     }
-}
-
-fn scenario(word: &str) -> Result<Scenario, String> {
-    Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
-}
-
-fn opponents(word: &str) -> Result<Configuration, String> {
-    Configuration::from_word(word).ok_or_else(|| "take dg or 2d".to_owned())
-}
-
-fn share(word: &str) -> Result<f32, String> {
-    word.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or_else(|| "take a share from 0 to 1".to_owned())
 }

@@ -6,8 +6,11 @@
 use brain::Approach;
 use hil_sim::Scenario;
 
+use serde::Serialize;
+
 use super::statistics::{Count, Sample, Test, holm, two_proportions, welch};
-use super::tables::TableRow;
+use super::tables::{Extent, TableRow, rounded};
+use crate::trial::approach_word;
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +40,8 @@ pub enum Measure {
 pub struct Comparison {
     /// The paper's table.
     pub table: u8,
+    /// Which of its trials.
+    pub sample: Extent,
     /// Where everybody stood.
     pub scenario: Scenario,
     /// The first row's approach.
@@ -53,6 +58,60 @@ pub struct Comparison {
     pub test: Option<Test>,
     /// Its p corrected over the scenarios.
     pub p_holm: Option<f64>,
+}
+
+/// A line of `comparisons.json` and `comparisons.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Flat {
+    /// `1` to `6`.
+    pub table: String,
+    /// `paper` or `large`, as in `tables.json`.
+    pub sample: Extent,
+    /// 1 to 4, or `random`.
+    #[serde(serialize_with = "crate::report::scenario")]
+    pub scenario: Scenario,
+    /// The column of `tables.json`.
+    pub measure: &'static str,
+    /// An approach, played by us.
+    pub first: &'static str,
+    /// Another one, or `paper`: the same approach as the paper has it.
+    pub second: &'static str,
+    /// Percent, possessions or seconds.
+    pub first_value: f64,
+    /// As before.
+    pub second_value: f64,
+    /// First less second.
+    pub difference: f64,
+    /// `z` of two shares or Welch's `t`; null where a spread is not known, as the next three.
+    pub test: Option<&'static str>,
+    /// Above 0 where the first is the greater.
+    pub statistic: Option<f64>,
+    /// Two-sided.
+    pub p: Option<f64>,
+    /// Corrected over the scenarios by Holm.
+    pub p_holm: Option<f64>,
+}
+
+impl Comparison {
+    /// As a line of a file; `of_paper` where the second row is the paper's.
+    pub fn flat(&self, of_paper: bool) -> Flat {
+        let test = if self.measure.is_share() { "z" } else { "t" };
+        Flat {
+            table: self.table.to_string(),
+            sample: self.sample,
+            scenario: self.scenario,
+            measure: self.measure.word(),
+            first: approach_word(self.first_approach),
+            second: if of_paper { "paper" } else { approach_word(self.second_approach) },
+            first_value: self.first,
+            second_value: self.second,
+            difference: rounded(self.first - self.second),
+            test: self.test.map(|_| test),
+            statistic: self.test.map(|test| test.statistic),
+            p: self.test.map(|test| test.p),
+            p_holm: self.p_holm,
+        }
+    }
 }
 
 impl Measure {
@@ -104,9 +163,14 @@ impl Measure {
         }
     }
 
+    /// Is it a share of trials, not a mean?
+    pub const fn is_share(self) -> bool {
+        !matches!(self, Self::Possession | Self::MidfieldPossession | Self::Time)
+    }
+
     /// The trials behind a share; `None` for a mean.
     pub fn count(self, row: &TableRow) -> Option<Count> {
-        if matches!(self, Self::Possession | Self::MidfieldPossession | Self::Time) {
+        if !self.is_share() {
             return None;
         }
         let hits = self.value(row)? / 100.0 * f64::from(row.trials);
@@ -135,7 +199,8 @@ impl Measure {
 /// Every measure of every row of `first` against its row of `second`.
 pub fn compare(rows: &[TableRow], first: Approach, second: Approach) -> Vec<Comparison> {
     let pairs = rows.iter().filter(|row| row.approach == first).filter_map(|row| {
-        let same = |other: &&TableRow| (other.table, other.scenario) == (row.table, row.scenario);
+        let key = |row: &TableRow| (row.table, row.sample, row.scenario);
+        let same = |other: &&TableRow| key(other) == key(row);
         Some((row, rows.iter().filter(|other| other.approach == second).find(same)?))
     });
     of_pairs(&pairs.collect::<Vec<_>>())
@@ -155,6 +220,7 @@ fn of_pairs(pairs: &[(&TableRow, &TableRow)]) -> Vec<Comparison> {
             let (Some(a), Some(b)) = (measure.value(first), measure.value(second)) else { continue };
             comparisons.push(Comparison {
                 table: first.table,
+                sample: first.sample,
                 scenario: first.scenario,
                 first_approach: first.approach,
                 second_approach: second.approach,
@@ -174,7 +240,7 @@ fn of_pairs(pairs: &[(&TableRow, &TableRow)]) -> Vec<Comparison> {
 fn correct(comparisons: &mut [Comparison]) {
     let family = |c: &Comparison| {
         let drawn = c.scenario == Scenario::Random;
-        (c.table, c.measure, c.first_approach, c.second_approach, drawn)
+        (c.table, c.sample, c.measure, c.first_approach, c.second_approach, drawn)
     };
     for place in 0..comparisons.len() {
         if comparisons[place].p_holm.is_some() {

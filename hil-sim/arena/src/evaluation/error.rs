@@ -26,7 +26,12 @@ pub enum EvaluationError {
         what: String,
     },
     /// The file is of another evaluation.
-    Another(PathBuf),
+    Another {
+        /// Which.
+        file: PathBuf,
+        /// In what it differs.
+        differences: Vec<&'static str>,
+    },
     /// Another process writes to the file.
     InUse(PathBuf),
     /// Nothing to merge.
@@ -52,6 +57,8 @@ pub enum EvaluationError {
         /// Why.
         error: SimulationError,
     },
+    /// Trials could not be written as CSV.
+    Csv(csv::Error),
     /// The caller stopped it; what was played is kept.
     Stopped,
 }
@@ -64,6 +71,12 @@ impl EvaluationError {
     }
 }
 
+impl From<csv::Error> for EvaluationError {
+    fn from(error: csv::Error) -> Self {
+        Self::Csv(error)
+    }
+}
+
 impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -71,11 +84,11 @@ impl fmt::Display for EvaluationError {
             Self::Row { file, line, what } => {
                 write!(f, "{}:{line}: {what}; take the line out, or begin in an empty folder", file.display())
             }
-            Self::Another(file) => write!(
+            Self::Another { file, differences } => write!(
                 f,
-                "{}: holds trials of another evaluation (other seed, numbers, settings, cases or program); \
-                 name an empty folder, or the same options",
-                file.display()
+                "{}: holds trials of another evaluation (other {}); name an empty folder, or give the options it was begun with",
+                file.display(),
+                differences.join(", ")
             ),
             Self::InUse(file) => {
                 write!(f, "{}: another process writes to it; wait for it, or stop it", file.display())
@@ -91,6 +104,7 @@ impl fmt::Display for EvaluationError {
                  they go on where they stopped"
             ),
             Self::Trial { trial, error } => write!(f, "trial {trial}: {error}"),
+            Self::Csv(error) => write!(f, "trials as CSV: {error}"),
             Self::Stopped => f.write_str("stopped; the same command goes on from here"),
         }
     }

@@ -3,29 +3,70 @@
 //! The first line says which evaluation the file is of, the second names the columns. A last line without its end was torn by the
 //! interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials ended; whoever reads sorts.
 
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use hil_sim::Parameters;
 use serde::{Deserialize, Serialize};
 
 use super::error::EvaluationError;
-use super::plan::Plan;
+use super::plan::{Cell, Plan};
 use super::row::{TrialRow, to_csv, to_line};
 
 /// Which evaluation a file is of: whatever decides its trials. Only equals are resumed or merged.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// Version and commit of the program.
     pub program: String,
-    /// The named settings of retrieval, name and value.
-    pub settings: Vec<(String, String)>,
-    /// `dependent` or `independent`.
-    pub positioning: String,
+    /// Whose cases: a league's name, or a folder.
+    pub library: String,
     /// Hash of the case base, 8 hexadecimal digits.
     pub case_base: String,
+    /// Its authored cases by name, in the order of ids.
+    pub cases: Vec<String>,
+    /// Cases are mirrored.
+    pub symmetry: bool,
+    /// Cases know opponents.
+    pub case_opponents: bool,
+    /// The named settings of retrieval, name and value.
+    pub settings: BTreeMap<String, String>,
+    /// `dependent` or `independent`.
+    pub positioning: String,
+    /// How many of the two robots may retrieve.
+    pub retrievers: usize,
+    /// Share of packets that a receiver does not hear.
+    pub loss: f32,
+    /// How the world behaves.
+    pub parameters: Parameters,
     /// All trials.
     pub plan: Plan,
+}
+
+impl Identity {
+    /// In what the other differs, for people; empty between equals.
+    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
+        let Self { program, library: _, case_base, cases: _, symmetry, case_opponents, .. } = self;
+        let Self { settings, positioning, retrievers, loss, parameters, plan, .. } = self;
+        let cells =
+            |plan: &Plan| plan.cells.iter().map(|cell| Cell { trials: 0, ..*cell }).collect::<Vec<_>>();
+        let library = (case_base, symmetry, case_opponents)
+            != (&other.case_base, &other.symmetry, &other.case_opponents);
+        let pairs = [
+            (*program != other.program, "program"),
+            (library, "cases"),
+            (*settings != other.settings, "settings"),
+            (*positioning != other.positioning, "positioning"),
+            (*retrievers != other.retrievers, "retrievers"),
+            (*loss != other.loss, "loss"),
+            (*parameters != other.parameters, "parameters of the world"),
+            (plan.seed != other.plan.seed, "seed"),
+            (cells(plan) != cells(&other.plan), "scenarios, opponents or approaches"),
+            (cells(plan) == cells(&other.plan) && plan.cells != other.plan.cells, "number of trials"),
+        ];
+        pairs.into_iter().filter_map(|(differs, what)| differs.then_some(what)).collect()
+    }
 }
 
 /// What a file of trials holds.
@@ -102,8 +143,9 @@ impl Ledger {
             ledger.write(format!("{MARK}{json}\n").as_bytes())?;
             return Ok((ledger, Vec::new()));
         };
-        if kept.identity != *identity {
-            return Err(EvaluationError::Another(path.to_owned()));
+        let differences = kept.identity.differences(identity);
+        if !differences.is_empty() {
+            return Err(EvaluationError::Another { file: path.to_owned(), differences });
         }
         ledger.cut(kept.whole)?;
         Ok((ledger, kept.rows))
@@ -135,19 +177,27 @@ impl Ledger {
 const MARK: &str = "# onetwo trials 1 ";
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     fn text(identity: &Identity) -> String {
         format!("{MARK}{}\n", serde_json::to_string(identity).unwrap())
     }
 
-    fn identity() -> Identity {
+    /// Of some evaluation.
+    pub(in super::super) fn identity() -> Identity {
         Identity {
             program: "test".to_owned(),
-            settings: vec![("thr_c".to_owned(), "1500".to_owned())],
-            positioning: "dependent".to_owned(),
+            library: "four-legged".to_owned(),
             case_base: "00000000".to_owned(),
+            cases: vec!["back/clear".to_owned()],
+            symmetry: true,
+            case_opponents: true,
+            settings: BTreeMap::from([("thr_c".to_owned(), "1500".to_owned())]),
+            positioning: "dependent".to_owned(),
+            retrievers: 2,
+            loss: 0.1,
+            parameters: Parameters::four_legged().clone(),
             plan: Plan::paper(1).with_trials(1),
         }
     }
@@ -162,6 +212,22 @@ mod tests {
         for torn in ["", "# one", head.trim_end(), &head, &format!("{head}trial,pro")] {
             assert_eq!(parse(Path::new("x.csv"), torn.as_bytes()).unwrap(), None, "{torn}");
         }
+    }
+
+    #[test]
+    fn an_identity_is_read_as_it_was_written_and_says_in_what_another_differs() {
+        let own = identity();
+        let json = serde_json::to_string(&own).unwrap();
+        let read: Identity = serde_json::from_str(&json).unwrap();
+        assert_eq!(read, own);
+        assert_eq!(own.differences(&read), Vec::<&str>::new());
+        let other = Identity { retrievers: 1, plan: own.plan.clone().with_trials(2), ..identity() };
+        assert_eq!(own.differences(&other), ["retrievers", "number of trials"]);
+        let other = Identity { case_base: "1".to_owned(), plan: Plan::judge(3), ..identity() };
+        assert_eq!(own.differences(&other), ["cases", "seed", "scenarios, opponents or approaches"]);
+        let mut heavier = identity();
+        heavier.parameters.ball.deceleration += 0.01;
+        assert_eq!(own.differences(&heavier), ["parameters of the world"]);
     }
 
     #[test]

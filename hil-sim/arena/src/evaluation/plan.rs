@@ -5,9 +5,11 @@
 
 use brain::Approach;
 use hil_sim::{Configuration, Fnv, Scenario};
+use protocol::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::words;
+use crate::trial::{APPROACHES, TrialConfig};
 
 /// The world trials are played in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -17,6 +19,34 @@ pub enum Profile {
     Simulated,
     /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; checklist R40).
     Robots,
+}
+
+impl Profile {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Simulated, Self::Robots];
+
+    /// Its word in options and files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Simulated => "simulated",
+            Self::Robots => "robots",
+        }
+    }
+
+    /// The profile of that word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|profile| profile.word() == word)
+    }
+
+    /// The same trial in this world.
+    pub fn apply(self, config: TrialConfig<'_>) -> TrialConfig<'_> {
+        match self {
+            Self::Simulated => config,
+            Self::Robots => {
+                TrialConfig { noise: config.parameters.noise, pause_after_cycle: PAUSE_OF_ROBOTS, ..config }
+            }
+        }
+    }
 }
 
 /// Trials that differ in their seed alone.
@@ -57,20 +87,55 @@ pub struct Planned {
 }
 
 impl Plan {
-    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders, 30 a cell as its robots played.
+    /// The paper's trials: 500 a cell against defender and goalie, 200 against two defenders; and those of its robots, 500 a
+    /// cell, of which the first 30 are as many as the paper's.
     pub fn paper(seed: u64) -> Self {
-        let cell = |profile, configuration, trials| {
-            move |scenario, approach| Cell { profile, configuration, scenario, approach, trials }
-        };
-        let dg = cell(Profile::Simulated, Configuration::DefenderGoalie, 500);
-        let two = cell(Profile::Simulated, Configuration::TwoDefenders, 200);
-        let robots = cell(Profile::Robots, Configuration::DefenderGoalie, 30);
-        let simulated = Scenario::PAPER.map(|scenario| APPROACHES.map(|approach| dg(scenario, approach)));
-        let against_two = Scenario::PAPER.map(|scenario| APPROACHES.map(|approach| two(scenario, approach)));
-        let played = [Scenario::DefenderAhead, Scenario::DefenderClose];
-        let played = played.map(|scenario| APPROACHES.map(|approach| robots(scenario, approach)));
-        let cells = simulated.into_iter().chain(against_two).chain(played).flatten().collect();
-        Self { seed, cells }
+        Self::of(seed, &Scenario::PAPER, [500, 200, 500])
+    }
+
+    /// Enough trials to tell 3 percent of 30 from chance, random starts among them; on seeds of their own.
+    pub fn judge(seed: u64) -> Self {
+        let scenarios: Vec<_> = Scenario::PAPER.into_iter().chain([Scenario::Random]).collect();
+        Self::of(seed, &scenarios, [5000; 3])
+    }
+
+    /// Case-based attackers in the paper's eight simulated cells: what changes to their team are measured on.
+    pub fn ablation(seed: u64) -> Self {
+        Self::of(seed, &Scenario::PAPER, [200; 3])
+            .only(|cell| cell.profile == Profile::Simulated && cell.approach == Approach::Cases)
+    }
+
+    /// Trials a cell: against defender and goalie, against two defenders, as the paper's robots.
+    fn of(seed: u64, scenarios: &[Scenario], [dg, two, robots]: [u32; 3]) -> Self {
+        let mut plan = Self { seed, cells: Vec::new() };
+        plan.add(Profile::Simulated, Configuration::DefenderGoalie, scenarios, dg);
+        plan.add(Profile::Simulated, Configuration::TwoDefenders, scenarios, two);
+        plan.add(Profile::Robots, Configuration::DefenderGoalie, &PLAYED_BY_ROBOTS, robots);
+        plan
+    }
+
+    fn add(&mut self, profile: Profile, configuration: Configuration, scenarios: &[Scenario], trials: u32) {
+        for &scenario in scenarios {
+            let cell = |approach| Cell { profile, configuration, scenario, approach, trials };
+            self.cells.extend(APPROACHES.map(cell));
+        }
+    }
+
+    /// With random starts behind the other cells, as many trials as their configuration's.
+    pub fn with_random(mut self) -> Self {
+        for configuration in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
+            let mut alike = self.cells.iter().filter(|cell| cell.configuration == configuration);
+            if let Some(trials) = alike.next().map(|cell| cell.trials) {
+                self.add(Profile::Simulated, configuration, &[Scenario::Random], trials);
+            }
+        }
+        self
+    }
+
+    /// The cells that are wanted.
+    pub fn only(mut self, wanted: impl Fn(&Cell) -> bool) -> Self {
+        self.cells.retain(wanted);
+        self
     }
 
     /// The same cells with that many trials each.
@@ -148,14 +213,22 @@ impl Shard {
         number % self.of == self.index - 1
     }
 
+    /// The part whose file has that name.
+    pub fn from_file_name(name: &str) -> Option<Self> {
+        let (index, of) = name.strip_prefix("trials-")?.strip_suffix(".csv")?.split_once("-of-")?;
+        Self::new(index.parse().ok()?, of.parse().ok()?)
+    }
+
     /// The name of its file.
     pub fn file_name(self) -> String {
         format!("trials-{}-of-{}.csv", self.index, self.of)
     }
 }
 
-/// What the paper compares.
-pub const APPROACHES: [Approach; 2] = [Approach::Cases, Approach::Reactive];
+/// What the paper's robots played (§5.3), against defender and goalie.
+const PLAYED_BY_ROBOTS: [Scenario; 2] = [Scenario::DefenderAhead, Scenario::DefenderClose];
+/// How long the paper's robots stood still after every cycle (§5.3).
+const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
 /// Seeds are short enough for every reader of JSON (53 bits) and for people.
 const SEED_BITS: u32 = 48;
 
@@ -166,15 +239,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_papers_plan_has_its_5600_simulated_trials_and_120_of_robots() {
-        let plan = Plan::paper(1);
+    fn the_papers_plan_has_its_5600_simulated_trials() {
+        let compared = |cell: &Cell| matches!(cell.approach, Approach::Cases | Approach::Reactive);
+        let plan = Plan::paper(1).only(compared);
         let of = |profile| {
             let cells = plan.cells.iter().filter(|cell| cell.profile == profile);
             cells.map(|cell| cell.trials).sum::<u32>()
         };
-        assert_eq!((of(Profile::Simulated), of(Profile::Robots)), (5600, 120));
-        assert_eq!((plan.len(), plan.get(5719).unwrap().number), (5720, 5719));
-        assert_eq!(plan.get(5720), None);
+        assert_eq!((of(Profile::Simulated), of(Profile::Robots)), (5600, 4 * 500));
+        assert_eq!((plan.len(), plan.get(7599).map(|trial| trial.number)), (7600, Some(7599)));
+        assert_eq!(plan.get(7600), None);
+    }
+
+    #[test]
+    fn random_starts_stand_behind_and_change_no_other_trial() {
+        let (plan, random) = (Plan::paper(1), Plan::paper(1).with_random());
+        assert_eq!(random.cells[..plan.cells.len()], plan.cells);
+        let added = &random.cells[plan.cells.len()..];
+        assert!(added.iter().all(|cell| cell.scenario == Scenario::Random));
+        assert_eq!(added.iter().map(|cell| cell.trials).sum::<u32>(), 700 * APPROACHES.len() as u32);
+        let alone = Plan::paper(1).with_random().only(|cell| cell.scenario == Scenario::Random);
+        assert_eq!(alone.cells, added);
+        let arms = Plan::ablation(1);
+        assert!(arms.cells.len() == 8 && arms.cells.iter().all(|cell| cell.approach == Approach::Cases));
     }
 
     #[test]
@@ -187,7 +274,7 @@ mod tests {
         };
         let cases = seeds(Approach::Cases, Profile::Simulated);
         assert_eq!(cases, seeds(Approach::Reactive, Profile::Simulated));
-        assert_eq!(cases.iter().collect::<BTreeSet<_>>().len(), 2800);
+        assert_eq!(cases.iter().collect::<BTreeSet<_>>().len(), 2800, "of 4 × (500 + 200)");
         assert_ne!(plan.get(0).map(|t| t.seed), Plan::paper(2).get(0).map(|t| t.seed));
     }
 
@@ -200,6 +287,8 @@ mod tests {
         all.sort_unstable();
         assert_eq!(all, (0..plan.len()).collect::<Vec<_>>());
         assert_eq!(Shard::from_word("2/3"), Shard::new(2, 3));
+        assert_eq!(Shard::from_file_name(&Shard::new(2, 3).unwrap().file_name()), Shard::new(2, 3));
+        assert_eq!(Shard::from_file_name("trials.csv"), None);
         for word in ["0/3", "4/3", "1/0", "1", "a/b", ""] {
             assert_eq!(Shard::from_word(word), None, "{word}");
         }

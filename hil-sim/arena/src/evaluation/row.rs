@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::plan::{Planned, Profile};
 use super::words;
 use crate::defaults::DefaultReport;
-use crate::report::TrialReport;
+use crate::report::{CycleReport, TrialReport};
 
 /// A trial's measures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,6 +64,8 @@ pub struct TrialRow {
     pub no_case_held: Option<u32>,
     /// Equal for equal trials.
     pub trace_hash: String,
+    /// The cases played, in order: `region/name:how-it-ended`, a blank between two.
+    pub plays: String,
 }
 
 impl TrialRow {
@@ -97,6 +99,7 @@ impl TrialRow {
             no_case_path: cause(|default| default.causes.path),
             no_case_held: cause(|default| default.causes.held),
             trace_hash: report.trace_hash.clone(),
+            plays: plays(&report.cycles),
         }
     }
 
@@ -112,6 +115,12 @@ impl TrialRow {
     pub fn to_goal(&self) -> bool {
         matches!(self.outcome, Outcome::Goal | Outcome::Close)
     }
+}
+
+/// Case and end of every cycle that had a case.
+fn plays(cycles: &[CycleReport]) -> String {
+    let played = cycles.iter().filter_map(|cycle| Some(format!("{}:{}", cycle.case.as_deref()?, cycle.end)));
+    played.collect::<Vec<_>>().join(" ")
 }
 
 /// Rows as `trials.csv`, with their columns' names in the first line.
@@ -135,4 +144,40 @@ pub fn csv_hash(csv: &[u8]) -> String {
     let mut hash = Fnv::default();
     hash.add(csv);
     hash.to_string()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// Some trial of case-based attackers.
+    pub(in super::super) fn row() -> TrialRow {
+        TrialRow {
+            trial: 0,
+            profile: Profile::Simulated,
+            configuration: Configuration::DefenderGoalie,
+            scenario: Scenario::LeftSide,
+            approach: Approach::Cases,
+            seed: 1,
+            outcome: Outcome::Goal,
+            time_s: 10.0,
+            possession_defender: 2,
+            possession_midfield: 1,
+            backups_a: 3,
+            backups_b: 16,
+            out_by: None,
+            individual: 3,
+            cooperative: 5,
+            none: 1,
+            default_s: Some(2.0),
+            default_spells: Some(1),
+            no_case_ball: Some(0),
+            no_case_robots: Some(0),
+            no_case_thr_c: Some(1),
+            no_case_path: Some(0),
+            no_case_held: Some(0),
+            trace_hash: String::new(),
+            plays: String::new(),
+        }
+    }
 }

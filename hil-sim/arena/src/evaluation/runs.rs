@@ -9,16 +9,15 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use brain::Positioning;
-use casebase::{CaseBase, Settings};
-use hil_sim::NativeBackend;
-use protocol::Duration;
+use casebase::CaseBase;
+use hil_sim::{NativeBackend, Parameters};
 use rayon::prelude::*;
 
 use super::error::EvaluationError;
 use super::ledger::{Identity, Kept, Ledger};
-use super::plan::{Plan, Planned, Profile, Shard};
+use super::plan::{Plan, Planned, Shard};
 use super::row::TrialRow;
+use super::setup::Setup;
 use crate::names::CaseNames;
 use crate::trial::{TrialConfig, positioning_word, run};
 
@@ -31,10 +30,10 @@ pub struct Evaluation<'a> {
     pub base: CaseBase<'a>,
     /// What its cases are called.
     pub names: CaseNames,
-    /// How robots retrieve.
-    pub settings: Settings,
-    /// When a case's actions begin.
-    pub positioning: Positioning,
+    /// Whose cases: a league's name, or a folder.
+    pub library: String,
+    /// How the attackers play.
+    pub setup: Setup,
     /// Version and commit of the program: trials of two programs are never mixed.
     pub program: String,
 }
@@ -51,12 +50,20 @@ pub struct Progress {
 impl<'a> Evaluation<'a> {
     /// What its files say they are of.
     pub fn identity(&self) -> Identity {
-        let settings = self.settings.describe();
+        let setup = &self.setup;
+        let settings = setup.settings.describe();
         Identity {
             program: self.program.clone(),
-            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
-            positioning: positioning_word(self.positioning).to_owned(),
+            library: self.library.clone(),
             case_base: format!("{:08x}", self.base.hash()),
+            cases: self.names.all().to_vec(),
+            symmetry: setup.symmetry,
+            case_opponents: setup.opponents,
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
+            positioning: positioning_word(setup.positioning).to_owned(),
+            retrievers: setup.retrievers,
+            loss: setup.loss,
+            parameters: Parameters::four_legged().clone(),
             plan: self.plan.clone(),
         }
     }
@@ -65,18 +72,7 @@ impl<'a> Evaluation<'a> {
     pub fn config(&self, planned: &Planned) -> TrialConfig<'a> {
         let cell = &planned.cell;
         let config = TrialConfig::new(cell.scenario, cell.configuration, cell.approach, planned.seed);
-        let (noise, pause) = match cell.profile {
-            Profile::Simulated => (config.noise, config.pause_after_cycle),
-            Profile::Robots => (config.parameters.noise, PAUSE_OF_ROBOTS),
-        };
-        TrialConfig {
-            settings: self.settings.clone(),
-            positioning: self.positioning,
-            noise,
-            pause_after_cycle: pause,
-            ..config
-        }
-        .with_library(self.base, self.names.clone())
+        cell.profile.apply(self.setup.apply(config)).with_library(self.base, self.names.clone())
     }
 
     /// Plays it.
@@ -135,8 +131,9 @@ pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationEr
         insert(&mut rows, row)?;
     }
     for file in files {
-        if file.identity != first.identity {
-            return Err(EvaluationError::Another(file.file));
+        let differences = file.identity.differences(&first.identity);
+        if !differences.is_empty() {
+            return Err(EvaluationError::Another { file: file.file, differences });
         }
         for row in file.rows {
             insert(&mut rows, row)?;
@@ -161,9 +158,6 @@ fn insert(rows: &mut BTreeMap<usize, TrialRow>, row: TrialRow) -> Result<(), Eva
         Entry::Occupied(_) => Err(EvaluationError::Unlike { trial }),
     }
 }
-
-/// How long the paper's robots stood still after every cycle (§5.3).
-const PAUSE_OF_ROBOTS: Duration = Duration::millis(5000);
 
 #[cfg(test)]
 mod tests;

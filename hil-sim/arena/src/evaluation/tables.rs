@@ -2,8 +2,9 @@
 //!
 //! A row holds everything that was measured on its trials, whichever of it the paper's table prints; `null` is what was not
 //! measured: against two defenders a trial ends at the penalty area (no goal, close, block), there is a midfield defender only
-//! there, only reactive attackers count backing up, and only others use cases. Table 5 is Table 4 without the trials that ran
-//! out of time, and gives no shares. Standard deviations are those of a sample.
+//! there, attackers led by cases alone do not back up, and reactive ones use none. Table 5 is Table 4 without the trials that ran
+//! out of time, and gives no shares. Table 6 stands there twice where more trials than the paper's 30 were played: of the first
+//! 30, and behind all other rows of all. Standard deviations are those of a sample.
 
 use brain::Approach;
 use hil_sim::{Configuration, Outcome, Scenario};
@@ -13,6 +14,26 @@ use super::plan::Profile;
 use super::row::TrialRow;
 use super::statistics::Sample;
 use super::words;
+
+/// Which of the trials a row is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Extent {
+    /// The paper's: all of them, but of Table 6 the first 30.
+    Paper,
+    /// Table 6 alone: all of them, to say what 30 could not.
+    Large,
+}
+
+impl Extent {
+    /// Its word in files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Large => "large",
+        }
+    }
+}
 
 /// A row of one of the paper's tables. Fields may be added at the end, never renamed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -86,6 +107,12 @@ pub struct TableRow {
     pub time_to_goal_mean: Option<f64>,
     /// Cases used in them.
     pub cases_to_goal_mean: Option<f64>,
+    /// Standard deviation of `backups_a`.
+    pub backups_a_sd: Option<f64>,
+    /// That of `backups_b`.
+    pub backups_b_sd: Option<f64>,
+    /// `paper`, or `large` for Table 6 of more than the paper's 30 trials.
+    pub sample: Extent,
 }
 
 /// A mean with its spread.
@@ -98,6 +125,7 @@ struct Mean {
 /// All tables of these trials, by table, then as the rows come; a table without trials is left out.
 pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
     let mut tables = Vec::new();
+    let mut large = Vec::new();
     for table in 1..=6 {
         let mut groups: Vec<(Key, Vec<&TrialRow>)> = Vec::new();
         for row in rows.iter().filter(|row| belongs(table, row)) {
@@ -107,28 +135,43 @@ pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
                 None => groups.push((key, vec![row])),
             }
         }
-        tables.extend(groups.iter().map(|((scenario, approach), group)| {
-            let mut row = TableRow::empty(table, *scenario, *approach);
-            row.fill(group);
-            row
-        }));
+        for ((scenario, approach), group) in &groups {
+            let empty = TableRow::empty(table, *scenario, *approach);
+            let of_paper = if table == 6 { group.len().min(TRIALS_OF_ROBOTS) } else { group.len() };
+            tables.push(empty.clone().filled(&group[..of_paper]));
+            if of_paper < group.len() {
+                large.push(TableRow { sample: Extent::Large, ..empty.filled(group) });
+            }
+        }
     }
+    tables.extend(large);
     tables
 }
+
+/// The paper's robots played so many trials a row of Table 6 (§5.3).
+pub(super) const TRIALS_OF_ROBOTS: usize = 30;
 
 /// What tells rows of a table apart.
 type Key = (Scenario, Approach);
 
 fn belongs(table: u8, row: &TrialRow) -> bool {
-    let reactive = row.approach == Approach::Reactive;
     row.configuration == opponents(table)
         && row.profile == if table == 6 { Profile::Robots } else { Profile::Simulated }
         && match table {
-            2 => reactive,
-            3 => !reactive,
+            2 => backs_up(row.approach),
+            3 => plays_cases(row.approach),
             5 => row.outcome != Outcome::Timeout,
             _ => true,
         }
+}
+
+/// Robots that are led by cases alone do not back up (paper §5.2.1).
+fn backs_up(approach: Approach) -> bool {
+    approach != Approach::Cases
+}
+
+fn plays_cases(approach: Approach) -> bool {
+    approach != Approach::Reactive
 }
 
 /// Whom the attackers of a table play against.
@@ -173,7 +216,15 @@ impl TableRow {
             none_held: None,
             time_to_goal_mean: None,
             cases_to_goal_mean: None,
+            backups_a_sd: None,
+            backups_b_sd: None,
+            sample: Extent::Paper,
         }
+    }
+
+    fn filled(mut self, rows: &[&TrialRow]) -> Self {
+        self.fill(rows);
+        self
     }
 
     fn fill(&mut self, rows: &[&TrialRow]) {
@@ -206,10 +257,12 @@ impl TableRow {
         (self.possession_mean, self.possession_sd) = (possession.mean, possession.sd);
         let time = mean(|row| row.time_s);
         (self.time_mean, self.time_sd) = (time.mean, time.sd);
-        if self.approach == Approach::Reactive {
-            self.backups_a = mean(|row| f64::from(row.backups_a)).mean;
-            self.backups_b = mean(|row| f64::from(row.backups_b)).mean;
-        } else {
+        if backs_up(self.approach) {
+            let (a, b) = (mean(|row| f64::from(row.backups_a)), mean(|row| f64::from(row.backups_b)));
+            (self.backups_a, self.backups_a_sd) = (a.mean, a.sd);
+            (self.backups_b, self.backups_b_sd) = (b.mean, b.sd);
+        }
+        if plays_cases(self.approach) {
             self.fill_cases(rows);
         }
         let to_goal = || rows.iter().filter(|row| row.to_goal());
@@ -247,7 +300,7 @@ impl Mean {
 }
 
 /// To a ten-thousandth: more than any number of trials says, and it reads well.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
@@ -259,34 +312,26 @@ fn table<S: Serializer>(table: &u8, s: S) -> Result<S::Ok, S::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::row::tests::row;
 
     fn trial(approach: Approach, configuration: Configuration, outcome: Outcome, time_s: f64) -> TrialRow {
-        let cases = approach == Approach::Cases;
+        let out_by = (outcome == Outcome::Out).then(|| "defender".to_owned());
+        let of_all = TrialRow { configuration, approach, outcome, time_s, out_by, ..row() };
+        if approach == Approach::Cases {
+            return of_all;
+        }
         TrialRow {
-            trial: 0,
-            profile: Profile::Simulated,
-            configuration,
-            scenario: Scenario::LeftSide,
-            approach,
-            seed: 1,
-            outcome,
-            time_s,
-            possession_defender: 2,
-            possession_midfield: 1,
-            backups_a: 3,
-            backups_b: 16,
-            out_by: (outcome == Outcome::Out).then(|| "defender".to_owned()),
-            individual: if cases { 3 } else { 0 },
-            cooperative: if cases { 5 } else { 0 },
-            none: u32::from(cases),
-            default_s: cases.then_some(2.0),
-            default_spells: cases.then_some(1),
-            no_case_ball: cases.then_some(0),
-            no_case_robots: cases.then_some(0),
-            no_case_thr_c: cases.then_some(1),
-            no_case_path: cases.then_some(0),
-            no_case_held: cases.then_some(0),
-            trace_hash: String::new(),
+            individual: 0,
+            cooperative: 0,
+            none: 0,
+            default_s: None,
+            default_spells: None,
+            no_case_ball: None,
+            no_case_robots: None,
+            no_case_thr_c: None,
+            no_case_path: None,
+            no_case_held: None,
+            ..of_all
         }
     }
 
@@ -308,7 +353,11 @@ mod tests {
             ),
             "{json}"
         );
-        assert!(json.ends_with("\"time_to_goal_mean\":15.0,\"cases_to_goal_mean\":8.0}"), "{json}");
+        assert!(json.contains("\"time_to_goal_mean\":15.0,\"cases_to_goal_mean\":8.0,"), "{json}");
+        assert!(
+            json.ends_with("\"backups_a_sd\":null,\"backups_b_sd\":null,\"sample\":\"paper\"}"),
+            "{json}"
+        );
     }
 
     #[test]
@@ -340,5 +389,17 @@ mod tests {
         assert_eq!((four.to_goal, four.timeout, four.goal), (Some(50.0), Some(50.0), None));
         assert_eq!((five.to_goal, five.time_mean, five.possession2_mean), (None, Some(10.0), Some(1.0)));
         assert_eq!((tables[2].backups_b, tables[2].individual), (Some(16.0), None));
+    }
+
+    #[test]
+    fn more_trials_of_robots_than_the_papers_are_told_apart() {
+        let mut robots = trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 9.0);
+        robots.profile = Profile::Robots;
+        let out = TrialRow { outcome: Outcome::Out, ..robots.clone() };
+        let rows = [vec![robots; 30], vec![out; 10]].concat();
+        let shares: Vec<_> =
+            tables(&rows).iter().map(|row| (row.table, row.sample, row.trials, row.goal)).collect();
+        assert_eq!(shares, [(6, Extent::Paper, 30, Some(100.0)), (6, Extent::Large, 40, Some(75.0))]);
+        assert_eq!(tables(&rows[..30]).len(), 1, "nothing more to say");
     }
 }

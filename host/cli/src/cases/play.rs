@@ -11,11 +11,11 @@ use arena::{CaseNames, Opposition, Rehearsal, Score, Story};
 use casebase::Case;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rules::League;
 
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::setup::refuse_other_fields;
 
 /// What `cases play` may be told.
 #[derive(Debug, Args)]
@@ -79,17 +79,6 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     };
     io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The simulator has one field.
-fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
-    let (played, field) = (League::FourLegged.field(), shelf.base().field());
-    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
-    if [in_mm(played.length), in_mm(played.width)] == [field.length, field.width] {
-        Ok(())
-    } else {
-        Err(Failure::NoSimulator { league: shelf.league().to_owned() })
-    }
 }
 
 /// The authored cases asked for, in the order of ids.

@@ -9,7 +9,7 @@ use hil_sim::{Configuration, Scenario};
 
 use super::*;
 use crate::evaluation::ledger::read;
-use crate::evaluation::plan::{APPROACHES, Cell};
+use crate::evaluation::plan::{Cell, Profile};
 use crate::evaluation::row::{csv_hash, to_csv};
 
 /// A folder of a test's own, gone when the test is.
@@ -42,14 +42,15 @@ fn evaluation() -> Evaluation<'static> {
         approach,
         trials: 2,
     };
-    let simulated = APPROACHES.map(|approach| cell(Profile::Simulated, Scenario::DefenderClose, approach));
+    let simulated = [Approach::Cases, Approach::Reactive]
+        .map(|approach| cell(Profile::Simulated, Scenario::DefenderClose, approach));
     let cells = simulated.into_iter().chain([cell(Profile::Robots, Scenario::Random, Approach::Cases)]);
     Evaluation {
         plan: Plan { seed: 7, cells: cells.collect() },
         base: case_library::four_legged(),
         names: CaseNames::default(),
-        settings: Settings::default(),
-        positioning: Positioning::default(),
+        library: "four-legged".to_owned(),
+        setup: Setup::default(),
         program: "test".to_owned(),
     }
 }
@@ -121,7 +122,7 @@ fn another_evaluation_is_not_mixed_in() {
     };
     small(1).play_shard(Shard::WHOLE, &file, GO_ON).unwrap();
     let refused = small(2).play_shard(Shard::WHOLE, &file, GO_ON);
-    assert!(matches!(refused, Err(EvaluationError::Another(_))), "{refused:?}");
+    assert!(matches!(refused, Err(EvaluationError::Another { .. })), "{refused:?}");
 
     let kept = read(&file).unwrap().unwrap();
     let mut unlike = kept.clone();

@@ -1,0 +1,111 @@
+//! What came out of an evaluation? Everything that is written into its folder, put together from the rows of its trials alone.
+//!
+//! | file | what |
+//! |---|---|
+//! | `trials.csv` | every trial, in the plan's order |
+//! | `tables.json`, `tables.csv` | the paper's tables (DESIGN §8) |
+//! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
+//! | `cases.csv` | what became of each case |
+//! | `run.json` | which evaluation it was: program, seed, numbers, cases, settings, world |
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::comparison::{Comparison, compare, with_paper};
+use super::error::EvaluationError;
+use super::ledger::Identity;
+use super::paper::paper;
+use super::row::{TrialRow, csv_hash, to_csv};
+use super::tables::{TableRow, tables};
+use super::uses::{CaseUse, uses, uses_to_csv};
+use crate::trial::APPROACHES;
+
+/// An evaluation that was played to its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Results {
+    /// Which evaluation it was.
+    pub identity: Identity,
+    /// Its trials, in the plan's order.
+    pub rows: Vec<TrialRow>,
+    /// The paper's tables.
+    pub tables: Vec<TableRow>,
+    /// Every row against the paper's.
+    pub with_paper: Vec<Comparison>,
+    /// Every approach against every later one.
+    pub between_approaches: Vec<Comparison>,
+    /// What became of each case.
+    pub uses: Vec<CaseUse>,
+    /// [`csv_hash`] of its trials.
+    pub hash: String,
+}
+
+/// `run.json`.
+#[derive(Serialize)]
+struct Run<'a> {
+    #[serde(flatten)]
+    identity: &'a Identity,
+    trials: usize,
+    csv_hash: &'a str,
+}
+
+impl Results {
+    /// Of an evaluation's trials in the plan's order, as [`merge`](super::merge) gives them.
+    pub fn new(identity: Identity, rows: Vec<TrialRow>) -> Result<Self, EvaluationError> {
+        let hash = csv_hash(&to_csv(&rows)?);
+        let tables = tables(&rows);
+        let pairs = (1..).zip(APPROACHES);
+        let pairs =
+            pairs.flat_map(|(next, first)| APPROACHES[next..].iter().map(move |second| (first, *second)));
+        let between = pairs.flat_map(|(first, second)| compare(&tables, first, second)).collect();
+        Ok(Self {
+            with_paper: with_paper(&tables, paper()),
+            between_approaches: between,
+            uses: uses(&rows, &identity.cases),
+            identity,
+            rows,
+            tables,
+            hash,
+        })
+    }
+
+    /// Writes every file into a folder that is there.
+    pub fn write(&self, folder: &Path) -> Result<(), EvaluationError> {
+        let all: Vec<_> = self.with_paper.iter().chain(&self.between_approaches).collect();
+        let paper = self.with_paper.len();
+        let flat: Vec<_> = all.iter().enumerate().map(|(i, comparison)| comparison.flat(i < paper)).collect();
+        let run = Run { identity: &self.identity, trials: self.rows.len(), csv_hash: &self.hash };
+        let files = [
+            ("trials.csv", to_csv(&self.rows).map_err(Into::into)),
+            ("tables.json", json(&self.tables)),
+            ("tables.csv", as_csv(&self.tables)),
+            ("comparisons.json", json(&flat)),
+            ("comparisons.csv", as_csv(&flat)),
+            ("cases.csv", uses_to_csv(&self.uses).map_err(Into::into)),
+            ("run.json", json(&run)),
+        ];
+        for (name, bytes) in files {
+            let file: PathBuf = folder.join(name);
+            let written = bytes.and_then(|bytes| fs::write(&file, bytes));
+            written.map_err(EvaluationError::file(&file))?;
+        }
+        Ok(())
+    }
+}
+
+/// JSON for programs and people: a line a list's element would be too long, so it is indented.
+pub(super) fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// A row of CSV an element, with the columns' names in the first line.
+pub(super) fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)
+}

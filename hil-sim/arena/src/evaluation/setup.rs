@@ -1,0 +1,53 @@
+//! How do the attackers play, whatever leads them? Everything of a team that an evaluation may change: one value for all its trials.
+
+use brain::Positioning;
+use casebase::Settings;
+use hil_sim::AirSettings;
+
+use crate::trial::TrialConfig;
+
+/// A team's set-up. The default is the paper's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// How robots retrieve.
+    pub settings: Settings,
+    /// When a case's actions begin.
+    pub positioning: Positioning,
+    /// How many of the two may retrieve (paper §4.1).
+    pub retrievers: usize,
+    /// Share of packets that a receiver does not hear.
+    pub loss: f32,
+    /// Cases are mirrored (paper §2.4); without it only authored ones are known.
+    pub symmetry: bool,
+    /// Cases know opponents (paper §2.1).
+    pub opponents: bool,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            settings: Settings::default(),
+            positioning: Positioning::default(),
+            retrievers: ROBOTS,
+            loss: 0.0,
+            symmetry: true,
+            opponents: true,
+        }
+    }
+}
+
+impl Setup {
+    /// The same trial played so; whoever opens the library sees to `symmetry` and `opponents`.
+    pub fn apply<'a>(&self, config: TrialConfig<'a>) -> TrialConfig<'a> {
+        TrialConfig {
+            settings: self.settings.clone(),
+            positioning: self.positioning,
+            retrievers: self.retrievers.min(config.robots),
+            air: AirSettings::with_loss(self.loss),
+            ..config
+        }
+    }
+}
+
+/// Attackers of every trial of an evaluation, as the paper's.
+pub const ROBOTS: usize = 2;

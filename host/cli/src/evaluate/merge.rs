@@ -1,0 +1,47 @@
+//! `onetwo evaluate merge`: the shards of an evaluation, played anywhere, as one.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use arena::evaluation::{EvaluationError, Kept, Results, Shard, merge, read};
+use clap::Args;
+
+use super::work;
+use crate::Failure;
+
+/// Whose trials, and where to.
+#[derive(Debug, Args)]
+pub(super) struct MergeArgs {
+    /// Folders that shards were written to.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// The folder that the whole is written to.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
+    let mut kept = Vec::new();
+    for folder in &args.folders {
+        kept.extend(shards(folder)?);
+    }
+    let (identity, rows) = merge(kept)?;
+    work::make(&args.out)?;
+    work::finish(&Results::new(identity, rows)?, &args.out)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The files of shards in a folder, in the order of their names.
+fn shards(folder: &Path) -> Result<Vec<Kept>, EvaluationError> {
+    let failed = |error| EvaluationError::File { file: folder.to_owned(), error };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().and_then(|name| name.to_str());
+        if name.is_some_and(|name| Shard::from_file_name(name).is_some()) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files.iter().filter_map(|file| read(file).transpose()).collect()
+}

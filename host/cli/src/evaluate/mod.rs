@@ -1,0 +1,38 @@
+//! `onetwo evaluate`: do case-based attackers play better than reactive ones? The paper's tables (Ros et al. 2009 §5; DESIGN §8).
+//!
+//! Data goes into the folder `--out`, the tables in words to stdout. Every trial is kept as soon as it is over: the same
+//! command goes on where it was stopped, and shards played elsewhere are merged into the same bytes.
+
+mod merge;
+mod tables;
+mod work;
+
+use std::process::ExitCode;
+
+use clap::{Args, Subcommand};
+
+use crate::Failure;
+
+/// What is evaluated.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(crate) struct EvaluateArgs {
+    #[command(subcommand)]
+    verb: Option<EvaluateVerb>,
+    #[command(flatten)]
+    tables: tables::TablesArgs,
+}
+
+/// One verb, one file.
+#[derive(Debug, Subcommand)]
+enum EvaluateVerb {
+    /// Put the shards of an evaluation together.
+    Merge(merge::MergeArgs),
+}
+
+pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
+    match &args.verb {
+        None => tables::run(&args.tables),
+        Some(EvaluateVerb::Merge(args)) => merge::run(args),
+    }
+}

@@ -1,0 +1,94 @@
+//! `onetwo evaluate` alone: the trials behind the paper's Tables 1 to 6, as many as the paper's unless told otherwise.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use arena::evaluation::{Cell, Plan, Profile, Results, Shard};
+use brain::Approach;
+use clap::Args;
+use hil_sim::{Configuration, Scenario};
+
+use super::work::{self, WorkArgs};
+use crate::Failure;
+use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
+
+/// Which trials, and how they are played.
+#[derive(Debug, Args)]
+pub(super) struct TablesArgs {
+    /// Trials a cell of scenario, opponents and approach; the paper's unless told: 500, 200 against two defenders.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    trials: Option<u32>,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    shard: Shard,
+    #[command(flatten)]
+    work: WorkArgs,
+    /// Only these scenarios: 1 to 4, random; may be repeated.
+    #[arg(long, value_parser = scenario)]
+    scenario: Vec<Scenario>,
+    /// Only against these: dg or 2d; may be repeated.
+    #[arg(long, value_parser = opponents)]
+    opponents: Vec<Configuration>,
+    /// Only these approaches; may be repeated.
+    #[arg(long, value_parser = approach)]
+    approach: Vec<Approach>,
+    /// Only this world: as the paper's simulator (Tables 1 to 5), or as its robots (Table 6).
+    #[arg(long, value_parser = profile)]
+    profile: Option<Profile>,
+    /// Random starts too, which nobody has seen before: a fifth family beside the paper's scenarios.
+    #[arg(long)]
+    random: bool,
+    #[command(flatten)]
+    setup: SetupArgs,
+}
+
+pub(super) fn run(args: &TablesArgs) -> Result<ExitCode, Failure> {
+    let plan = args.plan()?;
+    let setup = args.setup.choose(arena::evaluation::ROBOTS)?;
+    let shelf = args.setup.open(&setup)?;
+    let evaluation = work::evaluation(plan, setup, &shelf, args.setup.library_word());
+    let folder = args.work.folder()?;
+    let file = folder.join(args.shard.file_name());
+    let rows = work::play(&evaluation, args.shard, &file, &args.work.pool()?, "playing")?;
+    if args.shard == Shard::WHOLE {
+        work::finish(&Results::new(evaluation.identity(), rows)?, folder)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (kept, out) = (file.display(), folder.display());
+    writeln!(
+        io::stdout().lock(),
+        "{} trials in {kept}; when all shards are played: onetwo evaluate merge {out} --out {out}",
+        rows.len()
+    )
+    .map_err(Failure::Output)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl TablesArgs {
+    fn plan(&self) -> Result<Plan, Failure> {
+        let wants_random = self.random || self.scenario.contains(&Scenario::Random);
+        let plan = Plan::paper(self.seed);
+        let plan = if wants_random { plan.with_random() } else { plan };
+        let scenario = |asked: Scenario| {
+            self.scenario.is_empty()
+                || self.scenario.contains(&asked)
+                || (self.random && asked == Scenario::Random)
+        };
+        let wanted = |cell: &Cell| {
+            scenario(cell.scenario)
+                && (self.opponents.is_empty() || self.opponents.contains(&cell.configuration))
+                && (self.approach.is_empty() || self.approach.contains(&cell.approach))
+                && self.profile.is_none_or(|profile| profile == cell.profile)
+        };
+        let plan = plan.only(wanted);
+        let plan = self.trials.map_or(plan.clone(), |trials| plan.with_trials(trials));
+        if plan.is_empty() { Err(Failure::NoTrials) } else { Ok(plan) }
+    }
+}
+
+fn shard(word: &str) -> Result<Shard, String> {
+    Shard::from_word(word).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
+}

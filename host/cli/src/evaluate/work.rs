@@ -1,0 +1,110 @@
+//! How is a long evaluation played? On so many threads, with a bar on a terminal; Ctrl-C keeps what is over.
+
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use arena::CaseNames;
+use arena::evaluation::{Evaluation, EvaluationError, Plan, Progress, Results, Setup, Shard, TrialRow};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::Failure;
+use crate::args::VERSION;
+use crate::library::Shelf;
+
+/// Where and how fast.
+#[derive(Debug, Args)]
+pub(super) struct WorkArgs {
+    /// Threads; as many as there are cores unless told.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// The folder that everything is written to; the same command goes on there after an interrupt.
+    #[arg(long, value_name = "DIR", default_value = "evaluation")]
+    pub(super) out: PathBuf,
+}
+
+impl WorkArgs {
+    /// Threads to play on.
+    pub(super) fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.jobs.map_or(0, usize::from));
+        pool.build().map_err(|error| Failure::Threads(error.to_string()))
+    }
+
+    /// The folder, made where it is missing.
+    pub(super) fn folder(&self) -> Result<&Path, Failure> {
+        make(&self.out)?;
+        Ok(&self.out)
+    }
+}
+
+/// A folder for results.
+pub(super) fn make(folder: &Path) -> Result<(), Failure> {
+    let made = std::fs::create_dir_all(folder);
+    made.map_err(|error| EvaluationError::File { file: folder.to_owned(), error }.into())
+}
+
+/// Everything that decides the trials of a plan.
+pub(super) fn evaluation(plan: Plan, setup: Setup, shelf: &Shelf, library: String) -> Evaluation<'_> {
+    let names = CaseNames::new(shelf.names());
+    Evaluation { plan, base: shelf.base(), names, library, setup, program: VERSION.to_owned() }
+}
+
+/// Plays what `file` lacks of a shard; with `title` before the bar.
+pub(super) fn play(
+    evaluation: &Evaluation<'_>,
+    shard: Shard,
+    file: &Path,
+    pool: &rayon::ThreadPool,
+    title: &str,
+) -> Result<Vec<TrialRow>, Failure> {
+    let stopped = stopped_by_hand();
+    // Drawn on a terminal's stderr, and nowhere else.
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} trials, {eta} to go") {
+        bar.set_style(style);
+    }
+    bar.set_message(title.to_owned());
+    let told = |progress: Progress| {
+        if bar.length() != Some(progress.of as u64) {
+            bar.set_length(progress.of as u64);
+            // What an earlier run played says nothing of how long the rest takes.
+            bar.set_position(progress.done as u64);
+            bar.reset_eta();
+        }
+        bar.set_position(progress.done as u64);
+        if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let rows = pool.install(|| evaluation.play_shard(shard, file, &told));
+    bar.finish_and_clear();
+    Ok(rows?)
+}
+
+/// Has somebody pressed Ctrl-C? The trials under way are then still played and kept; a second time ends the program at once.
+fn stopped_by_hand() -> &'static AtomicBool {
+    static STOPPED: AtomicBool = AtomicBool::new(false);
+    // Where no handler can be set, or one is there already, Ctrl-C does what it did before: every trial over is kept anyway.
+    let _ = ctrlc::try_set_handler(|| {
+        if STOPPED.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    &STOPPED
+}
+
+/// Writes everything, and says the tables and where they are.
+pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
+    results.write(folder)?;
+    let mut out = io::stdout().lock();
+    out.write_all(arena::evaluation::summary(results).as_bytes()).map_err(Failure::Output)?;
+    writeln!(
+        out,
+        "{} trials, seed {}, csv hash {}, in {}",
+        results.rows.len(),
+        results.identity.plan.seed,
+        results.hash,
+        folder.display()
+    )
+    .map_err(Failure::Output)
+}

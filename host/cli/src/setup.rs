@@ -1,0 +1,159 @@
+//! How do the attackers play, whatever leads them? The flags of every verb that plays trials of the paper.
+//!
+//! Each is a change to the paper's team, so that `onetwo trial` plays any trial of an evaluation or of an ablation again.
+
+use arena::evaluation::{Profile, Setup};
+use brain::Positioning;
+use case_tools::Reduction;
+use clap::{Args, ValueEnum};
+use rules::League;
+
+use crate::Failure;
+use crate::args::{LibraryArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// The attackers' set-up.
+#[derive(Debug, Args)]
+pub(crate) struct SetupArgs {
+    /// When a case's actions begin.
+    #[arg(long, value_enum, default_value_t = PositioningWord::Dependent)]
+    positioning: PositioningWord,
+    /// How many robots may retrieve; all unless told.
+    #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
+    retrievers: Option<u8>,
+    /// Share of packets lost, 0 to 1.
+    #[arg(long, default_value_t = 0.0, value_parser = share)]
+    loss: f32,
+    /// Without the mirror images of cases: only authored ones are known.
+    #[arg(long)]
+    no_symmetry: bool,
+    /// Without the opponents of cases: they neither ask for them nor rank by them.
+    #[arg(long)]
+    no_opponents: bool,
+    #[command(flatten)]
+    library: LibraryArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+}
+
+/// The paper's two positionings, on the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PositioningWord {
+    /// As soon as the robot that gets the ball is at its place.
+    Dependent,
+    /// When all are at their places.
+    Independent,
+}
+
+impl SetupArgs {
+    /// As the flags say, for a team of so many robots.
+    pub(crate) fn choose(&self, robots: usize) -> Result<Setup, Failure> {
+        Ok(Setup {
+            settings: self.settings.choose()?.settings,
+            positioning: match self.positioning {
+                PositioningWord::Dependent => Positioning::Dependent,
+                PositioningWord::Independent => Positioning::Independent,
+            },
+            retrievers: self.retrievers.map_or(robots, usize::from).min(robots),
+            loss: self.loss,
+            symmetry: !self.no_symmetry,
+            opponents: !self.no_opponents,
+        })
+    }
+
+    /// The cases of that set-up; refused where they are of a field that no simulator has.
+    pub(crate) fn open(&self, setup: &Setup) -> Result<Shelf, Failure> {
+        let shelf = Shelf::open_reduced(&self.library, reduction(setup))?;
+        refuse_other_fields(&shelf)?;
+        Ok(shelf)
+    }
+
+    /// Does the image of the firmware hold the cases?
+    pub(crate) fn is_built_in(&self) -> bool {
+        self.library.folder.library.is_none() && !self.no_symmetry && !self.no_opponents
+    }
+
+    /// Whose cases, in a word: a league's name, or the folder.
+    pub(crate) fn library_word(&self) -> String {
+        match &self.library.folder.library {
+            Some(folder) => folder.display().to_string(),
+            None => self.library.league.clone(),
+        }
+    }
+
+    /// The flags that are not at their defaults, each with a blank before it.
+    pub(crate) fn words(&self) -> String {
+        use std::fmt::Write as _;
+        let mut words = String::new();
+        if let PositioningWord::Independent = self.positioning {
+            words.push_str(" --positioning independent");
+        }
+        if let Some(retrievers) = self.retrievers {
+            let _ = write!(words, " --retrievers {retrievers}");
+        }
+        if self.loss > 0.0 {
+            let _ = write!(words, " --loss {}", self.loss);
+        }
+        for (flag, given) in [("no-symmetry", self.no_symmetry), ("no-opponents", self.no_opponents)] {
+            if given {
+                let _ = write!(words, " --{flag}");
+            }
+        }
+        match &self.library.folder.library {
+            Some(folder) => {
+                let _ = write!(words, " --library {}", folder.display());
+            }
+            None if self.library.league != "four-legged" => {
+                let _ = write!(words, " --league {}", self.library.league);
+            }
+            None => {}
+        }
+        for (name, value) in self.settings.given() {
+            let _ = write!(words, " --set {name}={value}");
+        }
+        words
+    }
+}
+
+/// What of a library a set-up keeps.
+pub(crate) const fn reduction(setup: &Setup) -> Reduction {
+    Reduction { symmetry: setup.symmetry, opponents: setup.opponents }
+}
+
+/// The simulator has one field.
+pub(crate) fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
+    let (played, field) = (League::FourLegged.field(), shelf.base().field());
+    let in_mm = |metres: f32| (metres * 1000.0).round() as i32;
+    if [in_mm(played.length), in_mm(played.width)] == [field.length, field.width] {
+        Ok(())
+    } else {
+        Err(Failure::NoSimulator { league: shelf.league().to_owned() })
+    }
+}
+
+/// The words of scenarios, as flags take them.
+pub(crate) fn scenario(word: &str) -> Result<hil_sim::Scenario, String> {
+    hil_sim::Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
+}
+
+/// Of opponents.
+pub(crate) fn opponents(word: &str) -> Result<hil_sim::Configuration, String> {
+    hil_sim::Configuration::from_word(word).ok_or_else(|| "take dg or 2d".to_owned())
+}
+
+/// Of worlds.
+pub(crate) fn profile(word: &str) -> Result<Profile, String> {
+    Profile::from_word(word).ok_or_else(|| "take simulated or robots".to_owned())
+}
+
+/// Of what leads the attackers.
+pub(crate) fn approach(word: &str) -> Result<brain::Approach, String> {
+    arena::approach_from_word(word).ok_or_else(|| {
+        let known: Vec<_> = arena::APPROACHES.map(arena::approach_word).into();
+        format!("take {}", known.join(" or "))
+    })
+}
+
+fn share(word: &str) -> Result<f32, String> {
+    word.parse().ok().filter(|x| (0.0..=1.0).contains(x)).ok_or_else(|| "take a share from 0 to 1".to_owned())
+}
