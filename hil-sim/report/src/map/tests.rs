@@ -1,7 +1,7 @@
 //! Is what a map shows what happened? Hand-made flights, and a trial played twice.
 
 use arena::TEAM;
-use arena::evaluation::Plan;
+use arena::evaluation::{Plan, Setup};
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
 
@@ -78,8 +78,8 @@ fn maps_are_of_the_simulated_cells_of_a_plan() {
         plan: Plan::paper(1).with_trials(1),
         base: config.base,
         names: config.names.clone(),
-        settings: config.settings.clone(),
-        positioning: config.positioning,
+        library: "four-legged".to_owned(),
+        setup: Setup::default(),
         program: format!("{TEAM:?}"),
     };
     let maps = Map::of(&evaluation, 1).unwrap();
