@@ -52,19 +52,22 @@ fn own(text: &mut String, table: &Table) {
 
 /// One approach less another, the paper's in italics behind it.
 fn against(text: &mut String, table: &Table) {
-    let pair = |line: &&Line| matches!(line.kind, LineKind::Against(_));
+    let pair = |line: &&Line| matches!(line.kind, LineKind::Against(..));
     let tested = |line: &Line| line.cells.iter().any(|cell| !cell.beside.is_empty());
     if !table.blocks.iter().flat_map(|block| &block.lines).filter(pair).any(tested) {
         return;
     }
     let heads = table.columns.iter().map(|column| format!("{} ({})", column.head, column.unit));
-    head(text, &["scenario", "difference"], heads);
+    head(text, &["scenario", "difference", "trials"], heads);
     for block in &table.blocks {
         let mut lines = block.lines.iter().peekable();
         while let Some(line) = lines.next() {
-            let LineKind::Against(_) = line.kind else { continue };
+            if !pair(&line) {
+                continue;
+            }
+            let trials = line.trials().unwrap_or_default();
             let paper = lines.next_if(|line| matches!(line.kind, LineKind::PaperAgainst(_)));
-            let _ = write!(text, "| {} | {} |", words::scenario(block.scenario), line.label());
+            let _ = write!(text, "| {} | {} | {trials} |", words::scenario(block.scenario), line.label());
             let both = |cell: &Cell| format!("{}{}", cell.value, escaped(cell.marks));
             for (i, cell) in line.cells.iter().enumerate() {
                 let printed = paper.and_then(|line| line.cells.get(i)).filter(|cell| !cell.value.is_empty());

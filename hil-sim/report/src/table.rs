@@ -43,8 +43,8 @@ pub(crate) enum LineKind {
     Paper(u32),
     /// Ours less the paper's.
     Difference,
-    /// Ours less our other approach's.
-    Against(Approach),
+    /// Ours less our other approach's, of so many trials.
+    Against(Approach, [u32; 2]),
     /// The paper's less its other approach's.
     PaperAgainst(Approach),
 }
@@ -125,24 +125,26 @@ struct Source<'a> {
 impl Source<'_> {
     fn lines(&self, table: u8, scenario: Scenario, columns: &[Column]) -> Vec<Line> {
         let mut lines = Vec::new();
-        for row in &self.ours {
+        let mut before = None;
+        for row in by_approach(&self.ours) {
             let approach = row.approach;
-            let own = |cells| move |kind| Line { kind, approach, cells };
-            lines.push(own(columns.iter().map(|column| measured(column, row, false)).collect())(
-                LineKind::Ours(row.trials),
-            ));
+            let line = |kind, cells| Line { kind, approach, cells };
+            let own = columns.iter().map(|column| measured(column, row, false)).collect();
+            lines.push(line(LineKind::Ours(row.trials), own));
             let Some(paper) = self.paper.iter().find(|paper| paper.approach == approach) else { continue };
-            let printed = columns.iter().map(|column| measured(column, paper, true));
-            lines.push(own(printed.collect())(LineKind::Paper(paper.trials)));
+            // Below ours of another size it stands already.
+            if before.replace(approach) != Some(approach) {
+                let printed = columns.iter().map(|column| measured(column, paper, true)).collect();
+                lines.push(line(LineKind::Paper(paper.trials), printed));
+            }
             let comparisons = self.report.with_paper;
-            let less = columns.iter().map(|column| less(column, row, paper, comparisons));
-            lines.push(own(less.collect())(LineKind::Difference));
+            let less = columns.iter().map(|column| less(column, row, paper, comparisons)).collect();
+            lines.push(line(LineKind::Difference, less));
         }
         for (first, second) in pairs(self.report.between, table, scenario) {
-            for (rows, comparisons, kind) in [
-                (&self.ours, self.report.between, LineKind::Against(second)),
-                (&self.paper, self.report.papers_between, LineKind::PaperAgainst(second)),
-            ] {
+            for (ours, rows, comparisons) in
+                [(true, &self.ours, self.report.between), (false, &self.paper, self.report.papers_between)]
+            {
                 let of = |approach| rows.iter().filter(move |row: &&TableRow| row.approach == approach);
                 for a in of(first) {
                     // Where a table has rows of several sizes, like is held against like.
@@ -150,12 +152,28 @@ impl Source<'_> {
                     let alike = others.clone().find(|b| b.trials == a.trials);
                     let Some(b) = alike.or_else(|| others.next()) else { continue };
                     let cells = columns.iter().map(|column| less(column, a, b, comparisons)).collect();
+                    let kind = match ours {
+                        true => LineKind::Against(second, [a.trials, b.trials]),
+                        false => LineKind::PaperAgainst(second),
+                    };
                     lines.push(Line { kind, approach: first, cells });
                 }
             }
         }
         lines
     }
+}
+
+/// Rows of an approach beside each other, approaches as they come.
+fn by_approach(rows: &[TableRow]) -> Vec<&TableRow> {
+    let mut approaches: Vec<Approach> = Vec::new();
+    for row in rows {
+        if !approaches.contains(&row.approach) {
+            approaches.push(row.approach);
+        }
+    }
+    let own = |approach| rows.iter().filter(move |row: &&TableRow| row.approach == approach);
+    approaches.into_iter().flat_map(own).collect()
 }
 
 /// Pairs of approaches that are held against each other in that table and scenario.
@@ -218,9 +236,7 @@ impl Line {
             tr class=(self.class()) {
                 th.name scope="row" style=(words::css(self.approach)) {
                     (self.label())
-                    @if let LineKind::Ours(trials) | LineKind::Paper(trials) = self.kind {
-                        small { (trials) " trials" }
-                    }
+                    @if let Some(trials) = self.trials() { small { (trials) " trials" } }
                 }
                 @for cell in &self.cells { td {
                     (cell.value)
@@ -238,8 +254,18 @@ impl Line {
             LineKind::Ours(_) => "ours",
             LineKind::Paper(_) => "paper",
             LineKind::Difference => "difference",
-            LineKind::Against(_) => "against",
+            LineKind::Against(..) => "against",
             LineKind::PaperAgainst(_) => "paper against",
+        }
+    }
+
+    /// Of how many trials it is.
+    pub(crate) fn trials(&self) -> Option<String> {
+        match self.kind {
+            LineKind::Ours(trials) | LineKind::Paper(trials) => Some(trials.to_string()),
+            LineKind::Against(_, [first, second]) if first == second => Some(first.to_string()),
+            LineKind::Against(_, [first, second]) => Some(format!("{first} and {second}")),
+            LineKind::Difference | LineKind::PaperAgainst(_) => None,
         }
     }
 
@@ -249,7 +275,7 @@ impl Line {
             LineKind::Ours(_) => own.to_owned(),
             LineKind::Paper(_) => "paper".to_owned(),
             LineKind::Difference => "ours − paper".to_owned(),
-            LineKind::Against(other) => format!("{own} − {}", words::approach(other)),
+            LineKind::Against(other, _) => format!("{own} − {}", words::approach(other)),
             LineKind::PaperAgainst(_) => "paper’s".to_owned(),
         }
     }

@@ -137,12 +137,10 @@ fn passes(map: &Map) -> Svg {
     let mut svg = Svg::default();
     draw_field(&mut svg, &map.field, colors);
     for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
-        let mut arrows = Svg::default();
-        for pass in map.passes.iter().filter(|pass| pass.kind == kind) {
-            arrow(&mut arrows, millimetres(pass.from), millimetres(pass.to), kind);
-        }
+        let own = map.passes.iter().filter(|pass| pass.kind == kind);
+        let ways: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
         // Where many lie on each other it is darker.
-        svg.group(&arrows, r#"stroke-opacity="0.38" fill-opacity="0.55""#);
+        arrows(&mut svg, &ways, kind, "0.4");
     }
     for outcome in [Outcome::Timeout, Outcome::Out, Outcome::Block, Outcome::Close, Outcome::Goal] {
         for (place, _) in map.ends.iter().filter(|(_, own)| *own == outcome) {
@@ -152,13 +150,36 @@ fn passes(map: &Map) -> Svg {
     svg
 }
 
-fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2], kind: PassKind) {
+/// Arrows of a kind, each one short element: there are hundreds.
+fn arrows(svg: &mut Svg, ways: &[([f64; 2], [f64; 2])], kind: PassKind, opacity: &str) {
     let (color, style) = match kind {
         PassKind::Completed => (COMPLETED, r#"stroke-width="14""#),
         PassKind::Lost => (LOST, r#"stroke-width="11" stroke-dasharray="34 26""#),
         PassKind::Chance => (CHANCE, r#"stroke-width="11""#),
     };
-    svg.arrow(from, to, 85.0, color, style);
+    let (mut lines, mut heads) = (Svg::default(), Svg::default());
+    for (from, to) in ways {
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy);
+        if length <= 0.0 {
+            continue;
+        }
+        let head = HEAD.min(length);
+        let along = [dx / length * head, dy / length * head];
+        let (back, side) = ([to[0] - along[0], to[1] - along[1]], [along[1] * 0.42, -along[0] * 0.42]);
+        let at = |x: f64, y: f64| format!("{:.0} {:.0}", x, -y);
+        lines.element(format_args!(r#"<path d="M{}L{}"/>"#, at(from[0], from[1]), at(back[0], back[1])));
+        heads.element(format_args!(
+            r#"<path d="M{}L{}L{}z"/>"#,
+            at(to[0], to[1]),
+            at(back[0] + side[0], back[1] + side[1]),
+            at(back[0] - side[0], back[1] - side[1])
+        ));
+    }
+    if !ways.is_empty() {
+        svg.group(&lines, format_args!(r#"stroke="{color}" stroke-opacity="{opacity}" {style}"#));
+        svg.group(&heads, format_args!(r#"fill="{color}" fill-opacity="{opacity}""#));
+    }
 }
 
 /// The sign of an outcome.
@@ -217,7 +238,7 @@ fn signs() -> Vec<(String, &'static str)> {
 }
 
 fn entries() -> Vec<(Svg, &'static str)> {
-    let arrows = [
+    let passes = [
         (PassKind::Completed, "pass completed"),
         (PassKind::Lost, "pass lost"),
         (PassKind::Chance, "kick that came to a teammate"),
@@ -229,9 +250,9 @@ fn entries() -> Vec<(Svg, &'static str)> {
         (Outcome::Out, "out"),
         (Outcome::Timeout, "timeout"),
     ];
-    let arrows = arrows.into_iter().map(|(kind, word)| {
+    let passes = passes.into_iter().map(|(kind, word)| {
         let mut svg = Svg::default();
-        arrow(&mut svg, [-140.0, 0.0], [150.0, 0.0], kind);
+        arrows(&mut svg, &[([-140.0, 0.0], [150.0, 0.0])], kind, "1");
         (svg, word)
     });
     let ends = ends.into_iter().map(|(outcome, word)| {
@@ -239,7 +260,7 @@ fn entries() -> Vec<(Svg, &'static str)> {
         end(&mut svg, [60.0, 0.0], outcome);
         (svg, word)
     });
-    arrows.chain(ends).collect()
+    passes.chain(ends).collect()
 }
 
 /// Signs from `left`, the scale from `from`; gives where they end.
@@ -290,6 +311,8 @@ pub(crate) const SHADES: [&str; 7] =
     ["#c9d9ea", "#a5c0de", "#7fa3cf", "#5d83bc", "#4562a3", "#374382", "#2a2459"];
 /// Seconds a trial from which on a square has each shade.
 const STEPS: [f64; 7] = [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5];
+/// Length of an arrow's head, mm.
+const HEAD: f64 = 85.0;
 const COMPLETED: &str = "#1b1b1b";
 /// Reddish purple (Okabe and Ito), darker.
 pub(crate) const LOST: &str = "#b3367d";
