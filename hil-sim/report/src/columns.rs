@@ -59,6 +59,10 @@ impl Column {
         measure.sample(row)?.sd
     }
 
+    pub(crate) fn is_count(&self) -> bool {
+        self.unit == "trials"
+    }
+
     pub(crate) fn is_share(&self) -> bool {
         self.unit == "%"
     }

@@ -10,6 +10,7 @@
 //! every interval and p stands beside its number.
 
 mod columns;
+mod facts;
 mod map;
 mod markdown;
 mod numbers;
@@ -25,6 +26,7 @@ use std::path::Path;
 
 use arena::evaluation::{Comparison, TableRow};
 
+pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};
 
@@ -82,15 +84,6 @@ pub enum Verdict {
     Contradicted,
     /// They cannot tell.
     Undecided,
-}
-
-/// What decided the trials, under one heading.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Facts {
-    /// The heading.
-    pub title: String,
-    /// Name and value.
-    pub entries: Vec<(String, String)>,
 }
 
 /// A picture with the name of its file, without an ending.

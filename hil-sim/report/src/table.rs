@@ -152,9 +152,10 @@ impl Source<'_> {
                     let alike = others.clone().find(|b| b.trials == a.trials);
                     let Some(b) = alike.or_else(|| others.next()) else { continue };
                     let cells = columns.iter().map(|column| less(column, a, b, comparisons)).collect();
-                    let kind = match ours {
-                        true => LineKind::Against(second, [a.trials, b.trials]),
-                        false => LineKind::PaperAgainst(second),
+                    let kind = if ours {
+                        LineKind::Against(second, [a.trials, b.trials])
+                    } else {
+                        LineKind::PaperAgainst(second)
                     };
                     lines.push(Line { kind, approach: first, cells });
                 }
@@ -207,6 +208,10 @@ fn measured(column: &Column, row: &TableRow, paper: bool) -> Cell {
 /// The first row's number less the second's, with its test if there is one.
 fn less(column: &Column, first: &TableRow, second: &TableRow, comparisons: &[Comparison]) -> Cell {
     let (Some(a), Some(b)) = (column.value(first), column.value(second)) else { return Cell::default() };
+    // Counts are of their trials: only among as many can they be compared.
+    if column.is_count() && first.trials != second.trials {
+        return Cell::default();
+    }
     let value = numbers::signed(a - b, column.decimals);
     let p = tested(column, first, second, comparisons).and_then(|comparison| comparison.p_holm);
     let (marks, beside) = p.map_or(("", String::new()), |p| (numbers::marks(p), numbers::p(p)));

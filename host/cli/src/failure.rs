@@ -63,6 +63,13 @@ pub(crate) enum Failure {
         /// Why.
         words: String,
     },
+    /// A Markdown file has no place for figures.
+    Markdown {
+        /// Which.
+        file: PathBuf,
+        /// What it lacks.
+        error: report::MarkerError,
+    },
     /// No authored case of that name.
     UnknownName {
         /// What was asked for.
@@ -163,6 +170,7 @@ impl fmt::Display for Failure {
             Self::Draft(words) | Self::Survey(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
+            Self::Markdown { file, error } => write!(f, "{}: {error}", file.display()),
             Self::Picture { file, words } => {
                 write!(f, "cannot write the picture {}: {words}", file.display())
             }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use arena::evaluation::{EvaluationError, Kept, Results, Shard, merge, read};
 use clap::Args;
 
+use super::report::{self, ReportArgs};
 use super::work;
 use crate::Failure;
 
@@ -18,6 +19,8 @@ pub(super) struct MergeArgs {
     /// The folder that the whole is written to.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    #[command(flatten)]
+    report: ReportArgs,
 }
 
 pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
@@ -27,12 +30,14 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
     }
     let (identity, rows) = merge(kept)?;
     work::make(&args.out)?;
-    work::finish(&Results::new(identity, rows)?, &args.out)?;
+    let results = Results::new(identity, rows)?;
+    work::finish(&results, &args.out)?;
+    report::write(&results, &args.out, &args.report)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The files of shards in a folder, in the order of their names.
-fn shards(folder: &Path) -> Result<Vec<Kept>, EvaluationError> {
+pub(super) fn shards(folder: &Path) -> Result<Vec<Kept>, EvaluationError> {
     let failed = |error| EvaluationError::File { file: folder.to_owned(), error };
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {

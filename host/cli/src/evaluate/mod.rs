@@ -4,6 +4,7 @@
 //! command goes on where it was stopped, and shards played elsewhere are merged into the same bytes.
 
 mod merge;
+mod report;
 mod tables;
 mod work;
 
@@ -28,11 +29,14 @@ pub(crate) struct EvaluateArgs {
 enum EvaluateVerb {
     /// Put the shards of an evaluation together.
     Merge(merge::MergeArgs),
+    /// Write the report of an evaluation that was played anew.
+    Report(report::AgainArgs),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
     match &args.verb {
         None => tables::run(&args.tables),
         Some(EvaluateVerb::Merge(args)) => merge::run(args),
+        Some(EvaluateVerb::Report(args)) => report::run(args),
     }
 }

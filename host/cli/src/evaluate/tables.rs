@@ -8,6 +8,7 @@ use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
 
+use super::report::{self, ReportArgs};
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
@@ -42,6 +43,8 @@ pub(super) struct TablesArgs {
     #[arg(long)]
     random: bool,
     #[command(flatten)]
+    report: ReportArgs,
+    #[command(flatten)]
     setup: SetupArgs,
 }
 
@@ -52,9 +55,12 @@ pub(super) fn run(args: &TablesArgs) -> Result<ExitCode, Failure> {
     let evaluation = work::evaluation(plan, setup, &shelf, args.setup.library_word());
     let folder = args.work.folder()?;
     let file = folder.join(args.shard.file_name());
-    let rows = work::play(&evaluation, args.shard, &file, &args.work.pool()?, "playing")?;
+    let pool = args.work.pool()?;
+    let rows = work::play(&evaluation, args.shard, &file, &pool, "playing")?;
     if args.shard == Shard::WHOLE {
-        work::finish(&Results::new(evaluation.identity(), rows)?, folder)?;
+        let results = Results::new(evaluation.identity(), rows)?;
+        work::finish(&results, folder)?;
+        pool.install(|| report::write(&results, folder, &args.report))?;
         return Ok(ExitCode::SUCCESS);
     }
     let (kept, out) = (file.display(), folder.display());

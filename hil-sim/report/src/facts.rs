@@ -1,0 +1,96 @@
+//! What decided the trials? Everything the evaluation's files say of themselves, by name and value, nothing left out.
+
+use arena::evaluation::Identity;
+use serde_json::Value;
+
+/// What decided the trials, under one heading.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// The heading.
+    pub title: String,
+    /// Name and value.
+    pub entries: Vec<(String, String)>,
+}
+
+impl Facts {
+    /// All of an evaluation, whose trials hash to this.
+    pub fn of(identity: &Identity, csv_hash: &str) -> Vec<Self> {
+        let mut first = Self { title: "Program, cases and trials".to_owned(), entries: Vec::new() };
+        let mut rest = Vec::new();
+        let whole = serde_json::to_value(identity).unwrap_or_default();
+        for (name, value) in whole.as_object().into_iter().flatten() {
+            match (heading(name), value) {
+                (Some(title), value) => {
+                    let mut facts = Self { title: title.to_owned(), entries: Vec::new() };
+                    flatten("", value, &mut facts.entries);
+                    rest.push(facts);
+                }
+                (None, Value::Array(names)) => {
+                    first.entries.push((name.clone(), format!("{}: {}", names.len(), words(names))));
+                }
+                (None, value) => flatten(name, value, &mut first.entries),
+            }
+        }
+        first.entries.push(("csv hash of the trials".to_owned(), csv_hash.to_owned()));
+        let mut facts = vec![first];
+        facts.extend(rest);
+        facts
+    }
+}
+
+/// The parts that are long enough for a heading of their own.
+fn heading(name: &str) -> Option<&'static str> {
+    match name {
+        "settings" => Some("Settings of retrieval"),
+        "parameters" => Some("The world"),
+        "plan" => Some("The plan"),
+        _ => None,
+    }
+}
+
+fn words(values: &[Value]) -> String {
+    values.iter().map(word).collect::<Vec<_>>().join(", ")
+}
+
+fn word(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+/// Numbers and words below each other, named by their way down.
+fn flatten(name: &str, value: &Value, entries: &mut Vec<(String, String)>) {
+    let below = |key: &str| if name.is_empty() { key.to_owned() } else { format!("{name}.{key}") };
+    match value {
+        Value::Object(parts) => parts.iter().for_each(|(key, part)| flatten(&below(key), part, entries)),
+        Value::Array(parts) if parts.iter().any(Value::is_object) => {
+            for (i, part) in parts.iter().enumerate() {
+                match part {
+                    // One line an element: what stands in it belongs together.
+                    Value::Object(part) => {
+                        let said: Vec<_> =
+                            part.iter().map(|(key, value)| format!("{key} {}", word(value))).collect();
+                        entries.push((below(&(i + 1).to_string()), said.join(", ")));
+                    }
+                    part => flatten(&below(&(i + 1).to_string()), part, entries),
+                }
+            }
+        }
+        Value::Array(parts) => entries.push((name.to_owned(), words(parts))),
+        value => entries.push((name.to_owned(), word(value))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn everything_down_to_the_leaves_is_said() {
+        let mut entries = Vec::new();
+        let value = json!({"a": 1.5, "b": {"c": "x", "d": [1, 2]}, "e": [{"f": "1", "g": 2}], "h": null});
+        flatten("", &value, &mut entries);
+        let said: Vec<_> = entries.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+        assert_eq!(said, [("a", "1.5"), ("b.c", "x"), ("b.d", "1, 2"), ("e.1", "f 1, g 2"), ("h", "null")]);
+    }
+}

@@ -1,0 +1,172 @@
+//! `onetwo evaluate report`: the report of an evaluation that was played, written anew; and how every evaluation gets its own.
+//!
+//! Numbers come from the trials that were kept. The maps' trials are played again: they are the same to the bit if this program
+//! played them, and left out, with a word on stderr, if another did.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use arena::evaluation::{Identity, Results, Setup, compare, merge, paper};
+use brain::{Approach, Positioning};
+use casebase::Settings;
+use clap::Args;
+use report::{Facts, Map, Report};
+
+use super::{merge as shards, work};
+use crate::Failure;
+use crate::args::{FolderArgs, LibraryArgs, VERSION};
+use crate::library::Shelf;
+use crate::{picture, setup};
+
+/// What a report has.
+#[derive(Debug, Args)]
+pub(super) struct ReportArgs {
+    /// Trials of each cell that are played again for the report's maps; 0 for none.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    maps: u32,
+    /// Every plot as PNG too, beside its SVG.
+    #[arg(long)]
+    png: bool,
+}
+
+/// Which evaluation is reported, and where else.
+#[derive(Debug, Args)]
+pub(super) struct AgainArgs {
+    /// The folder an evaluation was written to.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    #[command(flatten)]
+    report: ReportArgs,
+    /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+}
+
+/// `onetwo evaluate report`.
+pub(super) fn run(args: &AgainArgs) -> Result<ExitCode, Failure> {
+    let (identity, rows) = merge(shards::shards(&args.folder)?)?;
+    let results = Results::new(identity, rows)?;
+    let made = Made::new(&results, &args.report)?;
+    made.write(&results, &args.folder, &args.report)?;
+    if let Some(file) = &args.markdown {
+        made.write_markdown(&results, file)?;
+    }
+    println!("{}", args.folder.join(PAGE).display());
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The report of an evaluation that was just played or merged.
+pub(super) fn write(results: &Results, folder: &Path, args: &ReportArgs) -> Result<(), Failure> {
+    Made::new(results, args)?.write(results, folder, args)
+}
+
+/// What a report needs beside the results.
+struct Made {
+    facts: Vec<Facts>,
+    maps: Vec<Map>,
+    papers_between: Vec<arena::evaluation::Comparison>,
+}
+
+impl Made {
+    fn new(results: &Results, args: &ReportArgs) -> Result<Self, Failure> {
+        Ok(Self {
+            facts: Facts::of(&results.identity, &results.hash),
+            maps: maps(&results.identity, args.maps)?,
+            papers_between: compare(paper(), Approach::Cases, Approach::Reactive),
+        })
+    }
+
+    fn report<'a>(&'a self, results: &'a Results) -> Report<'a> {
+        Report {
+            rows: &results.tables,
+            paper: paper(),
+            with_paper: &results.with_paper,
+            between: &results.between_approaches,
+            papers_between: &self.papers_between,
+            claims: &[],
+            facts: &self.facts,
+            maps: &self.maps,
+        }
+    }
+
+    fn write(&self, results: &Results, folder: &Path, args: &ReportArgs) -> Result<(), Failure> {
+        let written = self.report(results).write(folder);
+        let pictures = written.map_err(|error| unwritten(&folder.join(PAGE), &error))?;
+        if args.png {
+            for drawn in pictures {
+                picture::write(&folder.join("plots").join(drawn.name).with_extension("png"), &drawn.svg)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Tables between the markers of a file; its pictures beside it.
+    fn write_markdown(&self, results: &Results, file: &Path) -> Result<(), Failure> {
+        let failed = |error: std::io::Error| unwritten(file, &error);
+        let report = self.report(results);
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let text = fs::read_to_string(file).map_err(failed)?;
+        let text = report::between_markers(&text, &report.markdown(&format!("{name}/")))
+            .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
+        let folder = file.with_extension("");
+        work::make(&folder)?;
+        for drawn in report.pictures() {
+            picture::write(&folder.join(drawn.name).with_extension("svg"), &drawn.svg)?;
+        }
+        fs::write(file, text).map_err(failed)
+    }
+}
+
+fn unwritten(file: &Path, error: &std::io::Error) -> Failure {
+    Failure::Picture { file: file.to_owned(), words: error.to_string() }
+}
+
+/// The maps of the first trials of each cell, if this program plays the very same ones.
+fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
+    if trials == 0 {
+        return Ok(Vec::new());
+    }
+    let setup = setup_of(identity)?;
+    let shelf = match Shelf::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
+        Ok(shelf) => shelf,
+        Err(failure) => {
+            eprintln!("no maps, as the cases of these trials are not here: {failure}");
+            return Ok(Vec::new());
+        }
+    };
+    let evaluation = work::evaluation(identity.plan.clone(), setup, &shelf, identity.library.clone());
+    let differences = evaluation.identity().differences(identity);
+    if differences.is_empty() {
+        return Map::of(&evaluation, trials).map_err(Failure::Trial);
+    }
+    let (what, program) = (differences.join(", "), &identity.program);
+    eprintln!("no maps: {program} played these trials, this is {VERSION}; what differs: {what}");
+    Ok(Vec::new())
+}
+
+/// The attackers' set-up that an evaluation's files tell of.
+fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
+    let mut settings = Settings::default();
+    for (name, value) in &identity.settings {
+        settings.set(name, value).map_err(|error| Failure::setting(name, value, error))?;
+    }
+    let independent = identity.positioning == arena::positioning_word(Positioning::Independent);
+    Ok(Setup {
+        settings,
+        positioning: if independent { Positioning::Independent } else { Positioning::Dependent },
+        retrievers: identity.retrievers,
+        loss: identity.loss,
+        symmetry: identity.symmetry,
+        opponents: identity.case_opponents,
+    })
+}
+
+/// A built-in league by its name, any other word is a folder.
+fn library(word: &str) -> LibraryArgs {
+    let built_in = case_library::LEAGUES.iter().any(|league| league.name == word);
+    let library = (!built_in).then(|| PathBuf::from(word));
+    LibraryArgs { folder: FolderArgs { library }, league: word.to_owned() }
+}
+
+const PAGE: &str = "report.html";
