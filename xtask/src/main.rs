@@ -6,6 +6,7 @@
 mod bench;
 mod context;
 mod determinism;
+mod evaluation;
 mod pictures;
 mod readme;
 mod report;
@@ -27,20 +28,9 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
-        Ok(Request::Bench(words)) => match bench::retrieval(&Context::new(), &words) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => {
-                eprintln!("xtask: {failure}");
-                ExitCode::FAILURE
-            }
-        },
-        Ok(Request::Pictures) => match pictures::draw(&Context::new()) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(failure) => {
-                eprintln!("xtask: {failure}");
-                ExitCode::FAILURE
-            }
-        },
+        Ok(Request::Bench(words)) => told(bench::retrieval(&Context::new(), &words)),
+        Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
+        Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
         Ok(Request::Help) => {
             println!("{USAGE}");
             ExitCode::SUCCESS
@@ -48,6 +38,17 @@ fn main() -> ExitCode {
         Err(wrong) => {
             eprintln!("xtask: {wrong}\n{USAGE}");
             ExitCode::from(2)
+        }
+    }
+}
+
+/// A chore's end, said on stderr where it failed.
+fn told(end: Result<(), context::Failure>) -> ExitCode {
+    match end {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("xtask: {failure}");
+            ExitCode::FAILURE
         }
     }
 }
@@ -69,6 +70,7 @@ enum Request {
     Test(Vec<&'static Step>),
     List,
     Pictures,
+    Evaluation,
     /// Retrieval, with these words for the bench.
     Bench(Vec<String>),
     Help,
@@ -80,8 +82,9 @@ impl Request {
         match words.next() {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
-            Some("pictures") => {
+            Some(verb @ ("pictures" | "evaluation")) => {
                 return match words.next() {
+                    None if verb == "evaluation" => Ok(Self::Evaluation),
                     None => Ok(Self::Pictures),
                     Some(word) => Err(format!("unknown argument `{word}`")),
                 };
@@ -114,11 +117,12 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask bench retrieval
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench retrieval
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
   pictures       draw the documentation's pictures anew
+  evaluation     play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation
   bench retrieval [--write | --guest | --verify]
                  count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
                  --write puts the table into casebase/README.md, --guest leaves this machine out,
@@ -155,6 +159,8 @@ mod tests {
         assert!(matches!(ask("test --list"), Ok(Request::List)));
         assert!(matches!(ask("pictures"), Ok(Request::Pictures)));
         assert!(ask("pictures now").is_err());
+        assert!(matches!(ask("evaluation"), Ok(Request::Evaluation)));
+        assert!(ask("evaluation soon").is_err());
         assert!(matches!(ask("bench retrieval --guest"), Ok(Request::Bench(words)) if words == ["--guest"]));
         assert!(ask("bench").unwrap_err().contains("retrieval"));
     }

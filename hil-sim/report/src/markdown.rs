@@ -4,12 +4,15 @@ use std::fmt;
 use std::fmt::Write as _;
 
 use crate::table::{Cell, Line, LineKind, Table, tables};
-use crate::{Claim, Report, Verdict, words};
+use crate::{Claim, Report, Verdict, map, words};
 
 /// Tables, claims and pictures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
     let figures = crate::plot::figures(report);
+    for figure in figures.iter().filter(|figure| figure.table == 0) {
+        let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);
+    }
     for table in tables(report) {
         let number = table.number;
         let _ = writeln!(text, "### Table {number}: {}\n", words::table(number));
@@ -19,6 +22,11 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
         for figure in figures.iter().filter(|figure| figure.table == number) {
             let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);
         }
+    }
+    for picture in
+        map::sheets(report.maps).into_iter().filter(|picture| SHOWN.contains(&picture.name.as_str()))
+    {
+        let _ = writeln!(text, "![Passes and ends; where the ball was]({pictures}{}.svg)\n", picture.name);
     }
     if !report.claims.is_empty() {
         claims(&mut text, report.claims);
@@ -145,6 +153,8 @@ impl fmt::Display for MarkerError {
 
 impl std::error::Error for MarkerError {}
 
+/// Maps that a document has: the scenarios that the paper describes play by play (§5.3).
+const SHOWN: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
 const BEGIN: &str = "<!-- figures: written by `cargo xtask evaluation` -->";
 const END: &str = "<!-- end of figures -->";
 

@@ -107,11 +107,15 @@ impl Made {
         let report = self.report(results);
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let text = fs::read_to_string(file).map_err(failed)?;
-        let text = report::between_markers(&text, &report.markdown(&format!("{name}/")))
+        let figures = report.markdown(&format!("{name}/"));
+        let text = report::between_markers(&text, &figures)
             .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
         let folder = file.with_extension("");
         work::make(&folder)?;
         for drawn in report.pictures() {
+            if !figures.contains(&format!("{name}/{}.svg", drawn.name)) {
+                continue;
+            }
             picture::write(&folder.join(drawn.name).with_extension("svg"), &drawn.svg)?;
         }
         fs::write(file, text).map_err(failed)

@@ -1,0 +1,67 @@
+//! Does every evaluation have its report, and is it the same when it is written anew?
+
+use std::fs;
+
+use super::common::{refused, said, scratch, text};
+
+#[test]
+fn an_evaluation_has_a_report_with_maps_plots_and_every_parameter() {
+    let out = scratch("report");
+    let asked = ["evaluate", "--trials", "2", "--scenario", "3", "--maps", "1", "--png", "--out", text(&out)];
+    said(&asked);
+    let page = fs::read_to_string(out.join("report.html")).expect("a report");
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>"));
+    for part in
+        ["id=\"table-1\"", "id=\"table-6\"", "the first 1 trials of each", "free_path", "grab.success"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    for picture in ["table-1-outcomes", "differences", "maps-dg-3"] {
+        let svg = fs::read_to_string(out.join(format!("plots/{picture}.svg"))).expect(picture);
+        assert!(svg.starts_with("<svg") && page.contains("<svg"));
+        let png = fs::read(out.join(format!("plots/{picture}.png"))).expect(picture);
+        assert!(png.starts_with(b"\x89PNG"), "{picture}");
+    }
+
+    fs::remove_file(out.join("report.html")).expect("it was there");
+    let again = said(&["evaluate", "report", text(&out), "--maps", "1"]);
+    assert_eq!(again.trim(), out.join("report.html").display().to_string());
+    assert_eq!(fs::read_to_string(out.join("report.html")).expect("a report"), page);
+
+    let merged = out.join("merged");
+    said(&["evaluate", "merge", text(&out), "--maps", "1", "--out", text(&merged)]);
+    assert_eq!(fs::read_to_string(merged.join("report.html")).expect("a report"), page);
+}
+
+#[test]
+fn figures_go_between_the_markers_of_a_document() {
+    let out = scratch("markdown");
+    let asked = ["evaluate", "--trials", "2", "--opponents", "2d", "--maps", "0", "--out", text(&out)];
+    said(&asked);
+    let document = out.join("figures.md");
+    let again = ["evaluate", "report", text(&out), "--maps", "0", "--markdown", text(&document)];
+    assert!(refused(&again, 1).contains("figures.md"), "there is no such file");
+    fs::write(&document, "words\n").expect("a file");
+    assert!(refused(&again, 1).contains("there is no line `<!-- figures"));
+    fs::write(
+        &document,
+        "before\n<!-- figures: written by `cargo xtask evaluation` -->\nold\n<!-- end of figures -->\nafter\n",
+    )
+    .expect("a file");
+    said(&again);
+    let written = fs::read_to_string(&document).expect("a file");
+    assert!(written.starts_with("before\n") && written.ends_with("\nafter\n") && !written.contains("old"));
+    assert!(written.contains("### Table 4") && !written.contains("### Table 1"));
+    let pictures: Vec<_> =
+        written.split("](figures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(!pictures.is_empty());
+    for picture in pictures {
+        assert!(out.join("figures").join(picture).is_file(), "{picture}");
+    }
+}
+
+#[test]
+fn a_report_of_nothing_is_refused() {
+    let out = scratch("nothing");
+    assert!(refused(&["evaluate", "report", text(&out)], 1).contains("no trials there"));
+}
