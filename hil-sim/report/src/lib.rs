@@ -24,7 +24,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use arena::evaluation::{Comparison, TableRow};
+use arena::evaluation::{CaseUse, Comparison, TableRow};
 
 pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
@@ -43,6 +43,8 @@ pub struct Report<'a> {
     pub between: &'a [Comparison],
     /// The paper's approaches against each other.
     pub papers_between: &'a [Comparison],
+    /// What became of each case.
+    pub uses: &'a [CaseUse],
     /// What the paper says in prose, and whether the numbers bear it out.
     pub claims: &'a [Claim],
     /// Everything that decided the trials: parameters, options, hashes, commit.

@@ -1,27 +1,17 @@
-//! How much on average? Dots with Student's intervals: possessions and times; a panel a measure, scenarios below each other.
+//! How much on average? Possessions and times with Student's intervals; a panel a measure.
 
 use arena::evaluation::Measure;
-use drawing::{Anchor, Font, Svg, Theme};
 
-use super::axis::{Axis, BELOW, GRID};
-use super::{Entry, Figure, PANEL, Panel, Shape, entries, keys, scenarios, style};
+use super::rows::{Dot, Row, axis, panel};
+use super::{Entry, Figure, Panel, Shape, entries, keys, scenarios};
 use crate::columns::interval;
 use crate::{Report, numbers, words};
 
 /// Means of a table.
 pub(super) fn figure(report: &Report<'_>, table: u8, measures: &[Measure]) -> Figure {
-    let scenarios = scenarios(report, table);
-    let all: Vec<Entry<'_>> = scenarios.iter().flat_map(|s| entries(report, table, *s)).collect();
-    let panels = measures.iter().filter_map(|measure| {
-        let ends = all.iter().filter_map(|entry| {
-            let value = measure.value(entry.row)?;
-            Some(interval(*measure, entry.row).map_or(value, |interval| interval.high))
-        });
-        let high = ends.fold(None, |high: Option<f64>, end| Some(high.map_or(end, |high| high.max(end))))?;
-        let axis = Axis::up_to(high, LEFT, PANEL - RIGHT);
-        let rows: Vec<_> = scenarios.iter().map(|s| (*s, entries(report, table, *s))).collect();
-        Some(panel(*measure, table, &rows, axis))
-    });
+    let all: Vec<Entry<'_>> =
+        scenarios(report, table).into_iter().flat_map(|s| entries(report, table, s)).collect();
+    let panels = measures.iter().filter_map(|measure| of_measure(report, table, *measure));
     let against = if matches!(table, 4 | 5) { "two defenders" } else { "a defender and a goalie" };
     let robots = if table == 6 { ", robots" } else { "" };
     let what = if measures.contains(&Measure::Time) { "possession and time" } else { "possession" };
@@ -29,45 +19,29 @@ pub(super) fn figure(report: &Report<'_>, table: u8, measures: &[Measure]) -> Fi
         table,
         name: format!("table-{table}-means"),
         title: format!("Means of {what} against {against}{robots}, with 95 % intervals"),
-        keys: keys(all.iter().copied(), Shape::Dot),
+        keys: keys(all.into_iter(), Shape::Dot),
         panels: panels.collect(),
     }
 }
 
-fn panel(measure: Measure, table: u8, rows: &[(hil_sim::Scenario, Vec<Entry<'_>>)], axis: Axis) -> Panel {
-    let colors = Theme::Light.colors();
-    let mut svg = Svg::default();
-    let height: f64 = rows.iter().map(|(_, entries)| entries.len() as f64 * DOT + BETWEEN).sum();
+/// None where nobody measured it.
+fn of_measure(report: &Report<'_>, table: u8, measure: Measure) -> Option<Panel> {
+    let rows = scenarios(report, table).into_iter().map(|scenario| {
+        let dots = entries(report, table, scenario).into_iter().filter_map(|entry| dot(measure, entry));
+        Row { name: words::scenario(scenario), dots: dots.collect() }
+    });
+    let rows: Vec<_> = rows.collect();
+    let ends = rows.iter().flat_map(|row| &row.dots).map(|dot| dot.reach.map_or(dot.value, |(_, high)| high));
+    let high = ends.fold(None, |high: Option<f64>, end| Some(high.map_or(end, |high| high.max(end))))?;
     let (title, unit) = words_of(measure, table);
-    axis.draw(&mut svg, 0.0, -height, unit);
-    let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
-    let mut top = 0.0;
-    for (scenario, entries) in rows {
-        let group = entries.len() as f64 * DOT + BETWEEN;
-        let name = words::scenario(*scenario);
-        svg.text([LEFT - 10.0, top - group * 0.5 - 4.5], &name, Anchor::End, font);
-        if top < 0.0 {
-            svg.line([0.0, top], [PANEL - RIGHT, top], format!(r#"stroke="{GRID}" stroke-width="1""#));
-        }
-        for (j, entry) in entries.iter().enumerate() {
-            let Some(mean) = measure.value(entry.row) else { continue };
-            let y = top - BETWEEN * 0.5 - DOT * (j as f64 + 0.5);
-            let mut right = axis.place(mean) + 6.0;
-            if let Some(reach) = interval(measure, entry.row) {
-                let (low, high) = (axis.place(reach.low), axis.place(reach.high));
-                let color = words::color(entry.row.approach);
-                svg.line([low, y], [high, y], format!(r#"stroke="{color}" stroke-width="1.8""#));
-                right = right.max(high + 4.0);
-            }
-            svg.circle([axis.place(mean), y], 4.2, style(entry.row.approach, entry.ours));
-            let fill = if entry.ours { colors.ink } else { colors.faint };
-            let font = Font { size: 10.5, fill, bold: entry.ours, halo: Some(colors.paper) };
-            let decimals = if measure == Measure::Time { 1 } else { 2 };
-            svg.text([right + 2.0, y - 3.8], &numbers::plain(mean, decimals), Anchor::Start, font);
-        }
-        top -= group;
-    }
-    Panel { title: title.to_owned(), svg, height: height + BELOW }
+    Some(panel(title.to_owned(), unit, &rows, axis(0.0, high)))
+}
+
+fn dot(measure: Measure, Entry { row, ours }: Entry<'_>) -> Option<Dot> {
+    let value = measure.value(row)?;
+    let reach = interval(measure, row).map(|interval| (interval.low, interval.high));
+    let decimals = if measure == Measure::Time { 1 } else { 2 };
+    Some(Dot { approach: row.approach, ours, value, reach, text: numbers::plain(value, decimals) })
 }
 
 /// A panel's title and its axis.
@@ -79,12 +53,3 @@ const fn words_of(measure: Measure, table: u8) -> (&'static str, &'static str) {
         _ => ("The defender had the ball", "times a trial"),
     }
 }
-
-/// Where the axis begins, px: after the scenarios' names.
-const LEFT: f64 = 134.0;
-/// Room for the numbers behind the last dot, px.
-const RIGHT: f64 = 46.0;
-/// Height of a dot with the gap to the next, px.
-const DOT: f64 = 13.0;
-/// Between scenarios, px.
-const BETWEEN: f64 = 12.0;

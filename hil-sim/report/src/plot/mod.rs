@@ -7,6 +7,8 @@ mod axis;
 mod bars;
 mod dots;
 mod effects;
+mod rows;
+mod uses;
 
 use arena::evaluation::{Measure, TableRow};
 use brain::Approach;
@@ -64,7 +66,7 @@ pub(crate) fn figures(report: &Report<'_>) -> Vec<Figure> {
             _ => dots::figure(report, 6, &[Measure::Possession]),
         });
     }
-    figures.extend([bars::backing_up(report), bars::cases(report)]);
+    figures.extend([bars::backing_up(report), bars::cases(report), uses::figure(report)]);
     figures.retain(|figure| !figure.panels.is_empty());
     figures.sort_by_key(|figure| figure.table);
     figures

@@ -84,6 +84,7 @@ impl Made {
             with_paper: &results.with_paper,
             between: &results.between_approaches,
             papers_between: &self.papers_between,
+            uses: &results.uses,
             claims: &[],
             facts: &self.facts,
             maps: &self.maps,

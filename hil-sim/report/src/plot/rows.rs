@@ -1,0 +1,92 @@
+//! How do dots with whiskers stand below each other? A scenario a row, the numbers beside the whiskers.
+
+use brain::Approach;
+use drawing::{Anchor, Font, Svg, Theme};
+
+use super::axis::{Axis, BELOW, GRID};
+use super::{PANEL, Panel, style};
+use crate::words;
+
+/// A number with what is known of it.
+#[derive(Clone, Debug)]
+pub(super) struct Dot {
+    pub(super) approach: Approach,
+    pub(super) ours: bool,
+    pub(super) value: f64,
+    /// From where to where it may lie.
+    pub(super) reach: Option<(f64, f64)>,
+    /// As it is written.
+    pub(super) text: String,
+}
+
+/// Dots of one name.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub(super) name: String,
+    pub(super) dots: Vec<Dot>,
+}
+
+/// Rows below each other.
+pub(super) fn panel(title: String, unit: &str, rows: &[Row], axis: Axis) -> Panel {
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    let height: f64 = rows.iter().map(|row| height(&row.dots)).sum();
+    axis.draw(&mut svg, 0.0, -height, unit);
+    let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
+    let mut top = 0.0;
+    for Row { name, dots } in rows {
+        if top < 0.0 {
+            svg.line([0.0, top], [PANEL - RIGHT, top], format!(r#"stroke="{GRID}" stroke-width="1""#));
+        }
+        let below = top - self::height(dots);
+        svg.text([LEFT - 10.0, f64::midpoint(top, below) - 4.5], name, Anchor::End, font);
+        for (i, dot) in dots.iter().enumerate() {
+            dot.draw(&mut svg, axis, top - BETWEEN * 0.5 - DOT * (i as f64 + 0.5));
+        }
+        top = below;
+    }
+    Panel { title, svg, height: height + BELOW }
+}
+
+/// An axis that leaves room for names on the left and numbers on the right.
+pub(super) fn axis(low: f64, high: f64) -> Axis {
+    Axis::between(low, high, LEFT, PANEL - RIGHT)
+}
+
+fn height(dots: &[Dot]) -> f64 {
+    dots.len() as f64 * DOT + BETWEEN
+}
+
+impl Dot {
+    fn draw(&self, svg: &mut Svg, axis: Axis, y: f64) {
+        let colors = Theme::Light.colors();
+        let at = axis.place(self.value);
+        let (low, high) = self.reach.map_or((at, at), |(low, high)| (axis.place(low), axis.place(high)));
+        let color = words::color(self.approach);
+        if high > low {
+            svg.line([low, y], [high, y], format!(r#"stroke="{color}" stroke-width="1.8""#));
+        }
+        svg.circle([at, y], RADIUS, style(self.approach, self.ours));
+        let fill = if self.ours { colors.ink } else { colors.faint };
+        let font = Font { size: 10.5, fill, bold: self.ours, halo: Some(colors.paper) };
+        // Away from zero, whose line would cross it.
+        let (x, anchor) = if self.value < 0.0 {
+            (low.min(at - RADIUS) - GAP, Anchor::End)
+        } else {
+            (high.max(at + RADIUS) + GAP, Anchor::Start)
+        };
+        svg.text([x, y - 3.8], &self.text, anchor, font);
+    }
+}
+
+/// Where the axis begins, px: after the scenarios' names.
+const LEFT: f64 = 140.0;
+/// Room for the numbers behind the last dot, px.
+const RIGHT: f64 = 40.0;
+/// Height of a dot with the gap to the next, px.
+const DOT: f64 = 13.0;
+/// Between scenarios, px.
+const BETWEEN: f64 = 12.0;
+const RADIUS: f64 = 4.2;
+/// Between a number and what is left of it, px.
+const GAP: f64 = 4.0;

@@ -1,0 +1,125 @@
+//! What became of each case? How often it was played, and how its plays ended; a panel a kind of trial, the most played first.
+
+use arena::CycleEnd;
+use arena::evaluation::{CaseUse, Profile};
+use drawing::{Anchor, Font, Svg, Theme};
+
+use super::axis::{Axis, BELOW};
+use super::{Figure, Key, PANEL, Panel, Shape};
+use crate::{Report, words};
+
+/// Of the simulated trials.
+pub(super) fn figure(report: &Report<'_>) -> Figure {
+    let mut kinds: Vec<Vec<&CaseUse>> = Vec::new();
+    for case in report.uses.iter().filter(|case| case.profile == Profile::Simulated) {
+        let kind = |case: &CaseUse| (case.configuration, case.approach);
+        match kinds.iter_mut().find(|cases| cases.first().is_some_and(|first| kind(first) == kind(case))) {
+            Some(cases) => cases.push(case),
+            None => kinds.push(vec![case]),
+        }
+    }
+    let panels = kinds.into_iter().filter_map(|mut cases| {
+        let never = cases.iter().filter(|case| case.retrieved == 0).count();
+        cases.retain(|case| case.retrieved > 0);
+        // A stable sort: cases played as often stay in the order of their names.
+        cases.sort_by_key(|case| std::cmp::Reverse(case.retrieved));
+        panel(&cases, never)
+    });
+    let bar = |color, word: &str| Key { word: word.to_owned(), color, filled: true, shape: Shape::Bar };
+    Figure {
+        table: 3,
+        name: "table-3-plays".to_owned(),
+        title: "What became of each case: how its plays ended, and how many there were".to_owned(),
+        keys: ENDS.iter().map(|(color, word, _)| bar(color, word)).collect(),
+        panels: panels.collect(),
+    }
+}
+
+fn panel(cases: &[&CaseUse], never: usize) -> Option<Panel> {
+    let first = cases.first()?;
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    let axis = Axis::up_to(100.0, LEFT, PANEL - RIGHT);
+    let bottom = -ROW * cases.len() as f64;
+    axis.draw(&mut svg, 0.0, bottom, "% of its plays");
+    let font = Font { size: 11.5, fill: colors.ink, bold: false, halo: None };
+    for (i, case) in cases.iter().enumerate() {
+        let (top, low) = (-ROW * i as f64 - 1.5, -ROW * (i + 1) as f64 + 1.5);
+        svg.text([LEFT - 6.0, low + 2.5], &case.case, Anchor::End, font);
+        let mut share = 0.0;
+        for (color, _, words) in &ENDS {
+            let plays = ends(case, words);
+            let (from, to) = (share, share + 100.0 * f64::from(plays) / f64::from(case.retrieved));
+            if plays > 0 {
+                let corner = [axis.place(from), low];
+                svg.rect(corner, [axis.place(to), top], format_args!(r#"fill="{color}""#));
+            }
+            share = to;
+        }
+        svg.text([PANEL, low + 2.5], &case.retrieved.to_string(), Anchor::End, font);
+    }
+    let font = Font { size: 11.5, fill: colors.faint, bold: false, halo: None };
+    svg.text([PANEL, 6.0], "plays", Anchor::End, font);
+    if never > 0 {
+        svg.text([0.0, bottom - 31.0], &format!("{never} never played"), Anchor::Start, font);
+    }
+    let (approach, against) = (words::approach(first.approach), words::opponents(first.configuration));
+    let title = format!("Cases of {approach} attackers, against {against}");
+    Some(Panel { title, svg, height: -bottom + BELOW })
+}
+
+/// Plays that ended in one of these ways; without any, in a way that has no colour of its own.
+fn ends(case: &CaseUse, words: &[&str]) -> u32 {
+    let all = CycleEnd::WORDS.iter().zip(case.ends);
+    let own = all.filter(|(word, _)| match words {
+        [] => !ENDS.iter().any(|(_, _, words)| words.contains(*word)),
+        words => words.contains(*word),
+    });
+    own.map(|(_, plays)| plays).sum()
+}
+
+/// Colours (Okabe and Ito, greys), words, and the ends of plays that they stand for.
+const ENDS: [(&str, &str, &[&str]); 7] = [
+    ("#009e73", "finished", &["finished"]),
+    ("#56b4e9", "the ball left its scope", &["ball-out-of-scope"]),
+    ("#cc79a7", "its path was blocked", &["path-blocked"]),
+    ("#e69f00", "an action failed", &["action-failed"]),
+    ("#d55e00", "an opponent was on the ball", &["opponent-on-ball"]),
+    ("#8c8c8c", "anything else", &[]),
+    ("#c4c4c4", "the trial was over", &["trial-over"]),
+];
+/// Where bars begin, px: after the cases' names.
+const LEFT: f64 = 176.0;
+/// Room for the number of plays, px.
+const RIGHT: f64 = 52.0;
+/// Height of a bar with the gap to the next, px.
+const ROW: f64 = 15.0;
+
+#[cfg(test)]
+mod tests {
+    use brain::Approach;
+    use hil_sim::Configuration;
+
+    use super::*;
+
+    #[test]
+    fn every_play_has_a_colour() {
+        let case = CaseUse {
+            profile: Profile::Simulated,
+            configuration: Configuration::DefenderGoalie,
+            approach: Approach::Cases,
+            case: "a/b".to_owned(),
+            retrieved: 78,
+            // 1 to 12, in the order of the words.
+            ends: std::array::from_fn(|i| i as u32 + 1),
+            trials: 9,
+            outcomes: [0; 5],
+        };
+        let plays: Vec<_> = ENDS.iter().map(|(_, _, words)| ends(&case, words)).collect();
+        // Robot lost 4, ball at rest 7, timeout 8, no decision 9, unknown case 10, superseded 11 are anything else.
+        assert_eq!(plays, [1, 2, 3, 5, 6, 4 + 7 + 8 + 9 + 10 + 11, 12]);
+        assert_eq!(plays.iter().sum::<u32>(), case.retrieved);
+        assert!(panel(&[&case], 3).unwrap().height > ROW);
+        assert!(panel(&[], 34).is_none());
+    }
+}
