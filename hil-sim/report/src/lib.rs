@@ -26,6 +26,7 @@ use std::path::Path;
 
 use arena::evaluation::{CaseUse, Comparison, TableRow};
 
+pub use arena::evaluation::{Claim, Judgement, Verdict};
 pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};
@@ -51,41 +52,6 @@ pub struct Report<'a> {
     pub facts: &'a [Facts],
     /// Where the ball was and who passed to whom, one a cell.
     pub maps: &'a [Map],
-}
-
-/// Something the paper says of its results.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Claim {
-    /// Its short name.
-    pub id: String,
-    /// Where the paper says it: `5.2.1`.
-    pub section: String,
-    /// What it says, in our words.
-    pub sentence: String,
-    /// What our trials say to it.
-    pub ours: Judgement,
-    /// What the paper's own tables say to it.
-    pub paper: Judgement,
-}
-
-/// Whether numbers bear a claim out.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Judgement {
-    /// Do they?
-    pub verdict: Verdict,
-    /// The numbers.
-    pub evidence: String,
-}
-
-/// Whether numbers bear a claim out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// They do.
-    Supported,
-    /// They say the opposite.
-    Contradicted,
-    /// They cannot tell.
-    Undecided,
 }
 
 /// A picture with the name of its file, without an ending.

@@ -4,7 +4,7 @@ use std::fmt;
 use std::fmt::Write as _;
 
 use crate::table::{Cell, Line, LineKind, Table, tables};
-use crate::{Claim, Report, Verdict, map, words};
+use crate::{Claim, Report, map, words};
 
 /// Tables, claims and pictures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
@@ -94,20 +94,16 @@ fn claims(text: &mut String, claims: &[Claim]) {
     for claim in claims {
         let cell = |words: &str| words.replace('|', "\\|").replace('\n', " ");
         let said = |judgement: &crate::Judgement| {
-            format!("**{}**: {}", word(judgement.verdict), cell(&judgement.evidence))
+            let word = judgement.verdict.word();
+            match judgement.evidence.as_str() {
+                "" => word.to_owned(),
+                evidence => format!("**{word}**: {}", cell(evidence)),
+            }
         };
-        let (section, sentence) = (&claim.section, cell(&claim.sentence));
+        let (section, sentence) = (claim.section, cell(claim.sentence));
         let _ = writeln!(text, "| {section} | {sentence} | {} | {} |", said(&claim.ours), said(&claim.paper));
     }
     text.push('\n');
-}
-
-pub(crate) const fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Supported => "supported",
-        Verdict::Contradicted => "contradicted",
-        Verdict::Undecided => "undecided",
-    }
 }
 
 /// A row of heads, the first ones to the left, numbers to the right.

@@ -3,7 +3,6 @@
 use arena::evaluation::Comparison;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::markdown::word;
 use crate::plot::{Figure, figures};
 use crate::table::tables;
 use crate::{Claim, Judgement, Report, Verdict, map, numbers, style, words};
@@ -108,8 +107,9 @@ fn judgement(judgement: &Judgement) -> Markup {
         Verdict::Supported => "✓",
         Verdict::Contradicted => "✗",
         Verdict::Undecided => "?",
+        Verdict::Unmeasured => "–",
     };
-    let word = word(judgement.verdict);
+    let word = judgement.verdict.word();
     html! { td { span class={ "verdict " (word) } { (sign) " " (word) } small { (judgement.evidence) } } }
 }
 

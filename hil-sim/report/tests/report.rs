@@ -31,16 +31,21 @@ impl Made {
     fn new() -> Self {
         let rows = ours();
         let (cbr, reactive) = (Approach::Cases, Approach::Reactive);
-        let judged = |verdict, evidence: &str| Judgement { verdict, evidence: evidence.to_owned() };
+        let judged = |verdict, evidence: &str| Judgement {
+            verdict,
+            evidence: evidence.to_owned(),
+            points: Vec::new(),
+        };
         Self {
             with_paper: with_paper(&rows, paper()),
             between: compare(&rows, cbr, reactive),
             papers: compare(paper(), cbr, reactive),
             rows,
             claims: vec![Claim {
-                id: "a<b".to_owned(),
-                section: "5.2.1".to_owned(),
-                sentence: "<script>alert('&')</script>".to_owned(),
+                id: "a<b",
+                section: "5.2.1",
+                sentence: "<script>alert('&')</script>",
+                ours_as_paper: None,
                 ours: judged(Verdict::Supported, "34 > 28 | 31"),
                 paper: judged(Verdict::Undecided, "p = 0.31"),
             }],

@@ -26,7 +26,7 @@ pub(crate) enum Verb {
     /// One trial of the paper.
     Trial(TrialArgs),
     /// The paper's tables: thousands of trials, beside what the paper measured.
-    Evaluate(EvaluateArgs),
+    Evaluate(Box<EvaluateArgs>),
     /// Check, list, show, retrieve and explain cases.
     Cases {
         #[command(subcommand)]

@@ -188,7 +188,8 @@ impl Measure {
         Some(Sample { n: row.trials, mean: self.value(row)?, sd })
     }
 
-    fn test(self, first: &TableRow, second: &TableRow) -> Option<Test> {
+    /// Do they differ?
+    pub(super) fn test(self, first: &TableRow, second: &TableRow) -> Option<Test> {
         match (self.count(first), self.count(second)) {
             (Some(a), Some(b)) => two_proportions(a, b),
             _ => welch(self.sample(first)?, self.sample(second)?),

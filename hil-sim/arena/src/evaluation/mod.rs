@@ -7,8 +7,11 @@
 //! A [`Plan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for any number of threads,
 //! shards and interrupts. [`tables`] makes DESIGN §8's `tables.json` of them; [`compare`] and [`with_paper`] say what differs.
 
+mod ablation;
+mod claims;
 mod comparison;
 mod error;
+mod judge;
 mod ledger;
 mod paper;
 mod plan;
@@ -20,17 +23,22 @@ pub mod statistics;
 mod summary;
 mod tables;
 mod uses;
+mod verdicts;
 mod words;
 
+pub use ablation::{ARMS, Arm, Effect, ablation_table, effects};
+pub use claims::{Claim, Judgement, Point, Standing, Verdict, claims};
 pub use comparison::{Comparison, Flat, Measure, compare, with_paper};
 pub use error::EvaluationError;
+pub use judge::{Held, Line, judge};
 pub use ledger::{Identity, Kept, read};
 pub use paper::paper;
 pub use plan::{Cell, Plan, Planned, Profile, Shard};
-pub use results::Results;
+pub use results::{Results, write_effects};
 pub use row::{TrialRow, csv_hash, to_csv};
 pub use runs::{Evaluation, Progress, merge};
 pub use setup::{ROBOTS, Setup};
 pub use summary::{stars, summary};
 pub use tables::{Extent, TableRow, tables};
 pub use uses::{CaseUse, OUTCOMES, uses, uses_to_csv};
+pub use verdicts::verdicts;

@@ -5,6 +5,8 @@
 //! | `trials.csv` | every trial, in the plan's order |
 //! | `tables.json`, `tables.csv` | the paper's tables (DESIGN §8) |
 //! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
+//! | `claims.json` | what the paper says in prose, and whether our numbers and its own bear it out |
+//! | `judge.json` | whether the pattern of its results comes out |
 //! | `cases.csv` | what became of each case |
 //! | `run.json` | which evaluation it was: program, seed, numbers, cases, settings, world |
 
@@ -13,8 +15,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use super::ablation::Effect;
+use super::claims::{Claim, claims};
 use super::comparison::{Comparison, compare, with_paper};
 use super::error::EvaluationError;
+use super::judge::{Line, judge};
 use super::ledger::Identity;
 use super::paper::paper;
 use super::row::{TrialRow, csv_hash, to_csv};
@@ -35,6 +40,10 @@ pub struct Results {
     pub with_paper: Vec<Comparison>,
     /// Every approach against every later one.
     pub between_approaches: Vec<Comparison>,
+    /// What the paper says, and what the numbers say to it.
+    pub claims: Vec<Claim>,
+    /// Does the pattern of the paper's results come out?
+    pub lines: Vec<Line>,
     /// What became of each case.
     pub uses: Vec<CaseUse>,
     /// [`csv_hash`] of its trials.
@@ -62,6 +71,8 @@ impl Results {
         Ok(Self {
             with_paper: with_paper(&tables, paper()),
             between_approaches: between,
+            claims: claims(&tables, paper()),
+            lines: judge(&tables),
             uses: uses(&rows, &identity.cases),
             identity,
             rows,
@@ -82,6 +93,8 @@ impl Results {
             ("tables.csv", as_csv(&self.tables)),
             ("comparisons.json", json(&flat)),
             ("comparisons.csv", as_csv(&flat)),
+            ("claims.json", json(&self.claims)),
+            ("judge.json", json(&self.lines)),
             ("cases.csv", uses_to_csv(&self.uses).map_err(Into::into)),
             ("run.json", json(&run)),
         ];
@@ -94,15 +107,25 @@ impl Results {
     }
 }
 
+/// Writes the effects of an ablation into a folder that is there.
+pub fn write_effects(effects: &[Effect], folder: &Path) -> Result<(), EvaluationError> {
+    for (name, bytes) in [("ablations.json", json(&effects)), ("ablations.csv", as_csv(effects))] {
+        let file = folder.join(name);
+        let written = bytes.and_then(|bytes| fs::write(&file, bytes));
+        written.map_err(EvaluationError::file(&file))?;
+    }
+    Ok(())
+}
+
 /// JSON for programs and people: a line a list's element would be too long, so it is indented.
-pub(super) fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
+fn json(value: &impl Serialize) -> std::io::Result<Vec<u8>> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
 /// A row of CSV an element, with the columns' names in the first line.
-pub(super) fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
+fn as_csv<T: Serialize>(rows: &[T]) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;

@@ -1,9 +1,9 @@
 //! How sure is a number, and do two differ? Intervals of shares, tests of shares and means, and many tests at once.
 //!
-//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal spread, Holm 1979
-//! for a family of tests. Two-sided throughout, no continuity correction; p from `statrs`' distributions.
+//! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal spread, McNemar's
+//! exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests. Two-sided throughout, no continuity correction; p from `statrs`' distributions.
 
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal, StudentsT};
 
 /// How many of how many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +74,14 @@ pub struct Test {
 impl Test {
     /// Of two that are the same and do not vary.
     const EQUAL: Self = Self { statistic: 0.0, p: 1.0 };
+
+    /// Of a difference that is always the same: for sure, or none.
+    fn unvarying(difference: f64) -> Self {
+        if difference == 0.0 {
+            return Self::EQUAL;
+        }
+        Self { statistic: difference.signum() * f64::INFINITY, p: 0.0 }
+    }
 }
 
 /// Do two shares differ? The pooled z test; `None` where one of them is of no trials.
@@ -87,6 +95,40 @@ pub fn two_proportions(first: Count, second: Count) -> Option<Test> {
     }
     let z = (a - b) / spread;
     Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
+}
+
+/// Does a share differ from a given one, 0 to 1? The z test of one share; `None` of no trials, or against 0 or 1.
+pub fn against(count: Count, expected: f64) -> Option<Test> {
+    let spread = expected * (1.0 - expected) / f64::from(count.of.max(1));
+    normal(count.share()? - expected, spread)
+}
+
+/// Does a normally distributed number of that variance differ from 0? `None` where it does not vary.
+pub fn normal(value: f64, variance: f64) -> Option<Test> {
+    let z = (variance > 0.0).then(|| value / variance.sqrt())?;
+    Some(Test { statistic: z, p: 2.0 * Normal::standard().sf(z.abs()) })
+}
+
+/// Do two shares of the same trials differ? McNemar's exact test on the trials in which only one of the two happened.
+pub fn mcnemar(only_first: u32, only_second: u32) -> Option<Test> {
+    let (first, second) = (f64::from(only_first), f64::from(only_second));
+    let changed = u64::from(only_first) + u64::from(only_second);
+    if changed == 0 {
+        return Some(Test::EQUAL);
+    }
+    let tail = Binomial::new(0.5, changed).ok()?.cdf(u64::from(only_first.min(only_second)));
+    Some(Test { statistic: (first - second) / (first + second).sqrt(), p: (2.0 * tail).min(1.0) })
+}
+
+/// Do differences of pairs have a mean other than 0? Student's paired t; `None` where their spread is not known.
+pub fn paired(differences: Sample) -> Option<Test> {
+    let sd = differences.sd?;
+    if sd == 0.0 {
+        return Some(Test::unvarying(differences.mean));
+    }
+    let t = differences.mean / (sd / f64::from(differences.n).sqrt());
+    let student = StudentsT::new(0.0, 1.0, f64::from(differences.n - 1)).ok()?;
+    Some(Test { statistic: t, p: 2.0 * student.sf(t.abs()) })
 }
 
 /// Numbers, by their mean and spread.
@@ -117,9 +159,7 @@ pub fn welch(first: Sample, second: Sample) -> Option<Test> {
     let (a, b) = (variance(first)?, variance(second)?);
     let difference = first.mean - second.mean;
     if a + b == 0.0 {
-        let p = if difference == 0.0 { 1.0 } else { 0.0 };
-        let statistic = if difference == 0.0 { 0.0 } else { difference.signum() * f64::INFINITY };
-        return Some(Test { statistic, p });
+        return Some(Test::unvarying(difference));
     }
     let t = difference / (a + b).sqrt();
     let part = |variance: f64, n: u32| variance * variance / f64::from(n - 1);
@@ -238,6 +278,57 @@ mod tests {
         ] {
             near(welch(reactive, cbr).unwrap().statistic, t, 0.051);
         }
+    }
+
+    #[test]
+    fn every_test_agrees_with_scipy_and_statsmodels() {
+        // scipy 1.17.1, statsmodels 0.15.0: proportion_confint(method="wilson"), proportions_ztest, ttest_ind_from_stats
+        // (equal_var=False), mcnemar(exact=True), ttest_1samp, proportions_ztest(value=0.5, prop_var=0.5), multipletests("holm").
+        for (hits, of, low, high) in [
+            (155, 500, 0.271_038_91, 0.351_858_34),
+            (11, 30, 0.218_739_21, 0.544_864_36),
+            (0, 30, 0.0, 0.113_513_39),
+            (2489, 5000, 0.483_948_11, 0.511_655_27),
+        ] {
+            let interval = wilson(count(hits, of), 0.95).unwrap();
+            near(interval.low, low, 1e-7);
+            near(interval.high, high, 1e-7);
+        }
+        let is = |test: Option<Test>, statistic: f64, p: f64| {
+            let test = test.unwrap();
+            near(test.statistic, statistic, 1e-7);
+            near(test.p / p, 1.0, 1e-6);
+        };
+        is(two_proportions(count(170, 500), count(140, 500)), 2.051_237_1, 0.040_243_862_765_18);
+        is(two_proportions(count(155, 500), count(85, 500)), 5.183_052_68, 2.182_833_512_310_612_4e-7);
+        is(two_proportions(count(7, 30), count(11, 30)), -1.126_872_34, 0.259_796_459_677_94);
+        is(two_proportions(count(2600, 5000), count(2500, 5000)), 2.000_400_12, 0.045_457_075_445_017);
+        is(
+            welch(sample(500, 1.34, 1.37), sample(500, 1.91, 1.39)),
+            -6.530_619_36,
+            1.041_567_952_868_135_8e-10,
+        );
+        is(welch(sample(30, 1.4, 1.16), sample(30, 2.27, 1.93)), -2.116_189_17, 0.039_592_999_677_248);
+        is(welch(sample(500, 0.43, 0.94), sample(500, 0.85, 1.42)), -5.514_870_18, 4.609_030_013_588_255e-8);
+        for (first, second, p) in
+            [(6, 1, 0.125), (40, 22, 0.030_015_864_349_067), (300, 251, 0.040_770_653_475_49), (5, 5, 1.0)]
+        {
+            near(mcnemar(first, second).unwrap().p, p, 1e-10);
+            assert_eq!(mcnemar(second, first).map(|test| test.p), mcnemar(first, second).map(|test| test.p));
+        }
+        let differences = [1.5, -0.25, 0.75, 2.0, 0.0, 1.25, -1.0, 0.5];
+        is(
+            paired(Sample::of(differences.into_iter()).unwrap()),
+            1.695_540_560_690_463_2,
+            0.133_793_267_684_106_7,
+        );
+        is(against(count(2489, 5000), 0.5), -0.311_126_983_722, 0.755_704_088_400_87);
+        is(against(count(56, 89), 0.5), 2.437_995_124_014_6, 0.014_768_973_219_225);
+        let adjusted = holm(&[0.0402, 0.3126, 2.2e-7, 2.4e-9, 0.04]);
+        for (value, expected) in adjusted.into_iter().zip([0.12, 0.3126, 8.8e-7, 1.2e-8, 0.12]) {
+            near(value, expected, 1e-12);
+        }
+        assert_eq!((mcnemar(0, 0), against(count(0, 0), 0.5)), (Some(Test::EQUAL), None));
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! Data goes into the folder `--out`, the tables in words to stdout. Every trial is kept as soon as it is over: the same
 //! command goes on where it was stopped, and shards played elsewhere are merged into the same bytes.
 
+mod ablations;
+mod judge;
 mod merge;
 mod report;
 mod tables;
@@ -31,6 +33,10 @@ enum EvaluateVerb {
     Merge(merge::MergeArgs),
     /// Write the report of an evaluation that was played anew.
     Report(report::AgainArgs),
+    /// Say whether the pattern of the paper's results comes out, at thousands of trials a cell.
+    Judge(judge::JudgeArgs),
+    /// Say what each part of the approach is worth: one thing changed at a time.
+    Ablations(ablations::AblationsArgs),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
@@ -38,5 +44,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
         None => tables::run(&args.tables),
         Some(EvaluateVerb::Merge(args)) => merge::run(args),
         Some(EvaluateVerb::Report(args)) => report::run(args),
+        Some(EvaluateVerb::Judge(args)) => judge::run(args),
+        Some(EvaluateVerb::Ablations(args)) => ablations::run(args),
     }
 }

@@ -85,7 +85,7 @@ impl Made {
             between: &results.between_approaches,
             papers_between: &self.papers_between,
             uses: &results.uses,
-            claims: &[],
+            claims: &results.claims,
             facts: &self.facts,
             maps: &self.maps,
         }

@@ -1,14 +1,13 @@
 //! `onetwo evaluate` alone: the trials behind the paper's Tables 1 to 6, as many as the paper's unless told otherwise.
 
-use std::io::{self, Write};
 use std::process::ExitCode;
 
-use arena::evaluation::{Cell, Plan, Profile, Results, Shard};
+use arena::evaluation::{Cell, Plan, Profile, Shard};
 use brain::Approach;
 use clap::Args;
 use hil_sim::{Configuration, Scenario};
 
-use super::report::{self, ReportArgs};
+use super::report::ReportArgs;
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::setup::{SetupArgs, approach, opponents, profile, scenario};
@@ -23,7 +22,7 @@ pub(super) struct TablesArgs {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
     shard: Shard,
     #[command(flatten)]
     work: WorkArgs,
@@ -49,28 +48,7 @@ pub(super) struct TablesArgs {
 }
 
 pub(super) fn run(args: &TablesArgs) -> Result<ExitCode, Failure> {
-    let plan = args.plan()?;
-    let setup = args.setup.choose(arena::evaluation::ROBOTS)?;
-    let shelf = args.setup.open(&setup)?;
-    let evaluation = work::evaluation(plan, setup, &shelf, args.setup.library_word());
-    let folder = args.work.folder()?;
-    let file = folder.join(args.shard.file_name());
-    let pool = args.work.pool()?;
-    let rows = work::play(&evaluation, args.shard, &file, &pool, "playing")?;
-    if args.shard == Shard::WHOLE {
-        let results = Results::new(evaluation.identity(), rows)?;
-        work::finish(&results, folder)?;
-        pool.install(|| report::write(&results, folder, &args.report))?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    let (kept, out) = (file.display(), folder.display());
-    writeln!(
-        io::stdout().lock(),
-        "{} trials in {kept}; when all shards are played: onetwo evaluate merge {out} --out {out}",
-        rows.len()
-    )
-    .map_err(Failure::Output)?;
-    Ok(ExitCode::SUCCESS)
+    work::run(args.plan()?, args.shard, &args.setup, &args.work, &args.report)
 }
 
 impl TablesArgs {
@@ -93,8 +71,4 @@ impl TablesArgs {
         let plan = self.trials.map_or(plan.clone(), |trials| plan.with_trials(trials));
         if plan.is_empty() { Err(Failure::NoTrials) } else { Ok(plan) }
     }
-}
-
-fn shard(word: &str) -> Result<Shard, String> {
-    Shard::from_word(word).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
 }

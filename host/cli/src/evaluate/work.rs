@@ -3,16 +3,21 @@
 use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use arena::CaseNames;
-use arena::evaluation::{Evaluation, EvaluationError, Plan, Progress, Results, Setup, Shard, TrialRow};
+use arena::evaluation::{
+    Evaluation, EvaluationError, Plan, Progress, ROBOTS, Results, Setup, Shard, TrialRow, summary, verdicts,
+};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
+use crate::setup::SetupArgs;
 
 /// Where and how fast.
 #[derive(Debug, Args)]
@@ -93,18 +98,52 @@ fn stopped_by_hand() -> &'static AtomicBool {
     &STOPPED
 }
 
-/// Writes everything, and says the tables and where they are.
+/// Plays a shard of a plan and, where it is the whole, writes and tells what came out.
+pub(super) fn run(
+    plan: Plan,
+    shard: Shard,
+    setup_args: &SetupArgs,
+    work: &WorkArgs,
+    reported: &ReportArgs,
+) -> Result<ExitCode, Failure> {
+    let setup = setup_args.choose(ROBOTS)?;
+    let shelf = setup_args.open(&setup)?;
+    let evaluation = evaluation(plan, setup, &shelf, setup_args.library_word());
+    let folder = work.folder()?;
+    let file = folder.join(shard.file_name());
+    let pool = work.pool()?;
+    let rows = play(&evaluation, shard, &file, &pool, "playing")?;
+    if shard == Shard::WHOLE {
+        let results = Results::new(evaluation.identity(), rows)?;
+        finish(&results, folder)?;
+        pool.install(|| report::write(&results, folder, reported))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (kept, out) = (file.display(), folder.display());
+    say(&format!(
+        "{} trials in {kept}; when all shards are played: onetwo evaluate merge {out} --out {out}\n",
+        rows.len()
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes everything, and says the tables, the verdicts and where they are.
 pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
     results.write(folder)?;
-    let mut out = io::stdout().lock();
-    out.write_all(arena::evaluation::summary(results).as_bytes()).map_err(Failure::Output)?;
-    writeln!(
-        out,
-        "{} trials, seed {}, csv hash {}, in {}",
-        results.rows.len(),
-        results.identity.plan.seed,
-        results.hash,
+    let (trials, seed, hash) = (results.rows.len(), results.identity.plan.seed, &results.hash);
+    let (tables, verdicts) = (summary(results), verdicts(results));
+    say(&format!(
+        "{tables}{verdicts}{trials} trials, seed {seed}, csv hash {hash}, in {}\n",
         folder.display()
-    )
-    .map_err(Failure::Output)
+    ))
+}
+
+/// Says it on stdout.
+pub(super) fn say(words: &str) -> Result<(), Failure> {
+    io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)
+}
+
+/// A shard on the command line.
+pub(super) fn shard(word: &str) -> Result<Shard, String> {
+    Shard::from_word(word).ok_or_else(|| "take i/n with i from 1 to n, such as 2/3".to_owned())
 }

@@ -229,3 +229,65 @@ fn what_cannot_be_done_is_told_with_its_mend() {
     assert!(refused(&["evaluate", "merge"], 2).contains("--out"));
     assert!(refused(&["evaluate", "--league", "division-b", "--out", text(&empty)], 1).contains("another"));
 }
+
+#[test]
+fn every_claim_of_the_paper_is_judged_on_our_trials_and_on_its_own_tables() {
+    let out = scratch("claims");
+    let said = said(&["evaluate", "--trials", "2", "--seed", "4", "--out", text(&out)]);
+    let claims = json(&out.join("claims.json"));
+    let claims = claims.as_array().expect("a list");
+    assert!(claims.len() >= 30);
+    for claim in claims {
+        for side in ["ours", "paper"] {
+            let verdict = claim[side]["verdict"].as_str().expect("a word");
+            let evidence = claim[side]["evidence"].as_str().expect("words");
+            assert!(["supported", "contradicted", "undecided", "unmeasured"].contains(&verdict), "{verdict}");
+            assert_eq!(evidence.is_empty(), verdict == "unmeasured", "{claim}");
+        }
+        assert!(said.contains(claim["sentence"].as_str().expect("words")), "{said}");
+    }
+    let verdicts =
+        |side: &str, verdict: &str| claims.iter().filter(|c| c[side]["verdict"] == verdict).count();
+    assert!(verdicts("paper", "supported") > 10 && verdicts("paper", "contradicted") > 0);
+}
+
+#[test]
+fn judge_tells_every_line_with_numbers_and_misses_are_no_error() {
+    let out = scratch("judge");
+    let said = said(&["evaluate", "judge", "--trials", "1", "--out", text(&out)]);
+    let lines = json(&out.join("judge.json"));
+    for line in lines.as_array().expect("a list") {
+        let verdict = line["verdict"].as_str().expect("a word");
+        assert!(["held", "missed", "unmeasured"].contains(&verdict), "{line}");
+        assert!(said.contains(line["line"].as_str().expect("words")), "{said}");
+    }
+    let run = json(&out.join("run.json"));
+    assert_eq!(run["plan"]["seed"], 2009);
+    let random = run["plan"]["cells"].as_array().expect("cells").iter().filter(|c| c["scenario"] == "random");
+    assert!(random.count() >= 4);
+}
+
+#[test]
+fn an_ablation_compares_pairs_and_goes_on_with_more_arms() {
+    let out = scratch("ablations");
+    let run = |arms: &[&str]| {
+        let arms: Vec<_> = arms.iter().flat_map(|arm| ["--arm", arm]).collect();
+        let options = ["evaluate", "ablations", "--trials", "1", "--out", text(&out)];
+        said(&[&options[..], &arms].concat())
+    };
+    run(&["loss-50"]);
+    let kept = |arm: &str| fs::read(out.join(format!("arms/{arm}.csv"))).expect("kept");
+    let before = (kept("default"), kept("loss-50"));
+    let said = run(&["loss-50", "no-symmetry"]);
+    assert!(said.contains("no-symmetry") && said.contains("to_goal"), "{said}");
+    assert_eq!((kept("default"), kept("loss-50")), before, "nothing is played twice");
+    let effects = json(&out.join("ablations.json"));
+    let effects = effects.as_array().expect("a list");
+    assert_eq!(effects.len(), 2 * 9 * 7, "arms, cells and all of them, measures");
+    let all = effects.iter().filter(|effect| effect["scenario"].is_null());
+    assert!(all.clone().all(|effect| effect["trials"] == 8));
+    let differs = |arm: &str| all.clone().any(|e| e["arm"] == arm && e["difference"].as_f64() != Some(0.0));
+    assert!(differs("loss-50") && differs("no-symmetry"));
+    assert_eq!(table(&out.join("ablations.csv")).len(), effects.len());
+    assert!(refused(&["evaluate", "ablations", "--arm", "none"], 2).contains("thr_c-none"));
+}

@@ -50,7 +50,9 @@ fn figures_go_between_the_markers_of_a_document() {
     .expect("a file");
     said(&again);
     let written = fs::read_to_string(&document).expect("a file");
-    assert!(written.starts_with("before\n") && written.ends_with("\nafter\n") && !written.contains("old"));
+    assert!(
+        written.starts_with("before\n") && written.ends_with("\nafter\n") && !written.contains("\nold\n")
+    );
     assert!(written.contains("### Table 4") && !written.contains("### Table 1"));
     let pictures: Vec<_> =
         written.split("](figures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();

@@ -1,0 +1,182 @@
+//! What does the paper say in prose, and do numbers bear it out? Ours, and the paper's own tables (Ros et al. 2009 §5).
+//!
+//! A claim is a list of [`Point`]s, each two numbers and how they should lie. Its verdict is worked out from table rows and
+//! nothing else: *supported* where every point lies as claimed and is no chance (p < 0.05 after Holm's correction over the
+//! claim's points), *contradicted* where one lies the other way and that is no chance, else *undecided*. Where no spread was
+//! printed there is no p, and the numbers alone speak.
+
+mod list;
+mod point;
+
+use serde::Serialize;
+
+use super::statistics::holm;
+use super::tables::{Extent, TableRow};
+
+pub use point::{Point, Standing};
+pub(super) use point::{Rows, p_text};
+
+/// Something the paper says of its results.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Claim {
+    /// Its short name.
+    pub id: &'static str,
+    /// Where the paper says it.
+    pub section: &'static str,
+    /// What it says, in our words.
+    pub sentence: &'static str,
+    /// What our trials say to it, all of them.
+    pub ours: Judgement,
+    /// What as many of them as the paper's say, where there were more: the first 30 of Table 6.
+    pub ours_as_paper: Option<Judgement>,
+    /// What the paper's own tables say.
+    pub paper: Judgement,
+}
+
+/// Do numbers bear it out?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// They do.
+    Supported,
+    /// They say the opposite, in one point at least.
+    Contradicted,
+    /// They cannot tell.
+    Undecided,
+    /// There are none.
+    Unmeasured,
+}
+
+impl Verdict {
+    /// Its word in files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Supported => "supported",
+            Self::Contradicted => "contradicted",
+            Self::Undecided => "undecided",
+            Self::Unmeasured => "unmeasured",
+        }
+    }
+}
+
+/// What numbers say to a claim.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    /// In a word.
+    pub verdict: Verdict,
+    /// The numbers, in words.
+    pub evidence: String,
+    /// The numbers.
+    pub points: Vec<Point>,
+}
+
+impl Judgement {
+    /// Of the points of a claim; `None` stands for one that was not measured.
+    pub(super) fn new(points: Vec<Option<Point>>) -> Self {
+        let all = points.len();
+        let mut points: Vec<Point> = points.into_iter().flatten().collect();
+        let tested: Vec<usize> = (0..points.len()).filter(|i| points[*i].p.is_some()).collect();
+        let family: Vec<f64> = tested.iter().filter_map(|i| points[*i].p).collect();
+        for (i, p) in tested.into_iter().zip(holm(&family)) {
+            points[i].p_holm = Some(p);
+        }
+        for point in &mut points {
+            point.stand();
+        }
+        let stands = |standing| points.iter().filter(|point| point.stands == standing).count();
+        let verdict = match () {
+            () if points.is_empty() => Verdict::Unmeasured,
+            () if stands(Standing::Against) > 0 => Verdict::Contradicted,
+            () if stands(Standing::Holds) == all => Verdict::Supported,
+            () => Verdict::Undecided,
+        };
+        let mut evidence = points.iter().map(Point::to_string).collect::<Vec<_>>().join("; ");
+        if points.len() < all && !points.is_empty() {
+            evidence.push_str("; the rest was not played");
+        }
+        Self { verdict, evidence, points }
+    }
+}
+
+/// Every claim, judged by our rows and by the paper's.
+pub fn claims(ours: &[TableRow], paper: &[TableRow]) -> Vec<Claim> {
+    let has_more = ours.iter().any(|row| row.sample == Extent::Large);
+    let judged =
+        |rows: &[TableRow], sample, points: list::Points| Judgement::new(points(&Rows { rows, sample }));
+    let claims = list::CLAIMS.iter().map(|(id, section, sentence, points)| Claim {
+        id,
+        section,
+        sentence,
+        ours: judged(ours, Extent::Large, *points),
+        ours_as_paper: (has_more && list::is_of_robots(section))
+            .then(|| judged(ours, Extent::Paper, *points)),
+        paper: judged(paper, Extent::Paper, *points),
+    });
+    claims.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::paper::paper;
+
+    fn of_paper(id: &str) -> Judgement {
+        let claims = claims(paper(), paper());
+        let claim = claims.into_iter().find(|claim| claim.id == id);
+        claim.unwrap_or_else(|| panic!("no claim {id}")).paper
+    }
+
+    #[test]
+    fn the_papers_tables_bear_out_what_independent_tests_of_them_do() {
+        // Two-proportion and Welch tests of the printed tables, computed apart (`data/derived_cbr_vs_reactive_z.csv`), and
+        // the contradictions between tables and prose that its transcription found.
+        for (id, verdict) in [
+            ("dg-to-goal", Verdict::Undecided),
+            ("dg-to-goal-3-4", Verdict::Supported),
+            ("dg-out", Verdict::Supported),
+            ("dg-possession", Verdict::Supported),
+            ("dg-time", Verdict::Supported),
+            ("2d-to-goal", Verdict::Supported),
+            ("2d-out", Verdict::Supported),
+            ("2d-midfield", Verdict::Supported),
+            ("2d-defender", Verdict::Undecided),
+            ("2d-time", Verdict::Contradicted),
+            ("2d-timeout", Verdict::Undecided),
+            ("robots-3-out", Verdict::Supported),
+            ("robots-3-to-goal", Verdict::Undecided),
+            ("robots-4-to-goal", Verdict::Undecided),
+            ("default-share", Verdict::Unmeasured),
+        ] {
+            let judged = of_paper(id);
+            assert_eq!(judged.verdict, verdict, "{id}: {}", judged.evidence);
+        }
+    }
+
+    #[test]
+    fn a_claim_needs_every_point_and_one_against_it_is_enough() {
+        let row = |scenario, approach, to_goal| {
+            let mut row = TableRow::empty(1, scenario, approach);
+            (row.trials, row.to_goal) = (500, Some(to_goal));
+            row
+        };
+        use brain::Approach::{Cases, Reactive};
+        use hil_sim::Scenario;
+        let rows = |fourth: f64| {
+            let mut rows: Vec<_> = Scenario::PAPER.into_iter().map(|s| row(s, Cases, 50.0)).collect();
+            rows.extend(Scenario::PAPER.into_iter().map(|s| row(s, Reactive, 30.0)));
+            rows[7].to_goal = Some(fourth);
+            rows
+        };
+        let verdict = |rows: &[TableRow]| claims(rows, paper())[0].ours.clone();
+        assert_eq!(verdict(&rows(30.0)).verdict, Verdict::Supported);
+        assert_eq!(verdict(&rows(49.0)).verdict, Verdict::Undecided);
+        assert_eq!(verdict(&rows(80.0)).verdict, Verdict::Contradicted);
+        let lacking = verdict(&rows(30.0)[..7]);
+        assert_eq!(lacking.verdict, Verdict::Undecided);
+        assert!(lacking.evidence.ends_with("the rest was not played"), "{}", lacking.evidence);
+        assert_eq!(verdict(&[]).verdict, Verdict::Unmeasured);
+        assert!(
+            verdict(&rows(30.0)).evidence.starts_with("scenario 1: cbr 50.0 > reactive 30.0 (p < 0.001)")
+        );
+    }
+}

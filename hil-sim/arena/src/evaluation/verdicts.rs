@@ -1,0 +1,68 @@
+//! How do verdicts read in a terminal? The claims of the paper in a line each, the lines of the pattern with their numbers.
+
+use std::fmt::Write as _;
+
+use super::claims::{Claim, Verdict};
+use super::judge::Line;
+use super::results::Results;
+
+/// Both, for people; `claims.json` has the numbers behind every claim.
+pub fn verdicts(results: &Results) -> String {
+    claims(&results.claims) + &lines(&results.lines)
+}
+
+fn claims(claims: &[Claim]) -> String {
+    let mut text =
+        "What the paper says, by our trials and by its own tables (claims.json has the numbers)\n".to_owned();
+    let _ = writeln!(text, "  {:12}  {:12}  {:6}", "ours", "the paper's", "§");
+    for Claim { section, sentence, ours, paper, .. } in claims {
+        let (ours, paper) = (ours.verdict.word(), paper.verdict.word());
+        let _ = writeln!(text, "  {ours:12}  {paper:12}  {section:6} {sentence}");
+    }
+    let count = |verdict| claims.iter().filter(|claim| claim.ours.verdict == verdict).count();
+    let _ = writeln!(
+        text,
+        "{} supported, {} contradicted, {} undecided, {} unmeasured\n",
+        count(Verdict::Supported),
+        count(Verdict::Contradicted),
+        count(Verdict::Undecided),
+        count(Verdict::Unmeasured)
+    );
+    text
+}
+
+fn lines(lines: &[Line]) -> String {
+    let mut text = "The pattern of its results, and what is asked of ours\n".to_owned();
+    let width = lines.iter().map(|line| line.id.len()).max().unwrap_or_default();
+    for Line { id, line, verdict, evidence } in lines {
+        let _ = writeln!(text, "  {:10}  {id:width$}  {line}", verdict.word());
+        if !evidence.is_empty() {
+            let _ = writeln!(text, "  {:10}  {:width$}  {evidence}", "", "");
+        }
+    }
+    text.push('\n');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluation::claims::claims as judged;
+    use crate::evaluation::judge::judge;
+    use crate::evaluation::paper::paper;
+
+    #[test]
+    fn every_claim_and_line_is_there_with_its_verdict() {
+        let (claimed, judged) = (judged(paper(), paper()), judge(paper()));
+        let (first, second) = (claims(&claimed), lines(&judged));
+        assert_eq!(first.lines().count(), claimed.len() + 4);
+        let of_out =
+            "  supported     supported     5.2.1  Fewer balls go out with cases, in all four scenarios.";
+        assert!(first.contains(of_out), "{first}");
+        assert!(
+            second.contains("  held        g                 trials of 15 to 34 s on average"),
+            "{second}"
+        );
+        assert!(second.contains("24.4, 28.7, 27.0, 15.9, 20.4"), "{second}");
+    }
+}

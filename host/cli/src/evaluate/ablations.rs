@@ -1,0 +1,68 @@
+//! `onetwo evaluate ablations`: what is each part of the approach worth? One thing changed at a time, on the same chances.
+//!
+//! Every arm's trials are kept in a file of its own, `arms/NAME.csv`: the same command goes on where it was stopped, and arms that
+//! were played elsewhere are copied there.
+
+use std::process::ExitCode;
+
+use arena::evaluation::{ARMS, Arm, Plan, Shard, ablation_table, effects, write_effects};
+use clap::Args;
+
+use super::work::{self, WorkArgs};
+use crate::Failure;
+use crate::args::LibraryArgs;
+use crate::library::Shelf;
+use crate::setup::{reduction, refuse_other_fields};
+
+/// Which arms, and how many trials.
+#[derive(Debug, Args)]
+pub(super) struct AblationsArgs {
+    /// Trials a cell of scenario and opponents, and arm.
+    #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    trials: u32,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only these arms, by name; may be repeated. The unchanged team is always played.
+    #[arg(long, value_name = "NAME", value_parser = arm)]
+    arm: Vec<Arm>,
+    #[command(flatten)]
+    work: WorkArgs,
+    #[command(flatten)]
+    library: LibraryArgs,
+}
+
+pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
+    let plan = Plan::ablation(args.seed).with_trials(args.trials);
+    let wanted = |arm: &&Arm| args.arm.is_empty() || arm.is_default() || args.arm.contains(arm);
+    let arms: Vec<Arm> = ARMS.iter().filter(wanted).copied().collect();
+    let (folder, pool) = (args.work.folder()?, args.work.pool()?);
+    let kept = folder.join("arms");
+    work::make(&kept)?;
+    let library = args.library.folder.library.as_ref();
+    let library = library.map_or_else(|| args.library.league.clone(), |folder| folder.display().to_string());
+    let mut played = Vec::new();
+    for (place, arm) in arms.iter().enumerate() {
+        let setup = arm.setup();
+        let shelf = Shelf::open_reduced(&args.library, reduction(&setup))?;
+        refuse_other_fields(&shelf)?;
+        let evaluation = work::evaluation(plan.clone(), setup, &shelf, library.clone());
+        let title = format!("{} of {}: {}", place + 1, arms.len(), arm.name);
+        let file = kept.join(format!("{}.csv", arm.name));
+        played.push((*arm, work::play(&evaluation, Shard::WHOLE, &file, &pool, &title)?));
+    }
+    let (_, default) = played.remove(0);
+    let effects = effects(&default, &played);
+    write_effects(&effects, folder)?;
+    let (trials, seed) = (default.len() * arms.len(), args.seed);
+    let table = ablation_table(&effects);
+    work::say(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", folder.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn arm(word: &str) -> Result<Arm, String> {
+    ARMS.iter().find(|arm| arm.name == word).copied().ok_or_else(|| {
+        let names: Vec<_> = ARMS.iter().map(|arm| arm.name).collect();
+        format!("take one of: {}", names.join(", "))
+    })
+}

@@ -1,0 +1,39 @@
+//! `onetwo evaluate judge`: does the pattern of the paper's results come out? Thousands of trials a cell, random starts among them.
+//!
+//! The same files and tables as `onetwo evaluate`; the verdicts are meant for these numbers. Its seed is its own, so that what was
+//! tuned while looking at the tables is judged on other chances. A missed line is a finding, and no error.
+
+use std::process::ExitCode;
+
+use arena::evaluation::{Plan, Shard};
+use clap::Args;
+
+use super::report::ReportArgs;
+use super::work::{self, WorkArgs};
+use crate::Failure;
+use crate::setup::SetupArgs;
+
+/// How many trials, and how they are played.
+#[derive(Debug, Args)]
+pub(super) struct JudgeArgs {
+    /// Trials a cell of scenario, opponents and approach.
+    #[arg(long, default_value_t = 5000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    trials: u32,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 2009)]
+    seed: u64,
+    /// Every n-th trial from the i-th on, for a cluster; `evaluate merge` puts the shards together.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard)]
+    shard: Shard,
+    #[command(flatten)]
+    work: WorkArgs,
+    #[command(flatten)]
+    report: ReportArgs,
+    #[command(flatten)]
+    setup: SetupArgs,
+}
+
+pub(super) fn run(args: &JudgeArgs) -> Result<ExitCode, Failure> {
+    let plan = Plan::judge(args.seed).with_trials(args.trials);
+    work::run(plan, args.shard, &args.setup, &args.work, &args.report)
+}
