@@ -89,6 +89,8 @@ pub(crate) enum Failure {
     Qemu(QemuError),
     /// The firmware image cannot be made.
     Image(BuildError),
+    /// Something costs more than DESIGN §9 allows.
+    Budget(String),
     /// The same trial gave different traces, or none.
     Determinism(Vec<String>),
 }
@@ -104,6 +106,7 @@ impl fmt::Display for Failure {
             Self::Target(error) => error.fmt(f),
             Self::Qemu(error) => error.fmt(f),
             Self::Image(error) => error.fmt(f),
+            Self::Budget(what) => write!(f, "over the budget: {what}"),
             Self::Determinism(trials) => {
                 write!(f, "{} trials differ or fail", trials.len())?;
                 trials.iter().try_for_each(|trial| write!(f, "\n  {trial}"))

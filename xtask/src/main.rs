@@ -11,6 +11,7 @@ mod pictures;
 mod readme;
 mod report;
 mod steps;
+mod trial_cost;
 
 use std::env;
 use std::process::ExitCode;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
+        Ok(Request::TrialCost) => told(trial_cost::run_bench(&Context::new())),
         Ok(Request::Bench(words)) => told(bench::retrieval(&Context::new(), &words)),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
         Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
@@ -71,6 +73,8 @@ enum Request {
     List,
     Pictures,
     Evaluation,
+    /// What a simulated second costs.
+    TrialCost,
     /// Retrieval, with these words for the bench.
     Bench(Vec<String>),
     Help,
@@ -92,7 +96,8 @@ impl Request {
             Some("bench") => {
                 return match words.next() {
                     Some("retrieval") => Ok(Self::Bench(words.map(String::from).collect())),
-                    _ => Err("bench needs a name: retrieval".into()),
+                    Some("trial") => Ok(Self::TrialCost),
+                    _ => Err("bench needs a name: retrieval or trial".into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -117,7 +122,7 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench retrieval
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench NAME
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
@@ -126,7 +131,8 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo
   bench retrieval [--write | --guest | --verify]
                  count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
                  --write puts the table into casebase/README.md, --guest leaves this machine out,
-                 --verify holds 10^6 answers to a plain scan's instead";
+                 --verify holds 10^6 answers to a plain scan's instead
+  bench trial    count the instructions of a simulated second and hold them to the budget";
 
 #[cfg(test)]
 mod tests {
@@ -162,6 +168,7 @@ mod tests {
         assert!(matches!(ask("evaluation"), Ok(Request::Evaluation)));
         assert!(ask("evaluation soon").is_err());
         assert!(matches!(ask("bench retrieval --guest"), Ok(Request::Bench(words)) if words == ["--guest"]));
+        assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
         assert!(ask("bench").unwrap_err().contains("retrieval"));
     }
 }

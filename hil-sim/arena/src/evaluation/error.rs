@@ -86,7 +86,8 @@ impl fmt::Display for EvaluationError {
             }
             Self::Another { file, differences } => write!(
                 f,
-                "{}: holds trials of another evaluation (other {}); name an empty folder, or give the options it was begun with",
+                "{}: holds trials of another evaluation (other {}); name an empty folder, begin anew with \
+                 --fresh, or give the options it was begun with",
                 file.display(),
                 differences.join(", ")
             ),

@@ -87,7 +87,7 @@ const LINES: &[Entry] = &[
     }),
     (
         "d",
-        "50 to 60 % of the used cases are for several robots, the least in scenario 4 or within 3 % of it",
+        "50 to 60 % of the used cases are for several robots, the least in scenario 4 or within 3 points of it",
         |r| {
             let share = |s| Some(100.0 * r.cooperative(s, Cases)?.share()?);
             let shares = each(Scenario::PAPER, share)?;
@@ -158,7 +158,7 @@ const LINES: &[Entry] = &[
     ),
     (
         "reactive",
-        "reactive attackers are no straw man: to goal within 10 % of the paper's in scenarios 1 and 3",
+        "reactive attackers are no straw man: to goal within 10 points of the paper's in scenarios 1 and 3",
         |r| {
             let papers = Rows { rows: paper(), sample: Extent::Paper };
             let both = [MiddleBack, DefenderAhead];

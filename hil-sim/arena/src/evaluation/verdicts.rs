@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::claims::{Claim, Verdict};
+use super::claims::{Claim, Judgement, Verdict};
 use super::judge::Line;
 use super::results::Results;
 
@@ -14,10 +14,14 @@ pub fn verdicts(results: &Results) -> String {
 fn claims(claims: &[Claim]) -> String {
     let mut text =
         "What the paper says, by our trials and by its own tables (claims.json has the numbers)\n".to_owned();
-    let _ = writeln!(text, "  {:12}  {:12}  {:6}", "ours", "the paper's", "§");
-    for Claim { section, sentence, ours, paper, .. } in claims {
-        let (ours, paper) = (ours.verdict.word(), paper.verdict.word());
-        let _ = writeln!(text, "  {ours:12}  {paper:12}  {section:6} {sentence}");
+    let has_more = claims.iter().any(|claim| claim.ours_as_paper.is_some());
+    // What as many trials as the paper's would have said, where there were more.
+    let as_paper = |word: &str| if has_more { format!("{word:14}") } else { String::new() };
+    let _ = writeln!(text, "  {:14}{}{:14}§", "ours", as_paper("ours, of 30"), "the paper's");
+    for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {
+        let word = |judgement: &Judgement| judgement.verdict.word();
+        let of_30 = as_paper(ours_as_paper.as_ref().map_or("", word));
+        let _ = writeln!(text, "  {:14}{of_30}{:14}{section:7}{sentence}", word(ours), word(paper));
     }
     let count = |verdict| claims.iter().filter(|claim| claim.ours.verdict == verdict).count();
     let _ = writeln!(

@@ -49,6 +49,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
         let evaluation = work::evaluation(plan.clone(), setup, &shelf, library.clone());
         let title = format!("{} of {}: {}", place + 1, arms.len(), arm.name);
         let file = kept.join(format!("{}.csv", arm.name));
+        args.work.freshen(&file)?;
         played.push((*arm, work::play(&evaluation, Shard::WHOLE, &file, &pool, &title)?));
     }
     let (_, default) = played.remove(0);

@@ -27,7 +27,10 @@ pub(super) struct WorkArgs {
     jobs: Option<u16>,
     /// The folder that everything is written to; the same command goes on there after an interrupt.
     #[arg(long, value_name = "DIR", default_value = "evaluation")]
-    pub(super) out: PathBuf,
+    out: PathBuf,
+    /// Begin anew: the trials that the folder keeps are taken away.
+    #[arg(long)]
+    fresh: bool,
 }
 
 impl WorkArgs {
@@ -37,11 +40,31 @@ impl WorkArgs {
         pool.build().map_err(|error| Failure::Threads(error.to_string()))
     }
 
-    /// The folder, made where it is missing.
+    /// The folder, made where it is missing; without earlier trials where that was asked for.
     pub(super) fn folder(&self) -> Result<&Path, Failure> {
         make(&self.out)?;
+        if self.fresh {
+            let failed = |error| EvaluationError::File { file: self.out.clone(), error };
+            for entry in std::fs::read_dir(&self.out).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                let of_shard = entry.file_name().to_str().is_some_and(|n| Shard::from_file_name(n).is_some());
+                if of_shard {
+                    forget(&entry.path())?;
+                }
+            }
+        }
         Ok(&self.out)
     }
+
+    /// Takes a file of trials away, if it is there and that was asked for.
+    pub(super) fn freshen(&self, file: &Path) -> Result<(), Failure> {
+        if self.fresh && file.exists() { forget(file) } else { Ok(()) }
+    }
+}
+
+fn forget(file: &Path) -> Result<(), Failure> {
+    let gone = std::fs::remove_file(file);
+    gone.map_err(|error| EvaluationError::File { file: file.to_owned(), error }.into())
 }
 
 /// A folder for results.

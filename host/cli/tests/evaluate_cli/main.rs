@@ -213,6 +213,9 @@ fn what_cannot_be_done_is_told_with_its_mend() {
     said(&short("1", "0"));
     let words = refused(&short("2", "0.1"), 1);
     assert!(words.contains("loss, seed") && words.contains("trials-1-of-1.csv"), "{words}");
+    assert!(words.contains("--fresh"), "{words}");
+    said(&[&short("2", "0.1")[..], &["--fresh"]].concat());
+    assert_eq!(json(&out.join("run.json"))["plan"]["seed"], 2);
 
     let empty = scratch("empty");
     assert!(
