@@ -136,6 +136,14 @@ fn passes(map: &Map) -> Svg {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
     draw_field(&mut svg, &map.field, colors);
+    if let Some(start) = &map.start {
+        for attacker in &start.attackers {
+            kick_off(&mut svg, millimetres(attacker.position), true);
+        }
+        for opponent in &start.opponents {
+            kick_off(&mut svg, millimetres(opponent.pose.position), false);
+        }
+    }
     for kind in [PassKind::Lost, PassKind::Chance, PassKind::Completed] {
         let own = map.passes.iter().filter(|pass| pass.kind == kind);
         let ways: Vec<_> = own.map(|pass| (millimetres(pass.from), millimetres(pass.to))).collect();
@@ -148,6 +156,18 @@ fn passes(map: &Map) -> Svg {
         }
     }
     svg
+}
+
+/// Where somebody stood: attackers are circles and opponents squares, as in the paper's figures.
+fn kick_off(svg: &mut Svg, [x, y]: [f64; 2], attacker: bool) {
+    let colors = Theme::Light.colors();
+    let color = if attacker { colors.team } else { colors.opponent };
+    let style = format!(r#"fill="{}" stroke="{color}" stroke-width="22""#, colors.paper);
+    if attacker {
+        svg.circle([x, y], 95.0, style);
+    } else {
+        svg.rect([x - 85.0, y - 85.0], [x + 85.0, y + 85.0], style);
+    }
 }
 
 /// Arrows of a kind, each one short element: there are hundreds.
@@ -232,7 +252,7 @@ fn signs() -> Vec<(String, &'static str)> {
     let drawn = entries().into_iter().map(|(sign, word)| {
         let mut svg = Svg::default();
         svg.inset(&sign, [0.0, 0.0]);
-        (svg.finish([-160.0, -70.0], [160.0, 70.0], 0.11, paper, word), word)
+        (svg.finish([-160.0, -110.0], [160.0, 110.0], 0.11, paper, word), word)
     });
     drawn.collect()
 }
@@ -260,7 +280,13 @@ fn entries() -> Vec<(Svg, &'static str)> {
         end(&mut svg, [60.0, 0.0], outcome);
         (svg, word)
     });
-    passes.chain(ends).collect()
+    let starts = [(true, "attacker at kick-off"), (false, "opponent at kick-off")];
+    let starts = starts.into_iter().map(|(attacker, word)| {
+        let mut svg = Svg::default();
+        kick_off(&mut svg, [40.0, 0.0], attacker);
+        (svg, word)
+    });
+    starts.chain(passes).chain(ends).collect()
 }
 
 /// Signs from `left`, the scale from `from`; gives where they end.

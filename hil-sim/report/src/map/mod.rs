@@ -6,7 +6,7 @@ use arena::evaluation::{Cell, Evaluation, Profile, Shard};
 use arena::{Moment, TrialConfig, TrialReport, Watcher, run};
 use geometry::{Field, Point};
 use hil_sim::world::{Strike, World, WorldEvent};
-use hil_sim::{NativeBackend, Outcome, SimulationError, TICK_US};
+use hil_sim::{Layout, NativeBackend, Outcome, Scenario, SimulationError, TICK_US};
 use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
 
@@ -28,6 +28,8 @@ pub struct Map {
     pub seconds: Vec<f64>,
     /// The attackers' passes.
     pub passes: Vec<Pass>,
+    /// Where everybody stood at kick-off; none where each trial has its own.
+    pub start: Option<Layout>,
     /// Where the ball was at the end, and what that was.
     pub ends: Vec<(Point<Field>, Outcome)>,
 }
@@ -66,8 +68,8 @@ impl Map {
     }
 
     fn empty(cell: Cell, field: casebase::FieldMm) -> Self {
-        let mut map =
-            Self { cell, trials: 0, field, seconds: Vec::new(), passes: Vec::new(), ends: Vec::new() };
+        let (seconds, passes, ends) = (Vec::new(), Vec::new(), Vec::new());
+        let mut map = Self { cell, trials: 0, field, seconds, passes, start: None, ends };
         map.seconds = vec![0.0; map.columns() * map.rows()];
         map
     }
@@ -118,6 +120,13 @@ impl Map {
             })
             .collect();
         let mut map = Self::empty(cell, field);
+        let same = configs.first().filter(|config| config.scenario != Scenario::Random);
+        map.start = same.map(|config| {
+            let mut layout = config.simulation().layout;
+            // A scenario has places for larger teams too.
+            layout.attackers.truncate(config.robots);
+            layout
+        });
         watched?.into_iter().for_each(|mapper| map.add(mapper));
         Ok(map)
     }

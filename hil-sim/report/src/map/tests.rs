@@ -3,7 +3,7 @@
 use arena::TEAM;
 use arena::evaluation::{Plan, Setup};
 use brain::Approach;
-use hil_sim::{Configuration, Scenario};
+use hil_sim::Configuration;
 
 use super::*;
 
@@ -69,6 +69,7 @@ fn a_map_holds_all_the_time_of_its_trials_and_their_ends() {
     assert!(seconds <= time + 0.09 && seconds > time - 1.0, "{seconds} of {time}");
     assert_eq!(map.ends.iter().map(|(_, outcome)| *outcome).collect::<Vec<_>>(), outcomes);
     assert_eq!(map.trials, 2);
+    assert_eq!(map.start.map(|start| (start.attackers.len(), start.opponents.len())), Some((2, 2)));
 }
 
 #[test]
