@@ -24,9 +24,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use arena::evaluation::{CaseUse, Comparison, TableRow};
+use arena::evaluation::{CaseUse, Claim, Comparison, Line, TableRow};
 
-pub use arena::evaluation::{Claim, Judgement, Verdict};
 pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};
@@ -48,6 +47,8 @@ pub struct Report<'a> {
     pub uses: &'a [CaseUse],
     /// What the paper says in prose, and whether the numbers bear it out.
     pub claims: &'a [Claim],
+    /// Does the pattern of its results come out?
+    pub lines: &'a [Line],
     /// Everything that decided the trials: parameters, options, hashes, commit.
     pub facts: &'a [Facts],
     /// Where the ball was and who passed to whom, one a cell.

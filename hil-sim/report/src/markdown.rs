@@ -3,8 +3,10 @@
 use std::fmt;
 use std::fmt::Write as _;
 
-use crate::table::{Cell, Line, LineKind, Table, tables};
-use crate::{Claim, Report, map, words};
+use arena::evaluation::{Claim, Judgement, Line};
+
+use crate::table::{Cell, LineKind, Table, tables};
+use crate::{Report, map, table, words};
 
 /// Tables, claims and pictures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
@@ -30,6 +32,9 @@ pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     }
     if !report.claims.is_empty() {
         claims(&mut text, report.claims);
+    }
+    if !report.lines.is_empty() {
+        lines(&mut text, report.lines);
     }
     text
 }
@@ -60,8 +65,8 @@ fn own(text: &mut String, table: &Table) {
 
 /// One approach less another, the paper's in italics behind it.
 fn against(text: &mut String, table: &Table) {
-    let pair = |line: &&Line| matches!(line.kind, LineKind::Against(..));
-    let tested = |line: &Line| line.cells.iter().any(|cell| !cell.beside.is_empty());
+    let pair = |line: &&table::Line| matches!(line.kind, LineKind::Against(..));
+    let tested = |line: &table::Line| line.cells.iter().any(|cell| !cell.beside.is_empty());
     if !table.blocks.iter().flat_map(|block| &block.lines).filter(pair).any(tested) {
         return;
     }
@@ -91,19 +96,34 @@ fn against(text: &mut String, table: &Table) {
 fn claims(text: &mut String, claims: &[Claim]) {
     text.push_str("### What the paper says, and what the numbers say\n\n");
     text.push_str("| § | claim | our trials | the paper’s own tables |\n|---|---|---|---|\n");
-    for claim in claims {
-        let cell = |words: &str| words.replace('|', "\\|").replace('\n', " ");
-        let said = |judgement: &crate::Judgement| {
-            let word = judgement.verdict.word();
-            match judgement.evidence.as_str() {
-                "" => word.to_owned(),
-                evidence => format!("**{word}**: {}", cell(evidence)),
-            }
-        };
-        let (section, sentence) = (claim.section, cell(claim.sentence));
-        let _ = writeln!(text, "| {section} | {sentence} | {} | {} |", said(&claim.ours), said(&claim.paper));
+    for Claim { section, sentence, ours, ours_as_paper, paper, .. } in claims {
+        let few = ours_as_paper.as_ref().map(|few| format!(" (its first 30 trials: {})", few.verdict.word()));
+        let (claim, few) = (cell(sentence), few.unwrap_or_default());
+        let _ = writeln!(text, "| {section} | {claim} | {}{few} | {} |", said(ours), said(paper));
     }
     text.push('\n');
+}
+
+fn said(judgement: &Judgement) -> String {
+    let word = judgement.verdict.word();
+    if judgement.evidence.is_empty() {
+        return format!("**{word}**");
+    }
+    format!("**{word}**: {}", cell(&judgement.evidence))
+}
+
+fn lines(text: &mut String, lines: &[Line]) {
+    text.push_str("### The pattern of its results, and what is asked of ours\n\n");
+    text.push_str("| | line | | the numbers |\n|---|---|---|---|\n");
+    for Line { id, line, verdict, evidence } in lines {
+        let _ = writeln!(text, "| {id} | {} | **{}** | {} |", cell(line), verdict.word(), cell(evidence));
+    }
+    text.push('\n');
+}
+
+/// Words that stay in their cell.
+fn cell(words: &str) -> String {
+    words.replace('|', "\\|").replace('*', "\\*").replace('\n', " ")
 }
 
 /// A row of heads, the first ones to the left, numbers to the right.

@@ -1,10 +1,12 @@
 //! Does the page show what was measured, all of it, and nothing else? The paper's rows stand in for ours, a little changed.
 
 use arena::TrialConfig;
-use arena::evaluation::{Comparison, TableRow, compare, paper, with_paper};
+use arena::evaluation::{
+    Claim, Comparison, Held, Judgement, Line, TableRow, Verdict, compare, paper, with_paper,
+};
 use brain::Approach;
 use hil_sim::{Configuration, Scenario};
-use report::{Claim, EDGE, Facts, Judgement, Map, Report, Verdict};
+use report::{EDGE, Facts, Map, Report};
 
 /// Rows that could be ours: the paper's, some of them elsewhere.
 fn ours() -> Vec<TableRow> {
@@ -23,6 +25,7 @@ struct Made {
     between: Vec<Comparison>,
     papers: Vec<Comparison>,
     claims: Vec<Claim>,
+    lines: Vec<Line>,
     facts: Vec<Facts>,
     maps: Vec<Map>,
 }
@@ -46,8 +49,14 @@ impl Made {
                 section: "5.2.1",
                 sentence: "<script>alert('&')</script>",
                 ours_as_paper: None,
-                ours: judged(Verdict::Supported, "34 > 28 | 31"),
+                ours: judged(Verdict::Supported, "34 > 28 | 31 & *so*"),
                 paper: judged(Verdict::Undecided, "p = 0.31"),
+            }],
+            lines: vec![Line {
+                id: "z",
+                line: "more < less",
+                verdict: Held::Missed,
+                evidence: "3 < 4".to_owned(),
             }],
             facts: vec![Facts {
                 title: "Program & options".to_owned(),
@@ -66,6 +75,7 @@ impl Made {
             papers_between: &self.papers,
             uses: &[],
             claims: &self.claims,
+            lines: &self.lines,
             facts: &self.facts,
             maps: &self.maps,
         }
@@ -92,7 +102,11 @@ fn the_page_has_every_table_with_its_plots() {
         html.match_indices("<h2>").map(|(at, _)| &html[at + 4..at + 4 + html[at + 4..].find('<').unwrap()]);
     let heads: Vec<_> = heads.map(|head| head.split(':').next().unwrap()).collect();
     let tables: Vec<_> = (1..=6).map(|number| format!("Table {number}")).collect();
-    let mut expected = vec!["At a glance", "What the paper says, and what the numbers say"];
+    let mut expected = vec![
+        "At a glance",
+        "What the paper says, and what the numbers say",
+        "The pattern of its results, and what is asked of ours",
+    ];
     expected.extend(tables.iter().map(String::as_str));
     expected.extend(["Every comparison", "What decided the trials"]);
     assert_eq!(heads, expected);
@@ -118,7 +132,7 @@ fn the_page_stands_alone() {
 fn words_from_outside_cannot_break_the_page() {
     let html = Made::new().report().html();
     assert!(html.contains("&lt;script&gt;alert('&amp;')&lt;/script&gt;"));
-    assert!(html.contains("a&lt;b") && html.contains("Program &amp; options"));
+    assert!(html.contains("more &lt; less") && html.contains("Program &amp; options"));
     assert!(html.contains("cost=&quot;sum&quot; &lt;default&gt;"));
 }
 
@@ -261,7 +275,8 @@ fn markdown_has_the_numbers_and_whole_rows() {
     // Ours, the paper's in italics; the difference with its stars.
     assert!(text.contains("| 10.2 *9* |"), "{text}");
     assert!(text.contains("−19.0\\*\\*\\* *−19.0\\*\\*\\**"), "{text}");
-    assert!(text.contains("34 > 28 \\| 31"), "{text}");
+    assert!(text.contains("34 > 28 \\| 31 & \\*so\\*"), "{text}");
+    assert!(text.contains("| z | more < less | **missed** | 3 < 4 |"), "{text}");
     let mut columns = None;
     for line in text.lines() {
         let bars = line.replace("\\|", "").matches('|').count();
@@ -284,6 +299,7 @@ fn the_same_results_are_the_same_page() {
         papers_between: &[],
         uses: &[],
         claims: &[],
+        lines: &[],
         facts: &[],
         maps: &[],
     };

@@ -86,6 +86,7 @@ impl Made {
             papers_between: &self.papers_between,
             uses: &results.uses,
             claims: &results.claims,
+            lines: &results.lines,
             facts: &self.facts,
             maps: &self.maps,
         }
