@@ -89,6 +89,8 @@ fn claims(claims: &[Claim]) -> Markup {
         section id="claims" {
             h2 { "What the paper says, and what the numbers say" }
             p.note { (CLAIMS) }
+            p { (counted("Our trials", &claims.iter().map(|claim| &claim.ours)))
+                (counted("The paper’s own tables", &claims.iter().map(|claim| &claim.paper))) }
             div.scroll tabindex="0" role="region" aria-label="Claims" { table.claims {
                 thead { tr {
                     th scope="col" { "claim" }
@@ -105,6 +107,16 @@ fn claims(claims: &[Claim]) -> Markup {
             } }
         }
     }
+}
+
+/// `Our trials: 18 supported, 10 contradicted, 6 undecided.`
+fn counted<'c>(whose: &str, judgements: &(impl Iterator<Item = &'c Judgement> + Clone)) -> String {
+    let verdicts = [Verdict::Supported, Verdict::Contradicted, Verdict::Undecided, Verdict::Unmeasured];
+    let counts = verdicts.into_iter().filter_map(|verdict| {
+        let count = judgements.clone().filter(|judgement| judgement.verdict == verdict).count();
+        (count > 0).then(|| format!("{count} {}", verdict.word()))
+    });
+    format!("{whose}: {}. ", counts.collect::<Vec<_>>().join(", "))
 }
 
 fn judgement(judgement: &Judgement) -> Markup {
