@@ -10,9 +10,10 @@ use brain::Approach;
 use hil_sim::{Configuration, Outcome, Scenario};
 use serde::{Serialize, Serializer};
 
+use super::comparison::Measure;
 use super::plan::Profile;
 use super::row::TrialRow;
-use super::statistics::Sample;
+use super::statistics::{Interval, Sample, wilson};
 use super::words;
 
 /// Which of the trials a row is of.
@@ -113,6 +114,30 @@ pub struct TableRow {
     pub backups_b_sd: Option<f64>,
     /// `paper`, or `large` for Table 6 of more than the paper's 30 trials.
     pub sample: Extent,
+    /// Lower end of the 95 % interval (Wilson) of `goal`, percent; so the next five pairs.
+    pub goal_low: Option<f64>,
+    /// Upper end.
+    pub goal_high: Option<f64>,
+    /// Lower end of `close`'s.
+    pub close_low: Option<f64>,
+    /// Upper end.
+    pub close_high: Option<f64>,
+    /// Lower end of `block`'s.
+    pub block_low: Option<f64>,
+    /// Upper end.
+    pub block_high: Option<f64>,
+    /// Lower end of `out`'s.
+    pub out_low: Option<f64>,
+    /// Upper end.
+    pub out_high: Option<f64>,
+    /// Lower end of `timeout`'s.
+    pub timeout_low: Option<f64>,
+    /// Upper end.
+    pub timeout_high: Option<f64>,
+    /// Lower end of `to_goal`'s.
+    pub to_goal_low: Option<f64>,
+    /// Upper end.
+    pub to_goal_high: Option<f64>,
 }
 
 /// A mean with its spread.
@@ -148,6 +173,8 @@ pub fn tables(rows: &[TrialRow]) -> Vec<TableRow> {
     tables
 }
 
+/// Of the intervals of shares.
+const CONFIDENCE: f64 = 0.95;
 /// The paper's robots played so many trials a row of Table 6 (§5.3).
 pub(super) const TRIALS_OF_ROBOTS: usize = 30;
 
@@ -219,6 +246,18 @@ impl TableRow {
             backups_a_sd: None,
             backups_b_sd: None,
             sample: Extent::Paper,
+            goal_low: None,
+            goal_high: None,
+            close_low: None,
+            close_high: None,
+            block_low: None,
+            block_high: None,
+            out_low: None,
+            out_high: None,
+            timeout_low: None,
+            timeout_high: None,
+            to_goal_low: None,
+            to_goal_high: None,
         }
     }
 
@@ -265,8 +304,22 @@ impl TableRow {
         if plays_cases(self.approach) {
             self.fill_cases(rows);
         }
+        self.fill_intervals();
         let to_goal = || rows.iter().filter(|row| row.to_goal());
         self.time_to_goal_mean = Mean::of(to_goal().map(|row| row.time_s)).mean;
+    }
+
+    fn fill_intervals(&mut self) {
+        let ends = |measure: Measure, row: &Self| {
+            let interval = measure.count(row).and_then(|count| wilson(count, CONFIDENCE));
+            interval.map(|Interval { low, high }| (rounded(100.0 * low), rounded(100.0 * high))).unzip()
+        };
+        (self.goal_low, self.goal_high) = ends(Measure::Goal, self);
+        (self.close_low, self.close_high) = ends(Measure::Close, self);
+        (self.block_low, self.block_high) = ends(Measure::Block, self);
+        (self.out_low, self.out_high) = ends(Measure::Out, self);
+        (self.timeout_low, self.timeout_high) = ends(Measure::Timeout, self);
+        (self.to_goal_low, self.to_goal_high) = ends(Measure::ToGoal, self);
     }
 
     fn fill_cases(&mut self, rows: &[&TrialRow]) {
@@ -310,96 +363,4 @@ fn table<S: Serializer>(table: &u8, s: S) -> Result<S::Ok, S::Error> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::evaluation::row::tests::row;
-
-    fn trial(approach: Approach, configuration: Configuration, outcome: Outcome, time_s: f64) -> TrialRow {
-        let out_by = (outcome == Outcome::Out).then(|| "defender".to_owned());
-        let of_all = TrialRow { configuration, approach, outcome, time_s, out_by, ..row() };
-        if approach == Approach::Cases {
-            return of_all;
-        }
-        TrialRow {
-            individual: 0,
-            cooperative: 0,
-            none: 0,
-            default_s: None,
-            default_spells: None,
-            no_case_ball: None,
-            no_case_robots: None,
-            no_case_thr_c: None,
-            no_case_path: None,
-            no_case_held: None,
-            ..of_all
-        }
-    }
-
-    #[test]
-    fn a_row_has_the_fields_of_the_agreement_in_their_order() {
-        let rows = [
-            trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 10.0),
-            trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Out, 30.0),
-            trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Close, 20.0),
-        ];
-        let json = serde_json::to_string(&tables(&rows)[0]).unwrap();
-        assert!(
-            json.starts_with(
-                "{\"table\":\"1\",\"configuration\":\"dg\",\"scenario\":2,\"approach\":\"cbr\",\"trials\":3,\
-                 \"goal\":33.3333,\"close\":33.3333,\"block\":0.0,\"out\":33.3333,\"timeout\":0.0,\"to_goal\":66.6667,\
-                 \"possession_mean\":2.0,\"possession_sd\":0.0,\"possession2_mean\":null,\"possession2_sd\":null,\
-                 \"time_mean\":20.0,\"time_sd\":10.0,\"backups_a\":null,\"backups_b\":null,\"individual\":3.0,\
-                 \"cooperative\":5.0,\"none\":1.0,\"out_by_attackers\":0,\"out_by_opponents\":1,\"default_time\":10.0,"
-            ),
-            "{json}"
-        );
-        assert!(json.contains("\"time_to_goal_mean\":15.0,\"cases_to_goal_mean\":8.0,"), "{json}");
-        assert!(
-            json.ends_with("\"backups_a_sd\":null,\"backups_b_sd\":null,\"sample\":\"paper\"}"),
-            "{json}"
-        );
-    }
-
-    #[test]
-    fn every_trial_stands_in_the_tables_of_its_kind() {
-        let (dg, two) = (Configuration::DefenderGoalie, Configuration::TwoDefenders);
-        let mut robots = trial(Approach::Reactive, dg, Outcome::Block, 9.0);
-        robots.profile = Profile::Robots;
-        let rows = [
-            trial(Approach::Cases, dg, Outcome::Goal, 10.0),
-            trial(Approach::Reactive, dg, Outcome::Goal, 10.0),
-            trial(Approach::Reactive, two, Outcome::Goal, 10.0),
-            trial(Approach::Reactive, two, Outcome::Timeout, 60.0),
-            robots,
-        ];
-        let tables = tables(&rows);
-        let of: Vec<_> = tables.iter().map(|row| (row.table, row.approach, row.trials)).collect();
-        let (cbr, reactive) = (Approach::Cases, Approach::Reactive);
-        let expected = [
-            (1, cbr, 1),
-            (1, reactive, 1),
-            (2, reactive, 1),
-            (3, cbr, 1),
-            (4, reactive, 2),
-            (5, reactive, 1),
-            (6, reactive, 1),
-        ];
-        assert_eq!(of, expected);
-        let (four, five) = (&tables[4], &tables[5]);
-        assert_eq!((four.to_goal, four.timeout, four.goal), (Some(50.0), Some(50.0), None));
-        assert_eq!((five.to_goal, five.time_mean, five.possession2_mean), (None, Some(10.0), Some(1.0)));
-        assert_eq!((tables[2].backups_b, tables[2].individual), (Some(16.0), None));
-    }
-
-    #[test]
-    fn more_trials_of_robots_than_the_papers_are_told_apart() {
-        let mut robots = trial(Approach::Cases, Configuration::DefenderGoalie, Outcome::Goal, 9.0);
-        robots.profile = Profile::Robots;
-        let out = TrialRow { outcome: Outcome::Out, ..robots.clone() };
-        let rows = [vec![robots; 30], vec![out; 10]].concat();
-        let shares: Vec<_> =
-            tables(&rows).iter().map(|row| (row.table, row.sample, row.trials, row.goal)).collect();
-        assert_eq!(shares, [(6, Extent::Paper, 30, Some(100.0)), (6, Extent::Large, 40, Some(75.0))]);
-        assert_eq!(tables(&rows[..30]).len(), 1, "nothing more to say");
-    }
-}
+mod tests;
