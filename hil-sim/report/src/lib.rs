@@ -9,6 +9,7 @@
 //! Numbers come from `arena::evaluation` and are shown, never changed: what a table prints is rounded for the reader, and
 //! every interval and p stands beside its number.
 
+mod ablation;
 mod columns;
 mod facts;
 mod map;
@@ -26,6 +27,7 @@ use std::path::Path;
 
 use arena::evaluation::{CaseUse, Claim, Comparison, Line, TableRow};
 
+pub use ablation::Ablation;
 pub use facts::Facts;
 pub use map::{EDGE, Map, MapError, Mapper, Pass, PassKind};
 pub use markdown::{MarkerError, between_markers};

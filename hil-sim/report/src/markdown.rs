@@ -146,24 +146,34 @@ fn escaped(marks: &str) -> String {
     marks.replace('*', "\\*")
 }
 
-/// A file's text with everything between its markers replaced.
-pub fn between_markers(text: &str, generated: &str) -> Result<String, MarkerError> {
-    let begin = text.find(BEGIN).ok_or(MarkerError::Missing(BEGIN))? + BEGIN.len();
-    let end = text[begin..].find(END).ok_or(MarkerError::Missing(END))? + begin;
-    Ok(format!("{}\n\n{}\n\n{}", &text[..begin], generated.trim(), &text[end..]))
+/// A file's text with everything between the markers of that name replaced: `<!-- NAME: written by `cargo xtask evaluation` -->` and
+/// `<!-- end of NAME -->`.
+pub fn between_markers(text: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
+    let (begin, end) = markers(name);
+    let missing = |marker: &str| MarkerError::Missing { marker: marker.to_owned() };
+    let from = text.find(&begin).ok_or_else(|| missing(&begin))? + begin.len();
+    let to = text[from..].find(&end).ok_or_else(|| missing(&end))? + from;
+    Ok(format!("{}\n\n{}\n\n{}", &text[..from], generated.trim(), &text[to..]))
+}
+
+fn markers(name: &str) -> (String, String) {
+    (format!("<!-- {name}: written by `cargo xtask evaluation` -->"), format!("<!-- end of {name} -->"))
 }
 
 /// A file lacks a marker.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MarkerError {
     /// This one.
-    Missing(&'static str),
+    Missing {
+        /// The whole line.
+        marker: String,
+    },
 }
 
 impl fmt::Display for MarkerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self::Missing(marker) = self;
-        write!(f, "there is no line `{marker}`; the figures stand between `{BEGIN}` and `{END}`")
+        let Self::Missing { marker } = self;
+        write!(f, "there is no line `{marker}`; figures stand between two such lines")
     }
 }
 
@@ -171,8 +181,6 @@ impl std::error::Error for MarkerError {}
 
 /// Maps that a document has: the scenarios that the paper describes play by play (§5.3).
 const SHOWN: [&str; 2] = ["maps-dg-3", "maps-dg-4"];
-const BEGIN: &str = "<!-- figures: written by `cargo xtask evaluation` -->";
-const END: &str = "<!-- end of figures -->";
 
 #[cfg(test)]
 mod tests {
@@ -180,11 +188,14 @@ mod tests {
 
     #[test]
     fn only_what_stands_between_the_markers_is_replaced() {
-        let text = format!("before\n{BEGIN}\nold\n{END}\nafter\n");
-        let once = between_markers(&text, "new\n").unwrap();
-        assert_eq!(once, format!("before\n{BEGIN}\n\nnew\n\n{END}\nafter\n"));
-        assert_eq!(between_markers(&once, "new\n").unwrap(), once);
-        assert_eq!(between_markers("nothing", "new"), Err(MarkerError::Missing(BEGIN)));
-        assert_eq!(between_markers(&format!("{END}{BEGIN}"), "new"), Err(MarkerError::Missing(END)));
+        let (begin, end) = markers("figures");
+        let text = format!("before\n{begin}\nold\n{end}\nafter\n");
+        let once = between_markers(&text, "figures", "new\n").unwrap();
+        assert_eq!(once, format!("before\n{begin}\n\nnew\n\n{end}\nafter\n"));
+        assert_eq!(between_markers(&once, "figures", "new\n").unwrap(), once);
+        let missing = |marker: &str| Err(MarkerError::Missing { marker: marker.to_owned() });
+        assert_eq!(between_markers("nothing", "figures", "new"), missing(&begin));
+        assert_eq!(between_markers(&format!("{end}{begin}"), "figures", "new"), missing(&end));
+        assert_eq!(between_markers(&text, "ablations", "new"), missing(&markers("ablations").0));
     }
 }

@@ -5,7 +5,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::plot::{Figure, figures};
 use crate::table::tables;
-use crate::{Report, map, numbers, style, words};
+use crate::{Facts, Report, map, numbers, style, words};
 
 /// The whole page.
 pub(crate) fn page(report: &Report<'_>) -> Markup {
@@ -58,7 +58,7 @@ pub(crate) fn page(report: &Report<'_>) -> Markup {
                         }
                     }
                     (comparisons(report))
-                    (facts(report))
+                    section id="facts" { h2 { "What decided the trials" } (facts(report.facts)) }
                 }
             }
         }
@@ -203,17 +203,15 @@ fn listed(comparisons: &[Comparison]) -> Markup {
     }
 }
 
-fn facts(report: &Report<'_>) -> Markup {
+/// Names and values under their headings.
+pub(crate) fn facts(facts: &[Facts]) -> Markup {
     html! {
-        section id="facts" {
-            h2 { "What decided the trials" }
-            p.note { "The same commit, options and seed play the same trials, to the bit." }
-            @for facts in report.facts {
-                h3 { (facts.title) }
-                div.scroll tabindex="0" role="region" aria-label=(facts.title) { table.facts { tbody {
-                    @for (name, value) in &facts.entries { tr { th scope="row" { (name) } td { (value) } } }
-                } } }
-            }
+        p.note { "The same commit, options and seed play the same trials, to the bit." }
+        @for facts in facts {
+            h3 { (facts.title) }
+            div.scroll tabindex="0" role="region" aria-label=(facts.title) { table.facts { tbody {
+                @for (name, value) in &facts.entries { tr { th scope="row" { (name) } td { (value) } } }
+            } } }
         }
     }
 }

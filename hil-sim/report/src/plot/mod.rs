@@ -17,6 +17,7 @@ use hil_sim::Scenario;
 use maud::{Markup, PreEscaped, html};
 
 pub(crate) use axis::GRID;
+pub(crate) use rows::{Dot, Row, axis, panel};
 
 use crate::{Picture, Report, words};
 

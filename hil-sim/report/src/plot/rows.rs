@@ -9,25 +9,25 @@ use crate::words;
 
 /// A number with what is known of it.
 #[derive(Clone, Debug)]
-pub(super) struct Dot {
-    pub(super) approach: Approach,
-    pub(super) ours: bool,
-    pub(super) value: f64,
+pub(crate) struct Dot {
+    pub(crate) approach: Approach,
+    pub(crate) ours: bool,
+    pub(crate) value: f64,
     /// From where to where it may lie.
-    pub(super) reach: Option<(f64, f64)>,
+    pub(crate) reach: Option<(f64, f64)>,
     /// As it is written.
-    pub(super) text: String,
+    pub(crate) text: String,
 }
 
 /// Dots of one name.
 #[derive(Clone, Debug)]
-pub(super) struct Row {
-    pub(super) name: String,
-    pub(super) dots: Vec<Dot>,
+pub(crate) struct Row {
+    pub(crate) name: String,
+    pub(crate) dots: Vec<Dot>,
 }
 
 /// Rows below each other.
-pub(super) fn panel(title: String, unit: &str, rows: &[Row], axis: Axis) -> Panel {
+pub(crate) fn panel(title: String, unit: &str, rows: &[Row], axis: Axis) -> Panel {
     let colors = Theme::Light.colors();
     let mut svg = Svg::default();
     let height: f64 = rows.iter().map(|row| height(&row.dots)).sum();
@@ -49,7 +49,7 @@ pub(super) fn panel(title: String, unit: &str, rows: &[Row], axis: Axis) -> Pane
 }
 
 /// An axis that leaves room for names on the left and numbers on the right.
-pub(super) fn axis(low: f64, high: f64) -> Axis {
+pub(crate) fn axis(low: f64, high: f64) -> Axis {
     Axis::between(low, high, LEFT, PANEL - RIGHT)
 }
 

@@ -5,9 +5,13 @@
 
 use std::process::ExitCode;
 
-use arena::evaluation::{ARMS, Arm, Plan, Shard, ablation_table, effects, write_effects};
+use ::report::{Ablation, Facts};
+use arena::evaluation::{
+    ARMS, Arm, EvaluationError, Plan, Shard, ablation_table, csv_hash, effects, to_csv, write_effects,
+};
 use clap::Args;
 
+use super::report::{self, PageArgs};
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::LibraryArgs;
@@ -29,6 +33,8 @@ pub(super) struct AblationsArgs {
     #[command(flatten)]
     work: WorkArgs,
     #[command(flatten)]
+    page: PageArgs,
+    #[command(flatten)]
     library: LibraryArgs,
 }
 
@@ -41,7 +47,7 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
     work::make(&kept)?;
     let library = args.library.folder.library.as_ref();
     let library = library.map_or_else(|| args.library.league.clone(), |folder| folder.display().to_string());
-    let mut played = Vec::new();
+    let (mut played, mut identity) = (Vec::new(), None);
     for (place, arm) in arms.iter().enumerate() {
         let setup = arm.setup();
         let shelf = Shelf::open_reduced(&args.library, reduction(&setup))?;
@@ -50,11 +56,16 @@ pub(super) fn run(args: &AblationsArgs) -> Result<ExitCode, Failure> {
         let title = format!("{} of {}: {}", place + 1, arms.len(), arm.name);
         let file = kept.join(format!("{}.csv", arm.name));
         args.work.freshen(&file)?;
+        // The unchanged team's comes first; what the others change stands in their lines.
+        identity.get_or_insert_with(|| evaluation.identity());
         played.push((*arm, work::play(&evaluation, Shard::WHOLE, &file, &pool, &title)?));
     }
     let (_, default) = played.remove(0);
     let effects = effects(&default, &played);
     write_effects(&effects, folder)?;
+    let hash = csv_hash(&to_csv(&default).map_err(EvaluationError::from)?);
+    let facts = identity.map(|identity| Facts::of(&identity, &hash)).unwrap_or_default();
+    report::write_ablation(&Ablation { arms: &arms, effects: &effects, facts: &facts }, folder, &args.page)?;
     let (trials, seed) = (default.len() * arms.len(), args.seed);
     let table = ablation_table(&effects);
     work::say(&format!("{table}\n{trials} trials, seed {seed}, in {}\n", folder.display()))?;

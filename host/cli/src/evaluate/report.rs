@@ -11,7 +11,7 @@ use arena::evaluation::{Identity, Results, Setup, compare, merge, paper};
 use brain::{Approach, Positioning};
 use casebase::Settings;
 use clap::Args;
-use report::{Facts, Map, Report};
+use report::{Ablation, Facts, Map, Picture, Report};
 
 use super::{merge as shards, work};
 use crate::Failure;
@@ -41,6 +41,29 @@ pub(super) struct AgainArgs {
     /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
+}
+
+/// What the page of an ablation has, and where else its table goes.
+#[derive(Debug, Args)]
+pub(super) struct PageArgs {
+    /// The plot as PNG too, beside its SVG.
+    #[arg(long)]
+    png: bool,
+    /// Put the table between the markers of this Markdown file, and the plot into a folder of its name beside it.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+}
+
+/// The page of an ablation that was played.
+pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &PageArgs) -> Result<(), Failure> {
+    let drawn = ablation.write(folder).map_err(|error| unwritten(&folder.join(PAGE), &error))?;
+    if args.png {
+        picture::write(&folder.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
+    }
+    match &args.markdown {
+        Some(file) => insert(file, "ablations", |pictures| ablation.markdown(pictures), vec![drawn]),
+        None => Ok(()),
+    }
 }
 
 /// `onetwo evaluate report`.
@@ -103,25 +126,33 @@ impl Made {
         Ok(())
     }
 
-    /// Tables between the markers of a file; its pictures beside it.
     fn write_markdown(&self, results: &Results, file: &Path) -> Result<(), Failure> {
-        let failed = |error: std::io::Error| unwritten(file, &error);
         let report = self.report(results);
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let text = fs::read_to_string(file).map_err(failed)?;
-        let figures = report.markdown(&format!("{name}/"));
-        let text = report::between_markers(&text, &figures)
-            .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
-        let folder = file.with_extension("");
-        work::make(&folder)?;
-        for drawn in report.pictures() {
-            if !figures.contains(&format!("{name}/{}.svg", drawn.name)) {
-                continue;
-            }
+        insert(file, "figures", |pictures| report.markdown(pictures), report.pictures())
+    }
+}
+
+/// Figures between the markers of that name in a file, and those of the pictures that they show beside it.
+fn insert(
+    file: &Path,
+    name: &str,
+    figures: impl Fn(&str) -> String,
+    pictures: Vec<Picture>,
+) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| unwritten(file, &error);
+    let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
+    let text = fs::read_to_string(file).map_err(failed)?;
+    let figures = figures(&beside);
+    let text = report::between_markers(&text, name, &figures)
+        .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
+    let folder = file.with_extension("");
+    work::make(&folder)?;
+    for drawn in pictures {
+        if figures.contains(&format!("{beside}{}.svg", drawn.name)) {
             picture::write(&folder.join(drawn.name).with_extension("svg"), &drawn.svg)?;
         }
-        fs::write(file, text).map_err(failed)
     }
+    fs::write(file, text).map_err(failed)
 }
 
 fn unwritten(file: &Path, error: &std::io::Error) -> Failure {

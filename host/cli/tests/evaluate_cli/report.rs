@@ -67,3 +67,24 @@ fn a_report_of_nothing_is_refused() {
     let out = scratch("nothing");
     assert!(refused(&["evaluate", "report", text(&out)], 1).contains("no trials there"));
 }
+
+#[test]
+fn an_ablation_has_its_page_and_its_table_in_a_document() {
+    let out = scratch("ablation-page");
+    let document = out.join("worth.md");
+    fs::write(
+        &document,
+        "<!-- ablations: written by `cargo xtask evaluation` -->\n<!-- end of ablations -->\n",
+    )
+    .expect("a file");
+    let asked = ["evaluate", "ablations", "--arm", "no-opponents", "--trials", "1", "--png"];
+    said(&[&asked[..], &["--out", text(&out), "--markdown", text(&document)]].concat());
+    let page = fs::read_to_string(out.join("report.html")).expect("a page");
+    assert!(
+        page.contains("--no-opponents") && page.contains("In every cell") && page.contains("grab.success")
+    );
+    assert!(fs::read(out.join("plots/ablations.png")).expect("a plot").starts_with(b"\x89PNG"));
+    let written = fs::read_to_string(&document).expect("a file");
+    assert!(written.contains("| no-opponents |") && written.contains("](worth/ablations.svg)"), "{written}");
+    assert!(out.join("worth/ablations.svg").is_file());
+}
