@@ -4,7 +4,6 @@ use protocol::CaseId;
 
 use crate::action::{Action, CaseRobot, KickId, TurnTarget};
 use crate::path::{Leg, RelativeLeg, Tube};
-use crate::point::gauss_exponent;
 use crate::settings::SCOPE_EXPONENT;
 use crate::stored::Stored;
 use crate::table::{CaseBase, Gate, Group, Opponent, RawAction, RawLeg, part};
@@ -61,7 +60,7 @@ impl<'a> Case<'a> {
 
     /// Number of robots.
     pub const fn teammates(&self) -> usize {
-        self.group.teammates as usize
+        self.gate.teammates as usize
     }
 
     /// Its robots, in their order.
@@ -147,8 +146,7 @@ impl<'a> Case<'a> {
     /// (Δx/τx)² + (Δy/τy)² of the ball in its scope.
     #[inline]
     pub(crate) fn ball_exponent(&self, ball: PointMm) -> f32 {
-        let [dx, dy] = self.shift(ball).to_f32();
-        gauss_exponent(dx, dy, self.gate.inverse_scope[0], self.gate.inverse_scope[1])
+        self.gate.exponent(ball.to_f32())
     }
 
     /// The robot's position relative to the case's ball.
@@ -159,20 +157,20 @@ impl<'a> Case<'a> {
 
     #[inline]
     pub(crate) fn relative_positions(&self) -> &'a [[i16; 2]] {
-        part(self.base.positions, self.group.positions_at, self.group.teammates, self.copy())
+        self.gate.positions(self.base.places).unwrap_or(&[])
     }
 
     #[inline]
     pub(crate) fn raw_opponents(&self) -> &'a [Opponent] {
-        part(self.base.opponents, self.group.opponents_at, self.group.opponents, self.copy())
+        self.gate.opponents(self.base.places).unwrap_or(&[])
     }
 
     /// The stored legs relative to a ball at `ball`.
     pub(crate) fn relative_legs(&self, ball: PointMm) -> impl Iterator<Item = RelativeLeg> + use<'a> {
         let case = *self;
         self.raw_legs().iter().scan([0.0; 2], move |rest, raw| {
-            let tube = Tube::decode(&case.stored()?, raw, *rest, ball);
-            *rest = tube.to;
+            let tube = Tube::decode(&case.stored()?, raw, *rest, ball.to_f32());
+            *rest = tube.to();
             RelativeLeg::decode(&case, raw, tube)
         })
     }
@@ -180,7 +178,7 @@ impl<'a> Case<'a> {
     /// The stored legs as records; each begins where the one before ends.
     #[inline]
     pub(crate) fn raw_legs(&self) -> &'a [RawLeg] {
-        part(self.base.legs, self.group.legs_at, self.group.legs, self.copy())
+        self.gate.legs(self.base.places).unwrap_or(&[])
     }
 
     /// A point of the case by its number.

@@ -25,53 +25,42 @@ pub(crate) struct Distances {
 
 /// A correspondence and what it costs.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Assignment {
-    pub(crate) players: Correspondence,
+pub(crate) struct Players {
+    /// Who plays each part.
+    pub(crate) ids: Correspondence,
     /// Sum or maximum of the distances, mm.
     pub(crate) cost: f32,
+}
+
+/// A correspondence with its longest way.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Assignment {
+    pub(crate) players: Players,
     /// The part with the longest way.
     pub(crate) farthest: usize,
     /// How long that is, mm.
     pub(crate) distance: f32,
 }
 
-/// The nearest robot to each part: the cheapest correspondence, if nobody is named twice.
+/// The nearest robot to each part: they cost at most what the cheapest correspondence costs.
 pub(crate) struct Nearest {
-    assignment: Assignment,
-    /// Nobody is nearest to two parts, and nobody else is just as near.
-    distinct: bool,
-}
-
-impl Nearest {
-    /// At most what the cheapest correspondence costs, mm.
-    #[inline]
-    pub(crate) fn cost(&self) -> f32 {
-        self.assignment.cost
-    }
-
-    /// The cheapest correspondence by the sum, where these robots are it.
-    #[inline]
-    pub(crate) fn if_distinct(self) -> Option<Assignment> {
-        self.distinct.then_some(self.assignment)
-    }
+    pub(crate) players: Players,
+    /// Nobody is nearest to two parts, and nobody else is just as near: it is the cheapest correspondence.
+    pub(crate) distinct: bool,
 }
 
 /// The nearest robot to each place; `None` where nobody can reach one of them within `limit` mm: then every
 /// correspondence exceeds it.
 #[inline(always)]
-pub(crate) fn nearest(
-    robots: &[(RobotId, [f32; 2])],
-    places: impl Iterator<Item = [f32; 2]>,
-    limit: f32,
-) -> Option<Nearest> {
-    let mut players = Vec::new();
-    let (mut cost, mut farthest, mut longest) = (0.0, 0, -1.0);
+pub(crate) fn nearest(robots: &[(RobotId, [f32; 2])], places: &[[i16; 2]], limit: f32) -> Option<Nearest> {
+    let (mut ids, mut cost) = (Vec::new(), 0.0);
     let mut distinct = true;
     let mut taken = 0_u32;
-    for (part, place) in places.enumerate() {
+    for place in places {
+        let [x, y] = place.map(f32::from);
         let (mut least, mut second, mut player) = (f32::INFINITY, f32::INFINITY, None);
         for (id, at) in robots {
-            let (dx, dy) = (at[0] - place[0], at[1] - place[1]);
+            let (dx, dy) = (at[0] - x, at[1] - y);
             let squared = dx * dx + dy * dy;
             if squared < least {
                 (least, second, player) = (squared, least, Some(*id));
@@ -88,13 +77,10 @@ pub(crate) fn nearest(
         let bit = 1 << player.index();
         distinct &= second > next * next && taken & bit == 0;
         taken |= bit;
-        players.push(player).ok()?;
+        ids.push(player).ok()?;
         cost += distance;
-        if distance > longest {
-            (farthest, longest) = (part, distance);
-        }
     }
-    Some(Nearest { assignment: Assignment { players, cost, farthest, distance: longest }, distinct })
+    Some(Nearest { players: Players { ids, cost }, distinct })
 }
 
 /// The cheapest correspondence; `None` where there are fewer robots than parts, or where the settings constrain the
@@ -117,15 +103,17 @@ pub(crate) fn assign_within(distances: &Distances, rule: CostRule, limit: f32) -
             first_within(distances, bottleneck, 0, 0, &mut ids).then_some(ids)?
         }
     };
-    let mut assignment = Assignment { players: Vec::new(), cost: 0.0, farthest: 0, distance: -1.0 };
+    let players = Players { ids: Vec::new(), cost: 0.0 };
+    let mut assignment = Assignment { players, farthest: 0, distance: -1.0 };
     for part in 0..distances.parts {
         let id = digit(packed, part);
         let (player, column) = distances.columns.iter().find(|(player, _)| player.number() == id)?;
         let distance = *column.get(part)?;
-        assignment.players.push(*player).ok()?;
-        assignment.cost = match rule {
-            CostRule::Sum => assignment.cost + distance,
-            CostRule::Max => assignment.cost.max(distance),
+        let Players { ids, cost } = &mut assignment.players;
+        ids.push(*player).ok()?;
+        *cost = match rule {
+            CostRule::Sum => *cost + distance,
+            CostRule::Max => cost.max(distance),
         };
         if distance > assignment.distance {
             (assignment.farthest, assignment.distance) = (part, distance);
@@ -249,7 +237,7 @@ mod tests {
     }
 
     fn players(assignment: &Assignment) -> List<u8> {
-        assignment.players.iter().map(|id| id.number()).collect()
+        assignment.players.ids.iter().map(|id| id.number()).collect()
     }
 
     /// Every injective map in lexicographic order of ids: the truth the quick way is held against.
@@ -336,7 +324,7 @@ mod tests {
         assert_eq!((players(&free), free.farthest, free.distance), (List::from([1, 2]), 1, 1600.0));
         settings.set("correspondence", "constrained").unwrap();
         let constrained = assign(&matrix, &settings).unwrap();
-        assert_eq!((players(&constrained), constrained.cost), (List::from([2, 1]), 2850.0));
+        assert_eq!((players(&constrained), constrained.players.cost), (List::from([2, 1]), 2850.0));
     }
 
     #[test]

@@ -86,18 +86,18 @@ pub fn explain(
     settings: &Settings,
     mut sink: impl FnMut(CaseId, Verdict),
 ) {
-    let mut query = Query::new(problem, settings);
-    query.fill();
-    for case in base.cases().filter(|case| case.defending() == problem.defending) {
-        let Some(stored) = case.stored() else { continue };
-        sink(case.id(), judge(base, &query, &case, &stored));
-    }
+    Query::with(problem, settings, |query| {
+        for case in base.cases().filter(|case| case.defending() == problem.defending) {
+            let Some(stored) = case.stored() else { continue };
+            sink(case.id(), judge(base, query, &case, &stored));
+        }
+    });
 }
 
 fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Stored<'_, '_>) -> Verdict {
     let (problem, settings) = (query.problem, query.settings);
     let exponent = case.ball_exponent(problem.ball);
-    if exponent >= query.limit {
+    if exponent >= query.door.limit {
         let similarity = math::exp(-exponent);
         return Verdict::Ball { similarity, margin: (settings.threshold - similarity).max(0.0) };
     }
@@ -115,7 +115,7 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
         let too_far = cheapest.and_then(|cheapest| {
             Some(Verdict::TooFar {
                 robot: CaseRobot::new(cheapest.farthest)?,
-                player: *cheapest.players.get(cheapest.farthest)?,
+                player: *cheapest.players.ids.get(cheapest.farthest)?,
                 distance: cheapest.distance,
                 margin: cheapest.distance - settings.travel_max_mm,
             })
@@ -132,5 +132,5 @@ fn judge(base: &CaseBase<'_>, query: &Query<'_>, case: &Case<'_>, stored: &Store
         };
     }
     let free = query.freedom(stored).unwrap_or(0.0);
-    Verdict::Candidate(query.found(stored, exponent, free, assignment).into_match())
+    Verdict::Candidate(query.found(stored, exponent, free, assignment.players).into_match())
 }

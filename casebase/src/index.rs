@@ -1,67 +1,67 @@
 //! Which stored cases can have the ball in their scope? A grid over the ball's position (DESIGN §4.3).
 //!
-//! Each cell of the grid lists the cases defending the negative goal whose ball scope (at the paper's threshold)
-//! reaches into it, one copy of each authored case; cells at the border reach to infinity. The other copies are
-//! found by looking up the mirrored ball, because mirroring a case flips one bit of its id. Lists are sorted by
-//! number of opponents, then of teammates, both falling: what can fulfil most conditions comes first.
+//! The grid covers the half of the field where y ≥ 0. Each of its cells lists the cases defending the negative goal whose
+//! ball scope (at the paper's threshold) reaches into it; cells at the border reach to infinity. What is near a ball
+//! elsewhere, or under the other goal, is found by looking up the mirrored ball, because mirroring a case flips bits of
+//! its id. Lists are sorted by number of opponents, then of teammates, both falling: what can fulfil most conditions
+//! comes first.
 
 use crate::settings::SCOPE_EXPONENT;
 use crate::symmetry::Symmetry;
 use crate::table::CaseBase;
 use crate::{FieldMm, PointMm};
 use geometry::GoalEnd;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// The shape of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
 pub struct Grid {
     /// Cells along x.
     pub columns: u16,
     /// Cells along y.
     pub rows: u16,
     /// Edge of a cell, mm.
-    pub cell_mm: i32,
-    /// The corner of the first cell, mm: the field's corner at (−x, −y).
-    pub corner: PointMm,
+    pub cell_mm: f32,
+    /// Its inverse, 1/mm.
+    pub cells_per_mm: f32,
+    /// The corner of the first cell, mm: where the middle line meets the field's end at −x.
+    pub corner: [f32; 2],
 }
 
 impl Grid {
-    /// The grid over a field.
+    /// The grid over the half of a field.
     pub fn over(field: FieldMm, columns: u16, rows: u16, cell_mm: i32) -> Self {
-        Self {
-            columns,
-            rows,
-            cell_mm: cell_mm.max(1),
-            corner: PointMm::new(-field.length / 2, -field.width / 2),
-        }
+        let cell_mm = cell_mm.max(1) as f32;
+        let corner = PointMm::new(-field.length / 2, 0).to_f32();
+        Self { columns, rows, cell_mm, cells_per_mm: 1.0 / cell_mm, corner }
     }
 
-    /// The number of the cell that holds `ball`, row after row.
+    /// The number of the cell that holds `ball`, row after row. On the border of two cells it may be either.
     #[inline]
-    pub fn cell(&self, ball: PointMm) -> usize {
-        let step = |at: i32, from: i32, count: u16| {
-            (at.saturating_sub(from) / self.cell_mm).clamp(0, i32::from(count.max(1)) - 1) as usize
+    pub(crate) fn cell(&self, ball: [f32; 2]) -> usize {
+        // What lies below the corner is cut off at 0 by the conversion.
+        let step = |axis: usize, count: u16| {
+            let cells = (ball[axis] - self.corner[axis]) * self.cells_per_mm;
+            (cells as usize).min(usize::from(count).wrapping_sub(1))
         };
-        step(ball.y, self.corner.y, self.rows) * usize::from(self.columns)
-            + step(ball.x, self.corner.x, self.columns)
+        step(1, self.rows) * usize::from(self.columns) + step(0, self.columns)
     }
 }
 
 impl CaseBase<'_> {
-    /// The two lists of the index that together name every case under `goal` whose ball scope may hold `ball`; each
-    /// with the bits to flip in the ids it lists.
+    /// Names every case under `goal` whose ball scope may hold `ball`: ids, with the bits to flip in them.
     #[inline]
-    pub(crate) fn near(&self, ball: PointMm, goal: GoalEnd) -> [(&[u16], u16); 2] {
-        let [columns, rows] = self.header.grid;
-        let grid = Grid::over(self.field(), columns, rows, self.header.cell_mm);
-        let symmetries = match goal {
-            GoalEnd::Negative => [Symmetry::Identity, Symmetry::AcrossX],
-            GoalEnd::Positive => [Symmetry::AcrossY, Symmetry::Both],
+    pub(crate) fn near(&self, [x, y]: [f32; 2], goal: GoalEnd) -> (&[u16], usize) {
+        let (x, other_goal) = match goal {
+            GoalEnd::Negative => (x, Symmetry::Identity),
+            GoalEnd::Positive => (-x, Symmetry::AcrossY),
         };
-        symmetries.map(|symmetry| {
-            let cell = grid.cell(symmetry.point(ball));
-            let bound = |cell: usize| self.cell_starts.get(cell).map_or(0, |start| *start as usize);
-            (self.cell_cases.get(bound(cell)..bound(cell + 1)).unwrap_or(&[]), symmetry.bits())
-        })
+        let (y, other_side) = if y < 0.0 { (-y, Symmetry::AcrossX) } else { (y, Symmetry::Identity) };
+        let cell = self.header.grid.cell([x, y]);
+        let bounds = self.cell_starts.get(cell..).and_then(|starts| starts.first_chunk());
+        let list = bounds.and_then(|&[from, to]| self.cell_cases.get(from as usize..to as usize));
+        (list.unwrap_or(&[]), usize::from(other_goal.bits() | other_side.bits()))
     }
 
     /// Is the index made for scopes that end at this exponent?

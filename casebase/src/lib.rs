@@ -12,6 +12,7 @@
 
 pub mod action;
 mod case;
+mod cells;
 mod correspondence;
 mod explain;
 mod index;
@@ -34,6 +35,7 @@ pub use action::{
     TurnTarget,
 };
 pub use case::Case;
+pub use cells::cells_of;
 pub use explain::{Verdict, explain};
 pub use geometry::GoalEnd;
 pub use index::Grid;

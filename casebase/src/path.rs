@@ -8,11 +8,11 @@ use geometry::{Field, Point, math};
 use serde::{Deserialize, Serialize};
 
 use crate::action::{Action, CaseRobot, KickId};
-use crate::case::{Case, widen};
+use crate::case::Case;
 use crate::point::gauss_exponent;
 use crate::settings::{FreePathRule, OutOfField, Settings};
 use crate::stored::Stored;
-use crate::table::{CaseBase, RawLeg};
+use crate::table::{self, CaseBase, RawLeg};
 use crate::walk::{Script, Spot, Step, walk};
 use crate::{GoalEnd, PointMm};
 
@@ -58,8 +58,9 @@ impl Leg {
     /// How far `point` lies along the leg and across it (left > 0), and the leg's radius there; `None` where it is
     /// not abreast of the leg. A leg of length 0 has nothing abreast.
     pub fn abreast(&self, point: [f32; 2]) -> Option<Abreast> {
-        let Products { squared, along, cross, radius } = self.tube().products(point)?;
-        let length = math::sqrt(squared);
+        let tube = self.tube();
+        let Products { along, cross, radius } = tube.products(point)?;
+        let length = math::sqrt(tube.squared);
         Some(Abreast { along: along / length, across: cross / length, radius })
     }
 
@@ -74,58 +75,70 @@ impl Leg {
     }
 
     fn tube(&self) -> Tube {
-        Tube { from: self.from, to: self.to, r_min: self.r_min, r_max: self.r_max }
+        Tube::new(self.from, self.to, [self.r_min, self.r_max])
     }
 }
 
 /// The fuzzy set around a leg, without its story: what retrieval looks at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tube {
-    pub(crate) from: [f32; 2],
-    pub(crate) to: [f32; 2],
+    from: [f32; 2],
+    to: [f32; 2],
     r_min: f32,
     r_max: f32,
+    /// From `from` to `to`.
+    axis: [f32; 2],
+    /// The axis' length, squared.
+    squared: f32,
 }
 
 impl Tube {
+    fn new(from: [f32; 2], to: [f32; 2], [r_min, r_max]: [f32; 2]) -> Self {
+        let axis = minus(to, from);
+        Self { from, to, r_min, r_max, axis, squared: axis[0] * axis[0] + axis[1] * axis[1] }
+    }
+
     /// From the table, relative to a ball at `ball`; `rest` is where the leg before left the ball.
     #[inline]
-    pub(crate) fn decode(case: &Stored<'_, '_>, raw: &RawLeg, rest: [f32; 2], ball: PointMm) -> Self {
+    pub(crate) fn decode(case: &Stored<'_, '_>, raw: &RawLeg, rest: [f32; 2], ball: [f32; 2]) -> Self {
         let from = match raw.carried_to {
             RawLeg::NOT_CARRIED => rest,
-            point => PointMm::from_array(case.point(point)).minus(widen(case.gate.ball)).to_f32(),
+            point => case.carried_to(point),
         };
-        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { relative_to(ball, raw.to) };
-        let [r_min, r_max] = raw.radii;
-        Self { from, to, r_min, r_max }
+        let to = if raw.flags & RawLeg::TO_FIELD == 0 { raw.to } else { minus(raw.to, ball) };
+        Self::new(from, to, raw.radii)
+    }
+
+    /// Where the ball comes to rest.
+    #[inline]
+    pub(crate) fn to(&self) -> [f32; 2] {
+        self.to
     }
 
     /// (v/ρ)², the negated exponent of μ; `None` where μ is 0 because the point is not abreast of the leg.
+    #[inline]
     fn exponent(&self, point: [f32; 2]) -> Option<f32> {
-        let Products { squared, cross, radius, .. } = self.products(point)?;
-        Some(cross * cross / (squared * radius * radius))
+        let Products { cross, radius, .. } = self.products(point)?;
+        Some(cross * cross / (self.squared * radius * radius))
     }
 
     /// What a point abreast of the leg is judged by, without a square root.
     #[inline]
     fn products(&self, point: [f32; 2]) -> Option<Products> {
-        let d = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
-        let q = [point[0] - self.from[0], point[1] - self.from[1]];
-        let squared = d[0] * d[0] + d[1] * d[1];
-        let along = d[0] * q[0] + d[1] * q[1];
-        (squared > 0.0 && along >= 0.0 && along <= squared).then(|| Products {
-            squared,
+        let Self { axis, squared, r_min, r_max, .. } = *self;
+        let q = minus(point, self.from);
+        let along = axis[0] * q[0] + axis[1] * q[1];
+        (along >= 0.0 && along <= squared && squared > 0.0).then(|| Products {
             along,
-            cross: d[0] * q[1] - d[1] * q[0],
-            radius: self.r_min + (self.r_max - self.r_min) * (along / squared),
+            cross: axis[0] * q[1] - axis[1] * q[0],
+            radius: r_min + (r_max - r_min) * (along / squared),
         })
     }
 }
 
-/// Products of the leg's vector with itself and with that to a point (`along`: scalar, `cross`: z of the vector
-/// product), mm², and the leg's radius abreast of the point, mm.
+/// Products of the leg's vector with that to a point (`along`: scalar, `cross`: z of the vector product), mm², and the
+/// leg's radius abreast of the point, mm.
 struct Products {
-    squared: f32,
     along: f32,
     cross: f32,
     radius: f32,
@@ -208,8 +221,8 @@ pub(crate) fn least_exponent(
         return least;
     }
     let mut rest = [0.0; 2];
-    for raw in stored.legs() {
-        let tube = Tube::decode(stored, raw, rest, ball);
+    for raw in stored.legs().unwrap_or(&[]) {
+        let tube = Tube::decode(stored, raw, rest, ball.to_f32());
         if look(&tube) {
             break;
         }
@@ -222,36 +235,23 @@ pub(crate) fn least_exponent(
 #[inline(always)]
 pub(crate) fn is_crisply_blocked(
     case: &Stored<'_, '_>,
-    ball: PointMm,
+    ball: [f32; 2],
     opponents: &[[f32; 2]],
     limit: f32,
 ) -> bool {
+    let Some(legs) = case.legs() else { return true };
     let mut rest = [0.0; 2];
-    for raw in case.legs() {
+    for raw in legs {
         let tube = Tube::decode(case, raw, rest, ball);
         rest = tube.to;
-        let d = [tube.to[0] - tube.from[0], tube.to[1] - tube.from[1]];
-        let squared = d[0] * d[0] + d[1] * d[1];
-        for opponent in opponents {
-            let q = [opponent[0] - tube.from[0], opponent[1] - tube.from[1]];
-            let along = d[0] * q[0] + d[1] * q[1];
-            if along < 0.0 || along > squared {
-                continue;
-            }
-            let cross = d[0] * q[1] - d[1] * q[0];
-            let widest = if tube.r_min > tube.r_max { tube.r_min } else { tube.r_max };
-            // Nobody farther from the axis is inside, whatever the rounding.
-            let reach = squared * (widest * widest * limit * ROUNDING);
-            if cross * cross <= reach && tube.exponent(*opponent).is_some_and(|exponent| exponent < limit) {
-                return true;
-            }
+        let stands_in =
+            |opponent: &[f32; 2]| tube.exponent(*opponent).is_some_and(|exponent| exponent < limit);
+        if tube.squared > 0.0 && opponents.iter().any(stands_in) {
+            return true;
         }
     }
     false
 }
-
-/// More than single precision loses in a few products.
-const ROUNDING: f32 = 1.0001;
 
 /// Does an opponent with this exponent in a leg block it?
 #[inline]
@@ -286,7 +286,7 @@ fn each_leg(
     // A stored case walked without an error when it was built, and clamping moves places only.
     let _ = walk(&Clamped { case, base, ball }, base, |step| {
         if let Step::Leg { robot, action, from, to, radii, kind, .. } = step {
-            let relative = |spot: Spot| if spot.on_field { relative_to(ball, spot.at) } else { spot.at };
+            let relative = |spot: Spot| if spot.on_field { minus(spot.at, ball.to_f32()) } else { spot.at };
             let [r_min, r_max] = radii.map(|radius| radius as f32);
             sink(RelativeLeg(Leg {
                 from: relative(from),
@@ -315,7 +315,7 @@ impl RelativeLeg {
             Action::Kick(id) => LegKind::Kick(id),
             _ => return None,
         };
-        let Tube { from, to, r_min, r_max } = tube;
+        let Tube { from, to, r_min, r_max, .. } = tube;
         Some(Self(Leg { from, to, r_min, r_max, robot, action, kind }))
     }
 
@@ -327,11 +327,9 @@ impl RelativeLeg {
     }
 }
 
-/// A point of the field seen from the ball.
 #[inline]
-fn relative_to(ball: PointMm, point: [f32; 2]) -> [f32; 2] {
-    let [x, y] = ball.to_f32();
-    [point[0] - x, point[1] - y]
+fn minus(to: [f32; 2], from: [f32; 2]) -> [f32; 2] {
+    [to[0] - from[0], to[1] - from[1]]
 }
 
 /// A case whose adapted positions are clamped to the field.
@@ -360,31 +358,31 @@ impl Script for Clamped<'_, '_> {
     }
 }
 
-/// How many of the case's opponent scopes hold an opponent, opponents relative to the ball; `None` as soon as more than
-/// `missing_max` of them are known to be empty.
-#[inline]
-pub(crate) fn conditions(
-    case: &Stored<'_, '_>,
-    scopes_moved_by: PointMm,
+/// How many of the scopes of a case's opponents, moved by `moved`, hold nobody, opponents relative to the ball; `None`
+/// once they are more than `most`. `cells` are the squares that hold opponents.
+#[inline(always)]
+pub(crate) fn empty_scopes(
+    scopes: &[table::Opponent],
+    moved: [f32; 2],
     opponents: &[[f32; 2]],
+    cells: u32,
     limit: f32,
-    missing_max: u8,
-) -> Option<u8> {
-    let moved = scopes_moved_by.to_f32();
-    let mut may_miss = missing_max;
-    let mut count = 0;
-    for scope in case.opponents() {
+    most: u32,
+) -> Option<u32> {
+    let mut empty = 0;
+    for scope in scopes {
         let centre = [f32::from(scope.at[0]) + moved[0], f32::from(scope.at[1]) + moved[1]];
         let [inverse_x, inverse_y] = scope.inverse_scope;
         let holds = |opponent: &[f32; 2]| {
             let (dx, dy) = (opponent[0] - centre[0], opponent[1] - centre[1]);
             gauss_exponent(dx, dy, inverse_x, inverse_y) < limit
         };
-        if opponents.iter().any(holds) {
-            count += 1;
-        } else {
-            may_miss = may_miss.checked_sub(1)?;
+        if scope.cells & cells == 0 || !opponents.iter().any(holds) {
+            if empty == most {
+                return None;
+            }
+            empty += 1;
         }
     }
-    Some(count)
+    Some(empty)
 }

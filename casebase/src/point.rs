@@ -22,10 +22,6 @@ impl PointMm {
         Self { x, y }
     }
 
-    pub(crate) const fn from_array([x, y]: [i32; 2]) -> Self {
-        Self { x, y }
-    }
-
     /// The displacement from `other` to here.
     pub const fn minus(self, other: Self) -> Self {
         Self { x: self.x.saturating_sub(other.x), y: self.y.saturating_sub(other.y) }

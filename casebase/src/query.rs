@@ -8,88 +8,105 @@ use protocol::RobotId;
 
 use crate::action::TEAMMATES_MAX;
 use crate::case::{Case, widen};
-use crate::correspondence::{Assignment, Distances, Nearest, assign, nearest};
-use crate::path::{conditions, freedom, is_blocking, is_crisply_blocked, least_exponent};
-use crate::point::gauss_exponent;
+use crate::cells::cell_of;
+use crate::correspondence::{Distances, Nearest, Players, assign, nearest};
+use crate::path::{empty_scopes, freedom, is_blocking, is_crisply_blocked, least_exponent};
 use crate::problem::{PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, Problem};
-use crate::rank::{Key, Match};
+use crate::rank::{Correspondence, Key, Match};
 use crate::settings::{CorrespondenceRule, CostRule, FreePathRule, OutOfField, ScopeRule, Settings};
 use crate::stored::Stored;
+use crate::table::{Gate, Opponent};
 use crate::{CaseRobot, PointMm};
 
 /// A problem made ready: everything relative to the ball.
 pub(crate) struct Query<'p> {
     pub(crate) problem: &'p Problem,
     pub(crate) settings: &'p Settings,
-    /// The exponent at which scopes end.
-    pub(crate) limit: f32,
-    teammates: Vec<(RobotId, [f32; 2]), PROBLEM_TEAMMATES_MAX>,
-    opponents: Vec<[f32; 2], PROBLEM_OPPONENTS_MAX>,
+    pub(crate) door: Door,
+    teammates: &'p [(RobotId, [f32; 2])],
+    opponents: &'p [[f32; 2]],
+    /// The squares around the ball that hold opponents.
+    cells: u32,
 }
 
-impl<'p> Query<'p> {
-    /// Without places yet: [`Query::fill`] puts them in, where the query lies, as it is long to move.
-    #[inline]
-    pub(crate) fn new(problem: &'p Problem, settings: &'p Settings) -> Self {
-        Self { problem, settings, limit: settings.limit(), teammates: Vec::new(), opponents: Vec::new() }
-    }
+/// What of a problem the gate of a case is asked about.
+#[derive(Clone, Copy)]
+pub(crate) struct Door {
+    /// Where the ball lies, mm, field frame.
+    pub(crate) ball: [f32; 2],
+    /// The exponent at which scopes end.
+    pub(crate) limit: f32,
+    /// Number of robots that are there.
+    robots: usize,
+}
 
-    /// Puts the problem's places in.
+impl Door {
+    /// The ball's exponent in the case's scope, where it lies inside and there are robots enough.
     #[inline]
-    pub(crate) fn fill(&mut self) {
-        let ball = self.problem.ball;
-        // Both lists have the capacity of the problem's: every push fits.
-        for (id, place) in &self.problem.teammates {
-            let _ = self.teammates.push((*id, place.minus(ball).to_f32()));
+    pub(crate) fn exponent(&self, gate: &Gate) -> Option<f32> {
+        if usize::from(gate.teammates) > self.robots {
+            return None;
         }
-        for place in &self.problem.opponents {
-            let _ = self.opponents.push(place.minus(ball).to_f32());
-        }
-    }
-
-    /// The ball's exponent in the case's scope, where it lies inside.
-    #[inline]
-    pub(crate) fn ball_inside(&self, case: &Stored<'_, '_>) -> Option<f32> {
-        let [dx, dy] = self.problem.ball.minus(widen(case.gate.ball)).to_f32();
-        let [inverse_x, inverse_y] = case.gate.inverse_scope;
-        let exponent = gauss_exponent(dx, dy, inverse_x, inverse_y);
+        let exponent = gate.exponent(self.ball);
         (exponent < self.limit).then_some(exponent)
     }
+}
 
-    /// Are there robots enough?
-    #[inline]
-    pub(crate) fn robots_suffice(&self, case: &Stored<'_, '_>) -> bool {
-        usize::from(case.teammates()) <= self.teammates.len()
+impl Query<'_> {
+    /// Does the work with a problem made ready.
+    #[inline(always)]
+    pub(crate) fn with<R>(problem: &Problem, settings: &Settings, work: impl FnOnce(&Query<'_>) -> R) -> R {
+        let ball = problem.ball;
+        // Both lists have the capacity of the problem's: every push fits.
+        let mut teammates: Vec<_, PROBLEM_TEAMMATES_MAX> = Vec::new();
+        for (id, place) in &problem.teammates {
+            if teammates.push((*id, place.minus(ball).to_f32())).is_err() {
+                break;
+            }
+        }
+        let mut opponents: Vec<_, PROBLEM_OPPONENTS_MAX> = Vec::new();
+        let mut cells = 0;
+        for place in &problem.opponents {
+            let place = place.minus(ball);
+            cells |= cell_of(place);
+            if opponents.push(place.to_f32()).is_err() {
+                break;
+            }
+        }
+        let door = Door { ball: ball.to_f32(), limit: settings.limit(), robots: teammates.len() };
+        work(&Query { problem, settings, door, teammates: &teammates, opponents: &opponents, cells })
     }
 
-    /// How many of the case's opponent scopes are occupied; `None` once more than `missing_max` are known not to be.
-    #[inline(always)]
-    pub(crate) fn conditions(&self, case: &Stored<'_, '_>, missing_max: u8) -> Option<u8> {
-        if case.opponents_count() == 0 {
-            return Some(0);
-        }
+    /// How many of the case's opponent scopes are occupied.
+    pub(crate) fn conditions(&self, case: &Stored<'_, '_>) -> u8 {
         let moved_by = match self.settings.scopes {
             ScopeRule::Translated => PointMm::new(0, 0),
-            ScopeRule::Absolute => widen(case.gate.ball).minus(self.problem.ball),
+            ScopeRule::Absolute => case.ball().minus(self.problem.ball),
         };
-        conditions(case, moved_by, &self.opponents, self.limit, missing_max)
+        let scopes = case.opponents().unwrap_or(&[]);
+        let (moved_by, all) = (moved_by.to_f32(), u32::MAX);
+        let empty = empty_scopes(scopes, moved_by, self.opponents, all, self.door.limit, u32::MAX);
+        case.gate.opponents.saturating_sub(empty.unwrap_or(0) as u8)
+    }
+
+    /// How many are not, where scopes move along with the ball; `None` once they are more than `most`.
+    #[inline(always)]
+    pub(crate) fn empty_scopes(&self, scopes: &[Opponent], most: u32) -> Option<u32> {
+        empty_scopes(scopes, [0.0; 2], self.opponents, self.cells, self.door.limit, most)
+    }
+
+    /// Does an opponent stand in a leg as it is stored?
+    #[inline(always)]
+    pub(crate) fn is_crisply_blocked(&self, case: &Stored<'_, '_>) -> bool {
+        is_crisply_blocked(case, self.door.ball, self.opponents, self.door.limit)
     }
 
     /// How free the ball's path is; `None` where it is blocked.
-    #[inline(always)]
     pub(crate) fn freedom(&self, case: &Stored<'_, '_>) -> Option<f32> {
-        let Self { problem, settings, .. } = self;
-        if settings.free_path == FreePathRule::Crisp && settings.out_of_field != OutOfField::Clamp {
-            let blocked = is_crisply_blocked(case, problem.ball, &self.opponents, self.limit);
-            return (!blocked).then_some(1.0);
+        if self.settings.free_path == FreePathRule::Crisp && self.settings.out_of_field != OutOfField::Clamp {
+            return (!self.is_crisply_blocked(case)).then_some(1.0);
         }
-        self.degree_of_freedom(case)
-    }
-
-    /// The same where paths are fuzzy or positions clamped.
-    #[inline(never)]
-    fn degree_of_freedom(&self, case: &Stored<'_, '_>) -> Option<f32> {
-        let least = least_exponent(case, self.problem.ball, &self.opponents, self.settings);
+        let least = least_exponent(case, self.problem.ball, self.opponents, self.settings);
         if least.is_some_and(|exponent| is_blocking(exponent, self.settings)) {
             return None;
         }
@@ -106,39 +123,43 @@ impl<'p> Query<'p> {
         }
         let field = case.field();
         let outside = |at: &[i16; 2]| !field.contains(self.problem.ball.plus(widen(*at)));
-        case.positions().iter().position(outside).and_then(CaseRobot::new)
+        case.positions()?.iter().position(outside).and_then(CaseRobot::new)
     }
 
-    /// Who is nearest to each part; `None` where nobody is near enough to one.
+    /// Who is nearest to each part as it is stored; `None` where nobody is near enough to one.
     #[inline(always)]
     pub(crate) fn nearest(&self, case: &Stored<'_, '_>) -> Option<Nearest> {
-        let places = case.positions().iter().map(|at| self.place(case, *at));
-        nearest(&self.teammates, places, self.settings.travel_max_mm)
+        nearest(self.teammates, case.positions()?, self.settings.travel_max_mm)
     }
 
     /// The cheapest correspondence, where nobody in it has too far to go.
+    pub(crate) fn cheapest(&self, case: &Stored<'_, '_>) -> Option<Players> {
+        let Settings { cost, correspondence, out_of_field, .. } = self.settings;
+        let plain = *cost == CostRule::Sum
+            && *correspondence == CorrespondenceRule::MinThenTest
+            && *out_of_field != OutOfField::Clamp;
+        if plain { self.least_sum(case, self.nearest(case)?) } else { self.search(case) }
+    }
+
+    /// The same by the sum, with parts as they are stored: mostly, those who are nearest.
     #[inline]
-    pub(crate) fn cheapest(&self, case: &Stored<'_, '_>, nearest: Nearest) -> Option<Assignment> {
-        let settings = self.settings;
-        let plain =
-            settings.cost == CostRule::Sum && settings.correspondence == CorrespondenceRule::MinThenTest;
-        let quick = if plain { nearest.if_distinct() } else { None };
-        let found = quick.or_else(|| self.search(case))?;
-        (found.distance <= settings.travel_max_mm).then_some(found)
+    pub(crate) fn least_sum(&self, case: &Stored<'_, '_>, nearest: Nearest) -> Option<Players> {
+        if nearest.distinct { Some(nearest.players) } else { self.search(case) }
     }
 
     #[inline(never)]
-    fn search(&self, case: &Stored<'_, '_>) -> Option<Assignment> {
-        assign(&self.distances(case), self.settings)
+    fn search(&self, case: &Stored<'_, '_>) -> Option<Players> {
+        let found = assign(&self.distances(case), self.settings)?;
+        (found.distance <= self.settings.travel_max_mm).then_some(found.players)
     }
 
     /// How far every present robot is from every adapted position.
     pub(crate) fn distances(&self, case: &Stored<'_, '_>) -> Distances {
         let parts = usize::from(case.teammates());
         let mut distances = Distances { columns: Vec::new(), parts };
-        for (id, at) in &self.teammates {
+        for (id, at) in self.teammates {
             let mut column = [0.0; TEAMMATES_MAX];
-            for (place, to) in case.positions().iter().zip(&mut column) {
+            for (place, to) in case.positions().unwrap_or(&[]).iter().zip(&mut column) {
                 *to = distance(*at, self.place(case, *place));
             }
             // There is room for every teammate a problem can have.
@@ -148,16 +169,10 @@ impl<'p> Query<'p> {
     }
 
     /// What a candidate is ranked by.
-    pub(crate) fn found(
-        &self,
-        case: &Stored<'_, '_>,
-        exponent: f32,
-        free: f32,
-        assignment: Assignment,
-    ) -> Found {
-        let conditions = self.conditions(case, u8::MAX).unwrap_or(0);
-        let (teammates, cost, case) = (case.teammates(), assignment.cost, case.id.0);
-        Found { key: Key { conditions, teammates, free, exponent, cost, case }, assignment }
+    pub(crate) fn found(&self, case: &Stored<'_, '_>, exponent: f32, free: f32, players: Players) -> Found {
+        let (conditions, teammates) = (self.conditions(case), case.teammates());
+        let Players { ids, cost } = players;
+        Found { key: Key { conditions, teammates, free, exponent, cost, case: case.id.0 }, players: ids }
     }
 
     /// Where a robot that stands at `at` in the case is to stand, both relative to the ball.
@@ -174,7 +189,7 @@ impl<'p> Query<'p> {
 /// A candidate: what it is ranked by, and who plays whom.
 pub(crate) struct Found {
     pub(crate) key: Key,
-    pub(crate) assignment: Assignment,
+    pub(crate) players: Correspondence,
 }
 
 impl Found {
@@ -189,7 +204,7 @@ impl Found {
             free,
             conditions,
             teammates,
-            correspondence: self.assignment.players,
+            correspondence: self.players,
         }
     }
 }

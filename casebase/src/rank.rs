@@ -88,6 +88,7 @@ pub(crate) fn key_order(a: &Key, b: &Key, settings: &Settings) -> Ordering {
 }
 
 /// The similarity interval of an exponent: 0 for H, 1 for h, 2 for l, 3 for L.
+#[inline]
 pub(crate) fn interval(exponent: f32) -> u8 {
     INTERVAL_EXPONENTS.iter().filter(|end| exponent > **end).count() as u8
 }

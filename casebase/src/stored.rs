@@ -4,17 +4,17 @@
 
 use protocol::CaseId;
 
+use crate::PointMm;
 use crate::action::FieldMm;
 use crate::case::Case;
-use crate::table::{CaseBase, Gate, Group, Opponent, RawLeg, part};
+use crate::table::{CaseBase, Gate, Opponent, RawLeg};
 
 /// The records of a stored case.
 #[derive(Clone, Copy)]
 pub(crate) struct Stored<'q, 'a> {
-    base: &'q CaseBase<'a>,
+    pub(crate) base: &'q CaseBase<'a>,
     pub(crate) id: CaseId,
     pub(crate) gate: &'a Gate,
-    group: &'a Group,
 }
 
 impl<'q, 'a> Stored<'q, 'a> {
@@ -22,8 +22,7 @@ impl<'q, 'a> Stored<'q, 'a> {
     #[inline]
     pub(crate) fn new(base: &'q CaseBase<'a>, id: CaseId) -> Option<Self> {
         let gate = base.gates.get(usize::from(id.0))?;
-        let group = base.groups.get(usize::from(id.0 / 4))?;
-        Some(Self { base, id, gate, group })
+        Some(Self { base, id, gate })
     }
 
     /// The same case as everybody sees it.
@@ -37,44 +36,40 @@ impl<'q, 'a> Stored<'q, 'a> {
         self.base.field()
     }
 
+    /// B_c.
+    #[inline]
+    pub(crate) fn ball(&self) -> PointMm {
+        let [x, y] = self.gate.ball;
+        PointMm::new(x as i32, y as i32)
+    }
+
     /// Number of robots.
     #[inline]
     pub(crate) fn teammates(&self) -> u8 {
-        self.group.teammates
-    }
-
-    /// Number of opponents.
-    #[inline]
-    pub(crate) fn opponents_count(&self) -> u8 {
-        self.group.opponents
+        self.gate.teammates
     }
 
     /// Where the robots stand relative to the case's ball, mm.
     #[inline]
-    pub(crate) fn positions(&self) -> &'a [[i16; 2]] {
-        part(self.base.positions, self.group.positions_at, self.group.teammates, self.copy())
+    pub(crate) fn positions(&self) -> Option<&'a [[i16; 2]]> {
+        self.gate.positions(self.base.places)
     }
 
     /// The opponents.
     #[inline]
-    pub(crate) fn opponents(&self) -> &'a [Opponent] {
-        part(self.base.opponents, self.group.opponents_at, self.group.opponents, self.copy())
+    pub(crate) fn opponents(&self) -> Option<&'a [Opponent]> {
+        self.gate.opponents(self.base.places)
     }
 
     /// The legs; each begins where the one before ends.
     #[inline]
-    pub(crate) fn legs(&self) -> &'a [RawLeg] {
-        part(self.base.legs, self.group.legs_at, self.group.legs, self.copy())
+    pub(crate) fn legs(&self) -> Option<&'a [RawLeg]> {
+        self.gate.legs(self.base.places)
     }
 
-    /// A point of the case by its number, mm, in the case's own coordinates.
-    #[inline]
-    pub(crate) fn point(&self, index: u8) -> [i32; 2] {
-        let points = part(self.base.points, self.group.points_at, self.group.points, self.copy());
-        points.get(usize::from(index)).copied().unwrap_or([0; 2])
-    }
-
-    const fn copy(&self) -> u16 {
-        self.id.0 & 3
+    /// A point of the case by its number, mm, relative to the case's ball. Few legs ask for one.
+    #[inline(never)]
+    pub(crate) fn carried_to(&self, index: u8) -> [f32; 2] {
+        self.case().map_or([0.0; 2], |case| case.point(index).minus(case.ball()).to_f32())
     }
 }

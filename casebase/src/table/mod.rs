@@ -1,8 +1,8 @@
 //! How does a case base lie in flash? One flat table of fixed records, read in place, without a decode step.
 //!
 //! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first, native
-//! byte order. The four symmetric copies of an authored case are stored in full, one after the other in every
-//! pool; what they share (counts, where each pool begins) is their common [`Group`]. Positions and opponents are
+//! byte order. The four symmetric copies of an authored case are stored in full, one after the other; what retrieval
+//! looks at hangs on each copy's [`Gate`], what its players need on their common [`Group`]. Positions and opponents are
 //! stored relative to the case's ball, legs computed to their ends: nothing is derived twice at run time. The index
 //! is a grid over the ball's position for cases that defend the negative goal; a mirrored look-up serves the rest.
 //!
@@ -11,12 +11,15 @@
 use protocol::CaseId;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
+mod gate;
 mod validate;
 
+pub use gate::{Gate, Opponent, RawLeg};
 pub use validate::TableError;
 
 use crate::action::{FieldMm, Kick, KickAim, KickId, Pass, Primitive, TEAMMATES_MAX};
 use crate::case::Case;
+use crate::index::Grid;
 
 /// A case base over a borrowed table. Copy it freely: it is only references.
 #[derive(Clone, Copy, Debug)]
@@ -25,12 +28,10 @@ pub struct CaseBase<'a> {
     pub(crate) header: &'a Header,
     pub(crate) groups: &'a [Group],
     pub(crate) gates: &'a [Gate],
-    pub(crate) opponents: &'a [Opponent],
-    pub(crate) legs: &'a [RawLeg],
     pub(crate) points: &'a [[i32; 2]],
     kicks: &'a [RawKick],
     pub(crate) cell_starts: &'a [u32],
-    pub(crate) positions: &'a [[i16; 2]],
+    pub(crate) places: &'a [u32],
     pub(crate) cell_cases: &'a [u16],
     pub(crate) actions: &'a [RawAction],
 }
@@ -110,12 +111,10 @@ impl Default for CaseBase<'_> {
             header: &EMPTY_HEADER,
             groups: &[],
             gates: &[],
-            opponents: &[],
-            legs: &[],
             points: &[],
             kicks: &[],
             cell_starts: &[],
-            positions: &[],
+            places: &[],
             cell_cases: &[],
             actions: &[],
         }
@@ -123,12 +122,12 @@ impl Default for CaseBase<'_> {
 }
 
 /// "o12c" and the version of the layout.
-pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 2];
+pub const MAGIC: [u32; 2] = [u32::from_ne_bytes(*b"o12c"), 3];
 /// Most cells of the index along one axis.
 pub const GRID_MAX: u16 = 256;
 
 /// What a table begins with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Header {
     /// [`MAGIC`]; read with the wrong byte order it is another number.
@@ -141,46 +140,28 @@ pub struct Header {
     pub pass: [i32; 2],
     /// Number of authored cases.
     pub groups: u32,
-    /// Number of opponents in all stored cases.
-    pub opponents: u32,
-    /// Number of legs.
-    pub legs: u32,
     /// Number of points of actions.
     pub points: u32,
     /// Number of kick kinds.
     pub kicks: u32,
-    /// Number of positions of robots.
-    pub positions: u32,
+    /// Number of words of the places: opponents, legs and positions of the stored cases.
+    pub places: u32,
     /// Number of case numbers in the cells of the index.
     pub cell_cases: u32,
     /// Number of actions.
     pub actions: u32,
-    /// Columns (along x) and rows (along y) of the index.
-    pub grid: [u16; 2],
-    /// Edge of a cell of the index, mm.
-    pub cell_mm: i32,
+    /// The cells of the index.
+    pub grid: Grid,
 }
 
-/// What the four copies of an authored case share: copy k begins at `start + k · count` in every pool.
+/// What the four copies of an authored case share: copy k begins at `start + k · count` among points and actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(C)]
 pub struct Group {
-    /// First position.
-    pub positions_at: u32,
-    /// First opponent.
-    pub opponents_at: u32,
-    /// First leg.
-    pub legs_at: u32,
     /// First point.
     pub points_at: u32,
     /// First action.
     pub actions_at: u32,
-    /// Robots.
-    pub teammates: u8,
-    /// Opponents.
-    pub opponents: u8,
-    /// Legs.
-    pub legs: u8,
     /// Points of actions.
     pub points: u8,
     /// Where each robot's list of actions ends, counted from the copy's first action.
@@ -190,53 +171,7 @@ pub struct Group {
     /// The robot that begins with `get_ball`.
     pub getter: u8,
     /// Zero.
-    pub reserved: [u8; 2],
-}
-
-/// Where the ball must lie for a stored case.
-#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
-#[repr(C)]
-pub struct Gate {
-    /// B_c, mm.
-    pub ball: [i16; 2],
-    /// 1/τx, 1/τy, 1/mm.
-    pub inverse_scope: [f32; 2],
-}
-
-/// An opponent's scope.
-#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
-#[repr(C)]
-pub struct Opponent {
-    /// Relative to the case's ball, mm.
-    pub at: [i16; 2],
-    /// 1/τx, 1/τy, 1/mm.
-    pub inverse_scope: [f32; 2],
-}
-
-/// A leg of the ball path. It begins where the ball lies: at the ball's first place or the end of the leg before,
-/// unless it was carried on since.
-#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
-#[repr(C)]
-pub struct RawLeg {
-    /// Its end, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is set.
-    pub to: [f32; 2],
-    /// r_min and r_max, mm.
-    pub radii: [f32; 2],
-    /// The robot that kicks.
-    pub robot: u8,
-    /// Which of its actions that is.
-    pub action: u8,
-    /// [`RawLeg::NOT_CARRIED`], or the case's point the ball was dribbled to before.
-    pub carried_to: u8,
-    /// [`RawLeg::TO_FIELD`] or 0.
-    pub flags: u8,
-}
-
-impl RawLeg {
-    /// The ball was not carried since the leg before.
-    pub const NOT_CARRIED: u8 = 255;
-    /// The end is a point of the field, not moved with the ball.
-    pub const TO_FIELD: u8 = 1;
+    pub reserved: u8,
 }
 
 /// One action: its kind and what it points to.
@@ -325,13 +260,10 @@ static EMPTY_HEADER: Header = Header {
     field: [0; 6],
     pass: [1; 2],
     groups: 0,
-    opponents: 0,
-    legs: 0,
     points: 0,
     kicks: 0,
-    positions: 0,
+    places: 0,
     cell_cases: 0,
     actions: 0,
-    grid: [0; 2],
-    cell_mm: 1,
+    grid: Grid { columns: 0, rows: 0, cell_mm: 1.0, cells_per_mm: 1.0, corner: [0.0; 2] },
 };

@@ -4,7 +4,10 @@ use core::fmt;
 
 use zerocopy::{FromBytes, Immutable, KnownLayout};
 
-use super::{CaseBase, GRID_MAX, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, content_hash, part};
+use super::{
+    CaseBase, GRID_MAX, Gate, Group, HASHED_FROM, Header, MAGIC, RawAction, RawLeg, content_hash, part,
+};
+use crate::Grid;
 use crate::action::{KICKS_MAX, OPPONENTS_MAX, Primitive, TEAMMATES_MAX};
 
 /// Why bytes are no case base.
@@ -55,36 +58,21 @@ impl<'a> CaseBase<'a> {
         if header.magic != MAGIC {
             return Err(TableError::Magic);
         }
-        let [columns, rows] = header.grid;
+        let Grid { columns, rows, .. } = header.grid;
         let cells = usize::from(columns) * usize::from(rows);
         let copies = header.groups.checked_mul(4).ok_or(TableError::Length)?;
         let (groups, rest) = section(rest, header.groups)?;
         let (gates, rest) = section(rest, copies)?;
-        let (opponents, rest) = section(rest, header.opponents)?;
-        let (legs, rest) = section(rest, header.legs)?;
         let (points, rest) = section(rest, header.points)?;
         let (kicks, rest) = section(rest, header.kicks)?;
         let (cell_starts, rest) = section(rest, cells as u32 + 1)?;
-        let (positions, rest) = section(rest, header.positions)?;
+        let (places, rest) = section(rest, header.places)?;
         let (cell_cases, rest) = section(rest, header.cell_cases)?;
         let (actions, rest) = section(rest, header.actions)?;
         if !rest.is_empty() {
             return Err(TableError::Length);
         }
-        Ok(Self {
-            bytes,
-            header,
-            groups,
-            gates,
-            opponents,
-            legs,
-            points,
-            kicks,
-            cell_starts,
-            positions,
-            cell_cases,
-            actions,
-        })
+        Ok(Self { bytes, header, groups, gates, points, kicks, cell_starts, places, cell_cases, actions })
     }
 
     /// Checks the content of every section.
@@ -122,28 +110,28 @@ impl<'a> CaseBase<'a> {
 
     /// One of the four copies: records within their pools, values a case can have.
     fn copy_is_sound(&self, authored: usize, group: &Group, copy: u16) -> bool {
-        let teammates = usize::from(group.teammates);
-        if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(group.opponents) > OPPONENTS_MAX {
+        let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
+            return false;
+        };
+        let teammates = usize::from(gate.teammates);
+        if !(1..=TEAMMATES_MAX).contains(&teammates) || usize::from(gate.opponents) > OPPONENTS_MAX {
             return false;
         }
         let ends = group.list_ends.get(..teammates).unwrap_or(&[]);
         let end = |robot: usize| ends.get(robot).copied().unwrap_or(0);
         let actions_count = end(teammates - 1);
-        let opponents = part(self.opponents, group.opponents_at, group.opponents, copy);
-        let legs = part(self.legs, group.legs_at, group.legs, copy);
+        let (Some(opponents), Some(legs), Some(_)) =
+            (gate.opponents(self.places), gate.legs(self.places), gate.positions(self.places))
+        else {
+            return false;
+        };
         let actions = part(self.actions, group.actions_at, actions_count, copy);
-        let whole = part(self.positions, group.positions_at, group.teammates, copy).len() == teammates
-            && opponents.len() == usize::from(group.opponents)
-            && legs.len() == usize::from(group.legs)
-            && part(self.points, group.points_at, group.points, copy).len() == usize::from(group.points)
+        let whole = part(self.points, group.points_at, group.points, copy).len() == usize::from(group.points)
             && actions.len() == usize::from(actions_count)
             && never_falls(ends)
             && group.defending <= 1
-            && group.getter < group.teammates;
+            && group.getter < gate.teammates;
         let scope_is_sound = |inverse: &[f32; 2]| inverse.iter().all(|i| i.is_finite() && *i > 0.0);
-        let Some(gate) = self.gates.get(4 * authored + usize::from(copy)) else {
-            return false;
-        };
         let list = |robot: usize| {
             let from = robot.checked_sub(1).map_or(0, end);
             actions.get(usize::from(from)..usize::from(end(robot))).unwrap_or(&[])
@@ -161,15 +149,17 @@ impl<'a> CaseBase<'a> {
         };
         let begins_with_the_ball =
             || list(usize::from(group.getter)).first().map(|a| a.kind) == Some(RawAction::GET_BALL);
+        let is_whole_mm = |coordinate: &f32| f32::from(*coordinate as i16) == *coordinate;
         whole
+            && gate.ball.iter().all(is_whole_mm)
             && scope_is_sound(&gate.inverse_scope)
             && opponents.iter().all(|opponent| scope_is_sound(&opponent.inverse_scope))
-            && actions.iter().all(|action| self.action_is_sound(group, *action))
+            && actions.iter().all(|action| self.action_is_sound(gate, group, *action))
             && legs_are_sound()
             && begins_with_the_ball()
     }
 
-    fn action_is_sound(&self, group: &Group, action: RawAction) -> bool {
+    fn action_is_sound(&self, gate: &Gate, group: &Group, action: RawAction) -> bool {
         let argument = action.argument;
         match action.kind {
             RawAction::WAIT | RawAction::GET_BALL => true,
@@ -177,20 +167,21 @@ impl<'a> CaseBase<'a> {
             | RawAction::TURN_HEADING
             | RawAction::TURN_FACE
             | RawAction::DRIBBLE_TO => argument < group.points,
-            RawAction::PASS_BALL | RawAction::RECEIVE_BALL => argument < group.teammates,
+            RawAction::PASS_BALL | RawAction::RECEIVE_BALL => argument < gate.teammates,
             RawAction::KICK => usize::from(argument) < self.kicks.len(),
             _ => false,
         }
     }
 
     fn index_is_sound(&self) -> bool {
-        let [columns, rows] = self.header.grid;
+        let Grid { columns, rows, cell_mm, cells_per_mm, corner } = self.header.grid;
         let starts_are_sound = never_falls(self.cell_starts)
             && self.cell_starts.first() == Some(&0)
             && self.cell_starts.last().is_some_and(|last| *last as usize == self.cell_cases.len());
         (1..=GRID_MAX).contains(&columns)
             && (1..=GRID_MAX).contains(&rows)
-            && self.header.cell_mm > 0
+            && [cell_mm, cells_per_mm].iter().all(|scale| scale.is_finite() && *scale > 0.0)
+            && corner.iter().all(|coordinate| coordinate.is_finite())
             && starts_are_sound
             && self.cell_cases.iter().all(|case| usize::from(*case) < self.gates.len())
     }

@@ -6,7 +6,7 @@ use casebase::table::{
     Gate, Group, HASHED_FROM, Header, MAGIC, Opponent, RawAction, RawKick, RawLeg, content_hash,
 };
 use casebase::walk::{Script, Step, walk};
-use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget};
+use casebase::{Action, CaseRobot, GoalEnd, PointMm, Scope, Symmetry, TurnTarget, cells_of};
 use zerocopy::IntoBytes;
 
 use crate::authored::{Authored, Mirrored};
@@ -42,10 +42,11 @@ pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Tab
     }
     if !symmetry {
         let images = pools.gates.iter_mut().enumerate().filter(|(id, _)| !id.is_multiple_of(4));
-        images.for_each(|(_, gate)| *gate = NOWHERE);
+        images.for_each(|(_, gate)| (gate.ball, gate.inverse_scope) = NOWHERE);
     }
-    let index = grid::build(league.field, cases);
     let kicks: Vec<_> = league.kicks.iter().map(|(_, kick)| RawKick::encode(*kick)).collect();
+    let others = size_of::<Header>() + pools.bytes() + kicks.as_bytes().len();
+    let index = grid::build(league.field, cases, others);
     let field = league.field;
     let count = |length: usize| length as u32;
     let mut header = Header {
@@ -61,25 +62,20 @@ pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Tab
         ],
         pass: [league.pass.r_min, league.pass.r_max],
         groups: count(pools.groups.len()),
-        opponents: count(pools.opponents.len()),
-        legs: count(pools.legs.len()),
         points: count(pools.points.len()),
         kicks: count(kicks.len()),
-        positions: count(pools.positions.len()),
+        places: count(pools.places.len()),
         cell_cases: count(index.cases.len()),
         actions: count(pools.actions.len()),
-        grid: [index.grid.columns, index.grid.rows],
-        cell_mm: index.grid.cell_mm,
+        grid: index.grid,
     };
     let body = [
         pools.groups.as_bytes(),
         pools.gates.as_bytes(),
-        pools.opponents.as_bytes(),
-        pools.legs.as_bytes(),
         pools.points.as_bytes(),
         kicks.as_bytes(),
         index.starts.as_bytes(),
-        pools.positions.as_bytes(),
+        pools.places.as_bytes(),
         index.cases.as_bytes(),
         pools.actions.as_bytes(),
     ]
@@ -89,25 +85,30 @@ pub(crate) fn encode(league: &League, cases: &[Authored], symmetry: bool) -> Tab
 }
 
 /// A scope of a millimetre farther out than any ball: fields are at most 30 m long.
-const NOWHERE: Gate = Gate { ball: [i16::MAX; 2], inverse_scope: [1.0; 2] };
+const NOWHERE: ([f32; 2], [f32; 2]) = ([32_767.0; 2], [1.0; 2]);
 
 /// The growing sections of the table.
 #[derive(Default)]
 struct Pools {
     groups: Vec<Group>,
     gates: Vec<Gate>,
-    opponents: Vec<Opponent>,
-    legs: Vec<RawLeg>,
     points: Vec<[i32; 2]>,
-    positions: Vec<[i16; 2]>,
+    places: Vec<u32>,
     actions: Vec<RawAction>,
 }
 
 impl Pools {
+    /// How many they are so far.
+    fn bytes(&self) -> usize {
+        let Self { groups, gates, points, places, actions } = self;
+        [groups.as_bytes(), gates.as_bytes(), points.as_bytes(), places.as_bytes(), actions.as_bytes()]
+            .map(<[u8]>::len)
+            .iter()
+            .sum()
+    }
+
     /// The four copies of a case.
     fn add(&mut self, case: &Authored, league: &League) {
-        let (positions_at, opponents_at, legs_at) =
-            (self.positions.len(), self.opponents.len(), self.legs.len());
         let (points_at, actions_at) = (self.points.len(), self.actions.len());
         for symmetry in Symmetry::ALL {
             self.add_copy(&case.mirrored(symmetry, league), league);
@@ -122,31 +123,31 @@ impl Pools {
             teammate.gameplay.first().is_some_and(|(action, _)| *action == Action::GetBall)
         };
         self.groups.push(Group {
-            positions_at: positions_at as u32,
-            opponents_at: opponents_at as u32,
-            legs_at: legs_at as u32,
             points_at: points_at as u32,
             actions_at: actions_at as u32,
-            teammates: case.teammates.len() as u8,
-            opponents: case.opponents.len() as u8,
-            legs: ((self.legs.len() - legs_at) / 4) as u8,
             points: ((self.points.len() - points_at) / 4) as u8,
             list_ends,
             defending: u8::from(case.defending == GoalEnd::Positive),
             getter: case.teammates.iter().position(is_getter).unwrap_or(0) as u8,
-            reserved: [0; 2],
+            reserved: 0,
         });
     }
 
     fn add_copy(&mut self, copy: &Mirrored<'_>, league: &League) {
         let ball = copy.ball();
-        self.gates.push(Gate { ball: narrow(ball), inverse_scope: inverse(copy.case.ball_scope) });
         let robots = CaseRobot::first(copy.teammates());
-        self.positions.extend(robots.clone().map(|robot| narrow(copy.position(robot).minus(ball))));
-        for opponent in &copy.case.opponents {
-            let at = narrow(copy.symmetry.point(opponent.at).minus(ball));
-            self.opponents.push(Opponent { at, inverse_scope: inverse(opponent.scope) });
-        }
+        let positions: Vec<_> =
+            robots.clone().map(|robot| narrow(copy.position(robot).minus(ball))).collect();
+        let opponents: Vec<_> = copy
+            .case
+            .opponents
+            .iter()
+            .map(|opponent| {
+                let at = copy.symmetry.point(opponent.at).minus(ball);
+                let cells = cells_of(at, opponent.scope);
+                Opponent { cells, at: narrow(at), inverse_scope: inverse(opponent.scope) }
+            })
+            .collect();
         let first_point = self.points.len();
         // Which point each action with a point has, by robot and place in its list.
         let mut point_of = Vec::new();
@@ -162,7 +163,7 @@ impl Pools {
             by.and_then(|by| point_of.iter().find(|(at, _)| *at == by))
                 .map_or(RawLeg::NOT_CARRIED, |(_, point)| *point)
         };
-        let legs = &mut self.legs;
+        let mut legs = Vec::new();
         let walked = walk(copy, league, |step| {
             if let Step::Leg { robot, action, to, radii, carried_by, .. } = step {
                 legs.push(RawLeg {
@@ -176,6 +177,20 @@ impl Pools {
             }
         });
         debug_assert!(walked.is_ok(), "only cases that can be walked are encoded: {walked:?}");
+        self.gates.push(Gate {
+            ball: narrow(ball).map(f32::from),
+            inverse_scope: inverse(copy.case.ball_scope),
+            places_at: self.places.len() as u32,
+            teammates: positions.len() as u8,
+            opponents: opponents.len() as u8,
+            legs: legs.len() as u8,
+            reserved: 0,
+        });
+        // The order in which `Gate` finds them again.
+        for records in [opponents.as_bytes(), legs.as_bytes(), positions.as_bytes()] {
+            let (words, _) = records.as_chunks();
+            self.places.extend(words.iter().map(|word| u32::from_ne_bytes(*word)));
+        }
     }
 
     /// An action; `next_point` is the number its point gets where it has one.

@@ -1,7 +1,7 @@
 //! Which cases does each cell of the index list? (DESIGN §4.3: an index over the ball's position)
 //!
-//! See `casebase::Grid`: one copy of each authored case, the one that defends the negative goal; a cell lists it
-//! where the ball scope reaches into the cell. The cells are as small as the table's budget of bytes allows.
+//! See `casebase::Grid`: the two copies of each authored case that defend the negative goal; a cell lists them where the
+//! ball scope reaches into the cell. The cells are as small as the table's budget of bytes allows.
 
 use casebase::settings::SCOPE_EXPONENT;
 use casebase::{FieldMm, GoalEnd, Grid, PointMm, Symmetry};
@@ -17,13 +17,15 @@ pub(crate) struct Index {
     pub(crate) cases: Vec<u16>,
 }
 
-/// The index of cases in the order of their ids, over the finest grid within the budget.
-pub(crate) fn build(field: FieldMm, cases: &[Authored]) -> Index {
-    let budget = BYTES_PER_STORED_CASE * 4 * cases.len();
+/// The index of cases in the order of their ids, over the finest grid within the budget of a table whose other parts
+/// take `others` bytes.
+pub(crate) fn build(field: FieldMm, cases: &[Authored], others: usize) -> Index {
+    let stored = 4 * cases.len();
+    let budget = (TABLE_BYTES * stored).saturating_sub(others).max(INDEX_BYTES * stored);
     let mut index = None;
     for cell_mm in CELLS_MM {
         let columns = (field.length / cell_mm + 1).min(i32::from(CELLS_MAX)) as u16;
-        let rows = (field.width / cell_mm + 1).min(i32::from(CELLS_MAX)) as u16;
+        let rows = (field.width / 2 / cell_mm + 1).min(i32::from(CELLS_MAX)) as u16;
         let built = over(Grid::over(field, columns, rows, cell_mm), cases);
         let bytes = 4 * built.starts.len() + 2 * built.cases.len();
         index = Some(built);
@@ -38,16 +40,18 @@ pub(crate) fn build(field: FieldMm, cases: &[Authored]) -> Index {
 fn over(grid: Grid, cases: &[Authored]) -> Index {
     let mut lists = vec![Vec::new(); usize::from(grid.columns) * usize::from(grid.rows)];
     for (authored, case) in cases.iter().enumerate() {
-        let symmetry = match case.defending {
-            GoalEnd::Negative => Symmetry::Identity,
-            GoalEnd::Positive => Symmetry::AcrossY,
+        let symmetries = match case.defending {
+            GoalEnd::Negative => [Symmetry::Identity, Symmetry::AcrossX],
+            GoalEnd::Positive => [Symmetry::AcrossY, Symmetry::Both],
         };
-        let ball = symmetry.point(case.ball);
-        let id = 4 * authored as u16 + symmetry.bits();
-        for row in 0..grid.rows {
-            for column in 0..grid.columns {
-                if reaches(case, ball, &grid, column, row) {
-                    lists[usize::from(row) * usize::from(grid.columns) + usize::from(column)].push(id);
+        for symmetry in symmetries {
+            let ball = symmetry.point(case.ball);
+            let id = 4 * authored as u16 + symmetry.bits();
+            for row in 0..grid.rows {
+                for column in 0..grid.columns {
+                    if reaches(case, ball, &grid, column, row) {
+                        lists[usize::from(row) * usize::from(grid.columns) + usize::from(column)].push(id);
+                    }
                 }
             }
         }
@@ -66,25 +70,25 @@ fn over(grid: Grid, cases: &[Authored]) -> Index {
     Index { grid, starts, cases: listed }
 }
 
-/// Does the ball scope reach into the cell? Cells at the border go on to infinity.
+/// Does the ball scope reach into the cell? Cells at the border go on to infinity, but not over the middle line.
 fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -> bool {
-    let gap = |at: i32, corner: i32, cell: u16, count: u16| {
-        let at = f64::from(at);
-        let low = f64::from(corner) + f64::from(cell) * f64::from(grid.cell_mm);
-        let high = low + f64::from(grid.cell_mm);
-        let below = if cell == 0 { 0.0 } else { (low - at).max(0.0) };
-        let above = if cell + 1 == count { 0.0 } else { (at - high).max(0.0) };
-        below.max(above)
-    };
-    let dx = gap(ball.x, grid.corner.x, column, grid.columns) / f64::from(case.ball_scope.x);
-    let dy = gap(ball.y, grid.corner.y, row, grid.rows) / f64::from(case.ball_scope.y);
+    let edge = |corner: f32, cells: u16| f64::from(corner) + f64::from(cells) * f64::from(grid.cell_mm);
+    let gap = |at: i32, low: f64, high: f64| (low - f64::from(at)).max(f64::from(at) - high).max(0.0);
+    let [corner_x, corner_y] = grid.corner;
+    let left = if column == 0 { f64::NEG_INFINITY } else { edge(corner_x, column) };
+    let right = if column + 1 == grid.columns { f64::INFINITY } else { edge(corner_x, column + 1) };
+    let top = if row + 1 == grid.rows { f64::INFINITY } else { edge(corner_y, row + 1) };
+    let dx = gap(ball.x, left, right) / f64::from(case.ball_scope.x);
+    let dy = gap(ball.y, edge(corner_y, row), top) / f64::from(case.ball_scope.y);
     dx * dx + dy * dy <= f64::from(SCOPE_EXPONENT) * ROUNDING
 }
 
-/// What the index may cost, bytes: an eighth of the 96 a stored case may have in all (DESIGN §9).
-const BYTES_PER_STORED_CASE: usize = 12;
+/// What a stored case may cost in all, bytes (DESIGN §9): what the rest leaves of it is the index's.
+const TABLE_BYTES: usize = 96;
+/// What the index may cost where the rest leaves less, bytes a stored case.
+const INDEX_BYTES: usize = 12;
 /// Edges of cells that are tried, finest first, mm. Finer than 150 mm lists hardly get shorter: scopes are larger.
-const CELLS_MM: [i32; 9] = [150, 200, 250, 300, 400, 600, 900, 1500, 3000];
+const CELLS_MM: [i32; 10] = [150, 200, 250, 300, 350, 400, 600, 900, 1500, 3000];
 /// Most cells along an axis.
 const CELLS_MAX: u16 = casebase::table::GRID_MAX;
 /// Room for the rounding of the single-precision gate.

@@ -1,0 +1,108 @@
+//! Where do the records that retrieval looks at lie? Each stored case has a [`Gate`], and behind it, in one run of the
+//! table's places, its opponents, its legs and its robots' positions. Lengths in mm.
+
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
+use crate::point::gauss_exponent;
+
+/// Where the ball must lie for a stored case, how many records it has and where they begin.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Gate {
+    /// B_c, whole mm.
+    pub ball: [f32; 2],
+    /// 1/τx, 1/τy, 1/mm.
+    pub inverse_scope: [f32; 2],
+    /// The word of the places its records begin with.
+    pub places_at: u32,
+    /// Robots.
+    pub teammates: u8,
+    /// Opponents.
+    pub opponents: u8,
+    /// Legs.
+    pub legs: u8,
+    /// Zero.
+    pub reserved: u8,
+}
+
+/// An opponent's scope.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct Opponent {
+    /// The squares around the ball it reaches into: [`cells_of`](crate::cells_of).
+    pub cells: u32,
+    /// Relative to the case's ball, mm.
+    pub at: [i16; 2],
+    /// 1/τx, 1/τy, 1/mm.
+    pub inverse_scope: [f32; 2],
+}
+
+/// A leg of the ball path. It begins where the ball lies: at the ball's first place or the end of the leg before,
+/// unless it was carried on since.
+#[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
+#[repr(C)]
+pub struct RawLeg {
+    /// Its end, mm: relative to the case's ball, or a point of the field where [`RawLeg::TO_FIELD`] is set.
+    pub to: [f32; 2],
+    /// r_min and r_max, mm.
+    pub radii: [f32; 2],
+    /// The robot that kicks.
+    pub robot: u8,
+    /// Which of its actions that is.
+    pub action: u8,
+    /// [`RawLeg::NOT_CARRIED`], or the case's point the ball was dribbled to before.
+    pub carried_to: u8,
+    /// [`RawLeg::TO_FIELD`] or 0.
+    pub flags: u8,
+}
+
+impl RawLeg {
+    /// The ball was not carried since the leg before.
+    pub const NOT_CARRIED: u8 = 255;
+    /// The end is a point of the field, not moved with the ball.
+    pub const TO_FIELD: u8 = 1;
+}
+
+impl Gate {
+    /// (Δx/τx)² + (Δy/τy)² of a ball at `ball`.
+    #[inline]
+    pub(crate) fn exponent(&self, ball: [f32; 2]) -> f32 {
+        let [inverse_x, inverse_y] = self.inverse_scope;
+        gauss_exponent(ball[0] - self.ball[0], ball[1] - self.ball[1], inverse_x, inverse_y)
+    }
+
+    /// The case's opponents among the table's places; `None` where those end before (a validated table's never do).
+    #[inline]
+    pub(crate) fn opponents<'a>(&self, places: &'a [u32]) -> Option<&'a [Opponent]> {
+        records(places, self.places_at as usize, self.opponents)
+    }
+
+    /// Its legs; each begins where the one before ends.
+    #[inline]
+    pub(crate) fn legs<'a>(&self, places: &'a [u32]) -> Option<&'a [RawLeg]> {
+        records(places, self.legs_at(), self.legs)
+    }
+
+    /// Where its robots stand, relative to the case's ball.
+    #[inline]
+    pub(crate) fn positions<'a>(&self, places: &'a [u32]) -> Option<&'a [[i16; 2]]> {
+        let at = self.legs_at().wrapping_add(usize::from(self.legs) * (size_of::<RawLeg>() / WORD));
+        records(places, at, self.teammates)
+    }
+
+    #[inline]
+    fn legs_at(&self) -> usize {
+        (self.places_at as usize).wrapping_add(usize::from(self.opponents) * (size_of::<Opponent>() / WORD))
+    }
+}
+
+/// The `count` records that begin with word `at`.
+#[inline]
+fn records<T: FromBytes + Immutable + KnownLayout>(places: &[u32], at: usize, count: u8) -> Option<&[T]> {
+    let count = usize::from(count);
+    let words = places.get(at..)?.get(..count * (size_of::<T>() / WORD))?;
+    <[T]>::ref_from_bytes_with_elems(words.as_bytes(), count).ok()
+}
+
+/// Bytes of a word of the places.
+const WORD: usize = size_of::<u32>();
