@@ -40,5 +40,40 @@ fn cell(column: i32, row: i32) -> u32 {
     1 << ((column & 7) | (row & 3) << 3)
 }
 
-/// Squares of 2^10 mm: about the size of a scope, and four of them as wide as what opponents matter in.
+/// Squares of 2^9 = 512 mm, about the radius of a scope: they spare more than those of 1024 mm.
 const EDGE_BITS: u32 = 9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Stream;
+
+    #[test]
+    fn whoever_stands_in_a_scope_stands_in_one_of_its_squares() {
+        let mut stream = Stream::new(9);
+        let mut below = |end: i32| stream.below(end as u64) as i32;
+        let (mut inside, mut apart) = (0, 0);
+        for _ in 0..20_000 {
+            let centre = PointMm::new(below(9000) - 4500, below(6000) - 3000);
+            let scope = Scope { x: 1 + below(1000), y: 1 + below(1000) };
+            let point = PointMm::new(centre.x + below(2400) - 1200, centre.y + below(2400) - 1200);
+            let shares = cells_of(centre, scope) & cell_of(point) != 0;
+            if scope.exponent(point.minus(centre)) < SCOPE_EXPONENT {
+                inside += 1;
+                assert!(shares, "{point:?} in {scope:?} around {centre:?}");
+            }
+            apart += u32::from(!shares);
+        }
+        assert!(inside > 2_000 && apart > 5_000, "{inside} inside, {apart} told apart");
+    }
+
+    #[test]
+    fn the_border_of_a_scope_at_the_edge_of_a_square_is_in_the_next_one() {
+        // exp(−1) = 0.36788 > 0.367: 1.001196 τ is still inside.
+        let reached = cells_of(PointMm::new(12, 100), Scope { x: 500, y: 50 });
+        assert_eq!(
+            reached,
+            cell_of(PointMm::new(0, 0)) | cell_of(PointMm::new(-1, 0)) | cell_of(PointMm::new(512, 0))
+        );
+    }
+}

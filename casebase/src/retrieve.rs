@@ -125,7 +125,8 @@ const PAPER: [u8; 8] = [
     FreePathRule::Crisp as u8,
 ];
 
-/// Conditions, then teammates, then the interval: what a candidate is ranked by before cost, in one number.
+/// Conditions (from bit 10), then teammates (from bit 2), then three less the interval: what a candidate is ranked by
+/// before cost, in one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Class(u32);
 
@@ -136,13 +137,14 @@ impl Class {
         Self(u32::from(u16::from_le_bytes([gate.teammates, gate.opponents])) << 2 | 3)
     }
 
-    /// The same in the interval of that number from the best.
+    /// The same with the ball in the interval of that exponent.
     #[inline]
     fn in_interval_of(self, exponent: f32) -> Self {
         // Three less the interval, in the two lowest bits.
         Self(self.0 ^ u32::from(interval(exponent) & 3))
     }
 
+    /// The same with so many of its scopes empty.
     #[inline]
     fn without(self, conditions: u32) -> Self {
         Self(self.0.wrapping_sub(conditions << 10))
@@ -170,8 +172,8 @@ struct Race<'q, 'a> {
 }
 
 impl<'a> Race<'_, 'a> {
-    /// A case that could come to the class of the best candidate waits to be looked at. Breaks where neither it nor any
-    /// that promises no more can.
+    /// Looks at a case that could come to the class of the best candidate. Breaks where neither it nor any that promises
+    /// no more can.
     #[inline(always)]
     fn enter(&mut self, case: CaseId, gate: &'a Gate, exponent: f32) -> ControlFlow<()> {
         // Lists fall in the order of promises.
