@@ -31,12 +31,15 @@ impl Facts {
                 (None, value) => flatten(name, value, &mut first.entries),
             }
         }
-        first.entries.push(("csv hash of the trials".to_owned(), csv_hash.to_owned()));
+        first.entries.push((HASH.to_owned(), csv_hash.to_owned()));
         let mut facts = vec![first];
         facts.extend(rest);
         facts
     }
 }
+
+/// What the number is called that tells two evaluations apart.
+pub(crate) const HASH: &str = "csv hash of the trials";
 
 /// The parts that are long enough for a heading of their own.
 fn heading(name: &str) -> Option<&'static str> {

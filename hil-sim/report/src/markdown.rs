@@ -5,12 +5,23 @@ use std::fmt::Write as _;
 
 use arena::evaluation::{Claim, Judgement, Line};
 
+use crate::facts::HASH;
 use crate::table::{Cell, LineKind, Table, tables};
 use crate::{Report, map, table, words};
 
 /// Tables, claims and pictures as Markdown.
 pub(crate) fn markdown(report: &Report<'_>, pictures: &str) -> String {
     let mut text = String::new();
+    let facts = || report.facts.iter().flat_map(|facts| &facts.entries);
+    let known = [("program", "onetwo"), ("plan.seed", "seed"), ("seed", "seed"), (HASH, HASH)];
+    let said = known.into_iter().filter_map(|(name, word)| {
+        let (_, value) = facts().find(|(own, _)| own == name)?;
+        Some(format!("{word} {value}"))
+    });
+    let said: Vec<_> = said.collect();
+    if !said.is_empty() {
+        let _ = writeln!(text, "Played by {}.\n", said.join(", "));
+    }
     let figures = crate::plot::figures(report);
     for figure in figures.iter().filter(|figure| figure.table == 0) {
         let _ = writeln!(text, "![{}]({pictures}{}.svg)\n", figure.title, figure.name);

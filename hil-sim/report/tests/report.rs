@@ -60,7 +60,10 @@ impl Made {
             }],
             facts: vec![Facts {
                 title: "Program & options".to_owned(),
-                entries: vec![("--set".to_owned(), "cost=\"sum\" <default>".to_owned())],
+                entries: vec![
+                    ("seed".to_owned(), "7".to_owned()),
+                    ("--set".to_owned(), "cost=\"sum\" <default>".to_owned()),
+                ],
             }],
             maps: Vec::new(),
         }
@@ -271,6 +274,7 @@ fn maps_are_drawn_with_what_they_count() {
 #[test]
 fn markdown_has_the_numbers_and_whole_rows() {
     let text = Made::new().report().markdown("pictures/");
+    assert!(text.starts_with("Played by seed 7.\n"), "{text}");
     assert!(text.contains("### Table 1") && text.contains("](pictures/table-1-outcomes.svg)"));
     // Ours, the paper's in italics; the difference with its stars.
     assert!(text.contains("| 10.2 *9* |"), "{text}");
