@@ -81,6 +81,8 @@ pub struct GrabParameters {
     pub speed_limit: f32,
     /// Probability that a grab whose legs closed upon the ball keeps it.
     pub success: f32,
+    /// Probability that such a grab takes a ball out of another robot's grip, as a share of `success`.
+    pub contest: f32,
     /// m, centre to centre while held.
     pub hold_distance: f32,
     /// m that the ball rolls away from a failed grab.
@@ -113,18 +115,10 @@ pub struct KickParameters {
     pub pass_max: f32,
 }
 
-/// The scripted opponents.
+/// Where the scripted opponents play.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpponentParameters {
-    /// m, centre to centre: the ball can be cleared.
-    pub reach: f32,
-    /// rad to either side of the heading.
-    pub half_angle: f32,
-    /// s the ball must be in reach.
-    pub delay: f32,
-    /// m that a cleared ball rolls.
-    pub clear: f32,
     /// Home of the defender.
     pub defender: Region,
     /// Home of the midfield defender.
@@ -151,8 +145,6 @@ pub struct RefereeParameters {
     pub close: f32,
     /// s without contact before a touch counts anew.
     pub possession_gap: f32,
-    /// s without contact before a touch counts anew when another robot touched the ball meanwhile.
-    pub contact_end: f32,
     /// s, against defender and goalie.
     pub time_limit_dg: f32,
     /// s, against two defenders.
@@ -216,9 +208,6 @@ impl Parameters {
             ("kick.forward_hard", kick.forward_hard),
             ("kick.side", kick.side),
             ("kick.pass_min", kick.pass_min),
-            ("opponent.reach", opponent.reach),
-            ("opponent.half_angle", opponent.half_angle),
-            ("opponent.clear", opponent.clear),
             ("referee.time_limit_dg", referee.time_limit_dg),
             ("referee.time_limit_2d", referee.time_limit_2d),
         ];
@@ -226,10 +215,8 @@ impl Parameters {
             ("grab.fumble", grab.fumble),
             ("kick.angle_sd_deg", kick.angle_sd_deg),
             ("kick.side_angle_deg", kick.side_angle_deg),
-            ("opponent.delay", opponent.delay),
             ("referee.close", referee.close),
             ("referee.possession_gap", referee.possession_gap),
-            ("referee.contact_end", referee.contact_end),
             ("noise.pose", noise.pose),
             ("noise.heading_deg", noise.heading_deg),
             ("noise.ball_share", noise.ball_share),
@@ -251,6 +238,7 @@ impl Parameters {
         }
         range("ball.bounce", ball.bounce, 0.0, 1.0)?;
         range("grab.success", grab.success, 0.0, 1.0)?;
+        range("grab.contest", grab.contest, 0.0, 1.0)?;
         range("grab.hold_distance", grab.hold_distance, 0.0, grab.reach)?;
         // Beyond this a kick of −limit standard deviations would roll backwards.
         range("kick.distance_sd", kick.distance_sd, 0.0, 1.0 / kick.scatter_limit)?;

@@ -105,7 +105,7 @@ pub struct Referee {
     /// The opponents' roles by their place behind the attackers.
     roles: Vec<Role>,
     contacts: Vec<Contact>,
-    last: Option<(usize, Party)>,
+    last: Option<Party>,
     before: Point<Field>,
     verdict: Option<Verdict>,
 }
@@ -156,7 +156,7 @@ impl Referee {
                 continue;
             };
             self.touched(time, robot, attackers);
-            goalie_touched |= self.last.is_some_and(|(_, party)| party == Party::Opponent(Role::Goalie));
+            goalie_touched |= self.last == Some(Party::Opponent(Role::Goalie));
         }
         let (before, now) = (self.before, world.ball.position);
         self.before = now;
@@ -176,7 +176,7 @@ impl Referee {
 
     /// Who touched the ball last.
     pub fn last_touch(&self) -> Option<Party> {
-        self.last.map(|(_, party)| party)
+        self.last
     }
 
     /// How many times the opponent of that role had the ball.
@@ -185,18 +185,17 @@ impl Referee {
     }
 
     fn touched(&mut self, time: f32, robot: usize, attackers: usize) {
-        let another = self.last.is_none_or(|(last, _)| last != robot);
         let opponent = robot.checked_sub(attackers).filter(|&i| i < self.roles.len());
         let Some(i) = opponent else {
-            self.last = Some((robot, Party::Attackers));
+            self.last = Some(Party::Attackers);
             return;
         };
         let contact = &mut self.contacts[i];
-        // A scrum around the ball is one possession, though its bodies touch in turns: the own contact must have ended.
-        let needed = if another { self.parameters.contact_end } else { self.parameters.possession_gap };
-        contact.possessions += u32::from(contact.at.is_none_or(|at| time - at >= needed));
+        // A scrum around the ball is one possession, though its bodies touch in turns.
+        let gap = self.parameters.possession_gap;
+        contact.possessions += u32::from(contact.at.is_none_or(|at| time - at >= gap));
         contact.at = Some(time);
-        self.last = Some((robot, Party::Opponent(self.roles[i])));
+        self.last = Some(Party::Opponent(self.roles[i]));
     }
 
     fn judge(
@@ -238,11 +237,12 @@ impl Referee {
 
 #[cfg(test)]
 mod tests {
-    use geometry::{Angle, Pose};
+    use geometry::Pose;
 
     use super::*;
     use crate::parameters::Parameters;
-    use crate::world::{Ball, Strike, Walker};
+    use crate::world::{Ball, Walker};
+    use protocol::robot_io::LeggedKick;
 
     struct Match {
         world: World,
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_possession_counts_again_after_half_a_second_or_a_contacts_end_and_somebody_elses_touch() {
+    fn a_possession_counts_again_after_half_a_second_without_contact_whoever_touched_meanwhile() {
         let mut game = kick_off(Configuration::TwoDefenders);
         let had = |game: &Match| {
             (game.referee.possessions(Role::Midfield), game.referee.possessions(Role::Defender))
@@ -337,9 +337,9 @@ mod tests {
             (2.00, 0, (2, 0)),
             (2.01, 1, (2, 0)),
             (2.02, 0, (2, 0)),
-            (2.12, 1, (3, 0)),
-            (2.13, 2, (3, 1)),
-            (2.23, 1, (4, 1)),
+            (2.12, 1, (2, 0)),
+            (2.13, 2, (2, 1)),
+            (2.62, 1, (3, 1)),
         ] {
             game.touch(time, robot);
             assert_eq!(had(&game), expected, "at {time}");
@@ -355,11 +355,8 @@ mod tests {
         let grab = WorldEvent::Grabbed { robot: 0 };
         game.referee.observe(2.0, &game.world, &[grab]);
         assert_eq!(game.referee.last_touch(), Some(Party::Attackers));
-        game.world.clear_ball(1, Angle::HALF_TURN);
-        let mut events = Vec::new();
-        game.world.take_events(&mut events);
-        assert!(matches!(events[0], WorldEvent::Kicked { strike: Strike::Clear, .. }));
-        game.referee.observe(3.0, &game.world, &events);
+        let (kick, at) = (LeggedKick::ForwardHard, Point::default());
+        game.referee.observe(3.0, &game.world, &[WorldEvent::Kicked { robot: 1, kick, from: at, rest: at }]);
         assert_eq!(game.referee.last_touch(), Some(Party::Opponent(Role::Defender)));
     }
 }

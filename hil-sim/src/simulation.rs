@@ -170,7 +170,7 @@ impl<'a> Simulation<'a> {
             self.air.send(number, *from, packet);
         }
         for opponent in &mut self.opponents {
-            opponent.act(&mut self.world, &self.parameters, TICK);
+            opponent.act(&mut self.world, &self.parameters);
         }
         self.play(number);
         Ok(&self.tick)

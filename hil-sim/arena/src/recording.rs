@@ -2,7 +2,8 @@
 
 use geometry::{Field, Point, Pose};
 use hil_sim::TICK_US;
-use hil_sim::world::{Strike, WorldEvent};
+use hil_sim::world::WorldEvent;
+use protocol::robot_io::LeggedKick;
 
 use crate::cycles::News;
 use crate::names::{Cast, symmetry};
@@ -45,7 +46,7 @@ pub struct Kick {
     /// Who kicked.
     pub robot: usize,
     /// How.
-    pub strike: Strike,
+    pub kick: LeggedKick,
     /// From where.
     pub from: Point<Field>,
     /// Where the ball would come to rest, undisturbed.
@@ -89,8 +90,8 @@ impl Watcher for Recording {
             });
         }
         for (time, event) in &moment.tick.events {
-            if let WorldEvent::Kicked { robot, strike, from, rest } = *event {
-                self.kicks.push(Kick { time: *time, robot, strike, from, rest });
+            if let WorldEvent::Kicked { robot, kick, from, rest } = *event {
+                self.kicks.push(Kick { time: *time, robot, kick, from, rest });
             }
         }
         self.samples.push(Sample {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use casebase::{Action, CaseRobot, PointMm, TurnTarget};
-use hil_sim::world::{Strike, WorldEvent};
+use hil_sim::world::WorldEvent;
 use hil_sim::{Configuration, Fault, Outcome, Role};
 use protocol::RobotId;
 use protocol::robot_io::LeggedKick;
@@ -144,14 +144,13 @@ impl Story {
             WorldEvent::Grabbed { robot } => format!("{} has the ball", name(robot)),
             WorldEvent::GrabFailed { robot } => format!("{}'s grab fails", name(robot)),
             WorldEvent::Stolen { by, from } => format!("{} takes the ball off {}", name(by), name(from)),
-            WorldEvent::Kicked { robot, strike, from, rest } => {
-                let verb = match strike {
-                    Strike::Clear => "clears the ball",
-                    Strike::Kick(LeggedKick::Pass(_)) => "passes",
-                    Strike::Kick(LeggedKick::ForwardSoft) => "kicks softly ahead",
-                    Strike::Kick(LeggedKick::ForwardHard) => "kicks hard ahead",
-                    Strike::Kick(LeggedKick::Left) => "kicks to its left",
-                    Strike::Kick(LeggedKick::Right) => "kicks to its right",
+            WorldEvent::Kicked { robot, kick, from, rest } => {
+                let verb = match kick {
+                    LeggedKick::Pass(_) => "passes",
+                    LeggedKick::ForwardSoft => "kicks softly ahead",
+                    LeggedKick::ForwardHard => "kicks hard ahead",
+                    LeggedKick::Left => "kicks to its left",
+                    LeggedKick::Right => "kicks to its right",
                 };
                 format!("{} {verb}, {:.1} m", name(robot), from.distance(rest))
             }

@@ -245,8 +245,8 @@ fn every_number_of_the_file_is_used() {
     let file: toml::Value = toml::from_str(FOUR_LEGGED_TOML).unwrap();
     let mut paths = Vec::new();
     leaves(&mut file.clone(), "", &mut |path, _| paths.push(path.to_owned()));
-    // The referee's numbers do not move the world: its own tests hold them.
-    paths.retain(|path| !path.starts_with(".referee"));
+    // The referee's numbers do not move the world, and these scripts kick too soon for a fight: their own tests hold both.
+    paths.retain(|path| !path.starts_with(".referee") && path != ".grab.contest");
     let (dg, two) = (Configuration::DefenderGoalie, Configuration::TwoDefenders);
     let high = Layout { ball: Point::new(1.9, 1.7), ..simple(0).layout };
     let aside = config(Scenario::LeftSide, two, 0, 2).layout;

@@ -73,17 +73,11 @@ impl World {
     }
 
     /// Whether the ball lies where the robot's front legs could close upon it, slow enough.
-    pub(super) fn in_grasp(&self, robot: usize) -> bool {
+    pub(crate) fn in_grasp(&self, robot: usize) -> bool {
         let (grab, walker) = (&self.parameters.grab, &self.walkers[robot]);
         let (distance, angle) = walker.bearing(self.ball.position);
         let relative = self.ball.velocity - walker.velocity_at(self.ball.position);
         distance <= grab.reach && angle.abs() <= grab.half_angle && relative.norm() <= grab.speed_limit
-    }
-
-    /// Whether the ball lies within `reach` of a robot, at most `half_angle` from its heading.
-    pub fn ball_within(&self, robot: usize, reach: f32, half_angle: f32) -> bool {
-        let (distance, angle) = self.walkers[robot].bearing(self.ball.position);
-        distance <= reach && angle.abs() <= half_angle
     }
 }
 

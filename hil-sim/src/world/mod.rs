@@ -12,11 +12,10 @@ mod primitives;
 mod walker;
 
 pub use ball::Ball;
-pub use primitives::Strike;
 pub use walker::{Primitive, PrimitiveKind, Side, Walker};
 
 use geometry::{Field, Point, Vector};
-use protocol::robot_io::ActuatorFrame;
+use protocol::robot_io::{ActuatorFrame, LeggedKick};
 use rules::{FieldSpec, League};
 
 use crate::parameters::Parameters;
@@ -73,7 +72,7 @@ pub enum WorldEvent {
         /// Who.
         robot: usize,
         /// How.
-        strike: Strike,
+        kick: LeggedKick,
         /// From here.
         from: Point<Field>,
         /// It would come to rest here, undisturbed.
@@ -84,9 +83,9 @@ pub enum WorldEvent {
         /// Who.
         robot: usize,
     },
-    /// An opponent struck the ball out of a robot's grip.
+    /// A grab took the ball out of another robot's grip.
     Stolen {
-        /// Who struck it.
+        /// Who took it.
         by: usize,
         /// Who had it.
         from: usize,

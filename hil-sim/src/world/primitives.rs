@@ -5,15 +5,6 @@ use protocol::robot_io::LeggedKick;
 
 use super::{Hold, PrimitiveKind, STEP, World, WorldEvent};
 
-/// How a ball was struck.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Strike {
-    /// One of the body's kicks, with the ball in its grip.
-    Kick(LeggedKick),
-    /// An opponent's kick, without a grip.
-    Clear,
-}
-
 impl World {
     /// A step of the robot's primitive, if one is under way.
     pub(super) fn progress(&mut self, robot: usize) {
@@ -41,12 +32,6 @@ impl World {
         }
     }
 
-    /// Kicks the ball away in direction `to` without a grip on it, as opponents do.
-    pub fn clear_ball(&mut self, robot: usize, to: Angle) {
-        let distance = self.parameters.opponent.clear;
-        self.strike(robot, Strike::Clear, to, distance);
-    }
-
     /// The three directions a body can kick in, from a heading: ahead, left, right.
     pub fn kick_directions(&self, heading: Angle) -> [Angle; 3] {
         let side = Angle::degrees(self.parameters.kick.side_angle_deg);
@@ -57,6 +42,7 @@ impl World {
     fn end_grab(&mut self, robot: usize) {
         match self.hold {
             Some(hold) if hold.robot == robot && hold.firm => {}
+            Some(Hold { robot: from, .. }) if from != robot => self.fight(robot, from),
             Some(hold) if hold.robot == robot && self.grabs.chance(self.parameters.grab.success) => {
                 self.hold = Some(Hold { robot, firm: true });
                 self.events.push(WorldEvent::Grabbed { robot });
@@ -74,6 +60,19 @@ impl World {
         }
     }
 
+    /// The legs have closed upon a ball in another robot's legs.
+    fn fight(&mut self, robot: usize, from: usize) {
+        let grab = &self.parameters.grab;
+        let odds = grab.success * grab.contest;
+        if self.in_grasp(robot) && self.grabs.chance(odds) {
+            self.hold = Some(Hold { robot, firm: true });
+            self.events.push(WorldEvent::Stolen { by: robot, from });
+            self.events.push(WorldEvent::Grabbed { robot });
+        } else {
+            self.events.push(WorldEvent::GrabFailed { robot });
+        }
+    }
+
     /// The robot that holds the ball kicks it.
     fn kick(&mut self, robot: usize, kick: LeggedKick) {
         let (p, heading) = (&self.parameters.kick, self.walkers[robot].pose.heading);
@@ -86,23 +85,14 @@ impl World {
             // `max` first: a distance that is no number becomes the shortest pass.
             LeggedKick::Pass(distance) => (heading, distance.max(p.pass_min).min(p.pass_max)),
         };
-        self.strike(robot, Strike::Kick(kick), direction, distance);
-    }
-
-    /// The ball leaves, with the scatter of every kick; whoever else had it has lost it.
-    fn strike(&mut self, robot: usize, strike: Strike, direction: Angle, distance: f32) {
-        let p = &self.parameters.kick;
         let stretch = 1.0 + p.distance_sd * self.kicks.normal_within(p.scatter_limit);
         let aside = Angle::degrees(p.angle_sd_deg * self.kicks.normal_within(p.scatter_limit));
-        if let Some(Hold { robot: from, .. }) = self.hold.filter(|hold| hold.robot != robot) {
-            self.events.push(WorldEvent::Stolen { by: robot, from });
-        }
         self.hold = None;
         self.leaving = Some(robot);
         let from = self.ball.position;
         let deceleration = self.parameters.ball.deceleration;
         self.ball.send(deceleration, Vector::polar(distance * stretch, direction + aside));
         let rest = self.ball.rest(deceleration);
-        self.events.push(WorldEvent::Kicked { robot, strike, from, rest });
+        self.events.push(WorldEvent::Kicked { robot, kick, from, rest });
     }
 }

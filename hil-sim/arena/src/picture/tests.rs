@@ -8,7 +8,6 @@ use crate::names::Cast;
 use crate::recording::Kick;
 use crate::trial::{TrialConfig, run};
 use brain::Approach;
-use hil_sim::world::Strike;
 use protocol::RobotId;
 
 fn sample(time: f32, x: f32, holder: Option<usize>) -> Sample {
@@ -33,7 +32,7 @@ fn a_carried_and_kicked_ball_is_a_thick_and_then_a_dotted_line() {
     recording.kicks.push(Kick {
         time: 0.79,
         robot: 0,
-        strike: kick,
+        kick,
         from: Point::new(0.19, 0.0),
         rest: Point::default(),
     });
@@ -44,7 +43,7 @@ fn a_carried_and_kicked_ball_is_a_thick_and_then_a_dotted_line() {
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
 }
 
-const LEGGED_KICK: Strike = Strike::Kick(protocol::robot_io::LeggedKick::ForwardSoft);
+const LEGGED_KICK: protocol::robot_io::LeggedKick = protocol::robot_io::LeggedKick::ForwardSoft;
 
 #[test]
 fn a_trial_with_gameplays_lists_each_that_could_be_seen() {

@@ -5,7 +5,7 @@ mod draw;
 use arena::evaluation::{Cell, Evaluation, Profile, Shard};
 use arena::{Moment, TrialConfig, TrialReport, Watcher, run};
 use geometry::{Field, Point};
-use hil_sim::world::{Strike, World, WorldEvent};
+use hil_sim::world::{World, WorldEvent};
 use hil_sim::{Layout, NativeBackend, Outcome, Scenario, SimulationError, TICK_US};
 use protocol::robot_io::LeggedKick;
 use rayon::prelude::*;
@@ -160,9 +160,9 @@ impl Mapper {
         let ball = world.ball.position;
         match *event {
             WorldEvent::Grabbed { robot } => self.got(robot, attackers, ball),
-            WorldEvent::Kicked { robot, strike, from, .. } => {
+            WorldEvent::Kicked { robot, kick, from, .. } => {
                 self.got(robot, attackers, from);
-                let pass = matches!(strike, Strike::Kick(LeggedKick::Pass(_)));
+                let pass = matches!(kick, LeggedKick::Pass(_));
                 self.flying = (robot < attackers).then_some(Flight { by: robot, from, pass });
             }
             WorldEvent::Touched { .. }
