@@ -41,6 +41,11 @@ impl Ball {
         self.velocity.norm() < REST_SPEED
     }
 
+    /// Seconds until it lies, slowing down evenly: twice its way at its speed.
+    pub fn rolls_for(&self) -> f32 {
+        if self.is_at_rest() { 0.0 } else { 2.0 * self.position.distance(self.rest) / self.velocity.norm() }
+    }
+
     /// Whether it rolls towards `point`: within `reach` of it, sooner or later.
     pub fn rolls_towards(&self, point: Point<Field>, reach: f32) -> bool {
         !self.is_at_rest()

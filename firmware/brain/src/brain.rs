@@ -7,7 +7,7 @@ use casebase::{CaseBase, CaseRobot, Problem};
 use protocol::quantized::length_to_mm;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::{
-    AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage,
+    AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
 };
 use protocol::{CycleId, Duration, Instant, RobotId};
 
@@ -21,7 +21,7 @@ use crate::reactive::{Freedom, Reactive};
 use crate::team::cycle::News;
 use crate::team::monitor::Monitor;
 use crate::team::reuse::{self, Wish};
-use crate::team::{Cycle, election, retrieval};
+use crate::team::{Cycle, election, hybrid, retrieval};
 use crate::timer::{Timer, TimerTable};
 
 /// A robot's brain.
@@ -72,7 +72,7 @@ impl<'a> Brain<'a> {
         let TeamMessage::Beacon(beacon) = message;
         self.timers.advance(now);
         self.mates.hear(now, from, beacon);
-        if self.config.approach == Approach::Cases
+        if self.config.approach != Approach::Reactive
             && let Some(state) = &beacon.cycle
         {
             self.adopt(now, state);
@@ -175,7 +175,10 @@ impl<'a> Brain<'a> {
         match &state.decision {
             Decision::Undecided => self.timers.set(Timer::NoDecision, now + DECISION_PATIENCE),
             Decision::NoCase => self.timers.set(Timer::Retry, now + RETRY_AFTER),
-            Decision::Closed(_) if self.config.pause_after_cycle > Duration(0) => {
+            // Where no case was found nothing was played that there is to stop after.
+            Decision::Closed(closure)
+                if *closure != Closure::NoCase && self.config.pause_after_cycle > Duration(0) =>
+            {
                 self.timers.set(Timer::Pause, now + self.config.pause_after_cycle);
             }
             Decision::Play(_) | Decision::Closed(_) => {}
@@ -244,6 +247,10 @@ impl<'a> Brain<'a> {
                 let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
                     retrieval::decide(&self.base, &problem, &self.config.settings, holder)
                 });
+                let decision = match decision {
+                    Decision::Play(play) if self.shoots_sooner_without(now, &play) => Decision::NoCase,
+                    other => other,
+                };
                 self.cycle.decided(decision)
             }
             Some(Decision::Undecided) => None,
@@ -256,6 +263,17 @@ impl<'a> Brain<'a> {
                 if over { self.cycle.closed(Closure::Finished) } else { None }
             }
         }
+    }
+
+    /// Led by both, and the reactive behaviour is expected to shoot sooner than this gameplay.
+    fn shoots_sooner_without(&self, now: Instant, play: &Play) -> bool {
+        if self.config.approach != Approach::Hybrid {
+            return false;
+        }
+        let (Some(cycle), Some(case)) = (self.cycle.id(), self.base.case(play.case)) else { return false };
+        let (belief, mates, base) = (&self.belief, &self.mates, &self.base);
+        let scene = Scene { now, belief, mates, cycle, play, case, base };
+        hybrid::reactive_shoots_sooner(&scene)
     }
 
     /// The robot of ours that has the ball in its grip, as far as this one knows.

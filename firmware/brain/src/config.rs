@@ -48,6 +48,8 @@ pub enum Approach {
     Cases,
     /// The reactive behaviour alone.
     Reactive,
+    /// Both: cases, but the reactive behaviour where it is expected to shoot sooner.
+    Hybrid,
 }
 
 impl BrainConfig {

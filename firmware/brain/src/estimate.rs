@@ -53,13 +53,13 @@ pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
                 // After a kick: from where it was kicked, or from the place, to where the ball will lie.
                 Some((from, leg)) => {
                     let start = if from == part { leg.start() } else { place };
-                    walk(start, leg.end(), WALK_FORWARD).max(roll(scene, &leg))
+                    walk(start, leg.end(), WALK_FORWARD).max(along(scene, &leg))
                 }
                 None => walk(place, scene.ball_used().into(), WALK_FORWARD).min(LONGEST_FETCH),
             }
         }
         Some(Action::ReceiveBall(_)) => {
-            GRAB + handed_over(scene, part, index).map_or(0.0, |(_, leg)| roll(scene, &leg))
+            GRAB + handed_over(scene, part, index).map_or(0.0, |(_, leg)| along(scene, &leg))
         }
         Some(Action::PassBall(_) | Action::Kick(_)) => TURN + KICK,
     }
@@ -71,10 +71,14 @@ fn handed_over(scene: &Scene<'_>, part: CaseRobot, index: usize) -> Option<(Case
     Some((from, scene.leg(from, action)?))
 }
 
-/// Seconds until the ball has come to rest at the leg's end.
-fn roll(scene: &Scene<'_>, leg: &Leg) -> f32 {
+/// Seconds until a ball kicked to lie `distance` away has come to rest there.
+pub(crate) fn roll(scene: &Scene<'_>, distance: f32) -> f32 {
     let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
-    ball.speed_for(leg.start().distance(leg.end())) / ball.deceleration
+    ball.speed_for(distance) / ball.deceleration
+}
+
+fn along(scene: &Scene<'_>, leg: &Leg) -> f32 {
+    roll(scene, leg.start().distance(leg.end()))
 }
 
 fn walk(from: Point<Field>, to: Point<Field>, speed: f32) -> f32 {
@@ -82,10 +86,10 @@ fn walk(from: Point<Field>, to: Point<Field>, speed: f32) -> f32 {
 }
 
 /// A quarter turn with the ball at 1 rad/s, s.
-const TURN: f32 = 1.5;
+pub(crate) const TURN: f32 = 1.5;
 /// Grabs of 0.5 s each, of which three in four succeed, and the last steps before them, s.
-const GRAB: f32 = 1.5;
+pub(crate) const GRAB: f32 = 1.5;
 /// A kick, s.
-const KICK: f32 = 0.5;
+pub(crate) const KICK: f32 = 0.5;
 /// No fetch is expected to take longer, s: half the adaptation limit of 1.5 m at walking speed.
 const LONGEST_FETCH: f32 = 2.5;

@@ -6,6 +6,7 @@
 
 use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, Primitive, TurnTarget};
 use geometry::{Angle, Field, Point};
+use motion::legged::WALK_FORWARD;
 use protocol::quantized::from_mm;
 use protocol::robot_io::LeggedKick;
 use protocol::team::{AbortReason, Play, Progress};
@@ -205,11 +206,11 @@ impl Execution {
         let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
         let at_receive = (usize::from(done)..receive).all(waits);
         let Some((place, _)) = scene.leg_of(self.part, index) else { return at_receive };
-        let near = scene
-            .player(to)
-            .and_then(|id| scene.mates.get(scene.now, id))
-            .is_some_and(|mate| mate.pose().position.distance(place) < RECEIVER_NEAR);
-        at_receive && near
+        // There before the ball is: it walks while the ball rolls.
+        let rolls_for = estimate::roll(scene, scene.belief.pose.position.distance(place));
+        let near = (rolls_for * WALK_FORWARD * RECEIVER_HASTE).max(RECEIVER_NEAR);
+        let mate = scene.player(to).and_then(|id| scene.mates.get(scene.now, id));
+        at_receive && mate.is_some_and(|mate| mate.pose().position.distance(place) < near)
     }
 
     fn run(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, action: Action) -> Verdict {
@@ -245,7 +246,7 @@ impl Execution {
                 Verdict::Running(Intent::Turn { heading })
             }
             Action::GetBall => Self::take(scene, timers, skills::get_ball(belief, self.onwards(scene))),
-            Action::ReceiveBall(_) => match skills::receive(belief) {
+            Action::ReceiveBall(_) => match skills::receive(belief, self.onwards(scene)) {
                 Reception::Going(step) => Self::take(scene, timers, step),
                 Reception::Missed => Verdict::Failed(AbortReason::ActionFailed),
             },
@@ -259,19 +260,26 @@ impl Execution {
                 let Some((place, _)) = scene.leg_of(self.part, self.done) else {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
-                let distance = belief.pose.position.distance(place) * PASS_FIRMLY;
-                self.let_go(belief, skills::aim(belief, place), LeggedKick::Pass(distance))
+                self.release(belief, skills::pass(belief, place))
             }
             Action::Kick(id) => {
                 let leg = scene.leg_of(self.part, self.done);
-                let (Some(kick), Some((end, along))) = (scene.base.kick(id), leg) else {
+                let (Some(kick), Some((_, along))) = (scene.base.kick(id), leg) else {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
-                let direction = match kick.aim {
-                    KickAim::Goal { .. } => skills::aim(belief, end),
-                    KickAim::Heading { .. } => along,
-                };
-                self.let_go(belief, direction, legged_kick(kick.primitive, kick.aim))
+                match kick.aim {
+                    // The case says that it is a shot; where between the posts, and with which leg, is seen only now.
+                    KickAim::Goal { .. } => {
+                        timers.set_if_idle(Timer::PassPatience, scene.now, SHOT_PATIENCE);
+                        let patient = !timers.has_fired(Timer::PassPatience);
+                        let attacked = scene.case.defending().opposite();
+                        let attempt = skills::attempt(belief, attacked, patient);
+                        self.release(belief, attempt.unwrap_or_else(|| skills::push_on(belief, attacked)))
+                    }
+                    KickAim::Heading { .. } => {
+                        self.let_go(belief, along, legged_kick(kick.primitive, kick.aim))
+                    }
+                }
             }
         }
     }
@@ -291,6 +299,11 @@ impl Execution {
 
     /// Aims and kicks; done when the ball has left, failed when it was lost before.
     fn let_go(&mut self, belief: &Belief, direction: Angle, kick: LeggedKick) -> Verdict {
+        self.release(belief, skills::shoot(belief, direction, kick))
+    }
+
+    /// The same with the intent already chosen.
+    fn release(&mut self, belief: &Belief, intent: Intent) -> Verdict {
         if self.kicked && !belief.holds_ball {
             return Verdict::Done;
         }
@@ -300,7 +313,6 @@ impl Execution {
         if belief.busy {
             return Verdict::Running(Intent::Stand { face: None });
         }
-        let intent = skills::shoot(belief, direction, kick);
         self.kicked = matches!(intent, Intent::Kick(_));
         Verdict::Running(intent)
     }
@@ -308,10 +320,17 @@ impl Execution {
     /// Holding its place, facing the ball: what a robot does before its next action may start.
     fn hold(&self, scene: &Scene<'_>) -> Intent {
         if scene.belief.holds_ball {
-            return Intent::Stand { face: None };
+            return self.aim_ahead(scene).unwrap_or(Intent::Stand { face: None });
         }
         let to = self.place.unwrap_or_else(|| scene.place_of(self.part));
         Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
+    }
+
+    /// Turning for the pass that waits for its receiver.
+    fn aim_ahead(&self, scene: &Scene<'_>) -> Option<Intent> {
+        let Some(Action::PassBall(_)) = scene.case.action(self.part, self.done) else { return None };
+        let (place, _) = scene.leg_of(self.part, self.done)?;
+        Some(skills::pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
     }
 
     /// Where the action after the ball is had will want to face.
@@ -369,6 +388,8 @@ fn attack_direction(scene: &Scene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
 }
 
+/// How long a robot looks for a gap before it shoots at the goal, whatever stands there: the league's 3 s of holding a ball.
+const SHOT_PATIENCE: Duration = Duration::millis(3000);
 /// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
 const ACTIONS_A_STEP: usize = 8;
 /// A walking robot has arrived within this distance, m (DESIGN §4.4).
@@ -381,8 +402,7 @@ const PASS_PATIENCE: Duration = Duration::millis(1000);
 const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
 /// A ball rolling within this distance of a receiver comes to it, m.
 const COMING_WITHIN: f32 = 0.4;
-/// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which can still be
-/// grabbed, and in 1.6 s instead of the 2.4 s of one that comes to rest there (0.35 m/s²).
-const PASS_FIRMLY: f32 = 1.2;
+/// Of the way a receiver could walk while the ball rolls, this share is counted on: it turns first, and the ball comes firmly.
+const RECEIVER_HASTE: f32 = 0.6;
 /// A receiver this near its place is there for the passer, m.
 const RECEIVER_NEAR: f32 = 0.3;

@@ -294,6 +294,7 @@ pub const fn approach_word(approach: Approach) -> &'static str {
     match approach {
         Approach::Cases => "cbr",
         Approach::Reactive => "reactive",
+        Approach::Hybrid => "hybrid",
     }
 }
 
@@ -303,7 +304,7 @@ pub fn approach_from_word(word: &str) -> Option<Approach> {
 }
 
 /// All approaches, in the order of tables: the paper's two first.
-pub const APPROACHES: [Approach; 2] = [Approach::Cases, Approach::Reactive];
+pub const APPROACHES: [Approach; 3] = [Approach::Cases, Approach::Reactive, Approach::Hybrid];
 
 /// The word of a positioning in options and reports.
 pub const fn positioning_word(positioning: Positioning) -> &'static str {

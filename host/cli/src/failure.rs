@@ -90,8 +90,6 @@ pub(crate) enum Failure {
     Evaluation(EvaluationError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
-    /// Announced, but not built yet.
-    NotBuilt(&'static str),
     /// Stdin could not be read.
     Input(io::Error),
     /// Stdout could not be written.
@@ -189,7 +187,6 @@ impl fmt::Display for Failure {
                  leave out a filter",
             ),
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
-            Self::NotBuilt(what) => write!(f, "{what} is not built yet; README says what is"),
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),
         }

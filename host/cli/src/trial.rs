@@ -59,7 +59,7 @@ enum ApproachWord {
     Cbr,
     /// The reactive behaviour alone.
     Reactive,
-    /// Both, by expected time to a shot (not built yet).
+    /// Both, by expected time to a shot.
     Hybrid,
 }
 
@@ -110,7 +110,7 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
     let approach = match args.approach {
         ApproachWord::Cbr => Approach::Cases,
         ApproachWord::Reactive => Approach::Reactive,
-        ApproachWord::Hybrid => return Err(Failure::NotBuilt("--approach hybrid")),
+        ApproachWord::Hybrid => Approach::Hybrid,
     };
     let robots = usize::from(args.robots);
     let setup = args.setup.choose(robots)?;

@@ -121,7 +121,6 @@ fn wrong_usage_is_told_and_ends_with_two() {
 fn what_cannot_be_done_is_told_with_its_mend_and_ends_with_one() {
     assert!(refused(&["trial", "--library", "no/such/folder"], 1).contains("league.toml"));
     assert!(refused(&["trial", "--set", "thr_c=far"], 1).contains("thr_c"));
-    assert!(refused(&["trial", "--approach", "hybrid"], 1).contains("not built yet"));
     let nowhere = scratch("no-folder").join("x.svg");
     assert!(refused(&["play", "--svg", nowhere.to_str().expect("UTF-8")], 1).contains("x.svg"));
 }

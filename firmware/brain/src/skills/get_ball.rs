@@ -1,7 +1,7 @@
 //! `get_ball`: go where the ball can be met and take it. Field frame, SI.
 
 use geometry::{Angle, Field, Point, Vector, math};
-use motion::legged::{GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
+use motion::legged::{CARRY_TURN_RATE, GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
 
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
@@ -23,14 +23,13 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     if distance < GRAB_REACH && off < GRAB_HALF_ANGLE && belief.may_grab() {
         return Step::Running(Intent::Grab);
     }
-    let meeting = meeting_point(belief, &ball);
+    let (meeting, in_time) = meeting(&ball, pose.position);
     let direct = pose.position.direction_to(meeting);
-    let contested = belief.nearest_opponent(meeting).is_some_and(|(_, d)| d < CONTESTED_WITHIN);
-    let detour = onwards.filter(|&onwards| {
-        !contested && ball.is_at_rest() && (onwards - direct).abs() > DIRECT_WITHIN && distance > STAND_OFF
-    });
-    if let Some(onwards) = detour {
-        let to = meeting - Vector::polar(STAND_OFF, onwards);
+    if let Some(onwards) = onwards
+        && distance > STAND_OFF
+        && let Some(to) =
+            place_behind(belief, &ball, onwards, in_time + (onwards - direct).abs() / CARRY_TURN_RATE)
+    {
         return Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true });
     }
     // Not slowing down before the ball is in reach: the walk would end beyond that.
@@ -39,24 +38,40 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     Step::Running(Intent::Walk { to, face, shy_of_ball: false })
 }
 
-/// The earliest place on the ball's way that the robot reaches no later than the ball; else where it will rest.
-fn meeting_point(belief: &Belief, ball: &Ball) -> Point<Field> {
+/// Where to stand for a ball that will lie, so as to face `onwards` with it at once; `None` where meeting it and turning with
+/// it, ready `by` seconds from now, is quicker, or an opponent is there first.
+fn place_behind(belief: &Belief, ball: &Ball, onwards: Angle, by: f32) -> Option<Point<Field>> {
+    let from = belief.pose.position;
+    let behind = ball.rest - Vector::polar(STAND_OFF, onwards);
+    // Around the ball the way is an arc about it, not through it.
+    let astray = (onwards - from.direction_to(ball.rest)).abs();
+    let arc = BALL_CLEARANCE * (astray - math::FRAC_PI_2).max(0.0);
+    let walk = (from.distance(behind) + arc) / WALK_FORWARD;
+    let ready = walk.max(ball.rolls_for());
+    let opponent = belief
+        .nearest_opponent(ball.rest)
+        .map_or(f32::INFINITY, |(_, distance)| (distance - GRAB_REACH) / WALK_FORWARD);
+    (ready + WORTH_TURNING < by && ready < opponent).then_some(behind)
+}
+
+/// Where a robot that now stands at `from` can have the ball, and in how many seconds: the earliest place on the ball's
+/// way that it reaches no later than the ball, else where the ball will rest.
+pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
+    let walk = |to: Point<Field>| from.distance(to) / WALK_FORWARD;
     if ball.is_at_rest() {
-        return ball.position;
+        return (ball.position, walk(ball.position));
     }
     let way = ball.rest - ball.position;
-    let speed = ball.velocity.norm();
-    // An evenly slowing ball: at share 1 − (1 − τ)² of its way after share τ of its time 2·way/speed.
-    let duration = 2.0 * way.norm() / speed;
+    // An evenly slowing ball: at share 1 − (1 − τ)² of its way after share τ of its time.
+    let duration = ball.rolls_for();
     for step in 1..MEETING_STEPS {
         let tau = step as f32 / MEETING_STEPS as f32;
         let point = ball.position + way * (1.0 - (1.0 - tau) * (1.0 - tau));
-        let robot = belief.pose.position.distance(point) / WALK_FORWARD;
-        if robot <= tau * duration {
-            return point;
+        if walk(point) <= tau * duration {
+            return (point, tau * duration);
         }
     }
-    ball.rest
+    (ball.rest, walk(ball.rest).max(duration))
 }
 
 /// Where the robot's centre stands to grab, behind the ball, m: the ball lies between the front legs.
@@ -65,10 +80,10 @@ const STAND_OFF: f32 = 0.14;
 const WALK_UP_TO: f32 = 0.08;
 /// Within this distance only the way to the ball counts, m.
 const NEAR: f32 = 0.5;
-/// Facing onwards comes for free within this angle, rad.
-const DIRECT_WITHIN: f32 = 1.0;
-/// An opponent this near the ball makes it a race, m.
-const CONTESTED_WITHIN: f32 = 0.9;
+/// Standing behind the ball must gain this much, s: the steps that a robot needs to stand still there.
+const WORTH_TURNING: f32 = 0.3;
+/// How far off the ball a robot walks around it, m.
+const BALL_CLEARANCE: f32 = 0.2;
 /// Places tried on the ball's way.
 const MEETING_STEPS: u32 = 16;
 
@@ -120,10 +135,10 @@ mod tests {
     fn a_rolling_ball_is_met_where_the_robot_is_in_time() {
         // 1 m ahead, rolling to the left at 0.7 m/s, to rest after 0.7 m and 2 s: the robot needs more than 3 s.
         let b = belief((1.0, 0.0), (0.0, 0.7), (1.0, 0.7));
-        assert_eq!(meeting_point(&b, &b.ball.unwrap()), Point::new(1.0, 0.7));
+        assert_eq!(meeting(&b.ball.unwrap(), b.pose.position).0, Point::new(1.0, 0.7));
         // Rolling towards the robot it is met on the way.
         let b = belief((1.0, 0.0), (-0.7, 0.0), (0.3, 0.0));
-        let met = meeting_point(&b, &b.ball.unwrap());
+        let met = meeting(&b.ball.unwrap(), b.pose.position).0;
         assert!(met.x() > 0.3 && met.x() < 0.7, "{met:?}");
     }
 
@@ -141,5 +156,14 @@ mod tests {
             panic!("walks")
         };
         assert!(to.x() < 0.55, "straight up to the ball: {to:?}");
+    }
+
+    #[test]
+    fn for_a_ball_that_comes_to_rest_near_it_stands_where_it_will_face_onwards() {
+        // Rolling towards it for 2.4 s, to rest 0.4 m ahead; a quarter turn with the ball would take 1.6 s more.
+        let b = belief((1.4, 0.0), (-0.84, 0.0), (0.4, 0.0));
+        let left = Angle::degrees(90.0);
+        let Step::Running(Intent::Walk { to, face, .. }) = get_ball(&b, Some(left)) else { panic!("walks") };
+        assert!(to.distance(Point::new(0.4, -STAND_OFF)) < 1e-4 && face == left, "{to:?}");
     }
 }

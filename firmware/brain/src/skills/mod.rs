@@ -6,10 +6,12 @@
 mod get_ball;
 mod kick;
 mod receive;
+mod shot;
 
-pub use get_ball::get_ball;
-pub use kick::{aim, carry_to, shoot};
+pub use get_ball::{get_ball, meeting};
+pub use kick::{aim, carry_to, pass, shoot};
 pub use receive::{Reception, receive};
+pub use shot::{attempt, push_on};
 
 use crate::body::Intent;
 

@@ -1,6 +1,6 @@
 //! `receive_ball`: meet a passed ball and take it, or say why it will not be had. Field frame, SI.
 
-use geometry::Segment;
+use geometry::{Angle, Segment};
 
 use crate::belief::Belief;
 use crate::skills::{Step, get_ball};
@@ -15,11 +15,11 @@ pub enum Reception {
 }
 
 /// Goes for a ball that has been passed to this robot.
-pub fn receive(belief: &Belief) -> Reception {
+pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
     }
-    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, None)) };
+    let Some(ball) = belief.ball else { return Reception::Going(get_ball(belief, onwards)) };
     let me = belief.pose.position;
     let missed = if ball.is_at_rest() {
         ball.position.distance(me) > FETCH_WITHIN
@@ -27,7 +27,7 @@ pub fn receive(belief: &Belief) -> Reception {
         // Rolling away, and its way to rest comes no nearer than can be fetched.
         Segment::new(ball.position, ball.rest).distance_to(me) > FETCH_WITHIN
     };
-    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, None)) }
+    if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }
 }
 
 /// A pass that ends within this distance is still fetched, m: 3 s of walking, one case's typical time.
@@ -46,14 +46,14 @@ mod tests {
         let lying =
             |x| Ball { position: Point::new(x, 0.0), velocity: Vector::default(), rest: Point::new(x, 0.0) };
         belief.ball = Some(lying(1.2));
-        assert_eq!(receive(&belief), Reception::Missed);
+        assert_eq!(receive(&belief, None), Reception::Missed);
         belief.ball = Some(lying(0.7));
-        assert!(matches!(receive(&belief), Reception::Going(Step::Running(_))));
+        assert!(matches!(receive(&belief, None), Reception::Going(Step::Running(_))));
         belief.ball = Some(Ball {
             position: Point::new(1.5, 0.0),
             velocity: Vector::new(-0.9, 0.0),
             rest: Point::new(0.35, 0.0),
         });
-        assert!(matches!(receive(&belief), Reception::Going(Step::Running(_))));
+        assert!(matches!(receive(&belief, None), Reception::Going(Step::Running(_))));
     }
 }

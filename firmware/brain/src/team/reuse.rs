@@ -61,8 +61,7 @@ fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
     Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
 }
 
-/// At its adapted position, facing the ball. For the robot that gets the ball "its adapted position" means "next to the
-/// ball" (paper §4.2): where somebody stands in that very place, next to the ball will do.
+/// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" will do (paper §4.2).
 fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     let pose = scene.belief.pose;
     if scene.belief.holds_ball {
@@ -73,10 +72,7 @@ fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     let next_to_ball = |position: Point<Field>| {
         scene.belief.ball.is_some_and(|ball| position.distance(ball.position) <= NEXT_TO_BALL)
     };
-    let taken =
-        scene.belief.nearest_opponent(place).is_some_and(|(_, distance)| distance < PLACE_TAKEN_WITHIN);
-    let near = pose.position.distance(place) <= ARRIVED_WITHIN
-        || (gets_ball && taken && next_to_ball(pose.position));
+    let near = pose.position.distance(place) <= ARRIVED_WITHIN || (gets_ball && next_to_ball(pose.position));
     let face = face_ball(scene.belief, pose.position);
     near && (face - pose.heading).abs() <= FACING_WITHIN
 }
@@ -102,8 +98,6 @@ fn executes(scene: &Scene<'_>, part: casebase::CaseRobot) -> bool {
     matches!(scene.progress_of(part), Some(Progress::Execute { .. } | Progress::WaitEnd { finished: true }))
 }
 
-/// An opponent this near a place stands in it: two radii of a body, m.
-const PLACE_TAKEN_WITHIN: f32 = 0.24;
 /// Next to the ball, m: a step from touching it.
 const NEXT_TO_BALL: f32 = 0.35;
 /// Facing the ball within this angle, rad: 20° (checklist R24).

@@ -12,7 +12,7 @@ fn play(words: &[&str]) -> Vec<Value> {
 
 #[test]
 fn every_score_counts_its_attempts_and_any_number_of_jobs_gives_the_same() {
-    let words = ["front-side", "side/cross", "--trials", "6", "--seed", "3"];
+    let words = ["front-side", "side/draw-out", "--trials", "6", "--seed", "3"];
     let scores = play(&[&words[..], &["--jobs", "1"]].concat());
     assert_eq!(scores, play(&[&words[..], &["--jobs", "3"]].concat()));
     assert!(scores.len() >= 4);
@@ -29,13 +29,14 @@ fn every_score_counts_its_attempts_and_any_number_of_jobs_gives_the_same() {
 #[test]
 fn one_kind_of_opponents_gives_one_row_a_case_and_the_file_names_its_command() {
     let run =
-        onetwo(&["cases", "play", "side/cross", "--trials", "2", "--opponents", "standing", "--markdown"]);
+        onetwo(&["cases", "play", "side/draw-out", "--trials", "2", "--opponents", "standing", "--markdown"]);
     assert_eq!(run.code, 0);
     assert!(
-        run.stdout
-            .contains("`onetwo cases play side/cross --trials 2 --seed 1 --opponents standing --markdown`")
+        run.stdout.contains(
+            "`onetwo cases play side/draw-out --trials 2 --seed 1 --opponents standing --markdown`"
+        )
     );
-    assert_eq!(run.lines().iter().filter(|line| line.starts_with("| side/cross | standing |")).count(), 1);
+    assert_eq!(run.lines().iter().filter(|line| line.starts_with("| side/draw-out | standing |")).count(), 1);
 }
 
 #[test]

@@ -1,0 +1,265 @@
+//! Where between the posts does a shot have the best chance? The open angle of the goal, as kicks scatter. Field frame, SI.
+//!
+//! Rays from the robot fan over the goal's mouth. A ray is free where no opponent can be at it when the ball passes: each
+//! covers its body and what it walks sideways until then. A kick in one of these directions goes astray as kicks do
+//! (motion's spread); its chance is the share of such kicks that run along free rays, times that of rolling far enough.
+
+use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
+use motion::legged::{KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_SIDEWAYS};
+use motion::rolling::RollingBall;
+use protocol::robot_io::LeggedKick;
+
+use crate::belief::Belief;
+use crate::body::{Intent, legged};
+use crate::skills;
+
+/// A shot at goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Shot {
+    /// Where to, on the field.
+    direction: Angle,
+    /// With which kick.
+    kick: LeggedKick,
+    /// The chance of a goal, 0 to 1.
+    chance: f32,
+}
+
+/// With the ball near their goal: shoot if the chance is good, or fair while an opponent is about to take the ball (or there is
+/// no more time); else walk with the ball to where shots come from best. `None` while neither is near.
+pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Intent> {
+    let pressed = is_pressed(belief);
+    let enough = if pressed || !patient { FAIR_SHOT } else { GOOD_SHOT };
+    let shot = best_shot(belief, attacked)?;
+    if shot.chance >= enough {
+        return Some(skills::shoot(belief, shot.direction, shot.kick));
+    }
+    let me = belief.pose.position;
+    let place = shooting_place(belief, attacked);
+    if me.distance(place) > CARRIED_AT_MOST {
+        return None;
+    }
+    // A goalie on the way to where the ball is leaves the far post open once it is there: be turned to it by then.
+    let goal = belief.league().field().goal_center(attacked);
+    let far = Point::new(goal.x(), -FAR_POST * me.y());
+    let aside = me.y().abs() > ASIDE;
+    Some(if aside { Intent::Turn { heading: me.direction_to(far) } } else { Intent::Carry { to: place } })
+}
+
+/// Is an opponent about to take the ball?
+fn is_pressed(belief: &Belief) -> bool {
+    belief.nearest_opponent(belief.pose.position).is_some_and(|(_, distance)| distance < PRESSED_WITHIN)
+}
+
+/// A short kick on towards where shots come from best.
+pub fn push_on(belief: &Belief, attacked: GoalEnd) -> Intent {
+    let place = shooting_place(belief, attacked);
+    skills::shoot(belief, belief.pose.position.direction_to(place), LeggedKick::ForwardSoft)
+}
+
+/// Where a shot comes from best: before the goal, aside of its middle, where a goalie opposite the ball leaves the far post open.
+fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
+    let field = belief.league().field();
+    let goal = field.goal_center(attacked);
+    let side = if belief.pose.position.y() < 0.0 { -1.0 } else { 1.0 };
+    let out = (field.penalty_depth + SHOT_BEFORE_AREA) * goal.x().signum();
+    Point::new(goal.x() - out, 0.5 * field.penalty_width * side)
+}
+
+/// The shot at the goal at `attacked` with the best chance, less what turning for it costs; `None` from behind the goal line.
+fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
+    let fan = Fan::new(belief, attacked)?;
+    let mut best: Option<(f32, Shot)> = None;
+    for kick in SHOTS {
+        let (off, length) = legged::nominal(kick);
+        let (free, far) = (fan.free_rays(belief, length), reaches(length, fan.distance));
+        for aim in (0..RAYS).step_by(2) {
+            let direction = fan.ray(aim);
+            let chance = far * fan.chance(&free, aim);
+            let turn = (direction - off - belief.pose.heading).abs();
+            let worth = chance - TURN_PRICE * turn;
+            if best.as_ref().is_none_or(|(most, _)| worth > *most) {
+                best = Some((worth, Shot { direction, kick, chance }));
+            }
+        }
+    }
+    best.map(|(_, shot)| shot)
+}
+
+/// The chance that a kick nominally `length` long rolls beyond `distance`.
+fn reaches(length: f32, distance: f32) -> f32 {
+    // The logistic curve of slope 1.7 is the normal distribution within 0.01.
+    let margin = (length - distance) / (KICK_LENGTH_SPREAD * length);
+    1.0 / (1.0 + math::exp(-1.7 * margin))
+}
+
+/// Directions from the robot into the goal, from its right post to its left.
+struct Fan {
+    from: Point<Field>,
+    right: Angle,
+    /// Between neighbouring rays, rad.
+    step: f32,
+    /// To the goal's centre, m.
+    distance: f32,
+}
+
+impl Fan {
+    fn new(belief: &Belief, attacked: GoalEnd) -> Option<Self> {
+        let (field, from) = (belief.league().field(), belief.pose.position);
+        let center = field.goal_center(attacked);
+        let half = field.goal_width * 0.5 - belief.league().ball().radius;
+        let posts = [-half, half].map(|y| from.direction_to(Point::new(center.x(), y)));
+        let (right, width) = match attacked {
+            GoalEnd::Positive => (posts[0], (posts[1] - posts[0]).radians()),
+            GoalEnd::Negative => (posts[1], (posts[0] - posts[1]).radians()),
+        };
+        (width > 0.0).then(|| Self {
+            from,
+            right,
+            step: width / (RAYS - 1) as f32,
+            distance: from.distance(center),
+        })
+    }
+
+    fn ray(&self, index: usize) -> Angle {
+        self.right + Angle::new(self.step * index as f32)
+    }
+
+    /// The rays along which a ball kicked that far passes everybody.
+    fn free_rays(&self, belief: &Belief, length: f32) -> [bool; RAYS] {
+        let mut free = [true; RAYS];
+        let rolling = RollingBall { deceleration: belief.league().ball().rolling_deceleration };
+        let speed = rolling.speed_for(length);
+        let body = belief.league().robot().radius + belief.league().ball().radius;
+        for &opponent in &belief.opponents {
+            let to = opponent - self.from;
+            // A ball that stops before it is covered for certain.
+            let Some(time) = rolling.travel_time(speed, to.norm()) else { continue };
+            let covered = body + sidestep(time);
+            for (index, free) in free.iter_mut().enumerate() {
+                let along = Vector::polar(1.0, self.ray(index));
+                if along.dot(to) > 0.0 && along.cross(to).abs() < covered {
+                    *free = false;
+                }
+            }
+        }
+        free
+    }
+
+    /// The share of kicks aimed along ray `aim` that run along free rays.
+    fn chance(&self, free: &[bool; RAYS], aim: usize) -> f32 {
+        let density = |index: usize| {
+            let z = self.step * index.abs_diff(aim) as f32 / KICK_ANGLE_SPREAD;
+            math::exp(-0.5 * z * z)
+        };
+        let sum: f32 = (0..RAYS).filter(|&index| free[index]).map(density).sum();
+        sum * self.step / (KICK_ANGLE_SPREAD * ROOT_TWO_PI)
+    }
+}
+
+/// How far a robot that stands now walks aside within `time`, m.
+fn sidestep(time: f32) -> f32 {
+    let time = (time - REACTION).max(0.0);
+    let speeding = WALK_SIDEWAYS / WALK_ACCELERATION;
+    if time < speeding {
+        0.5 * WALK_ACCELERATION * time * time
+    } else {
+        WALK_SIDEWAYS * (time - 0.5 * speeding)
+    }
+}
+
+/// Kicks to shoot with: the hard one, and from near the goal the head kicks, which save turning.
+const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, LeggedKick::Right];
+/// A shot with this chance is taken at once: about the best there is against a goalie in his place.
+const GOOD_SHOT: f32 = 0.3;
+/// And with this one if an opponent is about to take the ball.
+const FAIR_SHOT: f32 = 0.12;
+/// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's walk.
+const PRESSED_WITHIN: f32 = 0.6;
+/// Shots come from this far before the penalty area, m: out of its goalie's reach.
+const SHOT_BEFORE_AREA: f32 = 0.5;
+/// The ball is carried no farther for a shot, m: 5 s of walking with it.
+const CARRIED_AT_MOST: f32 = 0.8;
+/// This far off the goal's middle axis the far post is worth waiting for, m.
+const ASIDE: f32 = 0.35;
+/// Where beside the goal's middle to wait aiming at, as a share of the own distance from the axis.
+const FAR_POST: f32 = 0.4;
+/// Rays in a fan: at 1 m from the goal they stand 3° apart, a third of a kick's spread.
+const RAYS: usize = 15;
+/// Chance that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a goalie walks half a goal's width.
+const TURN_PRICE: f32 = 0.1;
+/// A robot that stands needs this long to see a kick and to lift a leg, s.
+const REACTION: f32 = 0.3;
+/// √(2π).
+const ROOT_TWO_PI: f32 = 2.506_628_3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Pose;
+    use rules::League;
+
+    fn belief(x: f32, y: f32, opponents: &[(f32, f32)]) -> Belief {
+        let mut belief = Belief::new(League::FourLegged);
+        belief.pose = Pose { position: Point::new(x, y), heading: Angle::ZERO };
+        for &(x, y) in opponents {
+            let _ = belief.opponents.push(Point::new(x, y));
+        }
+        belief
+    }
+
+    fn chance(belief: &Belief) -> f32 {
+        best_shot(belief, GoalEnd::Positive).unwrap().chance
+    }
+
+    #[test]
+    fn an_empty_goal_is_as_wide_as_it_looks_to_a_scattering_kick() {
+        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a hard kick of
+        // 2.15 ± 0.645 m rolls 1 m in 96 of 100.
+        assert!((chance(&belief(1.7, 0.0, &[])) - 0.95 * 0.963).abs() < 0.03);
+        // From 2.15 m every second hard kick gets there, and the posts stand at ±9.4°: 65 of 100.
+        assert!((chance(&belief(0.55, 0.0, &[])) - 0.5 * 0.65).abs() < 0.03);
+    }
+
+    #[test]
+    fn a_shot_goes_where_the_goalie_is_not() {
+        let shot = best_shot(&belief(1.5, 0.0, &[(2.5, 0.15)]), GoalEnd::Positive).unwrap();
+        assert!(shot.direction.radians() < 0.0, "{shot:?}");
+        // Right before the goalie there is no gap at all.
+        assert_eq!(chance(&belief(1.5, 0.0, &[(2.05, 0.0)])), 0.0);
+    }
+
+    #[test]
+    fn against_a_goalie_opposite_the_ball_the_best_place_is_aside_of_the_goals_middle() {
+        let opposite = |y: f32| chance(&belief(1.4, y, &[(2.05, y)]));
+        assert!(opposite(0.6) > 0.4 && opposite(0.6) > opposite(0.3) && opposite(0.3) > opposite(0.0));
+    }
+
+    #[test]
+    fn the_other_goal_is_the_same_goal_turned_round() {
+        let there = best_shot(&belief(1.5, 0.4, &[(2.1, 0.5)]), GoalEnd::Positive).unwrap();
+        let mut turned = belief(-1.5, -0.4, &[(-2.1, -0.5)]);
+        turned.pose.heading = Angle::HALF_TURN;
+        let here = best_shot(&turned, GoalEnd::Negative).unwrap();
+        assert!((here.direction - there.direction - Angle::HALF_TURN).abs() < 1e-3);
+        assert!((here.chance - there.chance).abs() < 1e-3 && here.kick == there.kick);
+    }
+
+    #[test]
+    fn without_a_gap_it_waits_turned_to_the_far_post_and_under_pressure_takes_what_there_is() {
+        // The goalie is still on its way across: near post open by a little.
+        let waiting = belief(1.4, 0.6, &[(2.05, 0.33)]);
+        let Some(Intent::Turn { heading }) = attempt(&waiting, GoalEnd::Positive, true) else {
+            panic!("waits")
+        };
+        assert!(heading.radians() < -0.4, "{heading:?}");
+        // In the middle it walks aside first; far away it is no business of this skill.
+        let middle = belief(1.4, 0.1, &[(2.05, 0.1)]);
+        assert!(matches!(attempt(&middle, GoalEnd::Positive, true), Some(Intent::Carry { .. })));
+        assert_eq!(attempt(&belief(0.0, 0.0, &[(2.05, 0.0)]), GoalEnd::Positive, true), None);
+        let fair = belief(0.8, -0.5, &[(2.05, -0.5)]);
+        let pressed = belief(0.8, -0.5, &[(2.05, -0.5), (0.6, -0.1)]);
+        let share = chance(&fair);
+        assert!((FAIR_SHOT..GOOD_SHOT).contains(&share), "{share}");
+        assert!(!matches!(attempt(&pressed, GoalEnd::Positive, true), Some(Intent::Carry { .. }) | None));
+    }
+}

@@ -1,0 +1,83 @@
+//! When is it better to act than to reason? The deliberative and the reactive approach combined (Ros et al. 2009, §5.4 and §7).
+//!
+//! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting plays", elsewhere
+//! cooperation is better. So the reactive behaviour competes with the retrieved case by the time to its shot, as both are
+//! expected: the case's gameplay and what is left to the goal after it, against fetching the ball and kicking it on until
+//! the goal is in reach. SI units.
+
+use geometry::{Field, Point, Segment};
+use motion::legged::WALK_FORWARD;
+
+use casebase::{Action, KickAim};
+
+use crate::estimate;
+use crate::execution::Scene;
+
+/// Is the reactive behaviour expected to shoot sooner than the gameplay of `scene`?
+pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
+    let ball = Point::from(casebase::PointMm::from(scene.play.ball));
+    let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
+    if ball.distance(goal) > IN_REACH {
+        return false;
+    }
+    let players = scene.play.robots.iter().filter_map(|&id| scene.mates.get(scene.now, id));
+    let nearest = players
+        .map(|mate| mate.pose().position)
+        .chain([scene.belief.pose.position])
+        .map(|robot| robot.distance(ball))
+        .fold(f32::INFINITY, f32::min);
+    let way = Segment::new(ball, goal);
+    let stands_in_it = |robot: &Point<Field>| {
+        let at = way.closest_to(*robot).distance(ball);
+        at < DUEL_AHEAD && way.distance_to(*robot) < DUEL_BESIDE
+    };
+    let duel = if scene.belief.opponents.iter().any(stands_in_it) { DUEL } else { 0.0 };
+    let alone = nearest / WALK_FORWARD + until_shot(scene, ball) + duel;
+    alone + MARGIN < gameplay_until_shot(scene)
+}
+
+/// Expected seconds until the gameplay's shot, or until the one that could follow where it leaves the ball.
+fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
+    let shoots = scene.case.robots().flat_map(|part| scene.case.gameplay(part)).any(|action| match action {
+        Action::Kick(kind) => {
+            scene.base.kick(kind).is_some_and(|kick| matches!(kick.aim, KickAim::Goal { .. }))
+        }
+        _ => false,
+    });
+    let duration = estimate::gameplay(scene);
+    if shoots {
+        return duration;
+    }
+    let left = scene.case.legs(scene.ball_used()).last().map(|leg| leg.end());
+    duration + left.map_or(0.0, |ball| until_shot(scene, ball))
+}
+
+/// Expected seconds from having come to a ball that lies at `ball` until a shot: grabs, and short kicks on until the goal is in reach.
+fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
+    let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
+    let mut pushes = 0.0;
+    let mut left = ball.distance(goal) - SHOT_FROM;
+    while left > 0.0 {
+        pushes += 1.0;
+        left -= PUSH;
+    }
+    estimate::GRAB
+        + pushes * (estimate::KICK + estimate::roll(scene, PUSH) + estimate::GRAB)
+        + estimate::TURN
+        + estimate::KICK
+}
+
+/// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach, m.
+const IN_REACH: f32 = 2.15;
+/// The reactive behaviour must win by this much, s: estimates of a gameplay's seconds are no better.
+const MARGIN: f32 = 1.0;
+/// An opponent this far ahead of the ball, and this far beside its way to the goal, will dispute it, m: what it walks in 3 s.
+const DUEL_AHEAD: f32 = 1.0;
+/// See [`DUEL_AHEAD`].
+const DUEL_BESIDE: f32 = 0.6;
+/// What a duel takes, s: a few grabs by either side.
+const DUEL: f32 = 6.0;
+/// From this far shots have a chance, m: a hard kick (2.15 m) less its scatter in length.
+const SHOT_FROM: f32 = 1.6;
+/// A short kick's nominal way, m.
+const PUSH: f32 = 0.8;
