@@ -69,7 +69,7 @@ codes! {
     MATE_IN_PATH "mate-in-path" Warning "A teammate that does not take the ball stands on a leg of its way. Move it aside."
     SHORT_PASS "short-pass" Warning "A pass shorter than its own radius r_min. Let the robot dribble, or stand farther off."
     KICK_LEAVES "kick-leaves" Warning "A kick leaves the field in the case's own situation. Take a shorter kind, or another heading."
-    IDLE_BALL "idle-ball" Warning "The plan ends with get_ball or receive_ball: the ball goes nowhere. Say what is done with it."
+    IDLE_BALL "idle-ball" Warning "A robot goes for the ball and does nothing with it. Say what is done with it."
     FILE_NAME "file-name" Warning "A region or name with characters other than letters, digits, - _ and . is hard to type and may not travel."
 }
 

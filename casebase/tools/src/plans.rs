@@ -84,11 +84,11 @@ fn mates_on(notes: &mut Notes<'_>, case: &Authored, leg: &Leg, league: &League) 
     }
 }
 
-/// Who takes the ball last should do something with it.
+/// Who goes for the ball should do something with it; a pass received may end a gameplay, the next case begins with it.
 fn idle_ball(notes: &mut Notes<'_>, case: &Authored) {
     for (robot, mate) in CaseRobot::first(case.teammates.len()).zip(&case.teammates) {
         let last = mate.gameplay.iter().rev().find(|(action, _)| *action != Action::Wait);
-        if let Some((Action::GetBall | Action::ReceiveBall(_), span)) = last {
+        if let Some((Action::GetBall, span)) = last {
             let message = format!("{robot} takes the ball and does nothing with it");
             notes.add(code::IDLE_BALL, span, message, "let it dribble_to, pass_ball or kick");
         }

@@ -104,7 +104,7 @@ mistakes! {
     a_case_for_nothing_is_doubtful case "Two attackers at the centre line, a defender ahead: pass around it and shoot." => " ", NO_INTENT 1 "what the case is for";
     an_opponent_on_a_robot_is_doubtful case "at = [-150, 40]" => "at = [-750, 30]", SAME_SPOT 14 "move one of the two";
     a_pass_over_a_hand_s_breadth_is_doubtful case "at = [300, 900]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, 40]" => "at = [-600, 99]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]\n\n[[opponents]]\nat = [-150, -440]", SHORT_PASS 7 "dribble";
-    a_receiver_that_keeps_the_ball_is_doubtful case ", { kick = \"goal\" }" => "", IDLE_BALL 11 "dribble_to, pass_ball or kick";
+    a_robot_that_fetches_the_ball_for_nothing_is_doubtful case ", { kick = \"goal\" }" => ", { kick = \"forward\" }, \"get_ball\"", IDLE_BALL 11 "dribble_to, pass_ball or kick";
     a_kick_out_of_the_field_is_doubtful case "at = [300, 900]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"goal\" }]" => "at = [300, 950]\ngameplay = [\"wait\", { receive_ball = 1 }, { kick = \"left\" }]", KICK_LEAVES 11 "a shorter kind";
 }
 
