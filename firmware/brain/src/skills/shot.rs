@@ -98,6 +98,10 @@ struct Fan {
     right: Angle,
     /// Between neighbouring rays, rad.
     step: f32,
+    /// The rays' directions, of length 1.
+    along: [Vector<Field>; RAYS],
+    /// How dense kicks are so many rays off the one they are aimed along; 1 for none.
+    density: [f32; RAYS],
     /// To the goal's centre, m.
     distance: f32,
 }
@@ -112,12 +116,17 @@ impl Fan {
             GoalEnd::Positive => (posts[0], (posts[1] - posts[0]).radians()),
             GoalEnd::Negative => (posts[1], (posts[0] - posts[1]).radians()),
         };
-        (width > 0.0).then(|| Self {
-            from,
-            right,
-            step: width / (RAYS - 1) as f32,
-            distance: from.distance(center),
-        })
+        if width <= 0.0 {
+            return None;
+        }
+        let step = width / (RAYS - 1) as f32;
+        // Both are asked for again and again: each is computed once.
+        let along = core::array::from_fn(|index| Vector::polar(1.0, right + Angle::new(step * index as f32)));
+        let density = core::array::from_fn(|off| {
+            let z = step * off as f32 / KICK_ANGLE_SPREAD;
+            math::exp(-0.5 * z * z)
+        });
+        Some(Self { from, right, step, along, density, distance: from.distance(center) })
     }
 
     fn ray(&self, index: usize) -> Angle {
@@ -135,8 +144,7 @@ impl Fan {
             // A ball that stops before it is covered for certain.
             let Some(time) = rolling.travel_time(speed, to.norm()) else { continue };
             let covered = body + sidestep(time);
-            for (index, free) in free.iter_mut().enumerate() {
-                let along = Vector::polar(1.0, self.ray(index));
+            for (along, free) in self.along.iter().zip(&mut free) {
                 if along.dot(to) > 0.0 && along.cross(to).abs() < covered {
                     *free = false;
                 }
@@ -147,10 +155,7 @@ impl Fan {
 
     /// The share of kicks aimed along ray `aim` that run along free rays.
     fn chance(&self, free: &[bool; RAYS], aim: usize) -> f32 {
-        let density = |index: usize| {
-            let z = self.step * index.abs_diff(aim) as f32 / KICK_ANGLE_SPREAD;
-            math::exp(-0.5 * z * z)
-        };
+        let density = |index: usize| self.density[index.abs_diff(aim)];
         let sum: f32 = (0..RAYS).filter(|&index| free[index]).map(density).sum();
         sum * self.step / (KICK_ANGLE_SPREAD * ROOT_TWO_PI)
     }
