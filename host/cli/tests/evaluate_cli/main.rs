@@ -121,13 +121,16 @@ fn jobs_shards_and_a_kill_change_no_byte() {
     assert_eq!(hash(&killed), expected);
 }
 
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 #[test]
 fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
     let out = scratch("ctrl-c");
     let file = out.join("trials-1-of-1.csv");
     let arguments = [&SHORT[..], &["5", "--trials", "400", "--jobs", "1", "--out", text(&out)]].concat();
-    let mut command = onetwo(&arguments);
+    // Whoever started the tests in the background made them deaf to Ctrl-C, and their children with them.
+    let deaf = onetwo(&arguments);
+    let mut command = std::process::Command::new("env");
+    command.arg("--default-signal=INT").arg(deaf.get_program()).args(deaf.get_args());
     let child = command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped()).spawn();
     let mut child = child.expect("it starts");
     while rows_kept(&file) < 2 && child.try_wait().expect("a child").is_none() {
@@ -137,7 +140,7 @@ fn ctrl_c_keeps_what_is_over_and_says_how_to_go_on() {
     assert!(interrupt.expect("kill is there").success());
     let end = child.wait_with_output().expect("it ends");
     let words = String::from_utf8(end.stderr).expect("UTF-8");
-    assert_eq!(end.status.code(), Some(1), "{words}");
+    assert_eq!(end.status.code(), Some(1), "{} {words}", end.status);
     assert!(words.contains("goes on from here"), "{words}");
     let kept = fs::read_to_string(&file).expect("kept");
     assert!(kept.ends_with('\n') && rows_kept(&file) >= 2, "no line is torn");
