@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use geometry::{Point, Twist, Vector};
+use geometry::{Point, Pose, Twist, Vector};
 use protocol::TeamId;
 use protocol::robot_io::{LeggedKick, LeggedPrimitive, SensorFrame};
 
@@ -245,14 +245,19 @@ fn every_number_of_the_file_is_used() {
     let file: toml::Value = toml::from_str(FOUR_LEGGED_TOML).unwrap();
     let mut paths = Vec::new();
     leaves(&mut file.clone(), "", &mut |path, _| paths.push(path.to_owned()));
-    // The referee's numbers do not move the world, and these scripts kick too soon for a fight: their own tests hold both.
-    paths.retain(|path| !path.starts_with(".referee") && path != ".grab.contest");
+    // The referee's numbers do not move the world: its own tests hold them.
+    paths.retain(|path| !path.starts_with(".referee"));
     let (dg, two) = (Configuration::DefenderGoalie, Configuration::TwoDefenders);
     let high = Layout { ball: Point::new(1.9, 1.7), ..simple(0).layout };
     let aside = config(Scenario::LeftSide, two, 0, 2).layout;
     let mid = Layout { ball: Point::new(1.25, -1.0), ..aside.clone() };
     let deep = Layout { ball: Point::new(2.6, 0.6), ..simple(0).layout };
     let ahead = config(Scenario::DefenderAhead, dg, 0, 2).layout;
+    // An attacker and the defender face each other with the ball between them: they fight for it.
+    let mut duel = ahead.clone();
+    duel.ball = Point::new(1.2, 0.0);
+    duel.attackers[0] = Pose::from_mm_deg(1060.0, 0.0, 0.0);
+    duel.opponents[0].pose = Pose::from_mm_deg(1340.0, 0.0, 180.0);
     let play = |parameters: &Parameters| {
         let games = [
             (&ahead, dg, 0),
@@ -262,6 +267,8 @@ fn every_number_of_the_file_is_used() {
             (&high, dg, 0),
             (&deep, dg, 0),
             (&mid, two, 0),
+            (&duel, dg, 0),
+            (&duel, dg, 2),
         ];
         let hashes = games.map(|(layout, configuration, seed)| {
             let noise = if seed == 0 { Noise::NONE } else { parameters.noise };
