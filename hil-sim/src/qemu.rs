@@ -368,12 +368,13 @@ mod tests {
 
     fn picture() -> SensorFrame {
         SensorFrame {
-            pose: Pose::from_mm_deg(100.0, -200.0, 30.0),
+            pose: Some(Pose::from_mm_deg(100.0, -200.0, 30.0)),
             ball: None,
             opponents: [Point::new(1.0, 0.0)].into_iter().collect(),
             ball_contact: false,
             busy: false,
             odometry: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
+            health: protocol::robot_io::Health::default(),
         }
     }
 

@@ -4,7 +4,7 @@
 
 use geometry::{Angle, Field, Point, Pose, Twist, Vector};
 use protocol::Duration;
-use protocol::robot_io::{BallSight, SensorFrame};
+use protocol::robot_io::{BallSight, Health, SensorFrame};
 
 use crate::parameters::Noise;
 use crate::rng::Stream;
@@ -45,12 +45,13 @@ impl Senses {
         };
         let others = world.walkers.iter().filter(|other| other.side != walker.side);
         SensorFrame {
-            pose,
+            pose: Some(pose),
             ball: Some(ball),
             opponents: others.map(|o| self.blurred(o.pose.position, self.noise.opponent)).collect(),
             ball_contact: world.holder() == Some(robot),
             busy: walker.action.is_some(),
             odometry: Twist { linear: moved * (1.0 / dt), angular: turned / dt },
+            health: Health::default(),
         }
     }
 
@@ -88,7 +89,7 @@ mod tests {
     #[test]
     fn without_noise_everything_is_seen_where_it_is() {
         let seen = Senses::new(Noise::NONE, 1, 0).look(&world(), 0, 0.04);
-        assert_eq!(seen.pose, Pose::from_mm_deg(0.0, 0.0, 90.0));
+        assert_eq!(seen.pose, Some(Pose::from_mm_deg(0.0, 0.0, 90.0)));
         assert_eq!(seen.ball.unwrap().position, Point::new(0.0, 2.0));
         assert_eq!(seen.opponents[..], [world().walkers[2].pose.position], "teammates are no opponents");
         assert!(!seen.ball_contact && !seen.busy);

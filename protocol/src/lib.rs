@@ -10,6 +10,7 @@
 #![no_std]
 
 pub mod frame;
+pub mod host;
 pub mod ids;
 pub mod link;
 pub mod lockstep;

@@ -14,8 +14,8 @@ pub const OPPONENTS_MAX: usize = 11;
 /// What a robot perceives at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
-    /// Where it believes itself to be.
-    pub pose: Pose<Field>,
+    /// Where it sees itself; a robot on wheels has no camera and knows that from its host alone.
+    pub pose: Option<Pose<Field>>,
     /// The ball, if it is seen.
     pub ball: Option<BallSight>,
     /// Opponents seen, in no meaningful order.
@@ -24,8 +24,21 @@ pub struct SensorFrame {
     pub ball_contact: bool,
     /// A grab or kick is under way; the body takes no other until it ends.
     pub busy: bool,
-    /// How it has moved since the last frame, in its own frame.
+    /// How it moves by its own measure (joints, or wheels and gyroscope), in its own frame.
     pub odometry: Twist<Body>,
+    /// How the body is.
+    pub health: Health,
+}
+
+/// How a body is.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Health {
+    /// Battery, V; `None` where it is not measured.
+    pub battery: Option<f32>,
+    /// It lies on its side.
+    pub tipped: bool,
+    /// The kicker is charged; never for a walking robot.
+    pub kicker_ready: bool,
 }
 
 /// The ball as perceived.

@@ -6,7 +6,7 @@
 use brain::{Brain, BrainConfig};
 use casebase::CaseBase;
 use geometry::{Field, Point, Pose, Twist, Vector};
-use protocol::robot_io::{ActuatorFrame, BallSight, LeggedKick, LeggedPrimitive, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, BallSight, Health, LeggedKick, LeggedPrimitive, SensorFrame};
 use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
@@ -93,12 +93,13 @@ impl<'a> Tabletop<'a> {
                 robot.brain.handle_team_message(now, *from, message);
             }
             let sensors = SensorFrame {
-                pose: robot.pose,
+                pose: Some(robot.pose),
                 ball: Some(BallSight { position: ball, sigma: 0.0, age: Duration(0) }),
                 opponents: opponents.iter().copied().collect(),
                 ball_contact: robot.holds,
                 busy: false,
                 odometry: Twist::default(),
+                health: Health::default(),
             };
             robot.brain.handle_sensors(now, &sensors);
             while let Some(message) = robot.brain.poll_message(now) {

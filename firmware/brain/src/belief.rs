@@ -97,8 +97,8 @@ impl Belief {
 
     /// Takes in what the body perceives and what mates report.
     pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, mates: &Mates) {
-        if sensors.pose.position.is_finite() {
-            self.pose = sensors.pose;
+        if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
+            self.pose = pose;
         }
         self.holds_ball = sensors.ball_contact;
         self.busy = sensors.busy;
@@ -204,16 +204,17 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, league: League) -> B
 mod tests {
     use super::*;
     use geometry::Twist;
-    use protocol::robot_io::BallSight;
+    use protocol::robot_io::{BallSight, Health};
 
     fn seen(x: f32) -> SensorFrame {
         SensorFrame {
-            pose: Pose::default(),
+            pose: Some(Pose::default()),
             ball: Some(BallSight { position: Point::new(x, 0.0), sigma: 0.0, age: Duration(0) }),
             opponents: heapless::Vec::new(),
             ball_contact: false,
             busy: false,
             odometry: Twist::default(),
+            health: Health::default(),
         }
     }
 
@@ -249,7 +250,7 @@ mod tests {
         let me = RobotId::new(1).unwrap();
         let mut belief = Belief::new(League::FourLegged);
         let mut mad = seen(f32::NAN);
-        mad.pose.position = Point::new(f32::INFINITY, 0.0);
+        mad.pose = Some(Pose { position: Point::new(f32::INFINITY, 0.0), heading: geometry::Angle::ZERO });
         belief.update(Instant(40_000), me, &mad, &Mates::default());
         assert_eq!(belief.ball, None);
         assert_eq!(belief.pose, Pose::default());

@@ -18,7 +18,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use geometry::{Angle, Point, Pose, Twist, Vector};
 use protocol::link::Packet;
-use protocol::robot_io::{ActuatorFrame, BallSight, OmniKick, SensorFrame};
+use protocol::robot_io::{ActuatorFrame, BallSight, Health, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::mailboxes::{Arrival, Mailboxes, OUTBOX_LEN};
@@ -252,7 +252,7 @@ impl Mind for Clerk {
 
     fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.diary.borrow_mut().push(format!("{} sensors", now.0));
-        self.order = Some(order(sensors.pose.position.x()));
+        self.order = Some(order(sensors.pose.map_or(0.0, |pose| pose.position.x())));
     }
 
     fn handle_timeout(&mut self, now: Instant) {
@@ -404,12 +404,13 @@ fn order(speed: f32) -> ActuatorFrame {
 fn picture(x: f32) -> SensorFrame {
     let ball = BallSight { position: Point::new(x - 1.0, 0.2), sigma: 0.01, age: Duration(0) };
     SensorFrame {
-        pose: Pose { position: Point::new(x, 0.1), heading: Angle::new(0.3) },
+        pose: Some(Pose { position: Point::new(x, 0.1), heading: Angle::new(0.3) }),
         ball: Some(ball),
         opponents: heapless::Vec::new(),
         ball_contact: false,
         busy: false,
         odometry: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
+        health: Health::default(),
     }
 }
 

@@ -81,9 +81,9 @@ impl Script {
         ];
         self.ticks += 1;
         let (mut walk, mut primitive) = (Twist::default(), LeggedPrimitive::None);
-        let ball = sensors.ball.unwrap().position;
-        let way = sensors.pose.to_body(ball);
-        let turn = sensors.pose.turn_to(ball).radians();
+        let (pose, ball) = (sensors.pose.unwrap(), sensors.ball.unwrap().position);
+        let way = pose.to_body(ball);
+        let turn = pose.turn_to(ball).radians();
         self.held = if sensors.ball_contact { self.held + 1 } else { 0 };
         if self.held > 20 {
             primitive = LeggedPrimitive::Kick(kicks[self.kicks % kicks.len()]);

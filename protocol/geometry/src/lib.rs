@@ -26,9 +26,11 @@ mod goal;
 pub mod math;
 mod pose;
 mod segment;
+mod shape;
 
 pub use angle::Angle;
 pub use frame::{Attack, Body, Field, Point, Vector};
 pub use goal::GoalEnd;
 pub use pose::{Pose, Twist};
 pub use segment::Segment;
+pub use shape::Shape;

@@ -12,6 +12,12 @@ use crate::FieldSpec;
 pub enum League {
     /// RoboCup Four-Legged League, 2007: AIBO ERS-7 on 5.4 × 3.6 m.
     FourLegged,
+    /// Small Size League of 2013, the second paper's world: six robots on 6 × 4 m.
+    Ssl2013,
+    /// Small Size League, division B of 2026: six robots on 9 × 6 m.
+    DivisionB,
+    /// Small Size League, division A of 2026: eleven robots on 12 × 9 m.
+    DivisionA,
 }
 
 /// A robot's footprint.
@@ -35,6 +41,9 @@ impl League {
     pub const fn name(self) -> &'static str {
         match self {
             Self::FourLegged => "four-legged",
+            Self::Ssl2013 => "ssl-2013",
+            Self::DivisionB => "division-b",
+            Self::DivisionA => "division-a",
         }
     }
 
@@ -51,6 +60,36 @@ impl League {
                 penalty_width: 1.3,
                 center_radius: 0.18,
             },
+            Self::Ssl2013 => FieldSpec {
+                length: 6.0,
+                width: 4.0,
+                margin: 0.25,
+                goal_width: 0.7,
+                goal_depth: 0.18,
+                penalty_depth: 0.8,
+                penalty_width: 1.95,
+                center_radius: 0.5,
+            },
+            Self::DivisionB => FieldSpec {
+                length: 9.0,
+                width: 6.0,
+                margin: 0.3,
+                goal_width: 1.0,
+                goal_depth: 0.18,
+                penalty_depth: 1.0,
+                penalty_width: 2.0,
+                center_radius: 0.5,
+            },
+            Self::DivisionA => FieldSpec {
+                length: 12.0,
+                width: 9.0,
+                margin: 0.3,
+                goal_width: 1.8,
+                goal_depth: 0.18,
+                penalty_depth: 1.8,
+                penalty_width: 3.6,
+                center_radius: 0.5,
+            },
         }
     }
 
@@ -58,6 +97,8 @@ impl League {
     pub const fn robot(self) -> RobotSpec {
         match self {
             Self::FourLegged => RobotSpec { radius: 0.12 },
+            // The rules' distances assume 0.09 m.
+            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => RobotSpec { radius: 0.09 },
         }
     }
 
@@ -66,6 +107,10 @@ impl League {
     pub const fn ball(self) -> BallSpec {
         match self {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },
+            // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured (0.26–0.5).
+            Self::Ssl2013 | Self::DivisionB | Self::DivisionA => {
+                BallSpec { radius: 0.0215, rolling_deceleration: 0.35 }
+            }
         }
     }
 }

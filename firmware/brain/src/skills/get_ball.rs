@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use crate::mates::Mates;
     use geometry::{Pose, Twist};
-    use protocol::robot_io::{BallSight, SensorFrame};
+    use protocol::robot_io::{BallSight, Health, SensorFrame};
     use protocol::{Duration, Instant, RobotId};
     use rules::League;
 
@@ -110,12 +110,13 @@ mod tests {
     fn see_twice(b: &mut Belief, x: f32) {
         for ms in [40, 80] {
             let sensors = SensorFrame {
-                pose: b.pose,
+                pose: Some(b.pose),
                 ball: Some(BallSight { position: Point::new(x, 0.0), sigma: 0.0, age: Duration(0) }),
                 opponents: heapless::Vec::new(),
                 ball_contact: false,
                 busy: false,
                 odometry: Twist::default(),
+                health: Health::default(),
             };
             b.update(Instant(ms * 1000), RobotId::new(1).unwrap(), &sensors, &Mates::default());
         }

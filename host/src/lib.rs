@@ -1,0 +1,6 @@
+//! How does a team play on a field of the Small Size League? Vision and referee in, commands to robots out. Runs on the PC.
+//!
+//! Sans-IO: bytes and times come from the caller, frames go back to it; sockets and serial lines are the shell's.
+//!
+//! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl` only. Same input,
+//! same decisions.

@@ -1,0 +1,102 @@
+//! What may be done now? The phase of the game, as robots, host, referee and simulator name it (rules 2026, chapter on
+//! referee commands).
+
+use serde::{Deserialize, Serialize};
+
+/// A team by its colour; not to be taken for the goals that case files call "yellow" and "cyan".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Colour {
+    /// Yellow centre dots.
+    Yellow,
+    /// Blue centre dots.
+    Blue,
+}
+
+impl Colour {
+    /// The other team.
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Yellow => Self::Blue,
+            Self::Blue => Self::Yellow,
+        }
+    }
+
+    /// The colour's name, as options and files have it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Yellow => "yellow",
+            Self::Blue => "blue",
+        }
+    }
+}
+
+/// A team as seen from one of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Side {
+    /// The speaker's.
+    Ours,
+    /// The opponents'.
+    Theirs,
+}
+
+/// A node of the league's state graph; `Who` is [`Colour`] for those who look from outside and [`Side`] for a team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Phase<Who> {
+    /// Nobody moves.
+    Halt,
+    /// Slow, away from the ball, nobody touches it.
+    Stop,
+    /// A team has taken a time-out: as halt, but people may work on robots.
+    Timeout(Who),
+    /// This team brings the ball to the designated position.
+    BallPlacement(Who),
+    /// Taking places for this team's kick-off.
+    PrepareKickoff(Who),
+    /// This team may kick off.
+    Kickoff(Who),
+    /// Taking places for this team's penalty.
+    PreparePenalty(Who),
+    /// This team may shoot its penalty.
+    Penalty(Who),
+    /// This team may take its free kick.
+    FreeKick(Who),
+    /// The ball is in play.
+    Run,
+}
+
+impl Phase<Colour> {
+    /// The same phase in the words of the team of that colour.
+    pub fn seen_by(self, us: Colour) -> Phase<Side> {
+        self.map(|colour| if colour == us { Side::Ours } else { Side::Theirs })
+    }
+}
+
+impl<Who> Phase<Who> {
+    /// The same phase with the team named in another way.
+    pub fn map<Other>(self, name: impl FnOnce(Who) -> Other) -> Phase<Other> {
+        match self {
+            Self::Halt => Phase::Halt,
+            Self::Stop => Phase::Stop,
+            Self::Run => Phase::Run,
+            Self::Timeout(who) => Phase::Timeout(name(who)),
+            Self::BallPlacement(who) => Phase::BallPlacement(name(who)),
+            Self::PrepareKickoff(who) => Phase::PrepareKickoff(name(who)),
+            Self::Kickoff(who) => Phase::Kickoff(name(who)),
+            Self::PreparePenalty(who) => Phase::PreparePenalty(name(who)),
+            Self::Penalty(who) => Phase::Penalty(name(who)),
+            Self::FreeKick(who) => Phase::FreeKick(name(who)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_team_sees_its_own_free_kick_as_ours() {
+        let phase = Phase::FreeKick(Colour::Blue);
+        assert_eq!(phase.seen_by(Colour::Blue), Phase::FreeKick(Side::Ours));
+        assert_eq!(phase.seen_by(Colour::Blue.other()), Phase::FreeKick(Side::Theirs));
+    }
+}

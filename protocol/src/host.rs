@@ -1,0 +1,322 @@
+//! What does the host tell its robots, and what do they tell it of themselves? (DESIGN §3, §6)
+//!
+//! The picture of the field goes to everybody in parts ([`WorldPart`]), what to do goes to each robot by itself
+//! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
+//! moment of arrival: the host's tracking has carried them forward by the way there, so no clocks need to agree.
+//! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`].
+
+use rules::{Phase, Side};
+use serde::{Deserialize, Serialize};
+
+use crate::quantized::{WirePoint, WirePose};
+use crate::team::CASE_ROBOTS_MAX;
+use crate::{CaseId, RobotId};
+
+/// Robots in one part of the world: as many as leave a whole frame within 120 B.
+pub const PART_ROBOTS_MAX: usize = 6;
+/// Parts that a world of 11 + 11 robots needs.
+pub const PARTS_MAX: usize = 4;
+/// The longest [`Command`] in postcard bytes; with the frame's overhead it stays within 40 B (DESIGN §6).
+pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
+
+/// A message of the host.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum HostMessage {
+    /// To all: a part of the picture.
+    World(WorldPart),
+    /// To one robot: what to do.
+    Command(Command),
+}
+
+/// A part of the picture of the field.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldPart {
+    /// Which picture; parts of one picture carry one number, the next picture the next (wrapping).
+    pub picture: u8,
+    /// Which part of it, from 0.
+    pub part: u8,
+    /// How many parts it has.
+    pub parts: u8,
+    /// The phase of the game, in our words.
+    pub phase: Phase<Side>,
+    /// Where the ball is to be placed; only while that matters.
+    pub placement: Option<WirePoint>,
+    /// The ball; in every part, the same.
+    pub ball: Option<WireBall>,
+    /// Robots of both teams.
+    pub robots: heapless::Vec<WireRobot, PART_ROBOTS_MAX>,
+}
+
+/// The ball on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WireBall {
+    /// Where it is.
+    pub at: WirePoint,
+    /// How high, mm; 0 on the ground.
+    #[serde(with = "postcard::fixint::le")]
+    pub height: u16,
+    /// Along +x, mm/s.
+    #[serde(with = "postcard::fixint::le")]
+    pub vx: i16,
+    /// Along +y, mm/s.
+    #[serde(with = "postcard::fixint::le")]
+    pub vy: i16,
+}
+
+/// A robot on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WireRobot {
+    /// Whose, and its number.
+    pub who: WireWho,
+    /// Where it is and faces.
+    pub pose: WirePose,
+    /// Along +x, mm/s.
+    #[serde(with = "postcard::fixint::le")]
+    pub vx: i16,
+    /// Along +y, mm/s.
+    #[serde(with = "postcard::fixint::le")]
+    pub vy: i16,
+}
+
+/// A robot's team and number in one byte: bit 7 set for theirs, the number below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "u8", into = "u8")]
+pub struct WireWho {
+    /// Whose.
+    pub side: Side,
+    /// Which.
+    pub id: RobotId,
+}
+
+impl From<WireWho> for u8 {
+    fn from(who: WireWho) -> Self {
+        let side = if who.side == Side::Theirs { 0x80 } else { 0 };
+        side | who.id.number()
+    }
+}
+
+impl TryFrom<u8> for WireWho {
+    type Error = crate::ids::NoSuchRobot;
+    fn try_from(byte: u8) -> Result<Self, Self::Error> {
+        let side = if byte & 0x80 == 0 { Side::Ours } else { Side::Theirs };
+        Ok(Self { side, id: RobotId::try_from(byte & 0x7f)? })
+    }
+}
+
+/// What one robot shall do.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Command {
+    /// Who is meant.
+    pub to: RobotId,
+    /// The phase of the game, in our words.
+    pub phase: Phase<Side>,
+    /// What it is now, besides a field player.
+    pub duty: Duty,
+    /// What to do.
+    pub directive: Directive,
+}
+
+/// What the rules allow a robot beyond others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Duty {
+    /// Nothing more.
+    #[default]
+    Player,
+    /// The one that may be in the own defence area.
+    Keeper,
+    /// The one that takes our restart: it may come near the ball before it is in play.
+    Taker,
+}
+
+/// What to do, as the host's strategy wants it. The robot's skills do it, within what phase, duty and governor allow.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Directive {
+    /// Brake and stand.
+    Stand,
+    /// Be at this place with this heading, around everything; away from the ball too unless the taker.
+    GoTo {
+        /// Where and how.
+        pose: WirePose,
+    },
+    /// Have the ball at the dribbler, then face this point.
+    GetBall {
+        /// What to face with it; nothing: the attacked goal.
+        face: Option<WirePoint>,
+    },
+    /// Kick the ball at a point; a shot at the goal and a clearance too.
+    Kick {
+        /// At this point.
+        at: WirePoint,
+        /// How.
+        kick: KickOrder,
+    },
+    /// Pass to a mate, who will have the ball at `at`; waits, facing it, until told to be `ready`.
+    Pass {
+        /// The meeting point.
+        at: WirePoint,
+        /// To whom.
+        receiver: RobotId,
+        /// How.
+        kick: KickOrder,
+        /// Whether the ball may leave now.
+        ready: bool,
+    },
+    /// Have a passed ball at this place.
+    Receive {
+        /// The meeting point.
+        at: WirePoint,
+        /// Shoot or pass it on at this point at first touch; nothing: take it.
+        then: Option<WirePoint>,
+    },
+    /// Carry the ball there, at most a metre (rules: the dribbling limit).
+    Dribble {
+        /// Where to and how to face.
+        pose: WirePose,
+    },
+    /// Stand on this stretch where the ball would cross it; stop a ball that comes.
+    Block {
+        /// One end.
+        from: WirePoint,
+        /// The other end.
+        to: WirePoint,
+    },
+    /// Bring the ball to this place and leave it there, at rest.
+    PlaceBall {
+        /// The designated position.
+        at: WirePoint,
+    },
+    /// Choose a case with the mates under this directive, and play it.
+    Gameplay {
+        /// The host's proposal.
+        hint: Option<Hint>,
+    },
+}
+
+/// How a ball is kicked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum KickOrder {
+    /// Along the ground, with this speed, cm/s.
+    Flat(u16),
+    /// Through the air, with this speed, cm/s.
+    Chip(u16),
+}
+
+/// A case proposed by the host.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hint {
+    /// The stored case.
+    pub case: CaseId,
+    /// Case robot i is played by entry i.
+    pub robots: heapless::Vec<RobotId, CASE_ROBOTS_MAX>,
+    /// Where its first pass shall be received, if not at the adapted position.
+    pub pass_point: Option<WirePoint>,
+}
+
+/// What a robot tells the host of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Telemetry {
+    /// Bits, see [`Condition`].
+    pub condition: Condition,
+    /// Battery, cV (1/100 V); 0 where it is not measured.
+    pub battery: u16,
+    /// Frames of the host that were opened in this life, wrapping.
+    pub heard: u16,
+    /// Frames of the host that never came, by their counters, wrapping.
+    pub lost: u16,
+    /// Frames refused, of any kind, wrapping.
+    pub refused: u16,
+    /// How long ago the last frame of the host came, ms, saturating.
+    pub silence: u8,
+}
+
+/// How a robot is, one bit each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Condition(pub u16);
+
+impl Condition {
+    /// The ball is at the dribbler.
+    pub const BALL_CONTACT: Self = Self(1);
+    /// The kicker is charged.
+    pub const KICKER_READY: Self = Self(1 << 1);
+    /// It has tipped over.
+    pub const TIPPED: Self = Self(1 << 2);
+    /// The battery is too low to play.
+    pub const BATTERY_LOW: Self = Self(1 << 3);
+    /// The governor has cut down what the brain wanted.
+    pub const GOVERNED: Self = Self(1 << 4);
+    /// The host has been silent for too long: brakes.
+    pub const LINK_LOST: Self = Self(1 << 5);
+
+    /// Both sets together.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Every bit of `other` is set.
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn len<T: Serialize>(value: &T) -> usize {
+        postcard::to_slice(value, &mut [0; 256]).unwrap().len()
+    }
+
+    #[test]
+    fn the_longest_command_fits_into_40_bytes_of_air() {
+        let far = WirePoint { x: i16::MIN, y: i16::MAX };
+        let id = RobotId::new(15).unwrap();
+        let pose = WirePose { at: far, heading: i16::MIN };
+        let kick = KickOrder::Chip(u16::MAX);
+        let robots: heapless::Vec<_, CASE_ROBOTS_MAX> = [id; CASE_ROBOTS_MAX].into_iter().collect();
+        let directives = [
+            Directive::GoTo { pose },
+            Directive::Pass { at: far, receiver: id, kick, ready: true },
+            Directive::Receive { at: far, then: Some(far) },
+            Directive::Block { from: far, to: far },
+            Directive::Gameplay {
+                hint: Some(Hint { case: CaseId(u16::MAX), robots, pass_point: Some(far) }),
+            },
+        ];
+        for directive in directives {
+            let phase = Phase::BallPlacement(Side::Theirs);
+            let command = HostMessage::Command(Command { to: id, phase, duty: Duty::Taker, directive });
+            assert!(len(&command) <= COMMAND_LEN_MAX, "{} bytes: {command:?}", len(&command));
+        }
+    }
+
+    #[test]
+    fn a_full_part_of_the_world_fits_into_120_bytes_of_air_and_four_parts_hold_22_robots() {
+        let robot = WireRobot {
+            who: WireWho { side: Side::Theirs, id: RobotId::new(15).unwrap() },
+            pose: WirePose { at: WirePoint { x: -1, y: -1 }, heading: -1 },
+            vx: -1,
+            vy: -1,
+        };
+        let part = WorldPart {
+            picture: 255,
+            part: 255,
+            parts: 255,
+            phase: Phase::BallPlacement(Side::Theirs),
+            placement: Some(WirePoint { x: -1, y: -1 }),
+            ball: Some(WireBall { at: WirePoint { x: -1, y: -1 }, height: 9999, vx: -1, vy: -1 }),
+            robots: [robot; PART_ROBOTS_MAX].into_iter().collect(),
+        };
+        let bytes = len(&HostMessage::World(part));
+        assert!(bytes <= crate::frame::PAYLOAD_LEN_MAX, "{bytes}");
+        const { assert!(PARTS_MAX * PART_ROBOTS_MAX >= 22) };
+    }
+
+    #[test]
+    fn a_byte_that_names_no_robot_is_refused() {
+        assert!(WireWho::try_from(0x90).is_err());
+        let who = WireWho::try_from(0x83).unwrap();
+        assert_eq!((who.side, who.id.number(), u8::from(who)), (Side::Theirs, 3, 0x83));
+    }
+}
