@@ -1,0 +1,30 @@
+//! What does the Small Size League say on its networks, and how is it heard, sent and kept? Runs on the PC.
+//!
+//! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the league's
+//! without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does not. Enums are kept
+//! as the number on the wire, so that unknown ones survive; the accessor of the field's name reads an unknown number as
+//! the enum's first value, `Enum::try_from(number)` tells it apart.
+//!
+//! | module | message on the wire | where |
+//! |---|---|---|
+//! | [`vision`] | [`vision::WrapperPacket`] | UDP 224.5.23.2:10006, simulators 10020 |
+//! | [`vision::legacy`] | [`vision::legacy::WrapperPacket`] | UDP 224.5.23.2:10005, until 2014 |
+//! | [`referee`], [`event`] | [`referee::Referee`] | UDP 224.5.23.1:10003 |
+//! | [`tracker`] | [`tracker::TrackerWrapperPacket`] | UDP 224.5.23.2:10010 |
+//! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
+//! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007–10011, length-delimited |
+//! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
+//!
+//! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
+//! and each field says its own. The README has the traps of the league's programs and which test holds each.
+
+pub mod common;
+pub mod controller;
+pub mod event;
+pub mod radio;
+pub mod referee;
+pub mod simulation;
+pub mod tracker;
+pub mod vision;
+
+pub use prost::{DecodeError, Message, UnknownEnumValue};

@@ -1,0 +1,39 @@
+//! What was proposed in 2015 as the league's radio protocol? Commands over UDP; no current team uses it.
+//!
+//! Units: m/s, rad/s in the robot's frame.
+
+use prost::Message;
+
+/// A datagram: one command a robot.
+#[derive(Clone, PartialEq, Message)]
+pub struct RadioProtocolWrapper {
+    /// Commands.
+    #[prost(message, repeated, tag = "1")]
+    pub command: Vec<RadioProtocolCommand>,
+}
+
+/// What one robot shall do.
+#[derive(Clone, Copy, PartialEq, Message)]
+pub struct RadioProtocolCommand {
+    /// Shell number.
+    #[prost(int32, required, tag = "1")]
+    pub robot_id: i32,
+    /// Forward, m/s.
+    #[prost(float, required, tag = "2")]
+    pub velocity_x: f32,
+    /// To the left, m/s.
+    #[prost(float, required, tag = "3")]
+    pub velocity_y: f32,
+    /// Counter-clockwise, rad/s.
+    #[prost(float, required, tag = "4")]
+    pub velocity_r: f32,
+    /// Kick flat at this speed, m/s; wins over `chip_kick`.
+    #[prost(float, optional, tag = "5")]
+    pub flat_kick: Option<f32>,
+    /// Kick so far through the air, **m**.
+    #[prost(float, optional, tag = "6")]
+    pub chip_kick: Option<f32>,
+    /// Dribbler, −1 (out) to +1 (in).
+    #[prost(float, optional, tag = "7")]
+    pub dribbler_spin: Option<f32>,
+}

@@ -1,0 +1,251 @@
+//! How is a simulator steered? [`SimulatorCommand`] to port 10300, [`RobotControl`] to 10301 (blue) and 10302 (yellow).
+//!
+//! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm. What is
+//! absent stays as it is. What a simulator cannot do it answers with a [`SimulatorError`].
+
+mod custom;
+mod robot;
+
+use prost::Message;
+
+use crate::common::{Any, RobotId};
+use crate::vision::{DetectionFrame, GeometryData};
+
+pub use custom::{RealismConfigErForce, RobotSpecErForce};
+pub use robot::{
+    MoveCommand, MoveGlobalVelocity, MoveLocalVelocity, MoveWheelVelocity, RobotCommand, RobotControl,
+    RobotControlResponse, RobotFeedback, RobotMoveCommand,
+};
+
+/// What a simulator could not do.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulatorError {
+    /// For programs, of the simulator's own choice.
+    #[prost(string, optional, tag = "1")]
+    pub code: Option<String>,
+    /// For people.
+    #[prost(string, optional, tag = "2")]
+    pub message: Option<String>,
+}
+
+/// To port 10300: move things, or change settings.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulatorCommand {
+    /// Move things.
+    #[prost(message, optional, tag = "1")]
+    pub control: Option<SimulatorControl>,
+    /// Change settings.
+    #[prost(message, optional, tag = "2")]
+    pub config: Option<SimulatorConfig>,
+}
+
+/// What comes back from port 10300.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulatorResponse {
+    /// What was not done; empty when all was.
+    #[prost(message, repeated, tag = "1")]
+    pub errors: Vec<SimulatorError>,
+}
+
+/// Move ball and robots, change the pace.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulatorControl {
+    /// Move the ball.
+    #[prost(message, optional, tag = "1")]
+    pub teleport_ball: Option<TeleportBall>,
+    /// Move robots.
+    #[prost(message, repeated, tag = "2")]
+    pub teleport_robot: Vec<TeleportRobot>,
+    /// Simulated seconds a second: 1 is real time, 0 stands still.
+    #[prost(float, optional, tag = "3")]
+    pub simulation_speed: Option<f32>,
+}
+
+/// Move the ball.
+#[derive(Clone, Copy, PartialEq, Message)]
+pub struct TeleportBall {
+    /// Along the field's length, m.
+    #[prost(float, optional, tag = "1")]
+    pub x: Option<f32>,
+    /// To the left of +x, m.
+    #[prost(float, optional, tag = "2")]
+    pub y: Option<f32>,
+    /// Up, m.
+    #[prost(float, optional, tag = "3")]
+    pub z: Option<f32>,
+    /// Velocity along x, m/s.
+    #[prost(float, optional, tag = "4")]
+    pub vx: Option<f32>,
+    /// Velocity along y, m/s.
+    #[prost(float, optional, tag = "5")]
+    pub vy: Option<f32>,
+    /// Velocity upwards, m/s.
+    #[prost(float, optional, tag = "6")]
+    pub vz: Option<f32>,
+    /// Push robots out of the way instead of putting the ball inside one.
+    #[prost(bool, optional, tag = "7")]
+    pub teleport_safely: Option<bool>,
+    /// Start as a rolling ball, without a sliding phase.
+    #[prost(bool, optional, tag = "8")]
+    pub roll: Option<bool>,
+    /// Move it by forces, through what stands between, instead of at once.
+    #[prost(bool, optional, tag = "9")]
+    pub by_force: Option<bool>,
+}
+
+/// Move a robot, or take it away.
+#[derive(Clone, Copy, PartialEq, Message)]
+pub struct TeleportRobot {
+    /// Which.
+    #[prost(message, required, tag = "1")]
+    pub id: RobotId,
+    /// Along the field's length, m.
+    #[prost(float, optional, tag = "2")]
+    pub x: Option<f32>,
+    /// To the left of +x, m.
+    #[prost(float, optional, tag = "3")]
+    pub y: Option<f32>,
+    /// Heading, rad, counter-clockwise from +x.
+    #[prost(float, optional, tag = "4")]
+    pub orientation: Option<f32>,
+    /// Velocity along x, m/s, field frame.
+    #[prost(float, optional, default = "0", tag = "5")]
+    pub v_x: Option<f32>,
+    /// Velocity along y, m/s, field frame.
+    #[prost(float, optional, default = "0", tag = "6")]
+    pub v_y: Option<f32>,
+    /// Rate of turn, rad/s, counter-clockwise.
+    #[prost(float, optional, default = "0", tag = "7")]
+    pub v_angular: Option<f32>,
+    /// False takes the robot away, true puts it there.
+    #[prost(bool, optional, tag = "8")]
+    pub present: Option<bool>,
+    /// Move it by forces instead of at once.
+    #[prost(bool, optional, tag = "9")]
+    pub by_force: Option<bool>,
+}
+
+/// The simulator's settings.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulatorConfig {
+    /// The field, in vision's units (mm).
+    #[prost(message, optional, tag = "1")]
+    pub geometry: Option<GeometryData>,
+    /// What robots are like.
+    #[prost(message, repeated, tag = "2")]
+    pub robot_specs: Vec<RobotSpecs>,
+    /// Noise, delay and losses, in a form of the simulator's own.
+    #[prost(message, optional, tag = "3")]
+    pub realism_config: Option<RealismConfig>,
+    /// Where vision packets go.
+    #[prost(uint32, optional, tag = "4")]
+    pub vision_port: Option<u32>,
+}
+
+/// Noise, delay and losses.
+#[derive(Clone, PartialEq, Message)]
+pub struct RealismConfig {
+    /// For ER-Force's simulator a [`RealismConfigErForce`].
+    #[prost(message, repeated, tag = "1")]
+    pub custom: Vec<Any>,
+}
+
+/// What a robot is like.
+#[derive(Clone, PartialEq, Message)]
+pub struct RobotSpecs {
+    /// Which.
+    #[prost(message, required, tag = "1")]
+    pub id: RobotId,
+    /// Radius of its hull, m.
+    #[prost(float, optional, default = "0.09", tag = "2")]
+    pub radius: Option<f32>,
+    /// Height of its hull, m.
+    #[prost(float, optional, default = "0.15", tag = "3")]
+    pub height: Option<f32>,
+    /// Mass, kg.
+    #[prost(float, optional, tag = "4")]
+    pub mass: Option<f32>,
+    /// Fastest flat kick, m/s.
+    #[prost(float, optional, tag = "7")]
+    pub max_linear_kick_speed: Option<f32>,
+    /// Fastest chip kick, m/s, in space.
+    #[prost(float, optional, tag = "8")]
+    pub max_chip_kick_speed: Option<f32>,
+    /// Centre to the flat front, m.
+    #[prost(float, optional, tag = "9")]
+    pub center_to_dribbler: Option<f32>,
+    /// Bounds of its motion.
+    #[prost(message, optional, tag = "10")]
+    pub limits: Option<RobotLimits>,
+    /// Where its wheels are.
+    #[prost(message, optional, tag = "13")]
+    pub wheel_angles: Option<RobotWheelAngles>,
+    /// For ER-Force's simulator a [`RobotSpecErForce`].
+    #[prost(message, repeated, tag = "14")]
+    pub custom: Vec<Any>,
+}
+
+/// Bounds of a robot's motion.
+#[derive(Clone, Copy, PartialEq, Message)]
+pub struct RobotLimits {
+    /// Getting faster, m/s².
+    #[prost(float, optional, tag = "1")]
+    pub acc_speedup_absolute_max: Option<f32>,
+    /// Turning faster, rad/s².
+    #[prost(float, optional, tag = "2")]
+    pub acc_speedup_angular_max: Option<f32>,
+    /// Braking, m/s².
+    #[prost(float, optional, tag = "3")]
+    pub acc_brake_absolute_max: Option<f32>,
+    /// Braking a turn, rad/s².
+    #[prost(float, optional, tag = "4")]
+    pub acc_brake_angular_max: Option<f32>,
+    /// Speed, m/s.
+    #[prost(float, optional, tag = "5")]
+    pub vel_absolute_max: Option<f32>,
+    /// Rate of turn, rad/s.
+    #[prost(float, optional, tag = "6")]
+    pub vel_angular_max: Option<f32>,
+}
+
+/// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
+#[derive(Clone, Copy, PartialEq, Message)]
+pub struct RobotWheelAngles {
+    /// Front right, rad.
+    #[prost(float, required, tag = "1")]
+    pub front_right: f32,
+    /// Back right, rad.
+    #[prost(float, required, tag = "2")]
+    pub back_right: f32,
+    /// Back left, rad.
+    #[prost(float, required, tag = "3")]
+    pub back_left: f32,
+    /// Front left, rad.
+    #[prost(float, required, tag = "4")]
+    pub front_left: f32,
+}
+
+/// One step of a simulator whose clock the sender drives.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulationSyncRequest {
+    /// Length of the step, s.
+    #[prost(float, optional, tag = "1")]
+    pub sim_step: Option<f32>,
+    /// What port 10300 would get.
+    #[prost(message, optional, tag = "2")]
+    pub simulator_command: Option<SimulatorCommand>,
+    /// What ports 10301 and 10302 would get.
+    #[prost(message, optional, tag = "3")]
+    pub robot_control: Option<RobotControl>,
+}
+
+/// What the step brought.
+#[derive(Clone, PartialEq, Message)]
+pub struct SimulationSyncResponse {
+    /// What each camera saw.
+    #[prost(message, repeated, tag = "1")]
+    pub detection: Vec<DetectionFrame>,
+    /// What ports 10301 and 10302 would send.
+    #[prost(message, optional, tag = "2")]
+    pub robot_control_response: Option<RobotControlResponse>,
+}
