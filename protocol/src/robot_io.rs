@@ -108,4 +108,6 @@ pub enum OmniKick {
     Flat(f32),
     /// Through the air, ball speed in m/s.
     Chip(f32),
+    /// Let the charge go without touching a ball: what a robot that nobody commands does.
+    Discharge,
 }
