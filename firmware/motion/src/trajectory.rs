@@ -1,0 +1,119 @@
+//! How soon can a robot be there and at rest, and how does it move on the way? (paper 2 §2: `CalcMotion2D`)
+//!
+//! `CalcMotion2D(x_s, v_s, x_f) → (t*, V*)` is [`CalcMotion::plan`]: `t*` is [`Motion::duration`], `V*` is [`Motion::at`].
+//! The end is always at rest. Two models of a robot answer it:
+//!
+//! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a trapezoid
+//!   or triangle, and one angle shares the limits out between the axes. What to use unless a robot was measured.
+//! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy, D'Andrea,
+//!   Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
+//!
+//! Both are near-time-optimal: the axes are parallel to the frame's, and the share between them is sought until both
+//! arrive at nearly the same time. `cargo xtask bench motion` tells how near, and what it costs (firmware/motion/README.md).
+//!
+//! Units: m, s, m/s, m/s². **Any input is answered**: where a coordinate is NaN, infinite or over [`COORDINATE_MAX`], or a
+//! limit is not a positive number, the answer is to rest where one is ([`Motion::duration`] 0).
+
+mod axis;
+mod balance;
+mod drag;
+mod free;
+mod turn;
+
+pub use drag::{DragLimits, DragMotion};
+pub use free::{FreeLimits, FreeMotion};
+pub use turn::{Turn, TurnLimits};
+
+use geometry::{Point, Vector};
+
+/// Largest coordinate (m) and speed (m/s) that is taken for a true one: 1 km, above any field and below where squares of
+/// `f32` lose their last use.
+pub const COORDINATE_MAX: f32 = 1_000.0;
+
+/// Where a robot is and how it moves, at one time of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<F> {
+    /// m.
+    pub position: Point<F>,
+    /// m/s.
+    pub velocity: Vector<F>,
+    /// m/s²; where it jumps, the value after the jump.
+    pub acceleration: Vector<F>,
+}
+
+impl<F> State<F> {
+    /// Standing at `position`.
+    pub fn at_rest(position: Point<F>) -> Self {
+        Self { position, velocity: Vector::default(), acceleration: Vector::default() }
+    }
+}
+
+/// A motion from a start to rest.
+pub trait Motion<F> {
+    /// `t*`: from the start until it rests, s.
+    fn duration(&self) -> f32;
+
+    /// The state `time` seconds after the start: before 0 the start, after the duration rest at the end.
+    fn at(&self, time: f32) -> State<F>;
+}
+
+/// What a robot can do, as far as its motion from place to place is concerned.
+pub trait CalcMotion {
+    /// The motion it plans.
+    type Motion<F: Copy>: Motion<F>;
+
+    /// From `from`, moving with `velocity`, to rest at `to`.
+    fn plan<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> Self::Motion<F>;
+
+    /// `t*` alone, s: the duration of [`Self::plan`].
+    fn time<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> f32;
+
+    /// Is it certain, without planning, that [`Self::time`] is over `within` seconds? A bound from the largest
+    /// acceleration and speed; `false` says nothing.
+    fn is_surely_longer<F: Copy>(
+        &self,
+        from: Point<F>,
+        velocity: Vector<F>,
+        to: Point<F>,
+        within: f32,
+    ) -> bool;
+}
+
+/// All the numbers are ones that a field can have.
+fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bool {
+    // NaN is not below anything.
+    let small = |x: f32| x.abs() <= COORDINATE_MAX;
+    small(from.x())
+        && small(from.y())
+        && small(velocity.x())
+        && small(velocity.y())
+        && small(to.x())
+        && small(to.y())
+}
+
+/// A place to rest for who does not know where it is.
+fn somewhere<F>(from: Point<F>) -> Point<F> {
+    if from.x().abs() <= COORDINATE_MAX && from.y().abs() <= COORDINATE_MAX { from } else { Point::default() }
+}
+
+/// No motion whose acceleration stays within `acceleration` and whose speed within `speed` brings `offset` about and ends
+/// at rest, within `time`: it would move by v·t/2 and at most a·t²/4 more.
+fn out_of_reach<F>(
+    offset: Vector<F>,
+    velocity: Vector<F>,
+    time: f32,
+    acceleration: f32,
+    speed_squared: f32,
+) -> bool {
+    let far = offset - velocity * (0.5 * time);
+    let reach = 0.25 * acceleration * time * time;
+    far.dot(far) > reach * reach * BOUND_SLACK
+        || offset.dot(offset) > speed_squared * time * time * BOUND_SLACK
+        || time < 0.0
+}
+
+/// What rounding may take from a bound: 10⁻⁴, a thousand times what `f32` errs.
+const BOUND_SLACK: f32 = 1.0001;
+
+#[cfg(test)]
+mod tests;

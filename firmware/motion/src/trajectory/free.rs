@@ -1,0 +1,129 @@
+//! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other; SI.
+
+use geometry::{Point, Vector};
+
+use super::axis::{AxisLimits, Phases};
+use super::balance::balance;
+use super::{CalcMotion, Motion, State, out_of_reach, somewhere, usable};
+
+/// Limits of a robot without drag.
+///
+/// On the way acceleration never exceeds `acceleration`, or `braking` where an axis brakes; speed never exceeds
+/// √(`speed`² + |v₀|²), and `speed` itself where it starts at rest or along its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeLimits {
+    /// m/s, > 0.
+    pub speed: f32,
+    /// m/s², > 0.
+    pub acceleration: f32,
+    /// m/s², > 0.
+    pub braking: f32,
+}
+
+impl Default for FreeLimits {
+    /// 3.0 m/s and 3.5 m/s² both ways: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations,
+    /// 3.5 m/s² lies between published teams' 2 and 4.5.
+    fn default() -> Self {
+        Self { speed: 3.0, acceleration: 3.5, braking: 3.5 }
+    }
+}
+
+impl FreeLimits {
+    /// The same robot, no faster than `speed`, m/s.
+    pub fn slowed_to(self, speed: f32) -> Self {
+        Self { speed: self.speed.min(speed), ..self }
+    }
+
+    /// All three are positive numbers.
+    fn are_usable(&self) -> bool {
+        let positive = |x: f32| x > LIMIT_MIN && x.is_finite();
+        positive(self.speed) && positive(self.acceleration) && positive(self.braking)
+    }
+}
+
+impl CalcMotion for FreeLimits {
+    type Motion<F: Copy> = FreeMotion<F>;
+
+    fn plan<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> FreeMotion<F> {
+        if !self.are_usable() || !usable(from, velocity, to) {
+            return FreeMotion::resting(somewhere(from));
+        }
+        let limits = AxisLimits::new(self);
+        let offset = to - from;
+        let shares = shares(&limits, offset, velocity);
+        let x = limits.phases(offset.x(), velocity.x(), shares.x);
+        let y = limits.phases(offset.y(), velocity.y(), shares.y);
+        FreeMotion { from, to, x, y }
+    }
+
+    fn time<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> f32 {
+        if !self.are_usable() || !usable(from, velocity, to) {
+            return 0.0;
+        }
+        shares(&AxisLimits::new(self), to - from, velocity).time
+    }
+
+    fn is_surely_longer<F: Copy>(
+        &self,
+        from: Point<F>,
+        velocity: Vector<F>,
+        to: Point<F>,
+        within: f32,
+    ) -> bool {
+        let speed_squared = self.speed * self.speed + velocity.dot(velocity);
+        out_of_reach(to - from, velocity, within, self.acceleration.max(self.braking), speed_squared)
+    }
+}
+
+fn shares<F>(limits: &AxisLimits, offset: Vector<F>, velocity: Vector<F>) -> super::balance::Balance {
+    let (dx, dy, vx, vy) = (offset.x(), offset.y(), velocity.x(), velocity.y());
+    let (x, y) = (limits.effort(dx, vx), limits.effort(dy, vy));
+    let sum = x + y;
+    let first = if sum > 0.0 { y / sum } else { 0.5 };
+    balance(first, ROUNDS, TOLERANCE, |x, y| {
+        let (px, py) = (1.0 / x, 1.0 / y);
+        (limits.time(dx * px, vx * px), limits.time(dy * py, vy * py))
+    })
+}
+
+/// A planned motion without drag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeMotion<F> {
+    from: Point<F>,
+    to: Point<F>,
+    x: Phases,
+    y: Phases,
+}
+
+impl<F> FreeMotion<F> {
+    fn resting(at: Point<F>) -> Self {
+        let at: [f32; 2] = at.into();
+        Self { from: at.into(), to: at.into(), x: Phases::default(), y: Phases::default() }
+    }
+}
+
+impl<F: Copy> Motion<F> for FreeMotion<F> {
+    fn duration(&self) -> f32 {
+        self.x.duration.max(self.y.duration)
+    }
+
+    fn at(&self, time: f32) -> State<F> {
+        if time >= self.duration() {
+            return State::at_rest(self.to);
+        }
+        let (x, vx, ax) = self.x.at(time);
+        let (y, vy, ay) = self.y.at(time);
+        State {
+            position: self.from + Vector::new(x, y),
+            velocity: Vector::new(vx, vy),
+            acceleration: Vector::new(ax, ay),
+        }
+    }
+}
+
+/// The smallest limit that is still one: below a micrometre a second nothing moves.
+const LIMIT_MIN: f32 = 1e-6;
+/// Times of the axes are evaluated at most so often; see firmware/motion/README.md for what more would win.
+const ROUNDS: u32 = 8;
+/// Times that differ by less than 2 × this share are together.
+const TOLERANCE: f32 = 0.005;

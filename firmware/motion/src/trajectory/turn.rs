@@ -1,0 +1,62 @@
+//! How soon does a robot face another way, and how does it turn? One axis with a wrap; rad, rad/s, rad/s².
+
+use geometry::{Angle, math};
+
+use super::FreeLimits;
+use super::axis::{AxisLimits, Phases};
+
+/// Limits of turning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnLimits {
+    /// rad/s, > 0.
+    pub rate: f32,
+    /// Speeding up and braking, rad/s², > 0.
+    pub acceleration: f32,
+}
+
+impl Default for TurnLimits {
+    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which no wheel on carpet keeps.
+    fn default() -> Self {
+        Self { rate: 6.0, acceleration: 30.0 }
+    }
+}
+
+impl TurnLimits {
+    /// From `from`, turning with `rate` rad/s, to rest at `to`: the way round that is sooner there.
+    pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
+        let (speed, braking) = (self.rate, self.acceleration);
+        // NaN is not above anything.
+        let usable = speed > 0.0 && braking > 0.0 && rate.abs() <= RATE_MAX;
+        if !usable {
+            return Turn { from, phases: Phases::default() };
+        }
+        let limits = AxisLimits::new(&FreeLimits { speed, acceleration: braking, braking });
+        let short = (to - from).radians();
+        let long = if short > 0.0 { short - math::TAU } else { short + math::TAU };
+        let turn = if limits.time(long, rate) < limits.time(short, rate) { long } else { short };
+        Turn { from, phases: limits.phases(turn, rate, 1.0) }
+    }
+}
+
+/// A planned turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    from: Angle,
+    phases: Phases,
+}
+
+impl Turn {
+    /// Until it rests, s.
+    pub fn duration(&self) -> f32 {
+        self.phases.duration
+    }
+
+    /// Heading, rate (rad/s) and acceleration (rad/s²) `time` seconds after the start.
+    pub fn at(&self, time: f32) -> (Angle, f32, f32) {
+        let (turned, rate, acceleration) = self.phases.at(time);
+        (self.from + Angle::new(turned), rate, acceleration)
+    }
+}
+
+/// Beyond this a gyroscope is broken, rad/s.
+const RATE_MAX: f32 = 1_000.0;
