@@ -4,3 +4,5 @@
 //!
 //! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl` only. Same input,
 //! same decisions.
+
+pub mod strategy;

@@ -1,0 +1,17 @@
+//! What shall every robot do now? A team that plays by the rules: keeper, two defenders, the others by cases (DESIGN §3).
+//!
+//! [`view`] is the field as strategy sees it, turned so that we attack towards +x (the one place that flips); [`roles`] says
+//! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them
+//! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
+
+mod coach;
+pub mod defence;
+mod order;
+pub mod restart;
+pub mod roles;
+pub mod support;
+pub mod view;
+
+pub use coach::{Coach, Orders};
+pub use order::{Order, Role, Task, Why};
+pub use view::{Flip, View};

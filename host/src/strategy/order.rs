@@ -1,0 +1,180 @@
+//! What is a robot told, and why? A task in the attack frame, the role it serves, and the numbers behind it.
+
+use geometry::{Angle, Attack, Point};
+use protocol::RobotId;
+use protocol::host::{Directive, Duty, KickOrder};
+
+use super::view::Flip;
+
+/// What one robot shall do, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Order {
+    /// Who.
+    pub robot: RobotId,
+    /// What it is.
+    pub role: Role,
+    /// What it does.
+    pub task: Task,
+    /// What decided it.
+    pub why: Why,
+}
+
+/// What a robot is in the team at this moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Guards the goal; alone may be in our defence area.
+    Keeper,
+    /// At the edge of our defence area, between ball and goal: 0 the first, 1 the second.
+    Defender(u8),
+    /// Plays the ball in open play, with the other field players.
+    Player,
+    /// Takes our restart, or places the ball.
+    Taker,
+    /// Took our restart and must not touch the ball before somebody else has.
+    Barred,
+    /// Stands where a pass can come.
+    Support(u8),
+    /// Stands between an opponent and our goal.
+    Marker(u8),
+    /// Stands in the way of their restart.
+    Wall,
+}
+
+/// What decided an order, with its numbers; SI units, attack frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Why {
+    /// The referee's word leaves nothing else.
+    Referee,
+    /// Nearest to the ball: this many seconds away.
+    SoonestAtBall {
+        /// s.
+        seconds: f32,
+    },
+    /// On the line from the ball to our goal.
+    OnBallLine {
+        /// Where that line meets the goal line, m.
+        y: f32,
+    },
+    /// The ball lies in our area and only the keeper may touch it.
+    ClearsArea {
+        /// Room along the way of the ball, m.
+        room: f32,
+    },
+    /// The best free place found.
+    FreePlace {
+        /// Its worth, 0–1.
+        worth: f32,
+    },
+    /// This opponent is nearest to our goal and not marked.
+    Marks {
+        /// Whom.
+        opponent: RobotId,
+    },
+    /// The best target found for the ball.
+    BestTarget {
+        /// Room along the way of the ball, m.
+        room: f32,
+    },
+    /// Open play: the robots choose among themselves.
+    OpenPlay,
+    /// It touched the ball last at our restart.
+    DoubleTouch,
+    /// No ball is seen.
+    NoBall,
+}
+
+/// A task in the attack frame; [`Task::directive`] is its form for the wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
+    /// Brake and stand.
+    Stand,
+    /// Be there, facing so.
+    GoTo {
+        /// Where.
+        at: Point<Attack>,
+        /// Facing.
+        face: Angle,
+    },
+    /// Kick the ball at this point.
+    Kick {
+        /// Where to.
+        at: Point<Attack>,
+        /// How.
+        kick: KickOrder,
+    },
+    /// Pass to a mate.
+    Pass {
+        /// Where it will have the ball.
+        at: Point<Attack>,
+        /// Who.
+        receiver: RobotId,
+        /// How.
+        kick: KickOrder,
+        /// Whether the ball may leave now.
+        ready: bool,
+    },
+    /// Have a pass here.
+    Receive {
+        /// Where.
+        at: Point<Attack>,
+    },
+    /// Be where the ball would cross this stretch.
+    Block {
+        /// One end.
+        from: Point<Attack>,
+        /// The other.
+        to: Point<Attack>,
+    },
+    /// Bring the ball there.
+    PlaceBall {
+        /// Where.
+        at: Point<Attack>,
+    },
+    /// Play cases with the mates.
+    Gameplay,
+}
+
+impl Task {
+    /// The task in the words of the wire, on the field.
+    pub fn directive(&self, flip: Flip) -> Directive {
+        match *self {
+            Self::Stand => Directive::Stand,
+            Self::GoTo { at, face } => Directive::GoTo { pose: flip.pose_to_wire(at, face) },
+            Self::Kick { at, kick } => Directive::Kick { at: flip.to_wire(at), kick },
+            Self::Pass { at, receiver, kick, ready } => {
+                Directive::Pass { at: flip.to_wire(at), receiver, kick, ready }
+            }
+            Self::Receive { at } => Directive::Receive { at: flip.to_wire(at), then: None },
+            Self::Block { from, to } => Directive::Block { from: flip.to_wire(from), to: flip.to_wire(to) },
+            Self::PlaceBall { at } => Directive::PlaceBall { at: flip.to_wire(at) },
+            Self::Gameplay => Directive::Gameplay { hint: None },
+        }
+    }
+}
+
+impl Role {
+    /// What the rules allow a robot of this role beyond others.
+    pub fn duty(self) -> Duty {
+        match self {
+            Self::Keeper => Duty::Keeper,
+            Self::Taker => Duty::Taker,
+            _ => Duty::Player,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::GoalEnd;
+    use protocol::quantized::WirePoint;
+
+    #[test]
+    fn a_task_is_turned_for_the_team_that_attacks_towards_minus_x() {
+        let task = Task::PlaceBall { at: Point::new(1.0, -0.5) };
+        let turned = task.directive(Flip::defending(GoalEnd::Positive));
+        assert_eq!(turned, Directive::PlaceBall { at: WirePoint { x: -1000, y: 500 } });
+        let straight = task.directive(Flip::defending(GoalEnd::Negative));
+        assert_eq!(straight, Directive::PlaceBall { at: WirePoint { x: 1000, y: -500 } });
+    }
+}

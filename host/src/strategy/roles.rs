@@ -1,0 +1,103 @@
+//! Who is what? Few, clear roles, held until a change is worth it, so that nobody turns round twice a second.
+//!
+//! First who plays the ball (soonest there), then the defenders (nearest to their places), the rest are field players. Robots that
+//! play a case stay field players until it ends. A robot leaves a role only for a gain of [`WORTH`].
+
+use geometry::{Attack, Point};
+use protocol::RobotId;
+
+use super::view::{Robot, View};
+
+/// Seconds until `robot` could be at `place`, roughly: at its top speed, after the time it needs to get there.
+pub fn time_to(robot: &Robot, place: Point<Attack>) -> f32 {
+    let way = place - robot.position;
+    let distance = way.norm();
+    let closing = way.unit().map_or(0.0, |along| robot.velocity.dot(along));
+    // From the closing speed with constant acceleration: a head start, or time lost in turning back.
+    (distance / TYPICAL_SPEED + SPEEDING_UP - closing / TYPICAL_ACCELERATION).max(0.0)
+}
+
+/// Of `robots`, who has least `cost`; `held` has it unless another one gains more than `worth`.
+pub fn choose<'r>(
+    robots: impl Iterator<Item = &'r Robot>,
+    held: Option<RobotId>,
+    worth: f32,
+    cost: impl Fn(&Robot) -> f32,
+) -> Option<(RobotId, f32)> {
+    let mut best: Option<(RobotId, f32)> = None;
+    let mut kept = None;
+    for robot in robots {
+        let cost = cost(robot);
+        if held == Some(robot.id) {
+            kept = Some((robot.id, cost));
+        }
+        if best.is_none_or(|(_, least)| cost < least) {
+            best = Some((robot.id, cost));
+        }
+    }
+    match (kept, best) {
+        (Some(kept), Some(best)) if kept.1 <= best.1 + worth => Some(kept),
+        _ => best,
+    }
+}
+
+/// Gives each of `places` to one of `free`, in their order, nearest first; `held` is who had which place.
+///
+/// Returns who has place i; takes them out of `free`.
+pub fn assign<const N: usize>(
+    view: &View,
+    free: &mut heapless::Vec<RobotId, { super::view::ROBOTS_MAX }>,
+    places: &[Point<Attack>],
+    held: &[Option<RobotId>; N],
+) -> [Option<RobotId>; N] {
+    let mut taken = [None; N];
+    for (i, place) in places.iter().enumerate().take(N) {
+        let robots = view.ours.iter().filter(|robot| free.contains(&robot.id));
+        let chosen = choose(robots, held[i], WORTH * TYPICAL_SPEED, |robot| robot.position.distance(*place));
+        if let Some((id, _)) = chosen {
+            free.retain(|other| *other != id);
+            taken[i] = Some(id);
+        }
+    }
+    taken
+}
+
+/// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and turns.
+pub const WORTH: f32 = 0.4;
+/// Speed of a robot on its way, m/s: of the 3 m/s and more that teams drive, what is had on average over a few metres.
+const TYPICAL_SPEED: f32 = 2.0;
+/// m/s²: the 3 to 4.7 m/s² that teams accelerate with.
+const TYPICAL_ACCELERATION: f32 = 3.0;
+/// Time lost in speeding up and braking, s: v/a with the two above.
+const SPEEDING_UP: f32 = 0.65;
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::tests::view;
+    use super::*;
+
+    #[test]
+    fn a_role_is_held_until_another_robot_gains_enough() {
+        let view = view((0.0, 0.0), &[(1.0, 0.0), (0.9, 0.0)], &[]);
+        let id = |n| RobotId::new(n);
+        let cost = |robot: &Robot| robot.position.distance(Point::new(0.0, 0.0));
+        assert_eq!(choose(view.ours.iter(), None, 0.3, cost).unwrap().0, id(1).unwrap());
+        assert_eq!(choose(view.ours.iter(), id(0), 0.3, cost).unwrap().0, id(0).unwrap());
+        assert_eq!(choose(view.ours.iter(), id(0), 0.05, cost).unwrap().0, id(1).unwrap());
+        assert_eq!(
+            choose(view.ours.iter(), id(7), 0.3, cost).unwrap().0,
+            id(1).unwrap(),
+            "gone from the field"
+        );
+    }
+
+    #[test]
+    fn every_place_gets_one_robot_and_no_robot_two_places() {
+        let view = view((0.0, 0.0), &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], &[]);
+        let mut free = view.ours.iter().map(|robot| robot.id).collect();
+        let places = [Point::new(1.9, 0.0), Point::new(2.1, 0.0)];
+        let taken = assign::<2>(&view, &mut free, &places, &[None; 2]);
+        assert_eq!(taken.map(|id| id.unwrap().number()), [2, 1]);
+        assert_eq!(free.len(), 1);
+    }
+}

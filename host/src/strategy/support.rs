@@ -1,0 +1,218 @@
+//! Where can a mate take a pass, and where shall the ball go? A few fixed places and targets, rated by room and by the open
+//! goal; the search by probabilities is strategy's next part. Attack frame, m.
+
+use geometry::{Attack, Point, Segment};
+use protocol::RobotId;
+use protocol::host::KickOrder;
+
+use super::defence::room_along;
+use super::view::{ROBOTS_MAX, Robot, View};
+
+/// Places for mates of a robot with the ball at `ball`, best first, apart from each other; with their worth, 0–1.
+pub fn places(
+    view: &View,
+    ball: Point<Attack>,
+    wanted: usize,
+) -> heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> {
+    let mut chosen: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX> = heapless::Vec::new();
+    for _ in 0..wanted.min(ROBOTS_MAX) {
+        let mut best: Option<(Point<Attack>, f32)> = None;
+        for place in grid(view, ball) {
+            if chosen.iter().any(|(other, _)| other.distance(place) < APART) {
+                continue;
+            }
+            let worth = worth(view, ball, place);
+            if best.is_none_or(|(_, most)| worth > most) {
+                best = Some((place, worth));
+            }
+        }
+        let Some(best) = best else { break };
+        // As many as ROBOTS_MAX fit.
+        let _ = chosen.push(best);
+    }
+    chosen
+}
+
+/// The worth of having the ball at `place` after a pass from `ball`: room on the way, room there, and the goal in sight.
+pub fn worth(view: &View, ball: Point<Attack>, place: Point<Attack>) -> f32 {
+    let way = room_along(view, ball, place).min(ROOM_GOOD) / ROOM_GOOD;
+    let there = view.nearest_theirs(place).map_or(ROOM_GOOD, |(_, d)| d).min(ROOM_GOOD) / ROOM_GOOD;
+    let ahead = ((place.x() - ball.x()) / view.field.length + 0.5).clamp(0.0, 1.0);
+    let shot = room_along(view, place, view.their_goal()).min(ROOM_GOOD) / ROOM_GOOD;
+    way * there * (0.4 + 0.3 * ahead + 0.3 * shot)
+}
+
+/// The places considered: a coarse grid ahead of and beside the ball, outside the areas and inside the lines.
+fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>> {
+    let (length, width) = (view.field.length, view.field.width);
+    let columns = GRID.0;
+    (0..columns * GRID.1)
+        .map(move |i| {
+            let (column, row) = (i % columns, i / columns);
+            let share = |k: usize, n: usize| (k as f32 + 0.5) / n as f32 - 0.5;
+            Point::new(share(column, columns) * (length - 1.0), share(row, GRID.1) * (width - 0.8))
+        })
+        .filter(move |at| !view.in_their_area(*at, KEEP_OFF) && !view.in_our_area(*at, KEEP_OFF))
+        .filter(move |at| {
+            let distance = at.distance(ball);
+            (PASS_SHORTEST..PASS_LONGEST).contains(&distance) && at.x() > ball.x() - BACKWARDS
+        })
+}
+
+/// The best thing to do with a ball at rest: a shot with room, else the best mate, else ahead along the freest way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// Shoot at this point of the goal.
+    Shot {
+        /// Where.
+        at: Point<Attack>,
+        /// m.
+        room: f32,
+    },
+    /// Pass to this mate.
+    Mate {
+        /// Who.
+        id: RobotId,
+        /// Where.
+        at: Point<Attack>,
+        /// m.
+        room: f32,
+    },
+    /// Nobody is free: ahead.
+    Ahead {
+        /// Where to.
+        at: Point<Attack>,
+        /// m.
+        room: f32,
+    },
+}
+
+/// Chooses for the robot `taker` with the ball at `ball`.
+pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
+    let (shot, room) = best_shot(view, ball);
+    if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
+        return Target::Shot { at: shot, room };
+    }
+    let receivable = |mate: &&Robot| {
+        mate.id != taker && mate.id != view.keeper && {
+            let distance = mate.position.distance(ball);
+            (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
+        }
+    };
+    let best = view
+        .ours
+        .iter()
+        .filter(receivable)
+        .map(|mate| (mate, worth(view, ball, mate.position)))
+        .reduce(|best, next| if next.1 > best.1 { next } else { best });
+    match best {
+        Some((mate, worth)) if worth > WORTH_PASSING => {
+            let room = room_along(view, ball, mate.position);
+            Target::Mate { id: mate.id, at: mate.position, room }
+        }
+        _ if ball.distance(view.their_goal()) < SHOOT_WITHIN => Target::Shot { at: shot, room },
+        _ => {
+            let half = view.field.width * 0.5 - 0.6;
+            let ahead = [0.0, -half, half]
+                .map(|y| Point::new((ball.x() + 2.0).min(view.field.length * 0.5 - 1.5), y));
+            let (at, room) = ahead
+                .into_iter()
+                .map(|at| (at, room_along(view, ball, at)))
+                .fold((ahead[0], -1.0), |best, next| if next.1 > best.1 { next } else { best });
+            Target::Ahead { at, room }
+        }
+    }
+}
+
+/// The point of their goal with the freest way from `ball`, and the room along that way, m.
+pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
+    let (x, half) = (view.their_goal().x(), view.field.goal_width * 0.5 - POST);
+    let mut best = (view.their_goal(), -1.0);
+    for i in 0..SHOTS {
+        let y = half * (2.0 * i as f32 / (SHOTS - 1) as f32 - 1.0);
+        let at = Point::new(x, y);
+        let way = Segment::new(ball, at);
+        let room = view.theirs.iter().map(|robot| way.distance_to(robot.position)).fold(1.0, f32::min);
+        if room > best.1 {
+            best = (at, room);
+        }
+    }
+    best
+}
+
+/// The kick that brings the ball over `distance` to a mate who can still take it.
+///
+/// Arriving with about 2 m/s: v₀² ≈ (v² + 2·0.35·d)/0.52, after the slide that keeps 5/7 of the speed.
+pub fn pass_kick(distance: f32) -> KickOrder {
+    let squared = (ARRIVE_WITH * ARRIVE_WITH + 0.7 * distance.max(0.0)) / 0.52;
+    let speed = geometry::math::sqrt(squared).clamp(1.5, 6.0);
+    KickOrder::Flat((speed * 100.0) as u16)
+}
+
+/// A shot, cm/s: as fast as the rules allow, less what a kicker may err by.
+pub const SHOT: KickOrder = KickOrder::Flat(620);
+
+const GRID: (usize, usize) = (12, 7);
+/// Mates keep this far apart, m.
+const APART: f32 = 1.2;
+/// More room than this is as good as any, m.
+const ROOM_GOOD: f32 = 0.7;
+/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much again.
+const KEEP_OFF: f32 = 0.4;
+/// Shorter passes gain nothing, longer ones are met by somebody else, m.
+const PASS_SHORTEST: f32 = 1.0;
+const PASS_LONGEST: f32 = 5.0;
+/// A pass may go back this far, m.
+const BACKWARDS: f32 = 1.0;
+/// A gap beside the way of a shot, m: bodies of robot and ball (0.11) and what a keeper covers while it flies.
+const ROOM_TO_SHOOT: f32 = 0.2;
+/// Farther shots are caught, m.
+const SHOOT_WITHIN: f32 = 4.0;
+/// Below this a pass is rather not played, 0–1.
+const WORTH_PASSING: f32 = 0.2;
+/// Shots are aimed this far inside the posts, m: twice the ball's radius, and what a kick scatters by.
+const POST: f32 = 0.08;
+/// Points of the goal tried.
+const SHOTS: usize = 9;
+/// A receiver takes a ball of this speed, m/s.
+const ARRIVE_WITH: f32 = 2.0;
+
+#[cfg(test)]
+mod tests {
+    use super::super::view::tests::view;
+    use super::*;
+
+    #[test]
+    fn places_lie_on_the_field_outside_the_areas_and_apart() {
+        let view = view((0.0, 0.0), &[], &[(1.0, 1.0), (2.0, 0.0), (4.4, 0.0)]);
+        let places = places(&view, Point::new(0.0, 0.0), 3);
+        assert_eq!(places.len(), 3);
+        for (i, (place, _)) in places.iter().enumerate() {
+            assert!(view.field.contains(Point::new(place.x(), place.y())));
+            assert!(!view.in_their_area(*place, 0.2));
+            for (other, _) in &places[..i] {
+                assert!(place.distance(*other) >= APART);
+            }
+        }
+        assert!(places[0].1 >= places[2].1, "best first");
+    }
+
+    #[test]
+    fn a_shot_goes_past_the_keeper_and_a_blocked_one_becomes_a_pass() {
+        let open = view((2.0, 0.0), &[(1.9, 0.0)], &[(4.4, -0.3)]);
+        let Target::Shot { at, .. } = target(&open, open.ours[0].id, Point::new(2.0, 0.0)) else { panic!() };
+        assert!(at.y() > 0.2);
+        let ours = [(-4.4, 0.0), (1.9, 0.0), (2.0, 2.0)];
+        let blocked = view((2.0, 0.0), &ours, &[(4.4, 0.0), (2.6, 0.0), (2.6, 0.15), (2.6, -0.15)]);
+        let Target::Mate { id, .. } = target(&blocked, blocked.ours[1].id, Point::new(2.0, 0.0)) else {
+            panic!()
+        };
+        assert_eq!(id.number(), 2);
+    }
+
+    #[test]
+    fn a_pass_over_two_metres_starts_with_the_speed_that_arrives_with_two() {
+        // (4 + 1.4) / 0.52 = 10.38, √ = 3.22 m/s
+        assert_eq!(pass_kick(2.0), KickOrder::Flat(322));
+    }
+}

@@ -1,0 +1,236 @@
+//! What does strategy see? The field turned so that the goal we attack lies at +x (DESIGN §2: the one place that flips). SI.
+
+use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
+use protocol::quantized::{WirePoint, WirePose};
+use protocol::{Instant, RobotId};
+use rules::{FieldSpec, Phase, Side};
+
+/// Robots of a team that strategy can see: one per id.
+pub const ROBOTS_MAX: usize = RobotId::COUNT;
+
+/// Turns between the field and the attack frame: by half a turn, or not at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flip {
+    sign: f32,
+}
+
+impl Flip {
+    /// For the team that defends `goal`.
+    pub fn defending(goal: GoalEnd) -> Self {
+        Self { sign: goal.attack_sign() as f32 }
+    }
+
+    /// A place as strategy sees it.
+    pub fn point(self, p: Point<Field>) -> Point<Attack> {
+        Point::new(p.x() * self.sign, p.y() * self.sign)
+    }
+
+    /// A velocity as strategy sees it.
+    pub fn vector(self, v: Vector<Field>) -> Vector<Attack> {
+        Vector::new(v.x() * self.sign, v.y() * self.sign)
+    }
+
+    /// A heading, either way.
+    pub fn angle(self, heading: Angle) -> Angle {
+        if self.sign < 0.0 { heading + Angle::HALF_TURN } else { heading }
+    }
+
+    /// A place of strategy's on the field.
+    pub fn to_field(self, p: Point<Attack>) -> Point<Field> {
+        Point::new(p.x() * self.sign, p.y() * self.sign)
+    }
+
+    /// The same for the wire.
+    pub fn to_wire(self, p: Point<Attack>) -> WirePoint {
+        self.to_field(p).into()
+    }
+
+    /// A place and a heading for the wire.
+    pub fn pose_to_wire(self, at: Point<Attack>, heading: Angle) -> WirePose {
+        Pose { position: self.to_field(at), heading: self.angle(heading) }.into()
+    }
+}
+
+/// The ball, in the attack frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Where it is.
+    pub position: Point<Attack>,
+    /// Where it goes, m/s.
+    pub velocity: Vector<Attack>,
+    /// Where it will come to rest if nobody meets it, cut at nothing.
+    pub rest: Point<Attack>,
+    /// m above the ground.
+    pub height: f32,
+}
+
+/// A robot, in the attack frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Robot {
+    /// Its number.
+    pub id: RobotId,
+    /// Where it is.
+    pub position: Point<Attack>,
+    /// Where it faces.
+    pub heading: Angle,
+    /// Where it goes, m/s.
+    pub velocity: Vector<Attack>,
+}
+
+/// Everything strategy decides by.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The time, host's clock.
+    pub now: Instant,
+    /// The phase of the game.
+    pub phase: Phase<Side>,
+    /// What the referee will start next, if it says.
+    pub next: Option<Phase<Side>>,
+    /// Where the ball is to be placed, while it is.
+    pub placement: Option<Point<Attack>>,
+    /// The ball, if it is seen.
+    pub ball: Option<Ball>,
+    /// Our robots on the field that can be commanded, by id.
+    pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
+    /// Theirs, by id.
+    pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
+    /// Our keeper's number, as the referee knows it.
+    pub keeper: RobotId,
+    /// Their keeper's number.
+    pub their_keeper: RobotId,
+    /// Our robots that play a case right now, by what they say.
+    pub in_play: RobotSet,
+    /// The field's lines.
+    pub field: FieldSpec,
+}
+
+impl View {
+    /// Our robot of that number.
+    pub fn our(&self, id: RobotId) -> Option<&Robot> {
+        self.ours.iter().find(|robot| robot.id == id)
+    }
+
+    /// Middle of our goal's mouth.
+    pub fn our_goal(&self) -> Point<Attack> {
+        Point::new(-self.field.length * 0.5, 0.0)
+    }
+
+    /// Middle of the mouth of the goal we attack.
+    pub fn their_goal(&self) -> Point<Attack> {
+        Point::new(self.field.length * 0.5, 0.0)
+    }
+
+    /// In our defence area, grown by `margin` m.
+    pub fn in_our_area(&self, p: Point<Attack>, margin: f32) -> bool {
+        self.in_area(Point::new(-p.x(), p.y()), margin)
+    }
+
+    /// In theirs, grown by `margin` m.
+    pub fn in_their_area(&self, p: Point<Attack>, margin: f32) -> bool {
+        self.in_area(p, margin)
+    }
+
+    fn in_area(&self, p: Point<Attack>, margin: f32) -> bool {
+        let depth = self.field.length * 0.5 - p.x();
+        depth <= self.field.penalty_depth + margin && p.y().abs() <= self.field.penalty_width * 0.5 + margin
+    }
+
+    /// The opponent nearest to `point`, with its distance, m.
+    pub fn nearest_theirs(&self, point: Point<Attack>) -> Option<(&Robot, f32)> {
+        nearest(self.theirs.iter(), point)
+    }
+
+    /// The nearest place at least `inside` m within the lines.
+    pub fn clamp(&self, p: Point<Attack>, inside: f32) -> Point<Attack> {
+        let (x, y) = (self.field.length * 0.5 - inside, self.field.width * 0.5 - inside);
+        Point::new(p.x().clamp(-x, x), p.y().clamp(-y, y))
+    }
+}
+
+/// The robot nearest to `point`; the first one among equals.
+pub fn nearest<'r>(
+    robots: impl Iterator<Item = &'r Robot>,
+    point: Point<Attack>,
+) -> Option<(&'r Robot, f32)> {
+    robots
+        .map(|robot| (robot, robot.position.distance(point)))
+        .reduce(|best, next| if next.1 < best.1 { next } else { best })
+}
+
+/// A set of our robots, one bit per number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct RobotSet(u16);
+
+impl RobotSet {
+    /// Puts a robot in.
+    pub fn insert(&mut self, id: RobotId) {
+        self.0 |= 1 << id.number();
+    }
+
+    /// Whether it is in.
+    pub fn has(self, id: RobotId) -> bool {
+        self.0 & (1 << id.number()) != 0
+    }
+
+    /// How many are in.
+    pub fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// Nobody is.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use rules::League;
+
+    /// A view of division B's field with our robots 0, 1, … and theirs at these places, towards +x.
+    pub(crate) fn view(ball: (f32, f32), ours: &[(f32, f32)], theirs: &[(f32, f32)]) -> View {
+        let robots = |places: &[(f32, f32)]| {
+            let robot = |(i, (x, y)): (usize, &(f32, f32))| Robot {
+                id: RobotId::new(i as u8).unwrap(),
+                position: Point::new(*x, *y),
+                heading: Angle::ZERO,
+                velocity: Vector::default(),
+            };
+            places.iter().enumerate().map(robot).collect()
+        };
+        let position = Point::new(ball.0, ball.1);
+        View {
+            now: Instant(1_000_000),
+            phase: Phase::Run,
+            next: None,
+            placement: None,
+            ball: Some(Ball { position, velocity: Vector::default(), rest: position, height: 0.0 }),
+            ours: robots(ours),
+            theirs: robots(theirs),
+            keeper: RobotId::new(0).unwrap(),
+            their_keeper: RobotId::new(0).unwrap(),
+            in_play: RobotSet::default(),
+            field: League::DivisionB.field(),
+        }
+    }
+
+    #[test]
+    fn who_defends_the_positive_goal_sees_everything_turned_by_half() {
+        let flip = Flip::defending(GoalEnd::Positive);
+        assert_eq!(flip.point(Point::new(1.0, -2.0)), Point::new(-1.0, 2.0));
+        assert_eq!(flip.to_field(Point::new(-1.0, 2.0)), Point::new(1.0, -2.0));
+        assert!((flip.angle(Angle::ZERO) - Angle::HALF_TURN).abs() < 1e-6);
+        let straight = Flip::defending(GoalEnd::Negative);
+        assert_eq!(straight.vector(Vector::new(1.0, 0.5)), Vector::new(1.0, 0.5));
+    }
+
+    #[test]
+    fn areas_are_at_their_own_ends_and_grow_by_a_margin() {
+        let view = view((0.0, 0.0), &[], &[]);
+        assert!(view.in_our_area(Point::new(-4.0, 0.9), 0.0) && !view.in_our_area(Point::new(4.0, 0.9), 0.0));
+        assert!(
+            !view.in_their_area(Point::new(3.4, 0.0), 0.0) && view.in_their_area(Point::new(3.4, 0.0), 0.2)
+        );
+    }
+}
