@@ -48,13 +48,55 @@ impl core::fmt::Debug for TeamKey {
     }
 }
 
+/// Who speaks on a team's air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Sender {
+    /// A robot of the team; 0–15 on the wire.
+    Robot(RobotId),
+    /// The team's host, one per team; 16 on the wire.
+    Host,
+}
+
+impl Sender {
+    /// Number of senders a team can have.
+    pub const COUNT: usize = RobotId::COUNT + 1;
+
+    /// `None` above 16.
+    pub const fn new(number: u8) -> Option<Self> {
+        match RobotId::new(number) {
+            Some(robot) => Some(Self::Robot(robot)),
+            None if number == HOST => Some(Self::Host),
+            None => None,
+        }
+    }
+
+    /// Its number on the wire, 0–16.
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Robot(robot) => robot.number(),
+            Self::Host => HOST,
+        }
+    }
+
+    /// For arrays with one place per sender.
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Robot(robot) => robot.index(),
+            Self::Host => RobotId::COUNT,
+        }
+    }
+}
+
+/// The host's number on the wire: the first that no robot has.
+const HOST: u8 = RobotId::COUNT as u8;
+
 /// A frame, its payload borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Whose air this is.
     pub team: TeamId,
     /// Who speaks.
-    pub sender: RobotId,
+    pub sender: Sender,
     /// Which life of the sender: rises with every boot.
     pub epoch: u32,
     /// Rises with every frame of an epoch.
@@ -72,7 +114,7 @@ pub enum Refusal {
     Version(u8),
     /// Another team's frame.
     Team(TeamId),
-    /// No such robot, or our own id.
+    /// No such sender, our own number, or one that does not speak to us.
     Sender(u8),
     /// An earlier life of the sender.
     Epoch {
@@ -92,11 +134,16 @@ pub enum Refusal {
     Tag,
     /// The payload is no message.
     Payload,
+    /// A host that has not shown that it knows this life of ours: another one, or a recording.
+    Stranger {
+        /// The epoch in the frame.
+        epoch: u32,
+    },
 }
 
 impl Refusal {
     /// Number of kinds.
-    pub const KINDS: usize = 8;
+    pub const KINDS: usize = 9;
 
     /// The kind's place in a table of counters.
     pub fn kind(self) -> usize {
@@ -109,6 +156,7 @@ impl Refusal {
             Self::Counter { .. } => 5,
             Self::Tag => 6,
             Self::Payload => 7,
+            Self::Stranger { .. } => 8,
         }
     }
 }
@@ -124,6 +172,9 @@ impl core::fmt::Display for Refusal {
             Self::Counter { seen, last } => write!(f, "frame {seen} is not after {last}"),
             Self::Tag => f.write_str("frame with a wrong tag"),
             Self::Payload => f.write_str("frame whose payload is no message"),
+            Self::Stranger { epoch } => {
+                write!(f, "frame of a host in epoch {epoch}, which has not welcomed us")
+            }
         }
     }
 }
@@ -148,7 +199,7 @@ impl<'a> Frame<'a> {
         if seen_team != team.0 {
             return Err(Refusal::Team(TeamId(seen_team)));
         }
-        let sender = RobotId::new(sender).ok_or(Refusal::Sender(sender))?;
+        let sender = Sender::new(sender).ok_or(Refusal::Sender(sender))?;
         let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
         let counter = u32::from_le_bytes([c0, c1, c2, c3]);
         Ok(Self { team, sender, epoch, counter, payload })
@@ -194,7 +245,7 @@ impl<'a> Frame<'a> {
 /// What a receiver remembers of every sender: its epoch and the last counter accepted.
 #[derive(Clone, Debug, Default)]
 pub struct Sessions {
-    last: [Option<(u32, u32)>; RobotId::COUNT],
+    last: [Option<(u32, u32)>; Sender::COUNT],
 }
 
 impl Sessions {
@@ -207,6 +258,11 @@ impl Sessions {
             }
             _ => Ok(()),
         }
+    }
+
+    /// The sender's current epoch, if it was heard.
+    pub fn epoch(&self, sender: Sender) -> Option<u32> {
+        self.last[sender.index()].map(|(epoch, _)| epoch)
     }
 
     /// Remembers a frame that was checked and found genuine.
@@ -222,7 +278,7 @@ mod tests {
     const TEAM: TeamId = TeamId(3);
 
     fn frame(epoch: u32, counter: u32) -> Frame<'static> {
-        Frame { team: TEAM, sender: RobotId::new(2).unwrap(), epoch, counter, payload: b"abc" }
+        Frame { team: TEAM, sender: Sender::new(2).unwrap(), epoch, counter, payload: b"abc" }
     }
 
     #[test]
@@ -254,8 +310,8 @@ mod tests {
         let mut bytes = [0; 19];
         bytes[0] = VERSION;
         assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Team(TeamId(0))));
-        (bytes[1], bytes[2]) = (3, 16);
-        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Sender(16)));
+        (bytes[1], bytes[2]) = (3, 17);
+        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Sender(17)));
     }
 
     #[test]
@@ -266,6 +322,17 @@ mod tests {
         assert_eq!(sessions.check(&frame(6, 99)), Err(Refusal::Epoch { seen: 6, current: 7 }));
         assert_eq!(sessions.check(&frame(7, 11)), Ok(()));
         assert_eq!(sessions.check(&frame(8, 0)), Ok(()));
+    }
+
+    #[test]
+    fn sixteen_robots_and_a_host_can_speak() {
+        assert_eq!(Sender::new(15), RobotId::new(15).map(Sender::Robot));
+        assert_eq!(Sender::new(16), Some(Sender::Host));
+        assert_eq!(Sender::new(17), None);
+        for n in 0..Sender::COUNT {
+            let sender = Sender::new(n as u8).unwrap();
+            assert_eq!((usize::from(sender.number()), sender.index()), (n, n));
+        }
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! The picture of the field goes to everybody in parts ([`WorldPart`]), what to do goes to each robot by itself
 //! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
 //! moment of arrival: the host's tracking has carried them forward by the way there, so no clocks need to agree.
-//! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`].
+//! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
+//! believes a host it must have had its [`Welcome`]: nobody can command it with a recording of an earlier life.
 
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,29 @@ pub enum HostMessage {
     World(WorldPart),
     /// To one robot: what to do.
     Command(Command),
+    /// To one robot: the host's answer to hearing it for the first time; repeated now and then.
+    Welcome(Welcome),
+}
+
+impl HostMessage {
+    /// Whether the numbers in it can be: a part of a picture is one of its parts, and there are no more than
+    /// [`PARTS_MAX`].
+    pub fn is_sound(&self) -> bool {
+        match self {
+            Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
+            Self::Command(_) | Self::Welcome(_) => true,
+        }
+    }
+}
+
+/// Proof that this host lives now: it has heard the robot in its present life.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Welcome {
+    /// Who is meant.
+    pub to: RobotId,
+    /// The epoch of that robot's frames.
+    #[serde(with = "postcard::fixint::le")]
+    pub life: u32,
 }
 
 /// A part of the picture of the field.
@@ -218,21 +242,28 @@ pub struct Telemetry {
     /// Bits, see [`Condition`].
     pub condition: Condition,
     /// Battery, cV (1/100 V); 0 where it is not measured.
+    #[serde(with = "postcard::fixint::le")]
     pub battery: u16,
-    /// Frames of the host that were opened in this life, wrapping.
+    /// Parts of the host's pictures that came in this life, wrapping.
+    #[serde(with = "postcard::fixint::le")]
     pub heard: u16,
-    /// Frames of the host that never came, by their counters, wrapping.
+    /// Parts that never came, by the pictures' numbers, wrapping.
+    #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
     /// Frames refused, of any kind, wrapping.
+    #[serde(with = "postcard::fixint::le")]
     pub refused: u16,
-    /// How long ago the last frame of the host came, ms, saturating.
-    pub silence: u8,
+    /// The newest picture a part of which came; means nothing before the first.
+    pub picture: u8,
+    /// How long ago the last frame of the host came, 0.1 ms, saturating.
+    #[serde(with = "postcard::fixint::le")]
+    pub silence: u16,
 }
 
 /// How a robot is, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Condition(pub u16);
+pub struct Condition(#[serde(with = "postcard::fixint::le")] pub u16);
 
 impl Condition {
     /// The ball is at the dribbler.

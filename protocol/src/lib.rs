@@ -1,8 +1,8 @@
 //! What travels between robots, host and simulator? (DESIGN §5–§7)
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
-//! [`frame`] is the radio's envelope (who, when, genuine?); [`team`] is what robots tell each other; [`robot_io`] is
-//! what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer,
+//! [`frame`] is the radio's envelope (who, when, genuine?), [`link`] and [`host_link`] are its two ends, [`serial`] puts it
+//! on a line; [`team`] is what robots tell each other, [`mod@host`] what host and robots do; [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer,
 //! [`slot`] is where a computer finds a case table that was not built into it.
 //! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
 //!
@@ -11,11 +11,13 @@
 
 pub mod frame;
 pub mod host;
+pub mod host_link;
 pub mod ids;
 pub mod link;
 pub mod lockstep;
 pub mod quantized;
 pub mod robot_io;
+pub mod serial;
 pub mod slot;
 pub mod team;
 pub mod time;

@@ -1,11 +1,29 @@
-//! How does a robot's message become a packet of the air, and which packets does it believe? One end of the radio.
+//! How does a robot's message become a packet of the air, and which packets does it believe? The robot's end of the radio;
+//! [`crate::host_link`] is the other.
+//!
+//! A robot hears its mates and its host. Mates are believed from their first genuine frame on; what an old recording of
+//! theirs could do is little, for everything they say is outdated by what they say next. The host moves robots, so it must
+//! first have answered this very life of the robot with a [`Welcome`]: a recording cannot, for it was made before the
+//! robot's epoch was known. Until then, and again when a host with a newer epoch speaks, its frames are refused as a
+//! [`Refusal::Stranger`]'s.
 
-use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, Sessions, TeamKey};
+use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, Sender, Sessions, TeamKey};
+use crate::host::{HostMessage, PARTS_MAX, Telemetry, Welcome, WorldPart};
 use crate::team::{TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{RobotId, TeamId};
 
 /// A packet of the air: one whole frame.
 pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
+
+/// What a robot heard.
+#[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Heard {
+    /// A mate says this.
+    Mate(RobotId, TeamMessage),
+    /// The host says this, to all or to one robot; which one is the reader's to look at.
+    Host(HostMessage),
+}
 
 /// One robot's end of the radio: seals what it says, opens what it hears, counts what it refuses.
 #[derive(Clone, Debug)]
@@ -17,36 +35,40 @@ pub struct Link {
     counter: u32,
     sessions: Sessions,
     refused: [u32; Refusal::KINDS],
+    pictures: Pictures,
 }
 
 impl Link {
     /// A link in the life `epoch` of robot `me`; a later boot must bring a larger one.
     pub fn new(team: TeamId, me: RobotId, key: TeamKey, epoch: u32) -> Self {
-        Self { team, me, key, epoch, counter: 0, sessions: Sessions::default(), refused: [0; Refusal::KINDS] }
+        Self {
+            team,
+            me,
+            key,
+            epoch,
+            counter: 0,
+            sessions: Sessions::default(),
+            refused: [0; Refusal::KINDS],
+            pictures: Pictures::default(),
+        }
     }
 
     /// The packet that carries `message`.
     pub fn seal(&mut self, message: &TeamMessage) -> Packet {
         let mut payload = [0; TEAM_MESSAGE_LEN_MAX];
-        let mut packet = Packet::new();
         // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
-        let Ok(payload) = postcard::to_slice(message, &mut payload) else { return packet };
+        let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
-        let frame =
-            Frame { team: self.team, sender: self.me, epoch: self.epoch, counter: self.counter, payload };
-        if packet.resize_default(FRAME_LEN_MAX).is_ok() {
-            let len = frame.emit(&self.key, &mut packet).unwrap_or(0);
-            packet.truncate(len);
-        }
-        packet
+        let sender = Sender::Robot(self.me);
+        let frame = Frame { team: self.team, sender, epoch: self.epoch, counter: self.counter, payload };
+        packet(&frame, &self.key)
     }
 
     /// Who says what, or why the packet is not believed (counted).
-    pub fn open(&mut self, packet: &[u8]) -> Result<(RobotId, TeamMessage), Refusal> {
+    pub fn open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
         let opened = self.try_open(packet);
         if let Err(refusal) = opened {
-            let count = &mut self.refused[refusal.kind()];
-            *count = count.saturating_add(1);
+            count(&mut self.refused, refusal);
         }
         opened
     }
@@ -56,102 +78,155 @@ impl Link {
         &self.refused
     }
 
-    fn try_open(&mut self, packet: &[u8]) -> Result<(RobotId, TeamMessage), Refusal> {
+    /// What came of the host's pictures, and what did not.
+    pub fn pictures(&self) -> &Pictures {
+        &self.pictures
+    }
+
+    /// Fills in what the link knows of itself; all but condition, battery and silence.
+    pub fn tell(&self, telemetry: &mut Telemetry) {
+        telemetry.heard = self.pictures.heard as u16;
+        telemetry.lost = self.pictures.lost as u16;
+        telemetry.picture = self.pictures.newest().unwrap_or(0);
+        telemetry.refused = self.refused.iter().fold(0_u32, |sum, count| sum.wrapping_add(*count)) as u16;
+    }
+
+    fn try_open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
-        if frame.sender == self.me {
+        if frame.sender == Sender::Robot(self.me) {
             return Err(Refusal::Sender(self.me.number()));
         }
         self.sessions.check(&frame)?;
         if !Frame::is_genuine(packet, &self.key) {
             return Err(Refusal::Tag);
         }
-        self.sessions.accept(&frame);
-        decode(frame.payload).map(|message| (frame.sender, message)).ok_or(Refusal::Payload)
-    }
-}
-
-/// Reads a packet without being part of the team: for whoever watches the air from outside (the key is needed, order
-/// and repetition are not judged).
-pub fn overhear(packet: &[u8], team: TeamId, key: &TeamKey) -> Result<(RobotId, TeamMessage), Refusal> {
-    let frame = Frame::parse(packet, team)?;
-    if !Frame::is_genuine(packet, key) {
-        return Err(Refusal::Tag);
-    }
-    decode(frame.payload).map(|message| (frame.sender, message)).ok_or(Refusal::Payload)
-}
-
-/// The message, if the payload is one to its last byte and its ids exist.
-fn decode(payload: &[u8]) -> Option<TeamMessage> {
-    let (message, rest) = postcard::take_from_bytes::<TeamMessage>(payload).ok()?;
-    rest.is_empty().then_some(message)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::team::{Beacon, Progress, Role, Status};
-
-    fn robot(n: u8) -> RobotId {
-        RobotId::new(n).unwrap()
-    }
-
-    fn beacon(case_base: u32) -> TeamMessage {
-        TeamMessage::Beacon(Beacon {
-            pose: crate::quantized::WirePose::default(),
-            ball: None,
-            status: Status::AVAILABLE,
-            case_base,
-            cycle: None,
-            progress: Progress::Idle,
-            role: Role::None,
-        })
-    }
-
-    fn link(me: u8, epoch: u32) -> Link {
-        Link::new(TeamId(1), robot(me), TeamKey::ZERO, epoch)
-    }
-
-    #[test]
-    fn what_one_seals_another_opens_once() {
-        let (mut a, mut b) = (link(1, 0), link(2, 0));
-        let packet = a.seal(&beacon(7));
-        assert_eq!(b.open(&packet), Ok((robot(1), beacon(7))));
-        assert_eq!(b.open(&packet), Err(Refusal::Counter { seen: 1, last: 1 }));
-        assert_eq!(b.refused()[5], 1);
-    }
-
-    #[test]
-    fn a_forged_packet_does_not_move_the_counter() {
-        let (mut a, mut b) = (link(1, 0), link(2, 0));
-        let good = a.seal(&beacon(7));
-        let mut forged = good.clone();
-        forged[7] = 200;
-        assert_eq!(b.open(&forged), Err(Refusal::Tag));
-        assert!(b.open(&good).is_ok());
-    }
-
-    #[test]
-    fn frames_of_an_earlier_life_are_refused() {
-        let (mut old, mut new, mut b) = (link(1, 4), link(1, 5), link(2, 0));
-        let late = old.seal(&beacon(1));
-        assert!(b.open(&new.seal(&beacon(2))).is_ok());
-        assert_eq!(b.open(&late), Err(Refusal::Epoch { seen: 4, current: 5 }));
-    }
-
-    #[test]
-    fn random_bytes_never_panic() {
-        let mut b = link(2, 0);
-        let mut state = 1_u64;
-        for _ in 0..20_000 {
-            let mut bytes = [0_u8; 90];
-            for byte in &mut bytes {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                *byte = (state >> 56) as u8;
+        match frame.sender {
+            Sender::Robot(mate) => {
+                self.sessions.accept(&frame);
+                let message = decode::<TeamMessage>(frame.payload).ok_or(Refusal::Payload)?;
+                Ok(Heard::Mate(mate, message))
             }
-            (bytes[0], bytes[1], bytes[2]) = (1, 1, 3);
-            let len = usize::from(bytes[89]) % 90;
-            assert!(b.open(&bytes[..len]).is_err());
-            let _ = decode(&bytes[..len]);
+            Sender::Host => self.open_host(&frame).map(Heard::Host),
+        }
+    }
+
+    fn open_host(&mut self, frame: &Frame<'_>) -> Result<HostMessage, Refusal> {
+        let message = host_message(frame.payload);
+        let known = self.sessions.epoch(Sender::Host) == Some(frame.epoch);
+        let welcome = Welcome { to: self.me, life: self.epoch };
+        if !known && message != Some(HostMessage::Welcome(welcome)) {
+            return Err(Refusal::Stranger { epoch: frame.epoch });
+        }
+        self.sessions.accept(frame);
+        let message = message.ok_or(Refusal::Payload)?;
+        if !known {
+            self.pictures.forget();
+        }
+        if let HostMessage::World(part) = &message {
+            self.pictures.handle(part);
+        }
+        Ok(message)
+    }
+}
+
+/// Which parts of the host's pictures came? Every robot is sent every part, so what is missing was lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pictures {
+    /// Parts that came in this life.
+    pub heard: u32,
+    /// Parts that never came: of pictures that are over, or whole pictures between two that came (as many parts as the
+    /// later one). 256 pictures missed in a row cannot be told from none; who counts on it looks at the silence too.
+    pub lost: u32,
+    now: Option<Now>,
+}
+
+/// The picture that is coming in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Now {
+    number: u8,
+    parts: u8,
+    /// A bit for each part that came.
+    came: u8,
+}
+
+const _: () = assert!(PARTS_MAX <= u8::BITS as usize, "a bit for each part");
+
+impl Pictures {
+    /// The newest picture a part of which came.
+    pub fn newest(&self) -> Option<u8> {
+        self.now.map(|now| now.number)
+    }
+
+    /// Another host: its numbers have nothing to do with the last one's.
+    fn forget(&mut self) {
+        self.now = None;
+    }
+
+    fn handle(&mut self, part: &WorldPart) {
+        let bit = 1_u8.checked_shl(u32::from(part.part)).unwrap_or(0);
+        self.heard = self.heard.saturating_add(1);
+        match &mut self.now {
+            Some(now) if now.number == part.picture => now.came |= bit,
+            _ => {
+                if let Some(last) = self.now {
+                    let missing = u32::from(last.parts).saturating_sub(last.came.count_ones());
+                    let between = part.picture.wrapping_sub(last.number).wrapping_sub(1);
+                    let skipped = u32::from(between) * u32::from(part.parts);
+                    self.lost = self.lost.saturating_add(missing + skipped);
+                }
+                self.now = Some(Now { number: part.picture, parts: part.parts, came: bit });
+            }
         }
     }
 }
+
+/// Reads a robot's packet without being part of the team: for whoever watches the air from outside (the key is needed,
+/// order and repetition are not judged). The host's are refused as a sender's that does not speak to us.
+pub fn overhear(packet: &[u8], team: TeamId, key: &TeamKey) -> Result<(RobotId, TeamMessage), Refusal> {
+    let frame = Frame::parse(packet, team)?;
+    let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
+    if !Frame::is_genuine(packet, key) {
+        return Err(Refusal::Tag);
+    }
+    decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
+}
+
+/// As [`overhear`], for the host's packets.
+pub fn overhear_host(packet: &[u8], team: TeamId, key: &TeamKey) -> Result<HostMessage, Refusal> {
+    let frame = Frame::parse(packet, team)?;
+    if frame.sender != Sender::Host {
+        return Err(Refusal::Sender(frame.sender.number()));
+    }
+    if !Frame::is_genuine(packet, key) {
+        return Err(Refusal::Tag);
+    }
+    host_message(frame.payload).ok_or(Refusal::Payload)
+}
+
+/// The frame as a packet; empty if it is too long for one.
+pub(crate) fn packet(frame: &Frame<'_>, key: &TeamKey) -> Packet {
+    let mut packet = Packet::new();
+    if packet.resize_default(FRAME_LEN_MAX).is_ok() {
+        let len = frame.emit(key, &mut packet).unwrap_or(0);
+        packet.truncate(len);
+    }
+    packet
+}
+
+pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {
+    let count = &mut refused[refusal.kind()];
+    *count = count.saturating_add(1);
+}
+
+/// The message, if the payload is one to its last byte and its ids exist.
+pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option<T> {
+    let (message, rest) = postcard::take_from_bytes::<T>(payload).ok()?;
+    rest.is_empty().then_some(message)
+}
+
+fn host_message(payload: &[u8]) -> Option<HostMessage> {
+    decode::<HostMessage>(payload).filter(HostMessage::is_sound)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,12 +1,13 @@
 //! What do robots tell each other? Their whole state, again and again (DESIGN §5; paper §4.1).
 //!
-//! There is one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
+//! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
 //! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is
 //! a value that only grows ([`CycleState::is_newer_than`]), so that packets may be lost, doubled and reordered, and
-//! any robot may pass on what the coordinator said.
+//! any robot may pass on what the coordinator said. The other message, [`Telemetry`], is for the host; mates leave it.
 
 use serde::{Deserialize, Serialize};
 
+use crate::host::Telemetry;
 use crate::quantized::{WirePoint, WirePose};
 use crate::{CaseId, CycleId, RobotId};
 
@@ -15,11 +16,13 @@ pub const CASE_ROBOTS_MAX: usize = 4;
 /// The longest [`TeamMessage`] in postcard bytes; with the frame's overhead it stays within 64 B (DESIGN §6).
 pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 
-/// A message between robots of a team.
+/// A message of a robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TeamMessage {
-    /// The sender's whole state.
+    /// To all: the sender's whole state.
     Beacon(Beacon),
+    /// To the host: how the sender's body and link are.
+    Telemetry(Telemetry),
 }
 
 /// A robot's whole state.
@@ -261,6 +264,22 @@ mod tests {
         let n = postcard::to_slice(&longest(), &mut out).unwrap().len();
         assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");
         assert_eq!(postcard::from_bytes::<TeamMessage>(&out[..n]), Ok(longest()));
+    }
+
+    #[test]
+    fn the_longest_telemetry_fits_its_budget() {
+        let telemetry = Telemetry {
+            condition: crate::host::Condition(u16::MAX),
+            battery: u16::MAX,
+            heard: u16::MAX,
+            lost: u16::MAX,
+            refused: u16::MAX,
+            picture: u8::MAX,
+            silence: u16::MAX,
+        };
+        let mut out = [0; 128];
+        let n = postcard::to_slice(&TeamMessage::Telemetry(telemetry), &mut out).unwrap().len();
+        assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Does the code write the bytes that `SPEC.md` says? Every worked example there is named and checked, both ways.
 
-use protocol::frame::{Frame, TeamKey};
+use protocol::frame::{Frame, Sender, TeamKey};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::team::{
     AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
@@ -85,7 +85,8 @@ fn messages_have_the_bytes_of_the_specification() {
 #[test]
 fn frames_have_the_bytes_of_the_specification() {
     let payload = worked("quiet");
-    let frame = Frame { team: TeamId(1), sender: robot(3), epoch: 1, counter: 258, payload: &payload };
+    let frame =
+        Frame { team: TeamId(1), sender: Sender::Robot(robot(3)), epoch: 1, counter: 258, payload: &payload };
     let mut out = [0; 64];
     let n = frame.emit(&TeamKey::ZERO, &mut out).unwrap();
     assert_eq!(&out[..n], &worked("frame")[..], "{}", hex(&out[..n]));

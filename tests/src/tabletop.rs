@@ -103,7 +103,7 @@ impl<'a> Tabletop<'a> {
             };
             robot.brain.handle_sensors(now, &sensors);
             while let Some(message) = robot.brain.poll_message(now) {
-                let TeamMessage::Beacon(beacon) = &message;
+                let TeamMessage::Beacon(beacon) = &message else { continue };
                 robot.beacon = Some(beacon.clone());
                 if let Some(CycleState { id, decision: Decision::Closed(end), .. }) = &beacon.cycle
                     && !self.ends.contains(&(*id, *end))

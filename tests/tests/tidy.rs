@@ -260,8 +260,18 @@ const NO_STD: [&str; 8] =
 const SAME_BITS: [&str; 9] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime", "hil-sim"];
 /// Crates from outside that compute and nothing else: no files, sockets, clocks or threads.
-const PURE: [&str; 9] =
-    ["nalgebra", "libm", "micromath", "heapless", "serde", "postcard", "siphasher", "zerocopy", "defmt"];
+const PURE: [&str; 10] = [
+    "nalgebra",
+    "libm",
+    "micromath",
+    "heapless",
+    "serde",
+    "postcard",
+    "siphasher",
+    "cobs",
+    "zerocopy",
+    "defmt",
+];
 
 /// DESIGN §1; a crate depends on earlier ones only.
 const LOWEST_FIRST: [&str; 24] = [

@@ -69,7 +69,8 @@ impl<'a> Brain<'a> {
 
     /// A teammate's beacon.
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
-        let TeamMessage::Beacon(beacon) = message;
+        // What mates tell the host of themselves is not for us.
+        let TeamMessage::Beacon(beacon) = message else { return };
         self.timers.advance(now);
         self.mates.hear(now, from, beacon);
         if self.config.approach != Approach::Reactive

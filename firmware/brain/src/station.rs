@@ -5,7 +5,7 @@
 use casebase::CaseBase;
 use protocol::Instant;
 use protocol::frame::TeamKey;
-use protocol::link::{Link, Packet};
+use protocol::link::{Heard, Link, Packet};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
 use crate::{Brain, BrainConfig};
@@ -19,15 +19,20 @@ pub struct Station<'a> {
 impl<'a> Station<'a> {
     /// A robot that wakes up at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
+        Self::with_key(now, config, base, TeamKey::ZERO)
+    }
+
+    /// As [`Station::new`], with the team's key.
+    pub fn with_key(now: Instant, config: &BrainConfig, base: CaseBase<'a>, key: TeamKey) -> Self {
         Self {
             brain: Brain::new(now, config, base),
-            link: Link::new(config.team, config.robot, TeamKey::ZERO, config.epoch),
+            link: Link::new(config.team, config.robot, key, config.epoch),
         }
     }
 
     /// A packet came; whatever is not a genuine, new message of this team is counted and dropped.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
-        if let Ok((from, message)) = self.link.open(packet) {
+        if let Ok(Heard::Mate(from, message)) = self.link.open(packet) {
             self.brain.handle_team_message(now, from, &message);
         }
     }
