@@ -6,3 +6,4 @@
 //! same decisions.
 
 pub mod strategy;
+pub mod trace;

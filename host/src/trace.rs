@@ -1,0 +1,320 @@
+//! What must be kept so that a match can be decided again? Everything that came to a host and everything it said, in order
+//! (DESIGN §7: `X.trace`).
+//!
+//! ```text
+//! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
+//! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
+//! ```
+//! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
+//! before the cut and says that it was cut. Compression is the file's business, not this format's.
+
+use std::fmt;
+use std::io::{self, Read, Write};
+
+use protocol::Instant;
+
+const MAGIC: &[u8; 12] = b"ONETWO_TRACE";
+/// The version of the format.
+pub const VERSION: u32 = 1;
+/// The longest record, bytes: a datagram.
+pub const RECORD_LEN_MAX: usize = 65_536;
+/// The longest header, bytes.
+pub const HEADER_LEN_MAX: usize = 1 << 20;
+
+/// What a record is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A datagram of the vision came in.
+    Vision,
+    /// A datagram of the referee came in.
+    Referee,
+    /// A frame of a robot came in.
+    Robot,
+    /// A deadline of the host had come.
+    Timeout,
+    /// The host sent a frame: the first byte is the robot it is for, 255 for all.
+    Sent,
+}
+
+impl Kind {
+    const ALL: [Self; 5] = [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent];
+
+    fn from_byte(byte: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(byte)).copied()
+    }
+
+    /// Whether it is something that came to the host.
+    pub fn is_input(self) -> bool {
+        self != Self::Sent
+    }
+}
+
+/// Something that came or went.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// When, on the host's clock.
+    pub at: Instant,
+    /// Which host, where one recording holds several teams'.
+    pub host: u8,
+    /// What.
+    pub kind: Kind,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// Writes a trace.
+#[derive(Debug)]
+pub struct Writer<W: Write> {
+    out: W,
+}
+
+impl<W: Write> Writer<W> {
+    /// Begins with the header, which is JSON.
+    pub fn new(mut out: W, header: &str) -> io::Result<Self> {
+        out.write_all(MAGIC)?;
+        out.write_all(&VERSION.to_le_bytes())?;
+        out.write_all(&len(header.as_bytes())?.to_le_bytes())?;
+        out.write_all(header.as_bytes())?;
+        Ok(Self { out })
+    }
+
+    /// Adds a record.
+    pub fn write(&mut self, at: Instant, host: u8, kind: Kind, bytes: &[&[u8]]) -> io::Result<()> {
+        let total: usize = bytes.iter().map(|part| part.len()).sum();
+        if total > RECORD_LEN_MAX {
+            return Err(io::Error::other(format!("a record of {total} bytes; at most {RECORD_LEN_MAX} fit")));
+        }
+        let mut head = [0; 14];
+        head[..8].copy_from_slice(&at.0.to_le_bytes());
+        head[8] = host;
+        head[9] = kind as u8;
+        head[10..].copy_from_slice(&(total as u32).to_le_bytes());
+        self.out.write_all(&head)?;
+        bytes.iter().try_for_each(|part| self.out.write_all(part))
+    }
+
+    /// Gives back what is written to.
+    pub fn into_inner(self) -> W {
+        self.out
+    }
+}
+
+fn len(bytes: &[u8]) -> io::Result<u32> {
+    u32::try_from(bytes.len()).map_err(io::Error::other)
+}
+
+/// Reads a trace, record by record.
+#[derive(Debug)]
+pub struct Reader<R: Read> {
+    from: R,
+    header: String,
+    end: Option<End>,
+}
+
+/// How a trace ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// After a whole record.
+    Whole,
+    /// Within a record.
+    Cut,
+    /// A record that cannot be one.
+    Broken {
+        /// What is wrong with it.
+        what: String,
+    },
+}
+
+/// Why a file is no trace.
+#[derive(Debug)]
+pub enum TraceError {
+    /// It cannot be read.
+    Io(io::Error),
+    /// It begins otherwise.
+    NotATrace,
+    /// Another version.
+    Version(u32),
+    /// The header is cut, too long or not UTF-8.
+    Header,
+}
+
+impl fmt::Display for TraceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io(error) => write!(f, "{error}"),
+            Self::NotATrace => f.write_str("it does not begin with ONETWO_TRACE: no trace of ours"),
+            Self::Version(seen) => {
+                write!(
+                    f,
+                    "a trace of version {seen}, this program reads {VERSION}: use the program that wrote it"
+                )
+            }
+            Self::Header => {
+                f.write_str("its header is cut or damaged: the recording cannot be told from others")
+            }
+        }
+    }
+}
+
+impl std::error::Error for TraceError {}
+
+impl From<io::Error> for TraceError {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::UnexpectedEof { Self::Header } else { Self::Io(error) }
+    }
+}
+
+impl<R: Read> Reader<R> {
+    /// Reads the header.
+    pub fn new(mut from: R) -> Result<Self, TraceError> {
+        let mut magic = [0; 12];
+        match from.read_exact(&mut magic) {
+            Ok(()) if &magic == MAGIC => {}
+            Ok(()) => return Err(TraceError::NotATrace),
+            Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => return Err(TraceError::NotATrace),
+            Err(error) => return Err(TraceError::Io(error)),
+        }
+        let mut word = [0; 4];
+        from.read_exact(&mut word)?;
+        let version = u32::from_le_bytes(word);
+        if version != VERSION {
+            return Err(TraceError::Version(version));
+        }
+        from.read_exact(&mut word)?;
+        let length = u32::from_le_bytes(word) as usize;
+        if length > HEADER_LEN_MAX {
+            return Err(TraceError::Header);
+        }
+        let mut header = vec![0; length];
+        from.read_exact(&mut header)?;
+        let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
+        Ok(Self { from, header, end: None })
+    }
+
+    /// What was said at its beginning: JSON.
+    pub fn header(&self) -> &str {
+        &self.header
+    }
+
+    /// How it ended, once it has.
+    pub fn end(&self) -> Option<&End> {
+        self.end.as_ref()
+    }
+
+    fn read(&mut self) -> Result<Record, End> {
+        let mut head = [0; 14];
+        let got = fill(&mut self.from, &mut head);
+        if got == 0 {
+            return Err(End::Whole);
+        }
+        if got < head.len() {
+            return Err(End::Cut);
+        }
+        let [t0, t1, t2, t3, t4, t5, t6, t7, host, kind, l0, l1, l2, l3] = head;
+        let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
+        let kind = Kind::from_byte(kind)
+            .ok_or_else(|| End::Broken { what: format!("no record is of kind {kind}") })?;
+        if length > RECORD_LEN_MAX {
+            return Err(End::Broken {
+                what: format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written"),
+            });
+        }
+        let mut bytes = vec![0; length];
+        if fill(&mut self.from, &mut bytes) < length {
+            return Err(End::Cut);
+        }
+        let at = Instant(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
+        Ok(Record { at, host, kind, bytes })
+    }
+}
+
+/// As much of `into` as there is; a read that fails (a damaged compressed file, too) ends it.
+fn fill(from: &mut impl Read, into: &mut [u8]) -> usize {
+    let mut done = 0;
+    while done < into.len() {
+        match from.read(&mut into[done..]) {
+            Ok(n) if n > 0 => done += n,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            _ => break,
+        }
+    }
+    done
+}
+
+impl<R: Read> Iterator for Reader<R> {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        if self.end.is_some() {
+            return None;
+        }
+        self.read().map_err(|end| self.end = Some(end)).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written() -> Vec<u8> {
+        let mut writer = Writer::new(Vec::new(), r#"{"seed":7}"#).unwrap();
+        writer.write(Instant(10), 0, Kind::Vision, &[b"abc"]).unwrap();
+        writer.write(Instant(20), 1, Kind::Timeout, &[]).unwrap();
+        writer.write(Instant(30), 1, Kind::Sent, &[&[255], b"frame"]).unwrap();
+        writer.into_inner()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let bytes = written();
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!(reader.header(), r#"{"seed":7}"#);
+        let records: Vec<_> = reader.by_ref().collect();
+        assert_eq!(records.len(), 3);
+        assert_eq!(
+            records[2],
+            Record { at: Instant(30), host: 1, kind: Kind::Sent, bytes: b"\xffframe".to_vec() }
+        );
+        assert_eq!(reader.end(), Some(&End::Whole));
+    }
+
+    #[test]
+    fn a_file_cut_at_any_byte_gives_the_whole_records_before_the_cut() {
+        let bytes = written();
+        for cut in 0..bytes.len() {
+            match Reader::new(&bytes[..cut]) {
+                Err(TraceError::NotATrace) => assert!(cut < 12, "{cut}"),
+                Err(TraceError::Header) => assert!(cut < 30, "{cut}"),
+                Err(other) => panic!("{cut}: {other}"),
+                Ok(mut reader) => {
+                    let got = reader.by_ref().count();
+                    let whole = [30 + 17, 30 + 17 + 14].iter().filter(|end| **end <= cut).count();
+                    assert_eq!(got, whole, "{cut}");
+                    let clean = [30, 47, 61].contains(&cut);
+                    assert_eq!(reader.end() == Some(&End::Whole), clean, "{cut}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn another_version_and_another_kind_are_named() {
+        let mut bytes = written();
+        bytes[12] = 9;
+        assert!(matches!(Reader::new(&bytes[..]), Err(TraceError::Version(9))));
+        let mut bytes = written();
+        bytes[30 + 9] = 77;
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!(reader.by_ref().count(), 0);
+        assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("77")));
+    }
+
+    #[test]
+    fn a_length_out_of_nowhere_allocates_nothing() {
+        let mut bytes = written();
+        bytes[30 + 10..30 + 14].copy_from_slice(&u32::MAX.to_le_bytes());
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!(reader.by_ref().count(), 0);
+        assert!(matches!(reader.end(), Some(End::Broken { .. })));
+    }
+}
