@@ -5,5 +5,6 @@
 //! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl` only. Same input,
 //! same decisions.
 
+pub mod config;
 pub mod strategy;
 pub mod trace;

@@ -1,0 +1,295 @@
+//! Who are we, and where do we hear and speak? `team.toml`, and the flags that overrule it (DESIGN §8).
+//!
+//! ```toml
+//! name = "onetwo"                 # as the game controller knows the team
+//! colour = "blue"                 # blue or yellow; the referee may change sides, not colours
+//! league = "division-b"           # ssl-2013, division-b or division-a
+//! keeper = 0
+//! interface = "192.168.1.7"       # whose address hears multicast; left out: every interface
+//! robots = "sim://127.0.0.1"      # sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]
+//! key_file = "team.key"           # 32 hexadecimal digits; left out: a key of zeros
+//! vision = "224.5.23.2:10006"
+//! referee = "224.5.23.1:10003"
+//! tracker = "224.5.23.2:10010"
+//! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
+//!
+//! [[calibration]]                 # what a robot does otherwise than it is told
+//! robot = 3
+//! kick = 1.06                     # balls leave this much faster than ordered
+//! ```
+
+use std::fmt;
+use std::net::{IpAddr, SocketAddr};
+use std::path::PathBuf;
+
+use protocol::RobotId;
+use rules::{Colour, League};
+use serde::Deserialize;
+
+/// A team's settings: as a file or flags give them, everything may be left out.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TeamSettings {
+    /// The team's name.
+    pub name: Option<String>,
+    /// `blue` or `yellow`.
+    pub colour: Option<String>,
+    /// The league's name.
+    pub league: Option<String>,
+    /// The keeper's number.
+    pub keeper: Option<u8>,
+    /// Address of the interface that hears multicast.
+    pub interface: Option<IpAddr>,
+    /// Where robots are: see [`RobotLink`].
+    pub robots: Option<String>,
+    /// The file of the team's key.
+    pub key_file: Option<PathBuf>,
+    /// Vision's group.
+    pub vision: Option<SocketAddr>,
+    /// The referee's group.
+    pub referee: Option<SocketAddr>,
+    /// Where tracker packets go.
+    pub tracker: Option<SocketAddr>,
+    /// The game controller's port for teams.
+    pub game_controller: Option<SocketAddr>,
+    /// What robots do otherwise than told.
+    #[serde(default)]
+    pub calibration: Vec<Calibration>,
+}
+
+/// What one robot does otherwise than it is told.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// Which.
+    pub robot: u8,
+    /// Ball speed over speed ordered.
+    #[serde(default = "one")]
+    pub kick: f32,
+}
+
+fn one() -> f32 {
+    1.0
+}
+
+/// A team's settings, complete and checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TeamConfig {
+    /// As the game controller knows it.
+    pub name: String,
+    /// Our colour.
+    pub colour: Colour,
+    /// The league played.
+    pub league: League,
+    /// The keeper, until the referee says another.
+    pub keeper: RobotId,
+    /// Whose address hears multicast; `None`: every interface that can.
+    pub interface: Option<IpAddr>,
+    /// Where the robots are.
+    pub robots: RobotLink,
+    /// The file of the team's key.
+    pub key_file: Option<PathBuf>,
+    /// Vision's group.
+    pub vision: SocketAddr,
+    /// The referee's group.
+    pub referee: SocketAddr,
+    /// Where tracker packets go.
+    pub tracker: SocketAddr,
+    /// The game controller's port for teams.
+    pub game_controller: Option<SocketAddr>,
+    /// Ball speed over speed ordered, by robot.
+    pub kick: [f32; RobotId::COUNT],
+}
+
+/// How robots are reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RobotLink {
+    /// Brains of our own drive a simulator on that host.
+    Simulator(String),
+    /// A base station, or robots' own network, at this address: a datagram is a frame.
+    Udp(String),
+    /// A base station at a serial line: frames between zero bytes (COBS).
+    Serial {
+        /// The line's name.
+        device: String,
+        /// Bits a second.
+        baud: u32,
+    },
+}
+
+/// What is wrong with a team's settings, and what would be right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConfigError {
+    /// Which key or flag.
+    pub key: String,
+    /// What is wrong, and what to write.
+    pub words: String,
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.key, self.words)
+    }
+}
+
+impl std::error::Error for ConfigError {}
+
+fn error(key: &str, words: impl Into<String>) -> ConfigError {
+    ConfigError { key: key.to_owned(), words: words.into() }
+}
+
+impl TeamSettings {
+    /// Reads `team.toml`.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        toml::from_str(text).map_err(|broken| error("team.toml", broken.to_string()))
+    }
+
+    /// These settings where they say something, else those.
+    #[must_use]
+    pub fn over(self, below: Self) -> Self {
+        Self {
+            name: self.name.or(below.name),
+            colour: self.colour.or(below.colour),
+            league: self.league.or(below.league),
+            keeper: self.keeper.or(below.keeper),
+            interface: self.interface.or(below.interface),
+            robots: self.robots.or(below.robots),
+            key_file: self.key_file.or(below.key_file),
+            vision: self.vision.or(below.vision),
+            referee: self.referee.or(below.referee),
+            tracker: self.tracker.or(below.tracker),
+            game_controller: self.game_controller.or(below.game_controller),
+            calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
+        }
+    }
+
+    /// Complete and checked; what was left out is the league's usual.
+    pub fn complete(self) -> Result<TeamConfig, ConfigError> {
+        let league = match self.league.as_deref() {
+            None => League::DivisionB,
+            Some(name) => LEAGUES.into_iter().find(|league| league.name() == name).ok_or_else(|| {
+                error("league", format!("`{name}` is none; ssl-2013, division-b or division-a"))
+            })?,
+        };
+        let mut kick = [1.0; RobotId::COUNT];
+        for Calibration { robot, kick: factor } in self.calibration {
+            let id = robot_id("calibration.robot", robot)?;
+            if !(0.5..=2.0).contains(&factor) {
+                return Err(error(
+                    "calibration.kick",
+                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.5 to 2"),
+                ));
+            }
+            kick[id.index()] = factor;
+        }
+        Ok(TeamConfig {
+            name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
+            colour: colour(self.colour.as_deref().unwrap_or("blue"))?,
+            league,
+            keeper: robot_id("keeper", self.keeper.unwrap_or(0))?,
+            interface: self.interface,
+            robots: RobotLink::parse(self.robots.as_deref().unwrap_or("sim://127.0.0.1"))?,
+            key_file: self.key_file,
+            vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
+            referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
+            tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
+            game_controller: self.game_controller,
+            kick,
+        })
+    }
+}
+
+const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
+
+fn colour(word: &str) -> Result<Colour, ConfigError> {
+    [Colour::Blue, Colour::Yellow]
+        .into_iter()
+        .find(|colour| colour.word() == word)
+        .ok_or_else(|| error("colour", format!("`{word}` is none; blue or yellow")))
+}
+
+fn robot_id(key: &str, number: u8) -> Result<RobotId, ConfigError> {
+    RobotId::new(number).ok_or_else(|| error(key, format!("{number} is no robot; ids are 0 to 15")))
+}
+
+impl RobotLink {
+    /// From `sim://HOST`, `udp://HOST:PORT` or `serial:DEVICE[:BAUD]`.
+    pub fn parse(text: &str) -> Result<Self, ConfigError> {
+        let wrong = || {
+            error(
+                "robots",
+                format!("`{text}` is no link; sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]"),
+            )
+        };
+        if let Some(host) = text.strip_prefix("sim://") {
+            return if host.is_empty() { Err(wrong()) } else { Ok(Self::Simulator(host.to_owned())) };
+        }
+        if let Some(address) = text.strip_prefix("udp://") {
+            let (host, port) = address.rsplit_once(':').ok_or_else(wrong)?;
+            let known = !host.is_empty() && port.parse::<u16>().is_ok();
+            return if known { Ok(Self::Udp(address.to_owned())) } else { Err(wrong()) };
+        }
+        let line = text.strip_prefix("serial:").ok_or_else(wrong)?;
+        let (device, baud) = match line.rsplit_once(':') {
+            // A device's name may hold a colon itself; only digits after it are a rate.
+            Some((device, baud)) if baud.bytes().all(|b| b.is_ascii_digit()) && !baud.is_empty() => {
+                (device, baud.parse().map_err(|_| wrong())?)
+            }
+            _ => (line, BAUD),
+        };
+        if device.is_empty() { Err(wrong()) } else { Ok(Self::Serial { device: device.to_owned(), baud }) }
+    }
+}
+
+/// Bits a second where none are named: carries 100 pictures a second for a team of eleven (§6's frames, some 60 kB/s).
+const BAUD: u32 = 1_000_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_example_of_this_file_is_read_to_its_last_key() {
+        let text: String = include_str!("config.rs")
+            .lines()
+            .skip_while(|line| *line != "//! ```toml")
+            .skip(1)
+            .take_while(|line| *line != "//! ```")
+            .map(|line| line.trim_start_matches("//!").to_owned() + "\n")
+            .collect();
+        let config = TeamSettings::from_toml(&text).unwrap().complete().unwrap();
+        assert_eq!(config.colour, Colour::Blue);
+        assert_eq!(config.robots, RobotLink::Simulator("127.0.0.1".to_owned()));
+        assert_eq!(config.kick[3], 1.06);
+        assert_eq!(config.game_controller.unwrap().port(), 10_008);
+    }
+
+    #[test]
+    fn flags_overrule_the_file() {
+        let file = TeamSettings::from_toml("colour = \"yellow\"\nkeeper = 4").unwrap();
+        let flags = TeamSettings { keeper: Some(2), ..TeamSettings::default() };
+        let config = flags.over(file).complete().unwrap();
+        assert_eq!((config.colour, config.keeper.number()), (Colour::Yellow, 2));
+    }
+
+    #[test]
+    fn every_mistake_names_its_key_and_what_would_be_right() {
+        let refused =
+            |text: &str| TeamSettings::from_toml(text).and_then(TeamSettings::complete).unwrap_err();
+        assert!(refused("color = \"blue\"").words.contains("color"));
+        assert!(refused("colour = \"red\"").to_string().contains("blue or yellow"));
+        assert!(refused("keeper = 16").to_string().contains("0 to 15"));
+        assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
+        assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
+            assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
+        }
+    }
+
+    #[test]
+    fn a_serial_line_has_its_rate_behind_a_colon() {
+        let serial = |device: &str, baud| Ok(RobotLink::Serial { device: device.to_owned(), baud });
+        assert_eq!(RobotLink::parse("serial:/dev/ttyACM0"), serial("/dev/ttyACM0", BAUD));
+        assert_eq!(RobotLink::parse("serial:COM3:115200"), serial("COM3", 115_200));
+    }
+}
