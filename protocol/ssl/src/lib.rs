@@ -15,15 +15,20 @@
 //! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007–10011, length-delimited |
 //! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
 //!
+//! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the files matches are kept in.
+//!
 //! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
 //! and each field says its own. The README has the traps of the league's programs and which test holds each.
 
 pub mod common;
 pub mod controller;
 pub mod event;
+pub mod log;
+pub mod net;
 pub mod radio;
 pub mod referee;
 pub mod simulation;
+pub mod stream;
 pub mod tracker;
 pub mod vision;
 

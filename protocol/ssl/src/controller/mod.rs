@@ -1,4 +1,4 @@
-//! How does a program talk with the game controller? Length-delimited over TCP (`stream`), the controller first.
+//! How does a program talk with the game controller? Length-delimited over TCP ([`crate::stream`]), the controller first.
 //!
 //! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature` out.
 

@@ -1,0 +1,158 @@
+//! What is a payload of type 1, `Unknown`? Whichever message it has the required fields of, and no others.
+//!
+//! A protobuf decoder alone accepts nearly anything as nearly anything: unknown fields are passed over and missing ones
+//! read as zero. So the wire is looked at: numbers and wire types of the outermost fields, and where vision's two
+//! generations and the tracker differ, one or two levels deeper.
+
+use prost::Message;
+
+use super::MessageKind;
+use crate::{referee, tracker, vision};
+
+/// The kind of a payload: vision, vision of 2014, referee or tracker; `None` if it is none of them.
+///
+/// A packet of detections alone was the same in 2014 as it is today, and counts as today's.
+pub fn guess(payload: &[u8]) -> Option<MessageKind> {
+    let fields = fields(payload)?;
+    if is(&fields, &REFEREE, &REFEREE_REQUIRED) && referee::Referee::decode(payload).is_ok() {
+        return Some(MessageKind::Refbox2013);
+    }
+    if is(&fields, &WRAPPER, &[]) && !fields.is_empty() && fields.iter().all(vision_part) {
+        if vision::WrapperPacket::decode(payload).is_ok() {
+            return Some(MessageKind::Vision2014);
+        }
+        if vision::legacy::WrapperPacket::decode(payload).is_ok() {
+            return Some(MessageKind::Vision2010);
+        }
+    }
+    let tracker = is(&fields, &TRACKER, &[1]) && tracker::TrackerWrapperPacket::decode(payload).is_ok();
+    tracker.then_some(MessageKind::Tracker2020)
+}
+
+const VARINT: u8 = 0;
+const FIXED64: u8 = 1;
+const BYTES: u8 = 2;
+const FIXED32: u8 = 5;
+
+/// Numbers and wire types a message may have; numbers it must have.
+type Known = [(u32, u8)];
+
+const REFEREE: [(u32, u8); 18] = [
+    (1, VARINT),
+    (2, VARINT),
+    (3, VARINT),
+    (4, VARINT),
+    (5, VARINT),
+    (6, VARINT),
+    (7, BYTES),
+    (8, BYTES),
+    (9, BYTES),
+    (10, VARINT),
+    (12, VARINT),
+    (15, VARINT),
+    (16, BYTES),
+    (17, BYTES),
+    (18, BYTES),
+    (19, VARINT),
+    (20, BYTES),
+    // Until 2022: the last game event.
+    (11, BYTES),
+];
+const REFEREE_REQUIRED: [u32; 7] = [1, 2, 4, 5, 6, 7, 8];
+const WRAPPER: [(u32, u8); 3] = [(1, BYTES), (2, BYTES), (3, VARINT)];
+const TRACKER: [(u32, u8); 3] = [(1, BYTES), (2, BYTES), (3, BYTES)];
+const DETECTION: [(u32, u8); 8] =
+    [(1, VARINT), (2, FIXED64), (3, FIXED64), (4, VARINT), (5, BYTES), (6, BYTES), (7, BYTES), (8, FIXED64)];
+const DETECTION_REQUIRED: [u32; 4] = [1, 2, 3, 4];
+const GEOMETRY: [(u32, u8); 3] = [(1, BYTES), (2, BYTES), (3, BYTES)];
+
+struct Field<'a> {
+    number: u32,
+    wire: u8,
+    bytes: &'a [u8],
+}
+
+fn is(fields: &[Field<'_>], known: &Known, required: &[u32]) -> bool {
+    fields.iter().all(|field| known.contains(&(field.number, field.wire)))
+        && required.iter().all(|number| fields.iter().any(|field| field.number == *number))
+}
+
+/// Is a field of the wrapper what vision puts there?
+fn vision_part(field: &Field<'_>) -> bool {
+    match field.number {
+        1 => fields(field.bytes).is_some_and(|frame| is(&frame, &DETECTION, &DETECTION_REQUIRED)),
+        2 => fields(field.bytes).is_some_and(|geometry| is(&geometry, &GEOMETRY, &[1])),
+        _ => true,
+    }
+}
+
+/// The fields of a message, or `None` where the bytes are not one.
+fn fields(mut rest: &[u8]) -> Option<Vec<Field<'_>>> {
+    let mut fields = Vec::new();
+    while !rest.is_empty() {
+        let key = varint(&mut rest)?;
+        let wire = (key & 7) as u8;
+        let number = u32::try_from(key >> 3).ok().filter(|number| *number > 0)?;
+        let length = match wire {
+            VARINT => {
+                varint(&mut rest)?;
+                0
+            }
+            FIXED64 => 8,
+            FIXED32 => 4,
+            BYTES => usize::try_from(varint(&mut rest)?).ok()?,
+            _ => return None,
+        };
+        let (bytes, after) = rest.split_at_checked(length)?;
+        fields.push(Field { number, wire, bytes });
+        rest = after;
+    }
+    Some(fields)
+}
+
+fn varint(rest: &mut &[u8]) -> Option<u64> {
+    prost::encoding::decode_varint(rest).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracker::TrackerWrapperPacket;
+    use crate::vision::legacy;
+    use crate::vision::{DetectionFrame, FieldLineSegment, GeometryData, GeometryFieldSize};
+
+    #[test]
+    fn each_message_is_told_from_the_others() {
+        let detection =
+            vision::WrapperPacket { detection: Some(DetectionFrame::default()), ..Default::default() };
+        assert_eq!(guess(&detection.encode_to_vec()), Some(MessageKind::Vision2014));
+        let lines = vec![FieldLineSegment::default()];
+        let field = GeometryFieldSize { field_length: 9000, field_lines: lines, ..Default::default() };
+        let geometry = GeometryData { field, ..Default::default() };
+        let geometry = vision::WrapperPacket { geometry: Some(geometry), ..Default::default() };
+        assert_eq!(guess(&geometry.encode_to_vec()), Some(MessageKind::Vision2014));
+        let old = legacy::GeometryFieldSize { field_length: 6050, defense_radius: 800, ..Default::default() };
+        let old = legacy::GeometryData { field: old, calib: vec![] };
+        let old = legacy::WrapperPacket { detection: None, geometry: Some(old) };
+        assert_eq!(guess(&old.encode_to_vec()), Some(MessageKind::Vision2010));
+        let referee = referee::Referee::default();
+        assert_eq!(guess(&referee.encode_to_vec()), Some(MessageKind::Refbox2013));
+        let tracker = TrackerWrapperPacket { uuid: "57afc6f8".into(), ..Default::default() };
+        assert_eq!(guess(&tracker.encode_to_vec()), Some(MessageKind::Tracker2020));
+    }
+
+    #[test]
+    fn what_is_none_of_them_is_none() {
+        assert_eq!(guess(b""), None);
+        assert_eq!(guess(b"SSL_LOG_FILE"), None);
+        assert_eq!(guess(&[0xff; 40]), None);
+        // A referee without its teams.
+        assert_eq!(guess(&[8, 1, 16, 1, 32, 1, 40, 1, 48, 1]), None);
+        // A detection frame without its camera is no frame: field 4 is required.
+        let mut frame = DetectionFrame { frame_number: 7, ..Default::default() }.encode_to_vec();
+        frame.truncate(frame.len() - 2);
+        let mut packet = vec![0x0a, frame.len() as u8];
+        packet.extend(frame);
+        assert_ne!(guess(&packet), Some(MessageKind::Vision2014));
+    }
+}

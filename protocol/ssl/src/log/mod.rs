@@ -1,0 +1,126 @@
+//! How are matches kept? The league's log files: `.log` and `.log.gz`, as its recorder writes and its players read.
+//!
+//! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32 type, int32
+//! size, payload; all integers big-endian. An index of the messages may stand at the end of an uncompressed file; a
+//! `.log.gz` is the whole file gzipped and has none.
+//!
+//! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end anywhere and hold
+//! anything: what is whole is given, and [`LogReader::end`] says what was met instead of an end.
+
+mod error;
+mod guess;
+mod index;
+mod open;
+mod packet;
+mod reader;
+mod summary;
+mod writer;
+
+pub use error::LogError;
+pub use guess::guess;
+pub use index::Index;
+pub use open::{BACK_STEP_MESSAGES, Place, Source, open, open_at};
+pub use packet::{Packet, PacketError};
+pub use reader::{Counts, End, LogReader};
+pub use summary::{KindSummary, Summary};
+pub use writer::LogWriter;
+
+/// The first bytes of a file.
+const MAGIC: &[u8; 12] = b"SSL_LOG_FILE";
+
+/// The only version in use.
+const VERSION: i32 = 1;
+
+/// Bytes of the file's header: the magic and the version.
+const FILE_HEADER: usize = 16;
+
+/// Bytes before each payload: time, type, size.
+const MESSAGE_HEADER: usize = 16;
+
+/// Most bytes of a payload that are accepted: a message is a datagram, and a datagram's length has 16 bits. A larger
+/// size is taken for damage, so that damage cannot ask for gigabytes.
+pub const PAYLOAD_MAX: usize = 65_535;
+
+/// What a message of a log file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MessageKind {
+    /// 0: nothing; to be passed over.
+    Blank,
+    /// 1: some message; [`guess`] finds out.
+    Unknown,
+    /// 2: [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
+    Vision2010,
+    /// 3: [`Referee`](crate::referee::Referee).
+    Refbox2013,
+    /// 4: [`vision::WrapperPacket`](crate::vision::WrapperPacket).
+    Vision2014,
+    /// 5: [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
+    Tracker2020,
+    /// 6: the [`Index`].
+    Index2021,
+    /// A number that is not the league's.
+    Other(i32),
+}
+
+impl MessageKind {
+    /// The kind of a number.
+    pub const fn from_number(number: i32) -> Self {
+        match number {
+            0 => Self::Blank,
+            1 => Self::Unknown,
+            2 => Self::Vision2010,
+            3 => Self::Refbox2013,
+            4 => Self::Vision2014,
+            5 => Self::Tracker2020,
+            6 => Self::Index2021,
+            other => Self::Other(other),
+        }
+    }
+
+    /// The number in the file.
+    pub const fn number(self) -> i32 {
+        match self {
+            Self::Blank => 0,
+            Self::Unknown => 1,
+            Self::Vision2010 => 2,
+            Self::Refbox2013 => 3,
+            Self::Vision2014 => 4,
+            Self::Tracker2020 => 5,
+            Self::Index2021 => 6,
+            Self::Other(number) => number,
+        }
+    }
+}
+
+impl std::fmt::Display for MessageKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Blank => write!(f, "blank"),
+            Self::Unknown => write!(f, "unknown"),
+            Self::Vision2010 => write!(f, "vision of 2014"),
+            Self::Refbox2013 => write!(f, "referee"),
+            Self::Vision2014 => write!(f, "vision"),
+            Self::Tracker2020 => write!(f, "tracker"),
+            Self::Index2021 => write!(f, "index"),
+            Self::Other(number) => write!(f, "type {number}"),
+        }
+    }
+}
+
+/// One message of a log file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README, trap 6).
+    pub timestamp_ns: i64,
+    /// What it holds.
+    pub kind: MessageKind,
+    /// The datagram.
+    pub payload: Vec<u8>,
+}
+
+impl Record {
+    /// The message itself; `None` where there is none to have (blank, index).
+    pub fn decode(&self) -> Result<Option<Packet>, PacketError> {
+        Packet::decode(self.kind, &self.payload)
+    }
+}

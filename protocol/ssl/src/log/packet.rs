@@ -1,0 +1,77 @@
+//! Which message does a payload hold?
+
+use prost::Message;
+
+use super::{MessageKind, guess};
+use crate::{referee, tracker, vision};
+
+/// A message of a log file, decoded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Packet {
+    /// Vision as of today.
+    Vision(vision::WrapperPacket),
+    /// Vision until 2014.
+    VisionLegacy(vision::legacy::WrapperPacket),
+    /// The referee.
+    Referee(referee::Referee),
+    /// A tracker.
+    Tracker(tracker::TrackerWrapperPacket),
+}
+
+impl Packet {
+    /// Decodes what `kind` says, or what [`guess`] finds where it says `Unknown`; `None` for blank and index.
+    pub fn decode(kind: MessageKind, payload: &[u8]) -> Result<Option<Self>, PacketError> {
+        let broken = |kind| move |error| PacketError::Broken { kind, error };
+        let packet = match kind {
+            MessageKind::Blank | MessageKind::Index2021 => return Ok(None),
+            MessageKind::Vision2014 => Self::Vision(Message::decode(payload).map_err(broken(kind))?),
+            MessageKind::Vision2010 => Self::VisionLegacy(Message::decode(payload).map_err(broken(kind))?),
+            MessageKind::Refbox2013 => Self::Referee(Message::decode(payload).map_err(broken(kind))?),
+            MessageKind::Tracker2020 => Self::Tracker(Message::decode(payload).map_err(broken(kind))?),
+            MessageKind::Unknown => {
+                let found = guess(payload).ok_or(PacketError::NothingKnown)?;
+                return Self::decode(found, payload);
+            }
+            MessageKind::Other(number) => return Err(PacketError::KindNotKnown(number)),
+        };
+        Ok(Some(packet))
+    }
+
+    /// The kind a log file keeps it under.
+    pub const fn kind(&self) -> MessageKind {
+        match self {
+            Self::Vision(_) => MessageKind::Vision2014,
+            Self::VisionLegacy(_) => MessageKind::Vision2010,
+            Self::Referee(_) => MessageKind::Refbox2013,
+            Self::Tracker(_) => MessageKind::Tracker2020,
+        }
+    }
+}
+
+/// A payload without a message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PacketError {
+    /// It is not what its type says.
+    Broken {
+        /// Its type.
+        kind: MessageKind,
+        /// Where it breaks.
+        error: prost::DecodeError,
+    },
+    /// Its type is not one of the league's.
+    KindNotKnown(i32),
+    /// Its type is `Unknown`, and it is none of the messages we know.
+    NothingKnown,
+}
+
+impl std::fmt::Display for PacketError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Broken { kind, error } => write!(f, "{kind}: {error}"),
+            Self::KindNotKnown(number) => write!(f, "message type {number} is not one of the league's (0–6)"),
+            Self::NothingKnown => write!(f, "neither vision nor referee nor tracker"),
+        }
+    }
+}
+
+impl std::error::Error for PacketError {}

@@ -1,0 +1,251 @@
+//! Which messages does a log file hold, one after the other, and how does it end?
+//!
+//! Streams from any `Read`; holds one message at a time. Whatever the bytes are: every whole message before the first
+//! damage is given, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is told.
+
+use std::fmt;
+use std::io::{self, Read};
+
+use super::{FILE_HEADER, LogError, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, Record, VERSION};
+
+/// Reads messages from first to last; an iterator. Blank messages and the index are counted and passed over.
+#[derive(Debug)]
+pub struct LogReader<R> {
+    source: R,
+    /// Where the next message begins, bytes from the (unzipped) file's begin.
+    at: u64,
+    ahead: Option<Record>,
+    last_ns: Option<i64>,
+    counts: Counts,
+    end: Option<End>,
+}
+
+/// What was met on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages given.
+    pub messages: u64,
+    /// Blank messages passed over.
+    pub blank: u64,
+    /// Indices passed over: 0 or 1 in a sound file.
+    pub index: u64,
+    /// Messages earlier than the one before them.
+    pub back_steps: u64,
+    /// The largest such step, ns.
+    pub largest_back_step_ns: u64,
+}
+
+/// How a file ends. Positions and sizes are bytes of the unzipped file.
+#[derive(Debug)]
+pub enum End {
+    /// After a whole message.
+    Whole,
+    /// Within a message.
+    Cut {
+        /// Where that message begins.
+        at: u64,
+        /// How many bytes of it there are.
+        bytes: u64,
+    },
+    /// At a message of an impossible size; where the next one begins cannot be told.
+    Size {
+        /// Where that message begins.
+        at: u64,
+        /// The size it claims.
+        size: i32,
+    },
+    /// Where it cannot be read or gunzipped any more.
+    Read {
+        /// Where the message that was being read begins.
+        at: u64,
+        /// Why.
+        error: io::Error,
+    },
+}
+
+impl End {
+    /// Did the file end as it should?
+    pub const fn is_whole(&self) -> bool {
+        matches!(self, Self::Whole)
+    }
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => write!(f, "whole"),
+            Self::Cut { at, bytes } => {
+                write!(
+                    f,
+                    "cut: of the message at byte {at} only {bytes} bytes are there; all before it was read"
+                )
+            }
+            Self::Size { at, size } => write!(
+                f,
+                "damaged: the message at byte {at} claims {size} bytes, at most {PAYLOAD_MAX} are possible; all before it \
+                 was read"
+            ),
+            Self::Read { at, error } => {
+                write!(f, "not readable from the message at byte {at} on: {error}; all before it was read")
+            }
+        }
+    }
+}
+
+impl<R: Read> LogReader<R> {
+    /// Reads the file's header.
+    pub fn new(mut source: R) -> Result<Self, LogError> {
+        let mut header = [0; FILE_HEADER];
+        let bytes = fill(&mut source, &mut header).map_err(|(_, error)| LogError::Read(error))?;
+        let begins = header[..bytes].to_vec();
+        if begins.starts_with(&LEGACY_QT[..bytes.min(LEGACY_QT.len())]) && bytes >= LEGACY_QT.len() {
+            return Err(LogError::LegacyQt);
+        }
+        if !begins.starts_with(&MAGIC[..bytes.min(MAGIC.len())]) {
+            return Err(LogError::NotALog { begins });
+        }
+        if bytes < FILE_HEADER {
+            return Err(LogError::Short { bytes });
+        }
+        match i32::from_be_bytes([header[12], header[13], header[14], header[15]]) {
+            VERSION => Ok(Self::from_message(source, FILE_HEADER as u64)),
+            0 => Err(LogError::LegacyQt),
+            version => Err(LogError::Version(version)),
+        }
+    }
+
+    /// Reads on from a message's first byte, which is byte `at` of the file.
+    pub(super) fn from_message(source: R, at: u64) -> Self {
+        Self { source, at, ahead: None, last_ns: None, counts: Counts::default(), end: None }
+    }
+
+    /// How the file ended; `None` until the iterator gave its last message.
+    pub fn end(&self) -> Option<&End> {
+        self.end.as_ref()
+    }
+
+    /// What was met so far.
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// Where the next message begins, bytes of the unzipped file.
+    pub fn position(&self) -> u64 {
+        self.at
+    }
+
+    /// Passes over messages until the first of `timestamp_ns` or later, which comes next.
+    pub fn skip_to(&mut self, timestamp_ns: i64) {
+        while let Some(record) = self.next() {
+            if record.timestamp_ns >= timestamp_ns {
+                self.ahead = Some(record);
+                return;
+            }
+        }
+    }
+
+    fn read_message(&mut self) -> Result<Record, End> {
+        loop {
+            let at = self.at;
+            let mut header = [0; MESSAGE_HEADER];
+            match fill(&mut self.source, &mut header) {
+                Ok(0) => return Err(End::Whole),
+                Ok(MESSAGE_HEADER) => {}
+                Ok(bytes) => return Err(End::Cut { at, bytes: bytes as u64 }),
+                Err((bytes, error)) => return Err(broken_off(at, bytes as u64, error)),
+            }
+            let (timestamp_ns, kind, size) = parse_header(&header);
+            let length = usize::try_from(size).map_err(|_| End::Size { at, size })?;
+            if matches!(kind, MessageKind::Blank | MessageKind::Index2021) {
+                // An index may be large; it is not kept.
+                let skipped = io::copy(&mut self.source.by_ref().take(length as u64), &mut io::sink());
+                let skipped = skipped.map_err(|error| broken_off(at, MESSAGE_HEADER as u64, error))?;
+                if skipped < length as u64 {
+                    return Err(End::Cut { at, bytes: MESSAGE_HEADER as u64 + skipped });
+                }
+                self.at += (MESSAGE_HEADER + length) as u64;
+                let passed =
+                    if kind == MessageKind::Blank { &mut self.counts.blank } else { &mut self.counts.index };
+                *passed += 1;
+                continue;
+            }
+            if length > PAYLOAD_MAX {
+                return Err(End::Size { at, size });
+            }
+            let mut payload = vec![0; length];
+            match fill(&mut self.source, &mut payload) {
+                Ok(bytes) if bytes == length => {}
+                Ok(bytes) => return Err(End::Cut { at, bytes: (MESSAGE_HEADER + bytes) as u64 }),
+                Err((bytes, error)) => return Err(broken_off(at, (MESSAGE_HEADER + bytes) as u64, error)),
+            }
+            self.at += (MESSAGE_HEADER + length) as u64;
+            self.count(timestamp_ns);
+            return Ok(Record { timestamp_ns, kind, payload });
+        }
+    }
+
+    fn count(&mut self, timestamp_ns: i64) {
+        self.counts.messages += 1;
+        if let Some(last) = self.last_ns.filter(|last| *last > timestamp_ns) {
+            self.counts.back_steps += 1;
+            let step = last.abs_diff(timestamp_ns);
+            self.counts.largest_back_step_ns = self.counts.largest_back_step_ns.max(step);
+        }
+        self.last_ns = Some(timestamp_ns);
+    }
+}
+
+impl<R: Read> Iterator for LogReader<R> {
+    type Item = Record;
+
+    fn next(&mut self) -> Option<Record> {
+        if let Some(record) = self.ahead.take() {
+            return Some(record);
+        }
+        if self.end.is_some() {
+            return None;
+        }
+        match self.read_message() {
+            Ok(record) => Some(record),
+            Err(end) => {
+                self.end = Some(end);
+                None
+            }
+        }
+    }
+}
+
+/// Time, type and size before a payload.
+pub(super) fn parse_header(header: &[u8; MESSAGE_HEADER]) -> (i64, MessageKind, i32) {
+    let [t0, t1, t2, t3, t4, t5, t6, t7, k0, k1, k2, k3, s0, s1, s2, s3] = *header;
+    (
+        i64::from_be_bytes([t0, t1, t2, t3, t4, t5, t6, t7]),
+        MessageKind::from_number(i32::from_be_bytes([k0, k1, k2, k3])),
+        i32::from_be_bytes([s0, s1, s2, s3]),
+    )
+}
+
+/// Reads until the buffer is full or the source ends; says how far it came.
+pub(super) fn fill(source: &mut impl Read, buffer: &mut [u8]) -> Result<usize, (usize, io::Error)> {
+    let mut filled = 0;
+    while filled < buffer.len() {
+        match source.read(&mut buffer[filled..]) {
+            Ok(0) => break,
+            Ok(bytes) => filled += bytes,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+            Err(error) => return Err((filled, error)),
+        }
+    }
+    Ok(filled)
+}
+
+/// A gzip stream that stops in its middle is a cut file; anything else is damage.
+fn broken_off(at: u64, bytes: u64, error: io::Error) -> End {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => End::Cut { at, bytes },
+        _ => End::Read { at, error },
+    }
+}
+
+/// How Qt writes the string `SSL_LOG_FILE`: 24 bytes of UTF-16.
+const LEGACY_QT: [u8; 12] = [0, 0, 0, 24, 0, b'S', 0, b'S', 0, b'L', 0, b'_'];

@@ -1,0 +1,53 @@
+//! How does the league's network work for a program? Sockets for multicast and unicast, as its own programs open them.
+//!
+//! [`Receiver`] hears a multicast group beside other programs on the same machine, [`Sender`] speaks to one, [`Port`] is a
+//! UDP port of one's own (simulators, robots). Every error says what to mend.
+//!
+//! **No async runtime.** A receive waits at most as long as it is told and takes no memory, so one thread a socket, or
+//! one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets and under a thousand
+//! datagrams a second. Whoever wants a runtime calls these from a blocking task.
+
+mod error;
+mod interfaces;
+mod probe;
+mod sockets;
+
+pub use error::NetError;
+pub use interfaces::{Interface, Interfaces, interfaces};
+pub use probe::{LoopbackProbe, probe_loopback, route};
+pub use sockets::{Datagram, Port, Receiver, Sender};
+
+/// Where the league's programs meet.
+pub mod addresses {
+    use std::net::{Ipv4Addr, SocketAddrV4};
+
+    const VISION_GROUP: Ipv4Addr = Ipv4Addr::new(224, 5, 23, 2);
+    const REFEREE_GROUP: Ipv4Addr = Ipv4Addr::new(224, 5, 23, 1);
+
+    /// [`WrapperPacket`](crate::vision::WrapperPacket) of a real field (SSL-Vision, vision-processor).
+    pub const VISION: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10006);
+    /// The same of a simulator, so that it disturbs no tournament's network (grSim, ER-Force).
+    pub const VISION_SIMULATED: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10020);
+    /// [`legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket) until 2014.
+    pub const VISION_LEGACY: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10005);
+    /// [`Referee`](crate::referee::Referee).
+    pub const REFEREE: SocketAddrV4 = SocketAddrV4::new(REFEREE_GROUP, 10003);
+    /// [`TrackerWrapperPacket`](crate::tracker::TrackerWrapperPacket).
+    pub const TRACKER: SocketAddrV4 = SocketAddrV4::new(VISION_GROUP, 10010);
+    /// Game controller's TCP port for automatic referees.
+    pub const AUTOREF_PORT: u16 = 10007;
+    /// Game controller's TCP port for teams.
+    pub const TEAM_PORT: u16 = 10008;
+    /// Game controller's TCP port for somebody who drives its clock.
+    pub const CI_PORT: u16 = 10009;
+    /// Game controller's TCP port for remote controls.
+    pub const REMOTE_CONTROL_PORT: u16 = 10011;
+    /// An automatic referee's TCP port for somebody who drives its clock.
+    pub const AUTOREF_CI_PORT: u16 = 10013;
+    /// A simulator's UDP port for [`SimulatorCommand`](crate::simulation::SimulatorCommand).
+    pub const SIMULATOR_PORT: u16 = 10300;
+    /// A simulator's UDP port for the blue team's [`RobotControl`](crate::simulation::RobotControl).
+    pub const ROBOTS_BLUE_PORT: u16 = 10301;
+    /// A simulator's UDP port for the yellow team's [`RobotControl`](crate::simulation::RobotControl).
+    pub const ROBOTS_YELLOW_PORT: u16 = 10302;
+}

@@ -1,0 +1,92 @@
+//! Does multicast work on this machine alone? Asked before a user waits in vain for packets.
+//!
+//! Our own sockets choose their interface and reach each other by loopback on any machine. The league's programs let the
+//! system choose, so for them the loopback needs a route; [`route`] tells which way they will send.
+
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::time::Duration;
+
+use super::error::LOOPBACK_MEND;
+use super::{Interfaces, NetError, Receiver, Sender, interfaces};
+
+/// What a packet sent by loopback met.
+#[derive(Debug)]
+pub enum LoopbackProbe {
+    /// It came back: programs on this machine hear each other.
+    Works {
+        /// By which address programs send that let the system choose; not 127.0.0.1: the league's own programs need
+        /// this machine's other interface to be heard, or the mend.
+        league_sends_by: Option<Ipv4Addr>,
+    },
+    /// It was sent and did not come back.
+    Silent,
+    /// It could not be sent, or not be waited for.
+    Refused(NetError),
+}
+
+impl std::fmt::Display for LoopbackProbe {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Works { league_sends_by: Some(by) } if by.is_loopback() => {
+                write!(f, "multicast on this machine works")
+            }
+            Self::Works { league_sends_by } => {
+                write!(f, "multicast on this machine works for onetwo; the league's programs ")?;
+                match league_sends_by {
+                    Some(by) => write!(f, "send by {by}")?,
+                    None => write!(f, "find no way")?,
+                }
+                write!(f, "; to keep them on this machine: `{LOOPBACK_MEND}`")
+            }
+            Self::Silent => {
+                write!(f, "multicast on this machine is swallowed; a firewall? Otherwise: `{LOOPBACK_MEND}`")
+            }
+            Self::Refused(error) => write!(f, "multicast on this machine: {error}"),
+        }
+    }
+}
+
+/// Sends a packet to a group by loopback, on a port nobody uses, and waits for it.
+pub fn probe_loopback(group: Ipv4Addr, wait: Duration) -> LoopbackProbe {
+    match send_and_wait(group, wait) {
+        Ok(true) => {
+            let league_sends_by = route(SocketAddrV4::new(group, PROBE_PORT)).ok();
+            LoopbackProbe::Works { league_sends_by }
+        }
+        Ok(false) => LoopbackProbe::Silent,
+        Err(error) => LoopbackProbe::Refused(error),
+    }
+}
+
+/// By which of this machine's addresses the system sends to a group where a program does not choose. Sends nothing.
+pub fn route(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {
+    let to = SocketAddr::from(group);
+    let any = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
+    let socket = UdpSocket::bind(any).map_err(|error| NetError::bind(any, false, error))?;
+    socket.connect(to).map_err(|error| NetError::send(to, None, 0, error))?;
+    match socket.local_addr() {
+        Ok(SocketAddr::V4(by)) => Ok(*by.ip()),
+        Ok(SocketAddr::V6(_)) => Err(NetError::NoRoute { to, by: None }),
+        Err(error) => Err(NetError::System { doing: "ask the way to", address: to, error }),
+    }
+}
+
+fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
+    // The system gives a port nobody has; the next moment it is ours again.
+    let any = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
+    let port = super::Port::bind(any)?.address().port();
+    let to = SocketAddrV4::new(group, port);
+    let loopback = interfaces().ok().and_then(|all| all.into_iter().find(super::Interface::is_loopback));
+    let Some(loopback) = loopback else {
+        return Err(NetError::NoInterface { wanted: "lo".into(), there_are: vec![] });
+    };
+    let mut receiver = Receiver::join(to, &Interfaces::These(vec![loopback.name.clone()]))?;
+    Sender::multicast(to, Some(&loopback.name))?.send(PROBE)?;
+    let heard = receiver.receive(wait)?;
+    Ok(heard.is_some_and(|datagram| datagram.bytes == PROBE))
+}
+
+const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";
+
+/// Any; nothing is sent to it.
+const PROBE_PORT: u16 = 10006;

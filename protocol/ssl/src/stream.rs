@@ -1,0 +1,212 @@
+//! Where does one message end and the next begin? On TCP a varint length stands before each; a datagram is one message.
+//!
+//! Sans-IO: whoever owns the socket pushes what it read, however torn, and takes whole messages out. The league's own
+//! code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.
+
+use prost::Message;
+
+/// Most bytes of a message on TCP that are accepted, length excluded. The largest that is needed, a [`CiInput`] with a
+/// tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its bytes.
+///
+/// [`CiInput`]: crate::controller::CiInput
+pub const MESSAGE_MAX: usize = 256 * 1024;
+
+/// Most bytes of a UDP datagram over IPv4: 65,535 less the headers.
+pub const DATAGRAM_MAX: usize = 65_507;
+
+/// Most bytes of a datagram the league's own programs can hear (ssl-game-controller, ssl-go-tools: 8192).
+pub const LEAGUE_DATAGRAM_MAX: usize = 8192;
+
+/// A varint of 64 bits has at most this many bytes.
+const VARINT_MAX: usize = 10;
+
+/// The message as it goes over TCP: its length, then its bytes.
+pub fn delimited(message: &impl Message) -> Vec<u8> {
+    message.encode_length_delimited_to_vec()
+}
+
+/// Takes whole messages out of what a stream brings in pieces.
+///
+/// Holds at most the limit and one push more, if every push is followed by [`next_message`](Self::next_message) until it
+/// has none.
+#[derive(Debug)]
+pub struct FrameReader {
+    buffer: Vec<u8>,
+    /// Bytes of `buffer` that were taken out already.
+    taken: usize,
+    limit: usize,
+    lost: Option<StreamError>,
+}
+
+impl FrameReader {
+    /// A reader that accepts messages up to `limit` bytes; [`MESSAGE_MAX`] suits the game controller.
+    pub const fn new(limit: usize) -> Self {
+        Self { buffer: Vec::new(), taken: 0, limit, lost: None }
+    }
+
+    /// What was read from the stream, in any pieces.
+    pub fn push(&mut self, bytes: &[u8]) {
+        if self.lost.is_none() {
+            self.buffer.drain(..self.taken);
+            self.taken = 0;
+            self.buffer.extend_from_slice(bytes);
+        }
+    }
+
+    /// The next whole message, or `None` until more is pushed.
+    ///
+    /// After an error there is no telling where a message begins: the error comes again, and the connection is to be
+    /// opened anew.
+    pub fn next_message(&mut self) -> Result<Option<&[u8]>, StreamError> {
+        if let Some(error) = self.lost {
+            return Err(error);
+        }
+        let rest = &self.buffer[self.taken..];
+        match length(rest, self.limit) {
+            Ok(Some((header, length))) if rest.len() - header >= length => {
+                let start = self.taken + header;
+                self.taken = start + length;
+                Ok(Some(&self.buffer[start..start + length]))
+            }
+            Ok(_) => Ok(None),
+            Err(error) => {
+                self.lost = Some(error);
+                self.buffer = Vec::new();
+                self.taken = 0;
+                Err(error)
+            }
+        }
+    }
+
+    /// Bytes of a message that is not whole yet. Not 0 when the peer closes: it was cut.
+    pub fn pending(&self) -> usize {
+        self.buffer.len() - self.taken
+    }
+}
+
+/// A stream whose messages cannot be told apart any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StreamError {
+    /// A message is longer than is accepted.
+    TooLong {
+        /// Its length, bytes.
+        length: u64,
+        /// What is accepted, bytes.
+        limit: usize,
+    },
+    /// Ten bytes and no end of the length.
+    EndlessLength,
+}
+
+impl std::fmt::Display for StreamError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::TooLong { length, limit } => write!(
+                f,
+                "a message of {length} bytes, {limit} are accepted; does the port speak the league's protocol?"
+            ),
+            Self::EndlessLength => {
+                write!(
+                    f,
+                    "no length before the message; does the port speak the league's protocol without TLS?"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for StreamError {}
+
+/// Bytes of the length itself and the length, once it is whole.
+fn length(bytes: &[u8], limit: usize) -> Result<Option<(usize, usize)>, StreamError> {
+    let mut length = 0u64;
+    for (at, byte) in bytes.iter().take(VARINT_MAX).enumerate() {
+        // The tenth byte has one bit left.
+        if at == VARINT_MAX - 1 && *byte > 1 {
+            return Err(StreamError::EndlessLength);
+        }
+        length |= u64::from(byte & 0x7f) << (7 * at);
+        if byte & 0x80 == 0 {
+            return match usize::try_from(length) {
+                Ok(length) if length <= limit => Ok(Some((at + 1, length))),
+                _ => Err(StreamError::TooLong { length, limit }),
+            };
+        }
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::TeamRegistration;
+
+    fn registration(name: &str) -> TeamRegistration {
+        TeamRegistration { team_name: name.into(), signature: None, team: None }
+    }
+
+    #[test]
+    fn messages_come_whole_however_the_stream_is_torn() {
+        let long = "x".repeat(300); // a length of two bytes
+        let names = ["onetwo", "", &long];
+        let bytes: Vec<u8> = names.iter().flat_map(|name| delimited(&registration(name))).collect();
+        for piece in 1..=bytes.len() {
+            let mut reader = FrameReader::new(MESSAGE_MAX);
+            let mut heard = Vec::new();
+            for chunk in bytes.chunks(piece) {
+                reader.push(chunk);
+                while let Some(message) = reader.next_message().expect("a sound stream") {
+                    heard.push(TeamRegistration::decode(message).expect("decodes").team_name);
+                }
+            }
+            assert_eq!(heard, names, "in pieces of {piece}");
+            assert_eq!(reader.pending(), 0);
+        }
+    }
+
+    #[test]
+    fn the_length_is_an_unsigned_varint() {
+        let long = "x".repeat(300);
+        let bytes = delimited(&registration(&long));
+        // 303 bytes = 0b10_0101111: low seven bits first.
+        assert_eq!(bytes[..2], [0b1010_1111, 0b10]);
+        assert_eq!(bytes.len(), 2 + 303);
+    }
+
+    #[test]
+    fn a_cut_message_is_pending() {
+        let bytes = delimited(&registration("onetwo"));
+        let mut reader = FrameReader::new(MESSAGE_MAX);
+        reader.push(&bytes[..bytes.len() - 1]);
+        assert_eq!(reader.next_message(), Ok(None));
+        assert_eq!(reader.pending(), bytes.len() - 1);
+    }
+
+    #[test]
+    fn a_length_over_the_limit_ends_the_stream_and_takes_no_memory() {
+        let mut reader = FrameReader::new(16);
+        let error = StreamError::TooLong { length: 17, limit: 16 };
+        reader.push(&[17, 1, 2, 3]);
+        assert_eq!(reader.next_message(), Err(error));
+        reader.push(&[1; 1000]);
+        assert_eq!(reader.next_message(), Err(error));
+        assert_eq!(reader.pending(), 0);
+
+        let mut largest = FrameReader::new(16);
+        largest.push(&[16]);
+        largest.push(&[7; 16]);
+        assert_eq!(largest.next_message(), Ok(Some(&[7; 16][..])));
+    }
+
+    #[test]
+    fn a_length_without_an_end_is_told() {
+        for bytes in [[0x80; 11], [0xff; 11]] {
+            let mut reader = FrameReader::new(MESSAGE_MAX);
+            reader.push(&bytes);
+            assert_eq!(reader.next_message(), Err(StreamError::EndlessLength));
+        }
+        let mut reader = FrameReader::new(MESSAGE_MAX);
+        reader.push(&[0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]);
+        assert_eq!(reader.next_message(), Err(StreamError::TooLong { length: u64::MAX, limit: MESSAGE_MAX }));
+    }
+}
