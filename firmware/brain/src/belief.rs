@@ -9,6 +9,7 @@ use protocol::robot_io::{OPPONENTS_MAX, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::League;
 
+use crate::body::{self, BodySpec};
 use crate::mates::Mates;
 
 /// Own sight older than this counts as none.
@@ -19,10 +20,6 @@ const SHARP: f32 = 0.004;
 const GRAB_SPEED: f32 = 0.4;
 /// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
 pub const REST_SPEED: f32 = 0.05;
-/// An opponent whose centre is this near the ball touches it: radii of body (0.12) and ball (0.0425) and a centimetre, m.
-pub const OPPONENT_HOLDS_WITHIN: f32 = 0.1725;
-/// One of us this near the ball disputes it: an arm's length more than touching, m.
-const DISPUTED_WITHIN: f32 = 0.25;
 
 /// The ball as believed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +68,7 @@ pub struct Belief {
     /// Sights in a row of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
+    spec: &'static BodySpec,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +90,7 @@ impl Belief {
             sight: None,
             slow_sights: 0,
             league,
+            spec: body::of(league).spec(),
         }
     }
 
@@ -122,10 +121,10 @@ impl Belief {
     /// Whether an opponent is on the ball and none of us disputes it.
     pub fn opponent_on_ball(&self, now: Instant, mates: &Mates) -> bool {
         let Some(ball) = self.ball else { return false };
-        let ours = |at: Point<Field>| at.distance(ball.position) < DISPUTED_WITHIN;
+        let ours = |at: Point<Field>| at.distance(ball.position) < self.spec.disputed_within;
         !ours(self.pose.position)
             && !mates.present(now).any(|(_, mate)| ours(mate.pose().position))
-            && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < OPPONENT_HOLDS_WITHIN)
+            && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < self.spec.opponent_holds_within)
     }
 
     /// The ball lies still enough to be grabbed; a ball that has just left the legs does not, though its speed is unknown.
@@ -159,14 +158,14 @@ impl Belief {
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
         let mut ball = rolling(sight.position, sight.velocity, self.league);
         // An opponent in its way stops it.
+        let within = self.spec.opponent_holds_within;
         let way = geometry::Segment::new(ball.position, ball.rest);
-        let stops = |o: &Point<Field>| {
-            way.distance_to(*o) < OPPONENT_HOLDS_WITHIN && (*o - ball.position).dot(way.vector()) > 0.0
-        };
+        let stops =
+            |o: &Point<Field>| way.distance_to(*o) < within && (*o - ball.position).dot(way.vector()) > 0.0;
         let first = self.opponents.iter().filter(|o| stops(o)).map(|o| way.share_of(*o)).reduce(f32::min);
         if let Some(share) = first {
             let length = way.vector().norm();
-            let free = (share * length - OPPONENT_HOLDS_WITHIN).clamp(0.0, length);
+            let free = (share * length - within).clamp(0.0, length);
             ball.rest = ball.position + way.vector() * (free / length.max(f32::MIN_POSITIVE));
         }
         Some(ball)

@@ -12,7 +12,7 @@ use protocol::team::{
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
-use crate::body::{Intent, legged};
+use crate::body::{self, Body, Intent, legged};
 use crate::config::{Approach, BrainConfig};
 use crate::estimate;
 use crate::execution::{Execution, Scene};
@@ -27,6 +27,7 @@ use crate::timer::{Timer, TimerTable};
 /// A robot's brain.
 pub struct Brain<'a> {
     config: BrainConfig,
+    body: &'static dyn Body,
     base: CaseBase<'a>,
     belief: Belief,
     mates: Mates,
@@ -51,13 +52,14 @@ impl<'a> Brain<'a> {
         timers.set(Timer::Boot, now + PRESENCE_LEASE);
         Self {
             config: config.clone(),
+            body: body::of(config.league),
             base,
             belief: Belief::new(config.league),
             mates: Mates::default(),
             cycle: Cycle::new(config.robot),
             execution: None,
             monitor: Monitor::default(),
-            reactive: Reactive::default(),
+            reactive: Reactive::of(config.league),
             timers,
             awake: false,
             skip: config.epoch.saturating_sub(1) % BOOT_SKIP,
@@ -273,7 +275,7 @@ impl<'a> Brain<'a> {
         }
         let (Some(cycle), Some(case)) = (self.cycle.id(), self.base.case(play.case)) else { return false };
         let (belief, mates, base) = (&self.belief, &self.mates, &self.base);
-        let scene = Scene { now, belief, mates, cycle, play, case, base };
+        let scene = Scene { now, belief, mates, cycle, play, case, base, body: self.body };
         hybrid::reactive_shoots_sooner(&scene)
     }
 
@@ -426,6 +428,7 @@ impl<'a> Brain<'a> {
             play,
             case,
             base: &self.base,
+            body: self.body,
         })
     }
 }

@@ -2,8 +2,6 @@
 
 use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};
-use motion::legged::{CARRY_SPEED, WALK_FORWARD};
-use motion::rolling::RollingBall;
 use protocol::Duration;
 
 use crate::execution::Scene;
@@ -23,7 +21,7 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
             .player(part)
             .and_then(|id| scene.mates.get(scene.now, id))
             .map_or(scene.belief.pose.position, |mate| mate.pose().position);
-        walk = walk.max(from.distance(scene.place_of(part)) / WALK_FORWARD);
+        walk = walk.max(from.distance(scene.place_of(part)) / scene.body.spec().speed);
     }
     let chain: f32 = case
         .robots()
@@ -43,25 +41,27 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
 /// Expected seconds of one action, from the time it starts.
 pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
     let place = scene.place_of(part);
+    let spec = scene.body.spec();
     match scene.case.action(part, index) {
         None | Some(Action::Wait) => 0.0,
-        Some(Action::GoToPoint(p)) => walk(place, scene.adapt(p), WALK_FORWARD),
-        Some(Action::DribbleTo(p)) => TURN + walk(place, scene.adapt(p), CARRY_SPEED),
-        Some(Action::Turn(_)) => TURN,
+        Some(Action::GoToPoint(p)) => walk(place, scene.adapt(p), spec.speed),
+        Some(Action::DribbleTo(p)) => spec.turn + walk(place, scene.adapt(p), spec.carry_speed),
+        Some(Action::Turn(_)) => spec.turn,
         Some(Action::GetBall) => {
-            GRAB + match handed_over(scene, part, index) {
-                // After a kick: from where it was kicked, or from the place, to where the ball will lie.
-                Some((from, leg)) => {
-                    let start = if from == part { leg.start() } else { place };
-                    walk(start, leg.end(), WALK_FORWARD).max(along(scene, &leg))
+            spec.grab
+                + match handed_over(scene, part, index) {
+                    // After a kick: from where it was kicked, or from the place, to where the ball will lie.
+                    Some((from, leg)) => {
+                        let start = if from == part { leg.start() } else { place };
+                        walk(start, leg.end(), spec.speed).max(along(scene, &leg))
+                    }
+                    None => walk(place, scene.ball_used().into(), spec.speed).min(spec.longest_fetch),
                 }
-                None => walk(place, scene.ball_used().into(), WALK_FORWARD).min(LONGEST_FETCH),
-            }
         }
         Some(Action::ReceiveBall(_)) => {
-            GRAB + handed_over(scene, part, index).map_or(0.0, |(_, leg)| along(scene, &leg))
+            spec.grab + handed_over(scene, part, index).map_or(0.0, |(_, leg)| along(scene, &leg))
         }
-        Some(Action::PassBall(_) | Action::Kick(_)) => TURN + KICK,
+        Some(Action::PassBall(_) | Action::Kick(_)) => spec.turn + spec.kick,
     }
 }
 
@@ -71,10 +71,9 @@ fn handed_over(scene: &Scene<'_>, part: CaseRobot, index: usize) -> Option<(Case
     Some((from, scene.leg(from, action)?))
 }
 
-/// Seconds until a ball kicked to lie `distance` away has come to rest there.
+/// Seconds until a ball passed over `distance` is there.
 pub(crate) fn roll(scene: &Scene<'_>, distance: f32) -> f32 {
-    let ball = RollingBall { deceleration: scene.belief.league().ball().rolling_deceleration };
-    ball.speed_for(distance) / ball.deceleration
+    scene.body.roll(scene.belief.league(), distance)
 }
 
 fn along(scene: &Scene<'_>, leg: &Leg) -> f32 {
@@ -84,12 +83,3 @@ fn along(scene: &Scene<'_>, leg: &Leg) -> f32 {
 fn walk(from: Point<Field>, to: Point<Field>, speed: f32) -> f32 {
     from.distance(to) / speed
 }
-
-/// A quarter turn with the ball at 1 rad/s, s.
-pub(crate) const TURN: f32 = 1.5;
-/// Grabs of 0.5 s each, of which three in four succeed, and the last steps before them, s.
-pub(crate) const GRAB: f32 = 1.5;
-/// A kick, s.
-pub(crate) const KICK: f32 = 0.5;
-/// No fetch is expected to take longer, s: half the adaptation limit of 1.5 m at walking speed.
-const LONGEST_FETCH: f32 = 2.5;

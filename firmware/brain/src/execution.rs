@@ -4,19 +4,16 @@
 //! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
 //! the coordinator used. Field frame, SI.
 
-use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, Primitive, TurnTarget};
+use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, TurnTarget};
 use geometry::{Angle, Field, Point};
-use motion::legged::WALK_FORWARD;
-use protocol::quantized::from_mm;
-use protocol::robot_io::LeggedKick;
 use protocol::team::{AbortReason, Play, Progress};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
-use crate::body::Intent;
+use crate::body::{Body, Intent};
 use crate::estimate;
 use crate::mates::Mates;
-use crate::skills::{self, Reception, Step};
+use crate::skills::{Reception, Step};
 use crate::timer::{Timer, TimerTable};
 
 /// Everything an execution looks at in one step.
@@ -36,6 +33,8 @@ pub struct Scene<'s> {
     pub case: Case<'s>,
     /// Its case base.
     pub base: &'s CaseBase<'s>,
+    /// What plays it.
+    pub body: &'s dyn Body,
 }
 
 impl Scene<'_> {
@@ -208,7 +207,8 @@ impl Execution {
         let Some((place, _)) = scene.leg_of(self.part, index) else { return at_receive };
         // There before the ball is: it walks while the ball rolls.
         let rolls_for = estimate::roll(scene, scene.belief.pose.position.distance(place));
-        let near = (rolls_for * WALK_FORWARD * RECEIVER_HASTE).max(RECEIVER_NEAR);
+        let spec = scene.body.spec();
+        let near = (rolls_for * spec.speed * spec.receiver_haste).max(spec.receiver_near);
         let mate = scene.player(to).and_then(|id| scene.mates.get(scene.now, id));
         at_receive && mate.is_some_and(|mate| mate.pose().position.distance(place) < near)
     }
@@ -227,7 +227,7 @@ impl Execution {
             }
             Action::GoToPoint(point) => {
                 let to = scene.adapt(point);
-                if belief.pose.position.distance(to) <= ARRIVED_WITHIN {
+                if belief.pose.position.distance(to) <= scene.body.spec().arrived_within {
                     return Verdict::Done;
                 }
                 let face = face_ball(belief, to);
@@ -245,8 +245,8 @@ impl Execution {
                 }
                 Verdict::Running(Intent::Turn { heading })
             }
-            Action::GetBall => Self::take(scene, timers, skills::get_ball(belief, self.onwards(scene))),
-            Action::ReceiveBall(_) => match skills::receive(belief, self.onwards(scene)) {
+            Action::GetBall => Self::take(scene, timers, scene.body.get_ball(belief, self.onwards(scene))),
+            Action::ReceiveBall(_) => match scene.body.receive(belief, self.onwards(scene)) {
                 Reception::Going(step) => Self::take(scene, timers, step),
                 Reception::Missed => Verdict::Failed(AbortReason::ActionFailed),
             },
@@ -254,30 +254,29 @@ impl Execution {
                 if !belief.holds_ball {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 }
-                Verdict::from(skills::carry_to(belief, scene.adapt(point), ARRIVED_WITHIN))
+                Verdict::from(scene.body.carry_to(belief, scene.adapt(point)))
             }
             Action::PassBall(_) => {
                 let Some((place, _)) = scene.leg_of(self.part, self.done) else {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
-                self.release(belief, skills::pass(belief, place))
+                self.release(belief, scene.body.pass(belief, place))
             }
             Action::Kick(id) => {
                 let leg = scene.leg_of(self.part, self.done);
-                let (Some(kick), Some((_, along))) = (scene.base.kick(id), leg) else {
+                let (Some(kick), Some((end, along))) = (scene.base.kick(id), leg) else {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
                 match kick.aim {
                     // The case says that it is a shot; where between the posts, and with which leg, is seen only now.
                     KickAim::Goal { .. } => {
-                        timers.set_if_idle(Timer::PassPatience, scene.now, SHOT_PATIENCE);
+                        timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
                         let attacked = scene.case.defending().opposite();
-                        let attempt = skills::attempt(belief, attacked, patient);
-                        self.release(belief, attempt.unwrap_or_else(|| skills::push_on(belief, attacked)))
+                        self.release(belief, scene.body.shoot(belief, attacked, patient))
                     }
                     KickAim::Heading { .. } => {
-                        self.let_go(belief, along, legged_kick(kick.primitive, kick.aim))
+                        self.release(belief, scene.body.kick(belief, &kick, along, end))
                     }
                 }
             }
@@ -297,12 +296,7 @@ impl Execution {
         Verdict::from(step)
     }
 
-    /// Aims and kicks; done when the ball has left, failed when it was lost before.
-    fn let_go(&mut self, belief: &Belief, direction: Angle, kick: LeggedKick) -> Verdict {
-        self.release(belief, skills::shoot(belief, direction, kick))
-    }
-
-    /// The same with the intent already chosen.
+    /// Aims and kicks, as `intent` says; done when the ball has left, failed when it was lost before.
     fn release(&mut self, belief: &Belief, intent: Intent) -> Verdict {
         if self.kicked && !belief.holds_ball {
             return Verdict::Done;
@@ -313,7 +307,7 @@ impl Execution {
         if belief.busy {
             return Verdict::Running(Intent::Stand { face: None });
         }
-        self.kicked = matches!(intent, Intent::Kick(_));
+        self.kicked = intent.lets_go();
         Verdict::Running(intent)
     }
 
@@ -330,7 +324,7 @@ impl Execution {
     fn aim_ahead(&self, scene: &Scene<'_>) -> Option<Intent> {
         let Some(Action::PassBall(_)) = scene.case.action(self.part, self.done) else { return None };
         let (place, _) = scene.leg_of(self.part, self.done)?;
-        Some(skills::pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
+        Some(scene.body.pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
     }
 
     /// Where the action after the ball is had will want to face.
@@ -340,9 +334,8 @@ impl Execution {
             Action::PassBall(_) => scene.leg_of(self.part, next).map(|(_, along)| along),
             Action::Kick(id) => {
                 let kick = scene.base.kick(id)?;
-                let kick = legged_kick(kick.primitive, kick.aim);
                 let (_, along) = scene.leg_of(self.part, next)?;
-                Some(along - crate::body::legged::nominal(kick).0)
+                Some(scene.body.heading_for(&kick, along))
             }
             Action::DribbleTo(point) => Some(scene.belief.pose.position.direction_to(scene.adapt(point))),
             _ => None,
@@ -370,31 +363,13 @@ pub(crate) fn face_ball(belief: &Belief, at: Point<Field>) -> Angle {
     belief.ball.map_or(belief.pose.heading, |ball| at.direction_to(ball.position))
 }
 
-/// The body's kick for a kind of the library: the one it names, else by reach.
-fn legged_kick(primitive: Primitive, aim: KickAim) -> LeggedKick {
-    match (primitive, aim) {
-        (Primitive::ForwardSoft, _) => LeggedKick::ForwardSoft,
-        (Primitive::ForwardHard, _) => LeggedKick::ForwardHard,
-        (Primitive::Left, _) => LeggedKick::Left,
-        (Primitive::Right, _) => LeggedKick::Right,
-        (Primitive::Pass | Primitive::Unspecified, KickAim::Heading { length_mm, .. }) => {
-            LeggedKick::Pass(from_mm(length_mm))
-        }
-        (Primitive::Pass | Primitive::Unspecified, KickAim::Goal { .. }) => LeggedKick::ForwardHard,
-    }
-}
-
 fn attack_direction(scene: &Scene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
 }
 
-/// How long a robot looks for a gap before it shoots at the goal, whatever stands there: the league's 3 s of holding a ball.
-const SHOT_PATIENCE: Duration = Duration::millis(3000);
 /// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
 const ACTIONS_A_STEP: usize = 8;
-/// A walking robot has arrived within this distance, m (DESIGN §4.4).
-pub const ARRIVED_WITHIN: f32 = 0.15;
-/// And has turned within 10° (DESIGN §4.4).
+/// A robot has turned within 10° (DESIGN §4.4).
 const TURNED_WITHIN: f32 = 0.175;
 /// How long the passer waits for its receiver (DESIGN §4.4).
 const PASS_PATIENCE: Duration = Duration::millis(1000);
@@ -402,7 +377,3 @@ const PASS_PATIENCE: Duration = Duration::millis(1000);
 const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
 /// A ball rolling within this distance of a receiver comes to it, m.
 const COMING_WITHIN: f32 = 0.4;
-/// Of the way a receiver could walk while the ball rolls, this share is counted on: it turns first, and the ball comes firmly.
-const RECEIVER_HASTE: f32 = 0.6;
-/// A receiver this near its place is there for the passer, m.
-const RECEIVER_NEAR: f32 = 0.3;

@@ -1,9 +1,16 @@
-//! What can a brain want of its body, whatever the body is? Intents; a module per body turns them into actuators.
+//! What can a brain want of its body, and what may it expect of it, whatever the body is? Intents, a sheet of numbers, and
+//! the skills of the case language behind one face ([`Body`]); a module per body turns intents into actuators.
 
 pub mod legged;
 
-use geometry::{Angle, Field, Point};
+use casebase::Kick;
+use geometry::{Angle, Field, GoalEnd, Point};
+use protocol::Duration;
 use protocol::robot_io::LeggedKick;
+use rules::League;
+
+use crate::belief::Belief;
+use crate::skills::{Reception, Step};
 
 /// What the robot wants of its body for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,27 +20,104 @@ pub enum Intent {
         /// Where to look.
         face: Option<Angle>,
     },
-    /// Walk to a place, around robots, and end facing `face`.
+    /// Go to a place, around robots, and end facing `face`.
     Walk {
         /// Where to.
         to: Point<Field>,
         /// Heading at the end.
         face: Angle,
-        /// Walk around the ball too.
+        /// Go around the ball too.
         shy_of_ball: bool,
-    },
-    /// Walk with the ball held.
-    Carry {
-        /// Where to.
-        to: Point<Field>,
     },
     /// Turn on the spot, with the ball or without.
     Turn {
         /// To this heading.
         heading: Angle,
     },
-    /// Take the ball.
+    /// On legs: walk with the ball held.
+    Carry {
+        /// Where to.
+        to: Point<Field>,
+    },
+    /// On legs: take the ball.
     Grab,
-    /// Kick the ball held.
+    /// On legs: kick the ball held.
     Kick(LeggedKick),
+}
+
+impl Intent {
+    /// Whether the ball leaves by this.
+    pub fn lets_go(&self) -> bool {
+        matches!(self, Self::Kick(_))
+    }
+}
+
+/// What those who plan with a body need to know of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodySpec {
+    /// How fast it goes from place to place, m/s.
+    pub speed: f32,
+    /// How fast it goes with the ball, m/s.
+    pub carry_speed: f32,
+    /// A quarter turn with the ball, s.
+    pub turn: f32,
+    /// The last steps to a ball and taking it, s.
+    pub grab: f32,
+    /// A kick, s.
+    pub kick: f32,
+    /// No fetch is expected to take longer, s.
+    pub longest_fetch: f32,
+    /// It has arrived within this distance, m (DESIGN §4.4).
+    pub arrived_within: f32,
+    /// "Next to the ball" of the robot that gets it (paper §4.2), centre to ball, m.
+    pub next_to_ball: f32,
+    /// Of the way a receiver could go while the ball rolls, this share is counted on.
+    pub receiver_haste: f32,
+    /// A receiver this near its place is there for the passer, m.
+    pub receiver_near: f32,
+    /// How long a robot looks for a gap before it shoots at the goal, whatever stands there.
+    pub shot_patience: Duration,
+    /// An opponent whose centre is this near the ball touches it, m.
+    pub opponent_holds_within: f32,
+    /// One of us this near the ball disputes it, m.
+    pub disputed_within: f32,
+    /// Steps a doubt about the case must last to abort it: a fifth of a second.
+    pub doubt_steps: u8,
+}
+
+/// A kind of body: its numbers and its skills in the case language.
+pub trait Body: Sync {
+    /// Its numbers.
+    fn spec(&self) -> &'static BodySpec;
+
+    /// Goes for the ball and takes it; facing `onwards` afterwards if that costs nothing that matters.
+    fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step;
+
+    /// Goes for a ball that has been passed to this robot.
+    fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception;
+
+    /// Brings the ball held to a place.
+    fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step;
+
+    /// Passes the ball held to a place.
+    fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent;
+
+    /// Kicks the ball held in the way of the library's `kind`, to `end`.
+    fn kick(&self, belief: &Belief, kind: &Kick, along: Angle, end: Point<Field>) -> Intent;
+
+    /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.
+    fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent;
+
+    /// The heading from which a kick of that kind sends the ball in that direction.
+    fn heading_for(&self, kind: &Kick, along: Angle) -> Angle;
+
+    /// Seconds a passed ball takes for a distance, m.
+    fn roll(&self, league: League, distance: f32) -> f32;
+}
+
+/// The body of that league's robots.
+pub fn of(league: League) -> &'static dyn Body {
+    match league {
+        League::FourLegged | League::Ssl2013 | League::DivisionB | League::DivisionA => &legged::Legged,
+    }
 }

@@ -1,17 +1,9 @@
-//! Which skills does the case language need, and how does each go? Pure functions of belief: intent and verdict out.
+//! Which skills does the case language need, and how does each go? A folder per body; belief in, intent and verdict out.
 //!
-//! A skill remembers nothing; what must be remembered between steps (a kick was commanded, the ball was held) is the
-//! [execution's](crate::execution) or the reactive behaviour's.
+//! A walking robot's skills remember nothing; what must be remembered between steps (a kick was commanded, the ball was
+//! held) is the [execution's](crate::execution) or the reactive behaviour's.
 
-mod get_ball;
-mod kick;
-mod receive;
-mod shot;
-
-pub use get_ball::{get_ball, meeting};
-pub use kick::{aim, carry_to, pass, shoot};
-pub use receive::{Reception, receive};
-pub use shot::{attempt, push_on};
+pub mod legged;
 
 use crate::body::Intent;
 
@@ -22,4 +14,13 @@ pub enum Step {
     Running(Intent),
     /// It is done.
     Done,
+}
+
+/// How a reception stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reception {
+    /// On the way to it, or to its end.
+    Going(Step),
+    /// The ball has passed by, or came to rest too far away.
+    Missed,
 }

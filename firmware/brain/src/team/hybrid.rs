@@ -6,7 +6,6 @@
 //! the goal is in reach. SI units.
 
 use geometry::{Field, Point, Segment};
-use motion::legged::WALK_FORWARD;
 
 use casebase::{Action, KickAim};
 
@@ -32,7 +31,7 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
         at < DUEL_AHEAD && way.distance_to(*robot) < DUEL_BESIDE
     };
     let duel = if scene.belief.opponents.iter().any(stands_in_it) { DUEL } else { 0.0 };
-    let alone = nearest / WALK_FORWARD + until_shot(scene, ball) + duel;
+    let alone = nearest / scene.body.spec().speed + until_shot(scene, ball) + duel;
     alone + MARGIN < gameplay_until_shot(scene)
 }
 
@@ -61,10 +60,8 @@ fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
         pushes += 1.0;
         left -= PUSH;
     }
-    estimate::GRAB
-        + pushes * (estimate::KICK + estimate::roll(scene, PUSH) + estimate::GRAB)
-        + estimate::TURN
-        + estimate::KICK
+    let spec = scene.body.spec();
+    spec.grab + pushes * (spec.kick + estimate::roll(scene, PUSH) + spec.grab) + spec.turn + spec.kick
 }
 
 /// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach, m.

@@ -28,7 +28,7 @@ impl Monitor {
         let doubt = if touched { after_touch(scene) } else { before_touch(scene, settings) };
         self.steps = if doubt.is_some() && doubt == self.doubt { self.steps.saturating_add(1) } else { 0 };
         self.doubt = doubt;
-        doubt.filter(|_| self.steps >= DOUBT)
+        doubt.filter(|_| self.steps >= scene.body.spec().doubt_steps)
     }
 }
 
@@ -61,7 +61,5 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
 }
 
-/// Steps a doubt must last: at 25 steps a second a fifth of a second.
-const DOUBT: u8 = 5;
 /// How far outside a leg's trapezoid a resting ball is still where the case expects it, m.
 const STRAY: f32 = 0.3;

@@ -5,7 +5,7 @@ use protocol::team::{AbortReason, Progress};
 
 use crate::body::Intent;
 use crate::config::Positioning;
-use crate::execution::{ARRIVED_WITHIN, Execution, Outcome, Scene, face_ball};
+use crate::execution::{Execution, Outcome, Scene, face_ball};
 use crate::timer::TimerTable;
 
 /// What a step of reuse wants.
@@ -68,11 +68,13 @@ fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
         return true;
     }
     let place = scene.place_of(execution.part());
+    let spec = scene.body.spec();
     let gets_ball = execution.part() == scene.case.getter();
     let next_to_ball = |position: Point<Field>| {
-        scene.belief.ball.is_some_and(|ball| position.distance(ball.position) <= NEXT_TO_BALL)
+        scene.belief.ball.is_some_and(|ball| position.distance(ball.position) <= spec.next_to_ball)
     };
-    let near = pose.position.distance(place) <= ARRIVED_WITHIN || (gets_ball && next_to_ball(pose.position));
+    let near =
+        pose.position.distance(place) <= spec.arrived_within || (gets_ball && next_to_ball(pose.position));
     let face = face_ball(scene.belief, pose.position);
     near && (face - pose.heading).abs() <= FACING_WITHIN
 }
@@ -98,7 +100,5 @@ fn executes(scene: &Scene<'_>, part: casebase::CaseRobot) -> bool {
     matches!(scene.progress_of(part), Some(Progress::Execute { .. } | Progress::WaitEnd { finished: true }))
 }
 
-/// Next to the ball, m: a step from touching it.
-const NEXT_TO_BALL: f32 = 0.35;
 /// Facing the ball within this angle, rad: 20° (checklist R24).
 const FACING_WITHIN: f32 = 0.35;

@@ -19,18 +19,9 @@ use crate::belief::{Ball, Belief};
 use crate::body::{Intent, legged};
 use crate::execution::face_ball;
 use crate::mates::Mates;
-use crate::skills::{self, Step};
-
-/// How much of the behaviour is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Freedom {
-    /// All of it.
-    Full,
-    /// Keep near the ball, leave it to others: a robot that waits for the end of a gameplay.
-    KeepNear,
-    /// Approach, but neither grab nor kick: the short time between two gameplays.
-    Approach,
-}
+use crate::reactive::Freedom;
+use crate::skills::Step;
+use crate::skills::legged as skills;
 
 /// The behaviour's small memory.
 #[derive(Clone, Debug, Default)]

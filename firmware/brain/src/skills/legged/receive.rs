@@ -3,16 +3,8 @@
 use geometry::{Angle, Segment};
 
 use crate::belief::Belief;
-use crate::skills::{Step, get_ball};
-
-/// How a reception stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reception {
-    /// On the way to it, or to its end.
-    Going(Step),
-    /// The ball has passed by, or came to rest too far away.
-    Missed,
-}
+use crate::skills::legged::get_ball;
+use crate::skills::{Reception, Step};
 
 /// Goes for a ball that has been passed to this robot.
 pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {

@@ -11,7 +11,7 @@ use protocol::robot_io::LeggedKick;
 
 use crate::belief::Belief;
 use crate::body::{Intent, legged};
-use crate::skills;
+use crate::skills::legged as skills;
 
 /// A shot at goal.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,70 @@
+//! What does a robot do by itself, when no case binds it? A behaviour per body, behind one face.
+
+mod legged;
+
+use geometry::GoalEnd;
+use protocol::team::Role;
+use protocol::{Instant, RobotId};
+use rules::League;
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::mates::Mates;
+
+/// How much of the behaviour is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// All of it.
+    Full,
+    /// Keep near the ball, leave it to others: a robot that waits for the end of a gameplay.
+    KeepNear,
+    /// Approach, but neither grab nor kick: the short time between two gameplays.
+    Approach,
+}
+
+/// The behaviour of a body, with its small memory.
+#[derive(Clone, Debug)]
+pub enum Reactive {
+    /// The paper's, on legs.
+    Legged(legged::Reactive),
+}
+
+impl Reactive {
+    /// The one of that league's robots.
+    pub fn of(league: League) -> Self {
+        match league {
+            League::FourLegged | League::Ssl2013 | League::DivisionB | League::DivisionA => {
+                Self::Legged(legged::Reactive::default())
+            }
+        }
+    }
+
+    /// What this robot presently is to its team.
+    pub fn role(&self) -> Role {
+        match self {
+            Self::Legged(legs) => legs.role(),
+        }
+    }
+
+    /// Bound by a case: forget what it was about.
+    pub fn rest(&mut self) {
+        match self {
+            Self::Legged(legs) => legs.rest(),
+        }
+    }
+
+    /// One step.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        me: RobotId,
+        belief: &Belief,
+        mates: &Mates,
+        attacked: GoalEnd,
+        freedom: Freedom,
+    ) -> Intent {
+        match self {
+            Self::Legged(legs) => legs.step(now, me, belief, mates, attacked, freedom),
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! Which skills of the case language does a walking robot have, and how does each go? Pure functions of belief.
+
+mod get_ball;
+mod kick;
+mod receive;
+mod shot;
+
+pub use get_ball::{get_ball, meeting};
+pub use kick::{aim, carry_to, pass, shoot};
+pub use receive::receive;
+pub use shot::{attempt, push_on};
