@@ -6,6 +6,7 @@
 //! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
 //! believes a host it must have had its [`Welcome`]: nobody can command it with a recording of an earlier life.
 
+pub use rules::Duty;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
@@ -138,18 +139,6 @@ pub struct Command {
     pub duty: Duty,
     /// What to do.
     pub directive: Directive,
-}
-
-/// What the rules allow a robot beyond others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Duty {
-    /// Nothing more.
-    #[default]
-    Player,
-    /// The one that may be in the own defence area.
-    Keeper,
-    /// The one that takes our restart: it may come near the ball before it is in play.
-    Taker,
 }
 
 /// What to do, as the host's strategy wants it. The robot's skills do it, within what phase, duty and governor allow.

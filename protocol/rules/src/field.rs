@@ -1,32 +1,133 @@
-//! Where are lines, goals and penalty areas? All lengths in metres, points in the field frame.
+//! Where are lines, goals and defence areas? All lengths in metres, points in the field frame.
+//!
+//! Lines are measured between their centres (rules 2026, playing environment), so a line's outer edge lies half a line's
+//! width further out.
 
-use geometry::{Field, GoalEnd, Point};
+use geometry::{Field, GoalEnd, Point, Segment, Shape};
+use heapless::Vec;
+
+/// Shapes that one defence area is made of, at most.
+pub const AREA_SHAPES_MAX: usize = 3;
 
 /// The lines of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSpec {
     /// From goal line to goal line.
     pub length: f32,
-    /// From side line to side line.
+    /// From touch line to touch line.
     pub width: f32,
-    /// Carpet beyond the lines, on every side.
+    /// Carpet beyond the touch lines, up to the wall.
     pub margin: f32,
+    /// Carpet beyond the goal lines, up to the wall.
+    pub goal_line_margin: f32,
     /// Between the goalposts.
     pub goal_width: f32,
     /// From the goal line to the goal's back.
     pub goal_depth: f32,
+    /// From the carpet to the goal's upper edge.
+    pub goal_height: f32,
+    /// Thickness of the goal's walls.
+    pub goal_wall: f32,
     /// Penalty (defence) area: from the goal line into the field.
     pub penalty_depth: f32,
     /// Penalty (defence) area: along the goal line.
     pub penalty_width: f32,
+    /// Penalty (defence) area: what its border looks like.
+    pub penalty_form: AreaForm,
+    /// From the attacked goal's centre to the mark that penalties are taken from.
+    pub penalty_mark: f32,
     /// Radius of the centre circle.
     pub center_radius: f32,
+    /// Width of every line.
+    pub line_width: f32,
 }
 
+/// The border of a defence area.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AreaForm {
+    /// A rectangle, as since 2018.
+    Box,
+    /// Two quarter circles with the area's depth as radius, joined by a straight line, as until 2017.
+    QuarterCircles,
+}
+
+/// A number that no field can have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldFault {
+    /// Which number, by its field in [`FieldSpec`].
+    pub field: &'static str,
+    /// What it was, m.
+    pub value: f32,
+    /// The least it may be, m.
+    pub least: f32,
+    /// The most it may be, m; some limits follow from other numbers of the same field.
+    pub most: f32,
+}
+
+impl core::fmt::Display for FieldFault {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { field, value, least, most } = self;
+        write!(f, "{field}: {value} m is not within {least} to {most} m")
+    }
+}
+
+impl core::error::Error for FieldFault {}
+
+/// Shortest and longest field that is believed, m: a table top, and twice division A's length.
+const LENGTH: [f32; 2] = [1.0, 24.0];
+/// The widest margin that is believed, m: more than any hall leaves around a field.
+const MARGIN_MAX: f32 = 3.0;
+/// The deepest goal and the thickest line that are believed, m.
+const GOAL_DEPTH_MAX: f32 = 1.0;
+const LINE_WIDTH_MAX: f32 = 0.1;
+
 impl FieldSpec {
+    /// The same field, if its numbers can be those of a field; for numbers from outside.
+    pub fn checked(self) -> Result<Self, FieldFault> {
+        let half = self.length * 0.5;
+        let checks = [
+            ("length", self.length, LENGTH[0], LENGTH[1]),
+            ("width", self.width, LENGTH[0], LENGTH[1]),
+            ("margin", self.margin, 0.0, MARGIN_MAX),
+            ("goal_line_margin", self.goal_line_margin, 0.0, MARGIN_MAX),
+            ("goal_width", self.goal_width, 0.1, self.width),
+            ("goal_depth", self.goal_depth, 0.0, GOAL_DEPTH_MAX),
+            ("goal_height", self.goal_height, 0.0, GOAL_DEPTH_MAX),
+            ("goal_wall", self.goal_wall, 0.0, LINE_WIDTH_MAX),
+            ("penalty_depth", self.penalty_depth, 0.0, half),
+            ("penalty_width", self.penalty_width, 0.0, self.width),
+            ("penalty_mark", self.penalty_mark, 0.0, self.length),
+            ("center_radius", self.center_radius, 0.0, self.width * 0.5),
+            ("line_width", self.line_width, 0.0, LINE_WIDTH_MAX),
+        ];
+        for (field, value, least, most) in checks {
+            // A NaN is in no range.
+            if !(least..=most).contains(&value) {
+                return Err(FieldFault { field, value, least, most });
+            }
+        }
+        let round = self.penalty_form == AreaForm::QuarterCircles;
+        if round && self.penalty_width < 2.0 * self.penalty_depth {
+            let (value, least) = (self.penalty_width, 2.0 * self.penalty_depth);
+            return Err(FieldFault { field: "penalty_width", value, least, most: self.width });
+        }
+        Ok(self)
+    }
+
+    /// x of the goal line at that end.
+    pub fn goal_line(&self, goal: GoalEnd) -> f32 {
+        goal.sign() as f32 * self.length * 0.5
+    }
+
     /// Middle of the goal mouth at that end.
     pub fn goal_center(&self, goal: GoalEnd) -> Point<Field> {
-        Point::new(goal.sign() as f32 * self.length * 0.5, 0.0)
+        Point::new(self.goal_line(goal), 0.0)
+    }
+
+    /// The goal mouth at that end, from its post at −y to its post at +y.
+    pub fn goal_mouth(&self, goal: GoalEnd) -> Segment<Field> {
+        let (x, y) = (self.goal_line(goal), self.goal_width * 0.5);
+        Segment::new(Point::new(x, -y), Point::new(x, y))
     }
 
     /// On the field or on its lines.
@@ -34,10 +135,45 @@ impl FieldSpec {
         p.x().abs() <= self.length * 0.5 && p.y().abs() <= self.width * 0.5
     }
 
+    /// All the carpet within the walls.
+    pub fn carpet(&self) -> Shape<Field> {
+        let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
+        Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
+    }
+
+    /// The defence area at that end; together the shapes cover it. Behind the goal line they may cover more.
+    pub fn defence_area(&self, goal: GoalEnd) -> Vec<Shape<Field>, AREA_SHAPES_MAX> {
+        let (line, sign) = (self.goal_line(goal), goal.sign() as f32);
+        let front = line - sign * self.penalty_depth;
+        let between = |y: f32| Shape::Box {
+            low: Point::new(line.min(front), -y),
+            high: Point::new(line.max(front), y),
+        };
+        match self.penalty_form {
+            AreaForm::Box => Vec::from_iter([between(self.penalty_width * 0.5)]),
+            AreaForm::QuarterCircles => {
+                let radius = self.penalty_depth;
+                let y = self.penalty_width * 0.5 - radius;
+                let round = |y: f32| Shape::Disc { center: Point::new(line, y), radius };
+                Vec::from_iter([between(y), round(-y), round(y)])
+            }
+        }
+    }
+
+    /// Distance from the border of the defence area at that end, m: negative inside.
+    pub fn distance_to_area(&self, goal: GoalEnd, p: Point<Field>) -> f32 {
+        self.defence_area(goal).iter().map(|shape| shape.distance_to(p)).fold(f32::INFINITY, f32::min)
+    }
+
     /// In the penalty area at that end, lines included.
     pub fn in_penalty_area(&self, goal: GoalEnd, p: Point<Field>) -> bool {
         let depth = self.length * 0.5 - p.x() * goal.sign() as f32;
-        (0.0..=self.penalty_depth).contains(&depth) && p.y().abs() <= self.penalty_width * 0.5
+        depth >= 0.0 && self.defence_area(goal).iter().any(|shape| shape.contains(p))
+    }
+
+    /// Where a penalty at that goal is taken from.
+    pub fn penalty_spot(&self, attacked: GoalEnd) -> Point<Field> {
+        Point::new(self.goal_line(attacked) - attacked.sign() as f32 * self.penalty_mark, 0.0)
     }
 
     /// The nearest point at least `inside` within the lines (or beyond them by −`inside`).
@@ -68,5 +204,50 @@ mod tests {
         assert!(field.contains(Point::new(2.7, -1.8)));
         assert!(!field.contains(Point::new(2.701, 0.0)));
         assert_eq!(field.clamp(Point::new(9.0, -9.0), 0.1), Point::new(2.6000001, -1.6999999));
+    }
+
+    #[test]
+    fn the_round_area_of_2013_has_no_corners() {
+        let field = League::Ssl2013.field();
+        let goal = GoalEnd::Negative;
+        // The middle of the front, the start of the curve, 45° along it (0.8 / √2 = 0.566), and the square's corner.
+        assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.0)));
+        assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.175)));
+        assert!(field.in_penalty_area(goal, Point::new(-3.0 + 0.565, 0.175 + 0.565)));
+        assert!(!field.in_penalty_area(goal, Point::new(-3.0 + 0.567, 0.175 + 0.567)));
+        assert!(!field.in_penalty_area(goal, Point::new(-2.25, 0.95)));
+        assert!(!field.in_penalty_area(goal, Point::new(-3.01, 0.0)));
+        // From the front, straight; from beside the curve, along its radius.
+        assert!((field.distance_to_area(goal, Point::new(-1.2, 0.0)) - 1.0).abs() < 1e-6);
+        assert!((field.distance_to_area(goal, Point::new(-3.0, 1.475)) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_penalty_of_division_b_is_taken_6_m_from_the_goal() {
+        let field = League::DivisionB.field();
+        assert_eq!(field.penalty_spot(GoalEnd::Positive), Point::new(-1.5, 0.0));
+        assert_eq!(League::DivisionA.field().penalty_spot(GoalEnd::Negative), Point::new(2.0, 0.0));
+        assert_eq!(League::Ssl2013.field().penalty_spot(GoalEnd::Positive), Point::new(2.25, 0.0));
+    }
+
+    #[test]
+    fn a_field_that_cannot_be_is_refused_by_the_name_of_its_number() {
+        let good = League::DivisionB.field();
+        assert_eq!(good.checked(), Ok(good));
+        let fault = |field: FieldSpec| field.checked().unwrap_err().field;
+        assert_eq!(fault(FieldSpec { length: f32::NAN, ..good }), "length");
+        assert_eq!(fault(FieldSpec { width: -6.0, ..good }), "width");
+        assert_eq!(fault(FieldSpec { goal_width: 6.1, ..good }), "goal_width");
+        assert_eq!(fault(FieldSpec { penalty_depth: 4.6, ..good }), "penalty_depth");
+        assert_eq!(fault(FieldSpec { margin: f32::INFINITY, ..good }), "margin");
+        let round = AreaForm::QuarterCircles;
+        assert_eq!(fault(FieldSpec { penalty_form: round, penalty_width: 1.9, ..good }), "penalty_width");
+    }
+
+    #[test]
+    fn every_leagues_field_passes_its_own_check() {
+        for league in [League::FourLegged, League::Ssl2013, League::DivisionB, League::DivisionA] {
+            assert!(league.field().checked().is_ok(), "{}", league.name());
+        }
     }
 }

@@ -39,6 +39,18 @@ pub enum Side {
     Theirs,
 }
 
+/// What the rules allow a robot beyond others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Duty {
+    /// Nothing more.
+    #[default]
+    Player,
+    /// The one that may be in the own defence area.
+    Keeper,
+    /// The one that takes our restart: it may come near the ball before it is in play.
+    Taker,
+}
+
 /// A node of the league's state graph; `Who` is [`Colour`] for those who look from outside and [`Side`] for a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Phase<Who> {

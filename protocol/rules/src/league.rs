@@ -1,11 +1,19 @@
 //! Which leagues are there, and how large are field, robots and ball in each?
 //!
 //! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; carpet 6 × 4 m
-//! as in Ros et al. 2009 §6.1.
+//! as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their fields; goals 0.3 m high and
+//! the penalty mark are estimates that nothing depends on.
+//!
+//! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those that the league's programs carried for the single-size
+//! field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75 m, 0.25 m of margin within
+//! the referee's walk.
+//!
+//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026; the
+//! goal walls are 0.02 m thick, all lines 0.01 m.
 
 use serde::{Deserialize, Serialize};
 
-use crate::FieldSpec;
+use crate::{AreaForm, FieldSpec};
 
 /// A league's world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,41 +62,65 @@ impl League {
                 length: 5.4,
                 width: 3.6,
                 margin: 0.3,
+                goal_line_margin: 0.3,
                 goal_width: 0.8,
                 goal_depth: 0.3,
+                goal_height: 0.3,
+                goal_wall: 0.02,
                 penalty_depth: 0.65,
                 penalty_width: 1.3,
+                penalty_form: AreaForm::Box,
+                penalty_mark: 3.6,
                 center_radius: 0.18,
+                line_width: 0.025,
             },
             Self::Ssl2013 => FieldSpec {
                 length: 6.0,
                 width: 4.0,
                 margin: 0.25,
+                goal_line_margin: 0.25,
                 goal_width: 0.7,
                 goal_depth: 0.18,
+                goal_height: 0.16,
+                goal_wall: 0.02,
                 penalty_depth: 0.8,
                 penalty_width: 1.95,
+                penalty_form: AreaForm::QuarterCircles,
+                penalty_mark: 0.75,
                 center_radius: 0.5,
+                line_width: 0.01,
             },
             Self::DivisionB => FieldSpec {
                 length: 9.0,
                 width: 6.0,
                 margin: 0.3,
+                goal_line_margin: 0.3,
                 goal_width: 1.0,
                 goal_depth: 0.18,
+                goal_height: 0.16,
+                goal_wall: 0.02,
                 penalty_depth: 1.0,
                 penalty_width: 2.0,
+                penalty_form: AreaForm::Box,
+                penalty_mark: 6.0,
                 center_radius: 0.5,
+                line_width: 0.01,
             },
             Self::DivisionA => FieldSpec {
                 length: 12.0,
                 width: 9.0,
                 margin: 0.3,
+                goal_line_margin: 0.6,
                 goal_width: 1.8,
                 goal_depth: 0.18,
+                goal_height: 0.16,
+                goal_wall: 0.02,
                 penalty_depth: 1.8,
                 penalty_width: 3.6,
+                penalty_form: AreaForm::Box,
+                penalty_mark: 8.0,
                 center_radius: 0.5,
+                line_width: 0.01,
             },
         }
     }

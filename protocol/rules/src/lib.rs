@@ -1,14 +1,26 @@
-//! What does each league's field and robot look like, where is what, and what may be done now? Dimensions and phases as
-//! data, SI, field frame.
+//! What does each league's field and robot look like, where is what, and what may be done now? Dimensions, limits, keep-out
+//! areas, restarts, offences and the state of a game, SI, field frame.
+//!
+//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`keep_out`] says where a robot must not be,
+//! [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a referee's command means.
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One truth per fact: physics, brains, referee and pictures read the
 //! dimensions here.
 #![no_std]
 
+#[cfg(test)]
+extern crate std;
+
 mod field;
 mod game;
+pub mod keep_out;
 mod league;
+pub mod legality;
+pub mod limits;
+pub mod restart;
+pub mod state;
 
-pub use field::FieldSpec;
-pub use game::{Colour, Phase, Side};
+pub use field::{AREA_SHAPES_MAX, AreaForm, FieldFault, FieldSpec};
+pub use game::{Colour, Duty, Phase, Side};
 pub use league::{BallSpec, League, RobotSpec};
+pub use limits::Limits;

@@ -1,0 +1,295 @@
+//! Where must a robot not be now, how fast may it go, and may it touch the ball? The rules of 2026 as shapes.
+//!
+//! Robots' skills, host and referee ask here, so that there is one truth. Shapes are for the robot's *body*: who plans for its
+//! centre grows them by its radius, and by what it takes for its own noise ([`KeepOut::offence`] does the former).
+//! Field frame, m. Nothing here remembers: double touches, graces and counts are the caller's.
+
+use geometry::{Field, GoalEnd, Point, Segment, Shape};
+use heapless::Vec;
+
+use crate::limits::{
+    BALL_DISTANCE, BALL_RADIUS, OPPONENT_AREA_DISTANCE, PENALTY_BEHIND, ROBOT_RADIUS, STOP_SPEED,
+};
+use crate::{Duty, FieldSpec, Phase, Side};
+
+/// The longest list of shapes: a keeper at a penalty, with room to spare.
+pub const FORBIDDEN_MAX: usize = 12;
+
+/// What decides where a robot may be. `Side` is as its own team sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Situation<'a> {
+    /// The field.
+    pub field: &'a FieldSpec,
+    /// The goal its team defends.
+    pub own: GoalEnd,
+    /// The phase of the game.
+    pub phase: Phase<Side>,
+    /// What it is in its team.
+    pub duty: Duty,
+    /// Where the ball is; unknown: nothing around it is forbidden.
+    pub ball: Option<Point<Field>>,
+    /// Where the ball is to be placed; only asked in ball placement.
+    pub placement: Option<Point<Field>>,
+    /// Whether the ball has left its place since NORMAL_START; only asked of a penalty's keeper, who then may move.
+    pub ball_in_play: bool,
+}
+
+/// Why a place is forbidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Within 0.5 m of the ball on STOP, or at the opponents' kick-off or free kick.
+    BallDistance,
+    /// On the ball before NORMAL_START.
+    BallTouch,
+    /// In the own defence area without being the keeper.
+    OwnArea,
+    /// In the opponents' defence area, or within 0.2 m of it on STOP and at free kicks.
+    OpponentArea,
+    /// In the other half at a kick-off.
+    OtherHalf,
+    /// In the centre circle at a kick-off without being the kicker.
+    CentreCircle,
+    /// Less than 1 m behind the ball at a penalty.
+    BehindBall,
+    /// The keeper at a penalty, off its line or not between the posts.
+    KeeperLine,
+    /// Within 0.5 m of the line from ball to target while opponents place.
+    Stadium,
+    /// Within 0.5 m of the target while a mate places: a force start may follow, and it would not count as placed.
+    Target,
+    /// Beyond the carpet.
+    Border,
+}
+
+impl Why {
+    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because nothing good can be
+    /// done there: in the opponents' area the ball may not be touched, at the target mates are in the way.
+    pub const fn offends(self, phase: Phase<Side>) -> bool {
+        match self {
+            Self::Target | Self::Border => false,
+            Self::OpponentArea => matches!(phase, Phase::Stop | Phase::FreeKick(_)),
+            _ => true,
+        }
+    }
+}
+
+/// A region and the reason to keep out of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forbidden {
+    /// No part of the body in here.
+    pub shape: Shape<Field>,
+    /// Because.
+    pub why: Why,
+}
+
+/// Where a robot must not be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeepOut {
+    /// No part of the body in any of these.
+    pub forbidden: Vec<Forbidden, FORBIDDEN_MAX>,
+    /// The whole body in here: the carpet within the walls.
+    pub within: Shape<Field>,
+}
+
+impl KeepOut {
+    /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed), if any.
+    pub fn offence(&self, center: Point<Field>, radius: f32) -> Option<Why> {
+        let hit = self.forbidden.iter().find(|region| region.shape.distance_to(center) < radius);
+        let out = self.within.distance_to(center) > -radius;
+        hit.map(|region| region.why).or(out.then_some(Why::Border))
+    }
+}
+
+/// Where this robot must not be.
+pub fn keep_out(s: &Situation) -> KeepOut {
+    let mut list = List(Vec::new());
+    let keeper = s.duty == Duty::Keeper;
+    let taker = s.duty == Duty::Taker;
+    let disc = |center: Point<Field>, radius: f32| Shape::Disc { center, radius };
+    match s.phase {
+        Phase::Halt | Phase::Timeout(_) => {}
+        Phase::Stop => {
+            list.add_some(Why::BallDistance, s.ball.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.opponent_area(s, OPPONENT_AREA_DISTANCE);
+            list.own_area(s);
+        }
+        Phase::FreeKick(side) => {
+            let away = s.ball.filter(|_| side == Side::Theirs);
+            list.add_some(Why::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.opponent_area(s, OPPONENT_AREA_DISTANCE);
+            list.own_area(s);
+        }
+        Phase::Run => {
+            list.opponent_area(s, 0.0);
+            list.own_area(s);
+        }
+        Phase::BallPlacement(Side::Theirs) => {
+            let spine = match (s.ball, s.placement) {
+                (Some(ball), Some(target)) => Some(Segment::new(ball, target)),
+                (known, other) => known.or(other).map(|point| Segment::new(point, point)),
+            };
+            let stadium = spine.map(|spine| Shape::Capsule { spine, radius: BALL_DISTANCE });
+            list.add_some(Why::Stadium, stadium);
+        }
+        Phase::BallPlacement(Side::Ours) => {
+            let target = s.placement.filter(|_| !taker);
+            list.add_some(Why::Target, target.map(|target| disc(target, BALL_DISTANCE)));
+        }
+        Phase::PrepareKickoff(side) | Phase::Kickoff(side) => {
+            let center = Point::new(0.0, 0.0);
+            if side == Side::Ours && taker {
+                list.kicker(s);
+                let prepares = matches!(s.phase, Phase::PrepareKickoff(_));
+                let ball = s.ball.filter(|_| prepares);
+                list.add_some(Why::BallTouch, ball.map(|ball| disc(ball, BALL_RADIUS)));
+            } else {
+                list.half_plane(s, Why::OtherHalf, 0.0, s.own.opposite());
+                list.add(Why::CentreCircle, disc(center, s.field.center_radius));
+            }
+            let away = s.ball.filter(|_| side == Side::Theirs);
+            list.add_some(Why::BallDistance, away.map(|ball| disc(ball, BALL_DISTANCE)));
+            list.own_area(s);
+        }
+        Phase::PreparePenalty(side) | Phase::Penalty(side) => list.penalty(s, side, keeper, taker),
+    }
+    KeepOut { forbidden: list.0, within: s.field.carpet() }
+}
+
+/// How fast a robot may go, m/s; none: as fast as it can.
+pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
+    match phase {
+        Phase::Halt | Phase::Timeout(_) => Some(0.0),
+        Phase::Stop => Some(STOP_SPEED),
+        _ => None,
+    }
+}
+
+/// Whether a robot may touch the ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// It may.
+    Allowed,
+    /// The phase lets nobody, not its team, or only its team's taker (or keeper).
+    NotNow,
+    /// It is at least partly in the opponents' defence area.
+    InOpponentArea,
+    /// It is entirely in the own defence area and not the keeper: a penalty.
+    InOwnArea,
+}
+
+/// Whether a robot with its centre here may touch the ball now. That a taker must not touch it twice is for the caller to
+/// remember.
+pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
+    let may = match s.phase {
+        Phase::Run => true,
+        Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::BallPlacement(Side::Ours) => {
+            s.duty == Duty::Taker
+        }
+        Phase::Penalty(Side::Ours) => s.duty == Duty::Taker,
+        Phase::Penalty(Side::Theirs) => s.duty == Duty::Keeper,
+        _ => false,
+    };
+    if !may {
+        return Touch::NotNow;
+    }
+    if matches!(s.phase, Phase::BallPlacement(_)) {
+        return Touch::Allowed; // "it is allowed to enter the defence area during ball placement"
+    }
+    let reach = |goal: GoalEnd| s.field.distance_to_area(goal, center);
+    if reach(s.own.opposite()) <= ROBOT_RADIUS {
+        Touch::InOpponentArea
+    } else if s.duty != Duty::Keeper && reach(s.own) <= -ROBOT_RADIUS {
+        Touch::InOwnArea
+    } else {
+        Touch::Allowed
+    }
+}
+
+/// The list while it is made. It never overflows: a test counts every situation.
+struct List(Vec<Forbidden, FORBIDDEN_MAX>);
+
+impl List {
+    fn add(&mut self, why: Why, shape: Shape<Field>) {
+        let full = self.0.push(Forbidden { shape, why }).is_err();
+        debug_assert!(!full, "more than {FORBIDDEN_MAX} forbidden regions");
+    }
+
+    fn add_some(&mut self, why: Why, shape: Option<Shape<Field>>) {
+        if let Some(shape) = shape {
+            self.add(why, shape);
+        }
+    }
+
+    fn own_area(&mut self, s: &Situation) {
+        if s.duty != Duty::Keeper {
+            for shape in s.field.defence_area(s.own) {
+                self.add(Why::OwnArea, shape);
+            }
+        }
+    }
+
+    fn opponent_area(&mut self, s: &Situation, by: f32) {
+        for shape in s.field.defence_area(s.own.opposite()) {
+            self.add(Why::OpponentArea, shape.grown(by));
+        }
+    }
+
+    /// All the carpet from x = `from` to the wall behind this goal.
+    fn half_plane(&mut self, s: &Situation, why: Why, from: f32, towards: GoalEnd) {
+        let wall = s.field.goal_line(towards) + towards.sign() as f32 * s.field.goal_line_margin;
+        let y = s.field.width * 0.5 + s.field.margin;
+        let (low, high) = (from.min(wall), from.max(wall));
+        self.add(why, Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) });
+    }
+
+    /// The kicker may be in the whole circle, of whose far half a box cannot tell; what is left open is the largest
+    /// upright square in it.
+    fn kicker(&mut self, s: &Situation) {
+        let side = s.field.center_radius * core::f32::consts::FRAC_1_SQRT_2;
+        let other = s.own.opposite();
+        let far = side * other.sign() as f32;
+        self.half_plane(s, Why::OtherHalf, far, other);
+        let wall = s.field.width * 0.5 + s.field.margin;
+        for (low, high) in [(-wall, -side), (side, wall)] {
+            let (low, high) = (Point::new(far.min(0.0), low), Point::new(far.max(0.0), high));
+            self.add(Why::OtherHalf, Shape::Box { low, high });
+        }
+    }
+
+    fn penalty(&mut self, s: &Situation, side: Side, keeper: bool, taker: bool) {
+        let attacked = if side == Side::Ours { s.own.opposite() } else { s.own };
+        if side == Side::Theirs && keeper {
+            if !s.ball_in_play {
+                self.keeper_line(s);
+            }
+        } else if side == Side::Ours && taker {
+            let prepares = matches!(s.phase, Phase::PreparePenalty(_));
+            let ball = s.ball.filter(|_| prepares);
+            let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });
+            self.add_some(Why::BallTouch, on);
+        } else {
+            let ball = s.ball.unwrap_or_else(|| s.field.penalty_spot(attacked));
+            let from = ball.x() - attacked.sign() as f32 * PENALTY_BEHIND;
+            self.half_plane(s, Why::BehindBall, from, attacked);
+        }
+    }
+
+    /// The body touches the goal line as long as all of it is within its own width of the line, on either side; and it is
+    /// between the posts.
+    fn keeper_line(&mut self, s: &Situation) {
+        let (line, sign) = (s.field.goal_line(s.own), s.own.sign() as f32);
+        let strip = 2.0 * ROBOT_RADIUS;
+        self.half_plane(s, Why::KeeperLine, line - sign * strip, s.own.opposite());
+        self.half_plane(s, Why::KeeperLine, line + sign * strip, s.own);
+        let wall = s.field.width * 0.5 + s.field.margin;
+        let post = s.field.goal_width * 0.5;
+        let (low_x, high_x) = (line - strip, line + strip);
+        for (low, high) in [(-wall, -post), (post, wall)] {
+            let shape = Shape::Box { low: Point::new(low_x, low), high: Point::new(high_x, high) };
+            self.add(Why::KeeperLine, shape);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,326 @@
+//! What does a referee's command mean now? The league's state graph as a value (rules 2026, appendix "game states").
+//!
+//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both say what came of it. Times are µs of
+//! one clock, the caller's. Three things are decided here, because the rules leave them open:
+//!
+//! - **The newest command counts.** The referee repeats its current command many times a second, so a command that does not
+//!   follow from the one before means that some were missed; it is followed and said ([`Heard::OffGraph`]).
+//! - **Nobody starts off a standstill by surprise.** People may be on the field in HALT and time-outs, which STOP alone
+//!   ends. Any other command is read as STOP for [`GRACE`] first ([`Heard::AsStop`]). NORMAL_START with nothing
+//!   prepared (somebody joins in the middle of a game) is read as STOP until the longest kick-off or penalty is
+//!   over, counted from when the command was given: then the ball is in play, whatever it was.
+//! - **The same command again is no new command**, though its counter rises (operators and automatic continuation issue
+//!   some twice). It only restarts the clock of a restart that is not yet in play. A free kick that comes again after the
+//!   ball was in play is a new one: a ball that rolls is back in play at once, and one that lies may not be approached.
+
+use geometry::{Field, Point};
+
+use crate::limits::{GRACE, IN_PLAY_DISTANCE, KICKOFF_TIME, PENALTY_TIME};
+use crate::{Colour, Limits, Phase};
+
+/// A command of the referee.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Command {
+    /// Nobody moves.
+    Halt,
+    /// Slow, away from the ball.
+    Stop,
+    /// Take the kick-off or penalty that was prepared.
+    NormalStart,
+    /// Play on, both.
+    ForceStart,
+    /// Take places for this team's kick-off.
+    PrepareKickoff(Colour),
+    /// Take places for this team's penalty.
+    PreparePenalty(Colour),
+    /// This team's free kick.
+    FreeKick(Colour),
+    /// This team's time-out.
+    Timeout(Colour),
+    /// This team places the ball.
+    BallPlacement(Colour),
+}
+
+/// The part of a match.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Before the first half.
+    FirstHalfPre,
+    /// The first half.
+    FirstHalf,
+    /// The break between the halves.
+    HalfTime,
+    /// Before the second half.
+    SecondHalfPre,
+    /// The second half.
+    SecondHalf,
+    /// The break before overtime.
+    ExtraTimeBreak,
+    /// Before overtime's first half.
+    ExtraFirstHalfPre,
+    /// Overtime's first half.
+    ExtraFirstHalf,
+    /// The break between overtime's halves.
+    ExtraHalfTime,
+    /// Before overtime's second half.
+    ExtraSecondHalfPre,
+    /// Overtime's second half.
+    ExtraSecondHalf,
+    /// The break before the shoot-out.
+    ShootOutBreak,
+    /// Penalties decide.
+    ShootOut,
+    /// The match is over.
+    PostGame,
+}
+
+impl Stage {
+    /// All, in the order of a match.
+    pub const ALL: [Self; 14] = [
+        Self::FirstHalfPre,
+        Self::FirstHalf,
+        Self::HalfTime,
+        Self::SecondHalfPre,
+        Self::SecondHalf,
+        Self::ExtraTimeBreak,
+        Self::ExtraFirstHalfPre,
+        Self::ExtraFirstHalf,
+        Self::ExtraHalfTime,
+        Self::ExtraSecondHalfPre,
+        Self::ExtraSecondHalf,
+        Self::ShootOutBreak,
+        Self::ShootOut,
+        Self::PostGame,
+    ];
+
+    /// Whether the clock of the match can run in it.
+    pub const fn is_played(self) -> bool {
+        matches!(
+            self,
+            Self::FirstHalf
+                | Self::SecondHalf
+                | Self::ExtraFirstHalf
+                | Self::ExtraSecondHalf
+                | Self::ShootOut
+        )
+    }
+
+    /// Whether teams rest and people may do as they like.
+    pub const fn is_break(self) -> bool {
+        matches!(
+            self,
+            Self::HalfTime
+                | Self::ExtraTimeBreak
+                | Self::ExtraHalfTime
+                | Self::ShootOutBreak
+                | Self::PostGame
+        )
+    }
+}
+
+/// What came of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Heard {
+    /// It follows from the phase before.
+    Followed,
+    /// It is what stands already.
+    Repeated,
+    /// It does not follow from this phase, but counts.
+    OffGraph {
+        /// The phase before.
+        from: Phase<Colour>,
+    },
+    /// It does not follow from this phase, and is read as STOP first.
+    AsStop {
+        /// The phase before.
+        from: Phase<Colour>,
+        /// What it becomes.
+        then: Phase<Colour>,
+        /// When, µs.
+        at: u64,
+    },
+}
+
+/// What came of time and ball.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ticked {
+    /// Nothing.
+    Same,
+    /// The ball has moved [`IN_PLAY_DISTANCE`] from its place: in play.
+    BallMoved,
+    /// The time for the restart is over: in play, or for a penalty stopped.
+    TimeUp,
+    /// What was read as STOP is followed now.
+    Released,
+}
+
+/// Where a game stands, as its commands, clock and ball tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GameState {
+    phase: Phase<Colour>,
+    command: Option<Command>,
+    /// When the phase began, µs.
+    since: u64,
+    /// Where the ball lay when the restart began.
+    ball_at: Option<Point<Field>>,
+    penalty_in_play: bool,
+    later: Option<(Phase<Colour>, u64)>,
+}
+
+impl Default for GameState {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl GameState {
+    /// Nothing heard yet: nobody moves.
+    pub const fn new() -> Self {
+        let phase = Phase::Halt;
+        Self { phase, command: None, since: 0, ball_at: None, penalty_in_play: false, later: None }
+    }
+
+    /// The phase now.
+    pub const fn phase(&self) -> Phase<Colour> {
+        self.phase
+    }
+
+    /// The newest command; none: nothing heard yet.
+    pub const fn command(&self) -> Option<Command> {
+        self.command
+    }
+
+    /// When this phase began or its clock was restarted, µs.
+    pub const fn since(&self) -> u64 {
+        self.since
+    }
+
+    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the ball is in play.
+    pub const fn ball_in_play(&self) -> bool {
+        match self.phase {
+            Phase::Run => true,
+            Phase::Penalty(_) => self.penalty_in_play,
+            _ => false,
+        }
+    }
+
+    /// A command that was given at `at`, µs; `ball` is where it lies then, if known.
+    pub fn hear(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Heard {
+        let (from, first) = (self.phase, self.command.is_none());
+        let again = self.command == Some(command);
+        self.command = Some(command);
+        if again {
+            return self.repeat(command, at, ball);
+        }
+        let wanted = match command {
+            Command::Halt => Some(Phase::Halt),
+            Command::Stop => Some(Phase::Stop),
+            Command::ForceStart => Some(Phase::Run),
+            Command::PrepareKickoff(who) => Some(Phase::PrepareKickoff(who)),
+            Command::PreparePenalty(who) => Some(Phase::PreparePenalty(who)),
+            Command::FreeKick(who) => Some(Phase::FreeKick(who)),
+            Command::Timeout(who) => Some(Phase::Timeout(who)),
+            Command::BallPlacement(who) => Some(Phase::BallPlacement(who)),
+            Command::NormalStart => match from {
+                Phase::PrepareKickoff(who) => Some(Phase::Kickoff(who)),
+                Phase::PreparePenalty(who) => Some(Phase::Penalty(who)),
+                _ => None,
+            },
+        };
+        let Some(to) = wanted else {
+            let longest = micros(if KICKOFF_TIME > PENALTY_TIME { KICKOFF_TIME } else { PENALTY_TIME });
+            return self.stop_first(Phase::Run, at, at.saturating_add(longest));
+        };
+        let stands = matches!(to, Phase::Halt | Phase::Timeout(_) | Phase::Stop);
+        let stood = matches!(from, Phase::Halt | Phase::Timeout(_));
+        if stood && !stands && !first {
+            return self.stop_first(to, at, at.saturating_add(micros(GRACE)));
+        }
+        self.enter(to, at, ball);
+        if first || follows(from, to) { Heard::Followed } else { Heard::OffGraph { from } }
+    }
+
+    /// The time is `now`, µs, and the ball is seen here.
+    pub fn tick(&mut self, now: u64, ball: Option<Point<Field>>, limits: &Limits) -> Ticked {
+        if let Some((phase, at)) = self.later
+            && now >= at
+        {
+            self.enter(phase, at, ball);
+            return Ticked::Released;
+        }
+        let (time, then) = match self.phase {
+            Phase::Kickoff(_) => (KICKOFF_TIME, Phase::Run),
+            Phase::FreeKick(_) => (limits.free_kick_time, Phase::Run),
+            Phase::Penalty(_) => (PENALTY_TIME, Phase::Stop),
+            _ => return Ticked::Same,
+        };
+        if now >= self.since.saturating_add(micros(time)) {
+            self.enter(then, now, None);
+            return Ticked::TimeUp;
+        }
+        let Some(ball) = ball.filter(|ball| ball.is_finite()) else { return Ticked::Same };
+        let place = *self.ball_at.get_or_insert(ball);
+        if self.penalty_in_play || place.distance(ball) < IN_PLAY_DISTANCE {
+            return Ticked::Same;
+        }
+        if matches!(self.phase, Phase::Penalty(_)) {
+            self.penalty_in_play = true;
+        } else {
+            self.enter(Phase::Run, now, None);
+        }
+        Ticked::BallMoved
+    }
+
+    fn repeat(&mut self, command: Command, at: u64, ball: Option<Point<Field>>) -> Heard {
+        match (self.phase, command) {
+            (Phase::Kickoff(_) | Phase::FreeKick(_) | Phase::Penalty(_), _) => {
+                self.since = self.since.max(at);
+                Heard::Repeated
+            }
+            (Phase::Run, Command::FreeKick(who)) => {
+                self.enter(Phase::FreeKick(who), at, ball);
+                Heard::OffGraph { from: Phase::Run }
+            }
+            _ => Heard::Repeated,
+        }
+    }
+
+    fn stop_first(&mut self, then: Phase<Colour>, now: u64, at: u64) -> Heard {
+        let from = self.phase;
+        self.enter(Phase::Stop, now, None);
+        self.later = Some((then, at));
+        Heard::AsStop { from, then, at }
+    }
+
+    fn enter(&mut self, phase: Phase<Colour>, at: u64, ball: Option<Point<Field>>) {
+        let ball_at = ball.filter(|ball| ball.is_finite());
+        *self = Self { phase, since: at, ball_at, penalty_in_play: false, later: None, ..*self };
+    }
+}
+
+/// Whether the league's graph has this edge (commands only; time and ball make the others).
+pub fn follows(from: Phase<Colour>, to: Phase<Colour>) -> bool {
+    match to {
+        Phase::Halt => true,
+        Phase::Stop => !matches!(from, Phase::Stop),
+        Phase::Timeout(_) | Phase::PrepareKickoff(_) | Phase::PreparePenalty(_) => {
+            matches!(from, Phase::Stop)
+        }
+        Phase::BallPlacement(who) => {
+            // The other team tries after a failure.
+            matches!(from, Phase::Stop) || from == Phase::BallPlacement(who.other())
+        }
+        Phase::FreeKick(_) => matches!(from, Phase::Stop | Phase::BallPlacement(_)),
+        Phase::Run => matches!(from, Phase::Stop | Phase::BallPlacement(_)),
+        Phase::Kickoff(who) => from == Phase::PrepareKickoff(who),
+        Phase::Penalty(who) => from == Phase::PreparePenalty(who),
+    }
+}
+
+/// s → µs.
+const fn micros(seconds: f32) -> u64 {
+    (seconds * 1e6) as u64
+}
+
+#[cfg(test)]
+mod tests;

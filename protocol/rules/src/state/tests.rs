@@ -1,0 +1,259 @@
+//! Does the state follow the league's graph, and is it safe where a command does not?
+
+use std::vec;
+use std::vec::Vec;
+
+use super::*;
+use crate::League;
+
+const B: Colour = Colour::Blue;
+const Y: Colour = Colour::Yellow;
+const S: u64 = 1_000_000;
+const COLOURS: [Colour; 2] = [Y, B];
+
+fn limits() -> Limits {
+    League::DivisionB.limits().unwrap()
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "as `tick` takes it")]
+fn at(x: f32, y: f32) -> Option<Point<Field>> {
+    Some(Point::new(x, y))
+}
+
+/// A state after these commands, a second apart, the ball at the centre; and the time.
+fn after(commands: &[Command]) -> (GameState, u64) {
+    let mut state = GameState::new();
+    let mut now = 0;
+    for command in commands {
+        now += S;
+        state.hear(*command, now, at(0.0, 0.0));
+    }
+    (state, now)
+}
+
+fn commands() -> Vec<Command> {
+    let with = COLOURS.into_iter().flat_map(|who| {
+        [
+            Command::PrepareKickoff(who),
+            Command::PreparePenalty(who),
+            Command::FreeKick(who),
+            Command::Timeout(who),
+            Command::BallPlacement(who),
+        ]
+    });
+    let plain = [Command::Halt, Command::Stop, Command::NormalStart, Command::ForceStart];
+    plain.into_iter().chain(with).collect()
+}
+
+/// For every phase a way that leads to it, over edges of the graph only.
+fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
+    let stop = Command::Stop;
+    let mut ways = vec![
+        (Phase::Halt, vec![stop, Command::Halt]),
+        (Phase::Stop, vec![Command::Halt, stop]),
+        (Phase::Run, vec![stop, Command::ForceStart]),
+    ];
+    for who in COLOURS {
+        let kickoff = Command::PrepareKickoff(who);
+        let penalty = Command::PreparePenalty(who);
+        ways.extend([
+            (Phase::Timeout(who), vec![stop, Command::Timeout(who)]),
+            (Phase::BallPlacement(who), vec![stop, Command::BallPlacement(who)]),
+            (Phase::PrepareKickoff(who), vec![stop, kickoff]),
+            (Phase::Kickoff(who), vec![stop, kickoff, Command::NormalStart]),
+            (Phase::PreparePenalty(who), vec![stop, penalty]),
+            (Phase::Penalty(who), vec![stop, penalty, Command::NormalStart]),
+            (Phase::FreeKick(who), vec![stop, Command::FreeKick(who)]),
+        ]);
+    }
+    ways
+}
+
+#[test]
+fn every_phase_is_reached_over_edges_of_the_graph() {
+    for (phase, way) in ways() {
+        let mut state = GameState::new();
+        for (i, command) in way.iter().enumerate() {
+            let heard = state.hear(*command, i as u64 * S, None);
+            assert_eq!(heard, Heard::Followed, "{phase:?}: {command:?}");
+        }
+        assert_eq!(state.phase(), phase);
+    }
+}
+
+/// How much a phase lets robots do, 0 the least: what "safe" means in the next test.
+fn freedom(phase: Phase<Colour>) -> u32 {
+    match phase {
+        Phase::Halt | Phase::Timeout(_) => 0,
+        Phase::Stop => 1,
+        Phase::BallPlacement(_) | Phase::PrepareKickoff(_) | Phase::PreparePenalty(_) => 2,
+        Phase::Kickoff(_) | Phase::Penalty(_) | Phase::FreeKick(_) => 3,
+        Phase::Run => 4,
+    }
+}
+
+#[test]
+fn every_command_in_every_phase_has_a_safe_reading() {
+    let mut counts = [0; 4];
+    for (phase, way) in ways() {
+        for command in commands() {
+            let (mut state, now) = after(&way);
+            let heard = state.hear(command, now + S, at(0.0, 0.0));
+            let got = state.phase();
+            match heard {
+                Heard::Followed => {
+                    assert!(follows(phase, got), "{phase:?} → {command:?} → {got:?}");
+                    counts[0] += 1;
+                }
+                Heard::Repeated => {
+                    assert_eq!(got, phase, "{phase:?} → {command:?}");
+                    assert_eq!(way.last(), Some(&command));
+                    counts[1] += 1;
+                }
+                Heard::OffGraph { from } => {
+                    assert_eq!(from, phase);
+                    assert!(!follows(phase, got), "{phase:?} → {command:?} → {got:?}");
+                    assert!(freedom(phase) > 0 || freedom(got) == 0, "{phase:?} → {command:?} → {got:?}");
+                    counts[2] += 1;
+                }
+                Heard::AsStop { from, then, at } => {
+                    assert_eq!((from, got), (phase, Phase::Stop));
+                    assert!(freedom(then) > 1 && at >= now + 2 * S);
+                    counts[3] += 1;
+                }
+            }
+            // Whatever came before, HALT and STOP work at once.
+            assert_eq!(
+                state.hear(Command::Halt, now + 2 * S, None) == Heard::Repeated,
+                command == Command::Halt
+            );
+            assert_eq!(state.phase(), Phase::Halt);
+            state.hear(Command::Stop, now + 3 * S, None);
+            assert_eq!(state.phase(), Phase::Stop);
+        }
+    }
+    assert_eq!(counts.iter().sum::<u32>(), 17 * 14);
+    assert!(counts.iter().all(|count| *count > 10), "{counts:?}");
+}
+
+#[test]
+fn a_kick_off_is_in_play_when_the_ball_has_moved_5_cm_or_after_10_s() {
+    let way = [Command::Stop, Command::PrepareKickoff(B), Command::NormalStart];
+    let (mut state, now) = after(&way);
+    assert_eq!(state.tick(now + S, at(0.049, 0.0), &limits()), Ticked::Same);
+    assert_eq!(state.phase(), Phase::Kickoff(B));
+    assert_eq!(state.tick(now + S, at(0.03, 0.041), &limits()), Ticked::BallMoved); // 0.0508 m
+    assert_eq!((state.phase(), state.ball_in_play()), (Phase::Run, true));
+    let (mut state, now) = after(&way);
+    assert_eq!(state.tick(now + 10 * S - 1, None, &limits()), Ticked::Same);
+    assert_eq!(state.tick(now + 10 * S, None, &limits()), Ticked::TimeUp);
+    assert_eq!(state.phase(), Phase::Run);
+}
+
+#[test]
+fn a_free_kick_is_in_play_after_5_s_in_division_a_and_10_s_in_b() {
+    for (league, time) in [(League::DivisionA, 5), (League::DivisionB, 10)] {
+        let limits = league.limits().unwrap();
+        let (mut state, now) = after(&[Command::Stop, Command::FreeKick(Y)]);
+        assert_eq!(state.tick(now + time * S - 1, at(0.0, 0.0), &limits), Ticked::Same);
+        assert_eq!(state.tick(now + time * S, at(0.0, 0.0), &limits), Ticked::TimeUp);
+        assert_eq!(state.phase(), Phase::Run);
+    }
+}
+
+#[test]
+fn a_ball_that_was_not_seen_at_the_command_is_measured_from_where_it_shows_up() {
+    let mut state = GameState::new();
+    state.hear(Command::FreeKick(Y), S, None);
+    assert_eq!(state.tick(2 * S, None, &limits()), Ticked::Same);
+    assert_eq!(state.tick(2 * S, at(f32::NAN, 0.0), &limits()), Ticked::Same);
+    assert_eq!(state.tick(3 * S, at(2.0, 1.0), &limits()), Ticked::Same);
+    assert_eq!(state.tick(4 * S, at(2.0, 1.1), &limits()), Ticked::BallMoved);
+}
+
+#[test]
+fn a_penalty_frees_the_keeper_when_the_ball_moves_and_stops_after_10_s() {
+    let (mut state, now) = after(&[Command::Stop, Command::PreparePenalty(Y), Command::NormalStart]);
+    assert!(!state.ball_in_play());
+    assert_eq!(state.tick(now + S, at(0.06, 0.0), &limits()), Ticked::BallMoved);
+    assert_eq!((state.phase(), state.ball_in_play()), (Phase::Penalty(Y), true));
+    assert_eq!(state.tick(now + 2 * S, at(1.0, 0.0), &limits()), Ticked::Same);
+    assert_eq!(state.tick(now + 10 * S, at(2.0, 0.0), &limits()), Ticked::TimeUp);
+    assert_eq!(state.phase(), Phase::Stop);
+}
+
+#[test]
+fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
+    let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart]);
+    assert_eq!(state.phase(), Phase::Stop);
+    assert_eq!(state.tick(now + 2 * S - 1, None, &limits()), Ticked::Same);
+    assert_eq!(state.tick(now + 2 * S, None, &limits()), Ticked::Released);
+    assert_eq!(state.phase(), Phase::Run);
+    // A HALT in between wins.
+    let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart, Command::Halt]);
+    assert_eq!(state.tick(now + 20 * S, None, &limits()), Ticked::Same);
+    assert_eq!(state.phase(), Phase::Halt);
+}
+
+#[test]
+fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
+    let mut state = GameState::new();
+    assert_eq!(state.phase(), Phase::Halt);
+    let heard = state.hear(Command::NormalStart, 100 * S, None);
+    assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
+    assert_eq!(state.tick(109 * S, None, &limits()), Ticked::Same);
+    assert_eq!((state.phase(), state.tick(111 * S, None, &limits())), (Phase::Stop, Ticked::Released));
+    // A command that is a minute old leaves nothing to wait for.
+    let mut state = GameState::new();
+    state.hear(Command::NormalStart, 40 * S, None);
+    assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);
+    assert_eq!(state.phase(), Phase::Run);
+    // And whoever joins in a standing phase takes it as it is.
+    let mut state = GameState::new();
+    assert_eq!(state.hear(Command::FreeKick(B), S, None), Heard::Followed);
+    assert_eq!(state.phase(), Phase::FreeKick(B));
+}
+
+#[test]
+fn trap_04_the_same_command_again_is_no_new_command() {
+    // NORMAL_START after the kick-off is in play.
+    let (mut state, now) = after(&[Command::Stop, Command::PrepareKickoff(B), Command::NormalStart]);
+    state.tick(now + S, at(1.0, 0.0), &limits());
+    assert_eq!(state.hear(Command::NormalStart, now + 2 * S, at(1.0, 0.0)), Heard::Repeated);
+    assert_eq!(state.phase(), Phase::Run);
+    // HALT and BALL_PLACEMENT twice.
+    for command in [Command::Halt, Command::BallPlacement(Y)] {
+        let (mut state, now) = after(&[Command::Stop, command]);
+        let before = state;
+        assert_eq!(state.hear(command, now + S, None), Heard::Repeated);
+        assert_eq!(state, before);
+    }
+}
+
+#[test]
+fn a_restart_that_is_ordered_again_before_it_is_in_play_gets_its_time_again() {
+    let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
+    assert_eq!(state.hear(Command::FreeKick(B), now + 4 * S, at(0.01, 0.0)), Heard::Repeated);
+    assert_eq!(state.tick(now + 10 * S, at(0.0, 0.0), &limits()), Ticked::Same);
+    assert_eq!(state.tick(now + 14 * S, at(0.0, 0.0), &limits()), Ticked::TimeUp);
+}
+
+#[test]
+fn a_free_kick_that_is_ordered_again_after_it_was_in_play_is_a_new_one() {
+    let (mut state, now) = after(&[Command::Stop, Command::FreeKick(B)]);
+    state.tick(now + 11 * S, at(0.0, 0.0), &limits());
+    assert_eq!(state.phase(), Phase::Run);
+    state.hear(Command::FreeKick(B), now + 12 * S, at(0.0, 0.0));
+    assert_eq!(state.phase(), Phase::FreeKick(B));
+    // A ball that rolls puts it back into play at once.
+    assert_eq!(state.tick(now + 12 * S + 20_000, at(0.06, 0.0), &limits()), Ticked::BallMoved);
+    assert_eq!(state.phase(), Phase::Run);
+}
+
+#[test]
+fn stages_are_played_or_breaks_or_before() {
+    let played = Stage::ALL.iter().filter(|stage| stage.is_played()).count();
+    let breaks = Stage::ALL.iter().filter(|stage| stage.is_break()).count();
+    assert_eq!((played, breaks, Stage::ALL.len()), (5, 5, 14));
+    assert!(Stage::ALL.is_sorted());
+}
