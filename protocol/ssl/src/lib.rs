@@ -17,6 +17,24 @@
 //!
 //! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the files matches are kept in.
 //!
+//! Hearing vision, for example:
+//!
+//! ```no_run
+//! use std::time::Duration;
+//! use ssl::Message;
+//! use ssl::net::{Interfaces, Receiver, addresses};
+//!
+//! let mut receiver = Receiver::join(addresses::VISION, &Interfaces::All)?;
+//! while let Some(datagram) = receiver.receive(Duration::from_secs(2))? {
+//!     match ssl::vision::WrapperPacket::decode(datagram.bytes) {
+//!         Ok(packet) => println!("{:?}", packet.detection),
+//!         Err(error) => eprintln!("from {}: {error}", datagram.from),
+//!     }
+//! }
+//! eprintln!("no vision for two seconds on {:?}", receiver.joined());
+//! # Ok::<(), ssl::net::NetError>(())
+//! ```
+//!
 //! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
 //! and each field says its own. The README has the traps of the league's programs and which test holds each.
 

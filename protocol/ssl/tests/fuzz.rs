@@ -1,0 +1,25 @@
+//! Does a broken packet bring a decoder down? A short run of `examples/fuzz_decode.rs`.
+
+#[path = "support/messages.rs"]
+mod messages;
+#[path = "support/mutate.rs"]
+mod mutate;
+
+use std::path::Path;
+
+#[test]
+fn twenty_thousand_broken_packets_are_read_or_refused() {
+    let seeds = mutate::seeds(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
+    let tally = mutate::run(&seeds, 20_000, 7);
+    assert_eq!(tally.packets, 20_000);
+    // Broken in so many ways that both happen often, or the run says nothing.
+    assert!(tally.decoded > 5_000 && tally.refused > 5_000, "{tally:?}");
+    assert!(tally.guessed > 2000 && tally.logged > 10_000 && tally.framed > 10_000, "{tally:?}");
+}
+
+#[test]
+fn the_same_seed_breaks_the_same_packets() {
+    let seeds = mutate::seeds(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests"));
+    assert_eq!(mutate::run(&seeds, 300, 3), mutate::run(&seeds, 300, 3));
+    assert_ne!(mutate::run(&seeds, 300, 3), mutate::run(&seeds, 300, 4));
+}
