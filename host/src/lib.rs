@@ -8,3 +8,4 @@
 pub mod config;
 pub mod strategy;
 pub mod trace;
+pub mod world;

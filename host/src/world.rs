@@ -1,0 +1,357 @@
+//! Where is everything, how fast does it move, and where will it be in a moment? The picture that tracking hands to
+//! strategy, radio, referee and page. Field frame; m, m/s, rad, rad/s; times on the host's clock.
+
+use geometry::{Field, Point, Pose, Vector, math};
+use motion::ball::chip::ChipModel;
+use motion::ball::{BallModel, BallPath};
+use motion::trajectory::Motion;
+use protocol::{Instant, RobotId};
+use rules::Colour;
+
+/// The field at one moment.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct World {
+    /// The moment, on the host's clock.
+    pub time: Instant,
+    /// The ball in play, if it is known where it is.
+    pub ball: Option<Ball>,
+    /// How balls move here.
+    pub models: BallModels,
+    robots: [[Option<Robot>; RobotId::COUNT]; 2],
+}
+
+/// How balls move on this carpet.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct BallModels {
+    /// On the ground.
+    pub ground: BallModel,
+    /// In the air and at bounces.
+    pub chip: ChipModel,
+}
+
+/// The ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ball {
+    /// Where it is, or above which point it flies.
+    pub position: Point<Field>,
+    /// m above where it lies on the carpet.
+    pub height: f32,
+    /// Along the ground, m/s.
+    pub velocity: Vector<Field>,
+    /// Upwards, m/s.
+    pub climb: f32,
+    /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
+    pub rolls_below: f32,
+    /// Its last kick touched the ground once already: later bounces take less.
+    pub bounced: bool,
+    /// 0 (lost in a moment) to 1 (seen just now, and often).
+    pub confidence: f32,
+    /// When a camera last saw it.
+    pub seen: Instant,
+    /// The last kick, while the ball still moves by it.
+    pub kicked: Option<Kick>,
+}
+
+/// A ball that somebody sent off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kick {
+    /// Who was at the ball; `None` where nobody stood near.
+    pub by: Option<Who>,
+    /// Where it left.
+    pub from: Point<Field>,
+    /// How fast along the ground, right after the kick, m/s.
+    pub velocity: Vector<Field>,
+    /// How fast upwards, m/s; 0 for a flat kick.
+    pub climb: f32,
+    /// When.
+    pub at: Instant,
+}
+
+impl Kick {
+    /// Whether it left the ground.
+    pub fn is_chip(&self) -> bool {
+        self.climb > 0.0
+    }
+}
+
+/// Which robot of which team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Who {
+    /// Its team.
+    pub colour: Colour,
+    /// Its shell number.
+    pub id: RobotId,
+}
+
+/// A robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Robot {
+    /// Which.
+    pub who: Who,
+    /// Where it is and faces.
+    pub pose: Pose<Field>,
+    /// m/s.
+    pub velocity: Vector<Field>,
+    /// rad/s, counter-clockwise.
+    pub angular: f32,
+    /// 0 (gone in a moment) to 1 (seen just now, and often).
+    pub confidence: f32,
+    /// When a camera last saw it.
+    pub seen: Instant,
+}
+
+impl World {
+    /// An empty field at that moment.
+    pub fn empty(time: Instant, models: BallModels) -> Self {
+        Self { time, models, ..Self::default() }
+    }
+
+    /// Puts a robot where it says; who was there before under that name is replaced.
+    pub fn put(&mut self, robot: Robot) {
+        self.robots[index(robot.who.colour)][robot.who.id.index()] = Some(robot);
+    }
+
+    /// That robot, if it is on the field.
+    pub fn robot(&self, who: Who) -> Option<&Robot> {
+        self.robots[index(who.colour)][who.id.index()].as_ref()
+    }
+
+    /// A team's robots, lowest number first.
+    pub fn team(&self, colour: Colour) -> impl Iterator<Item = &Robot> {
+        self.robots[index(colour)].iter().flatten()
+    }
+
+    /// Our robots, when we play in `us`.
+    pub fn ours(&self, us: Colour) -> impl Iterator<Item = &Robot> {
+        self.team(us)
+    }
+
+    /// The other team's robots, when we play in `us`.
+    pub fn theirs(&self, us: Colour) -> impl Iterator<Item = &Robot> {
+        self.team(us.other())
+    }
+
+    /// All robots: yellow, then blue, lowest number first.
+    pub fn robots(&self) -> impl Iterator<Item = &Robot> {
+        self.robots.iter().flatten().flatten()
+    }
+
+    /// The robot nearest to a point, and how far off its centre is, m; the first of [`Self::robots`] among equals.
+    pub fn nearest(&self, point: Point<Field>) -> Option<(&Robot, f32)> {
+        self.robots()
+            .map(|robot| (robot, robot.pose.position.distance(point)))
+            .reduce(|best, next| if next.1 < best.1 { next } else { best })
+    }
+
+    /// Where everything will be at `time` if nobody changes its mind: delay compensation. The ball goes by its model,
+    /// robots go straight on for at most [`STRAIGHT_MAX`]. A moment before this picture's gives this picture.
+    pub fn at(&self, time: Instant) -> Self {
+        let ahead = time.since(self.time).as_secs_f32();
+        if ahead <= 0.0 {
+            return self.clone();
+        }
+        let mut later = Self { time, ..self.clone() };
+        later.ball = self.ball.map(|ball| ball.after(ahead, &self.models));
+        for robot in later.robots.iter_mut().flatten().flatten() {
+            *robot = robot.after(ahead);
+        }
+        later
+    }
+
+    /// Where the ball comes to rest if nobody meets it.
+    pub fn ball_rest(&self) -> Option<Point<Field>> {
+        self.ball.map(|ball| ball.rest(&self.models))
+    }
+}
+
+impl Ball {
+    /// Whether it is off the ground by more than a robot's kicker can ignore.
+    pub fn flies(&self) -> bool {
+        self.height > FLIES_ABOVE
+    }
+
+    /// Its way along the ground from here; for a ball in the air, from here as if it were down.
+    pub fn path(&self, models: &BallModels) -> BallPath<Field> {
+        models.ground.moving(self.position, self.velocity, self.rolls_below)
+    }
+
+    /// The same ball `time` seconds later.
+    pub fn after(&self, time: f32, models: &BallModels) -> Self {
+        if self.is_down() {
+            let state = self.path(models).at(time);
+            return Self {
+                position: state.position,
+                velocity: state.velocity,
+                height: 0.0,
+                climb: 0.0,
+                ..*self
+            };
+        }
+        let (path, elapsed) = self.flight(models);
+        let state = path.at(elapsed + time);
+        Self {
+            position: state.ground.position,
+            velocity: state.ground.velocity,
+            height: state.height,
+            climb: state.rise,
+            // What hops slides no more: a chip's ball rolls when it stays down.
+            rolls_below: f32::INFINITY,
+            bounced: self.bounced || elapsed + time > self.lands_in() + elapsed,
+            ..*self
+        }
+    }
+
+    /// Where it comes to rest if nobody meets it.
+    pub fn rest(&self, models: &BallModels) -> Point<Field> {
+        if self.is_down() { self.path(models).rest() } else { self.flight(models).0.rest() }
+    }
+
+    /// When it comes to rest, s from now.
+    pub fn rests_in(&self, models: &BallModels) -> f32 {
+        if self.is_down() {
+            return self.path(models).duration();
+        }
+        let (path, elapsed) = self.flight(models);
+        path.duration() - elapsed
+    }
+
+    /// When it touches the ground next, s from now; 0 on the ground.
+    pub fn lands_in(&self) -> f32 {
+        if self.is_down() {
+            return 0.0;
+        }
+        (self.climb + math::sqrt(self.climb * self.climb + 2.0 * GRAVITY * self.height)) * (1.0 / GRAVITY)
+    }
+
+    fn is_down(&self) -> bool {
+        self.height <= 0.0 && self.climb <= 0.0
+    }
+
+    /// This hop from its beginning, and how long ago that was, s.
+    fn flight(&self, models: &BallModels) -> (motion::ball::chip::ChipPath<Field>, f32) {
+        let launch = math::sqrt(self.climb * self.climb + 2.0 * GRAVITY * self.height.max(0.0));
+        let elapsed = (launch - self.climb) * (1.0 / GRAVITY);
+        let from = self.position - self.velocity * elapsed;
+        let first = if self.bounced { models.chip.other } else { models.chip.first };
+        let chip = ChipModel { first, ..models.chip };
+        (chip.chipped(from, self.velocity, launch, &models.ground), elapsed)
+    }
+}
+
+impl Robot {
+    /// The same robot `time` seconds later, straight on.
+    pub fn after(&self, time: f32) -> Self {
+        let time = time.clamp(0.0, STRAIGHT_MAX);
+        let pose = Pose {
+            position: self.pose.position + self.velocity * time,
+            heading: self.pose.heading + geometry::Angle::new(self.angular * time),
+        };
+        Self { pose, ..*self }
+    }
+}
+
+/// A robot is not taken to go straight on for longer, s: at 3 m/s² it changes its speed by 0.75 m/s in that time, and no
+/// delay that is worth compensating is longer (capture to motion is 45–65 ms in the league).
+pub const STRAIGHT_MAX: f32 = 0.25;
+/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted height some 10.
+const FLIES_ABOVE: f32 = 0.03;
+/// m/s².
+pub(crate) const GRAVITY: f32 = 9.81;
+
+/// The place of a team in an array of two.
+pub(crate) const fn index(colour: Colour) -> usize {
+    match colour {
+        Colour::Yellow => 0,
+        Colour::Blue => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Angle;
+    use protocol::Duration;
+
+    fn robot(colour: Colour, id: u8, x: f32) -> Robot {
+        Robot {
+            who: Who { colour, id: RobotId::new(id).unwrap() },
+            pose: Pose { position: Point::new(x, 0.0), heading: Angle::degrees(170.0) },
+            velocity: Vector::new(1.0, -2.0),
+            angular: 10.0,
+            confidence: 1.0,
+            seen: Instant(0),
+        }
+    }
+
+    fn ball(velocity: Vector<Field>, height: f32, climb: f32) -> Ball {
+        Ball {
+            position: Point::default(),
+            height,
+            velocity,
+            climb,
+            rolls_below: f32::INFINITY,
+            bounced: false,
+            confidence: 1.0,
+            seen: Instant(0),
+            kicked: None,
+        }
+    }
+
+    #[test]
+    fn teams_are_ours_and_theirs_by_our_colour_and_come_in_order() {
+        let mut world = World::default();
+        world.put(robot(Colour::Blue, 7, 0.0));
+        world.put(robot(Colour::Blue, 2, 0.5));
+        world.put(robot(Colour::Yellow, 2, 1.0));
+        let ids = |robots: Vec<&Robot>| robots.iter().map(|r| r.who.id.number()).collect::<Vec<_>>();
+        assert_eq!(ids(world.ours(Colour::Blue).collect()), [2, 7]);
+        assert_eq!(ids(world.theirs(Colour::Blue).collect()), [2]);
+        let (nearest, distance) = world.nearest(Point::new(0.9, 0.0)).unwrap();
+        assert_eq!((nearest.who.colour, (distance * 10.0) as i32), (Colour::Yellow, 1));
+    }
+
+    #[test]
+    fn a_tenth_of_a_second_carries_a_robot_by_a_tenth_of_its_speed_and_its_heading_over_the_seam() {
+        let mut world = World::empty(Instant(5_000_000), BallModels::default());
+        world.put(robot(Colour::Yellow, 0, 1.0));
+        let later = world.at(Instant(5_000_000) + Duration::millis(100));
+        let moved = later.robots().next().unwrap();
+        assert!(moved.pose.position.distance(Point::new(1.1, -0.2)) < 1e-5);
+        assert!((moved.pose.heading.to_degrees() - (170.0 + 57.295_78 - 360.0)).abs() < 1e-3);
+        assert_eq!(world.at(Instant(1)), world, "the past is not made up");
+    }
+
+    #[test]
+    fn a_rolling_ball_is_carried_by_its_deceleration_and_stops() {
+        let models =
+            BallModels { ground: BallModel { slide: 4.0, roll: 0.5, switch: 0.7 }, ..BallModels::default() };
+        let rolling = ball(Vector::new(1.0, 0.0), 0.0, 0.0);
+        let later = rolling.after(1.0, &models);
+        assert!((later.position.x() - 0.75).abs() < 1e-5 && (later.velocity.x() - 0.5).abs() < 1e-5);
+        assert!((rolling.rest(&models).x() - 1.0).abs() < 1e-5);
+        assert_eq!(rolling.after(9.0, &models).velocity, Vector::new(0.0, 0.0));
+        // Sliding from 1 m/s to 0.8 takes 0.05 s and 45 mm; then 0.05 s of rolling.
+        let sliding = Ball { rolls_below: 0.8, ..rolling };
+        let expected = 0.045 + 0.8 * 0.05 - 0.25 * 0.0025;
+        assert!((sliding.after(0.1, &models).position.x() - expected).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_ball_in_the_air_is_carried_along_its_parabola_and_over_its_bounce() {
+        let models = BallModels::default();
+        let launched = ball(Vector::new(2.0, 0.0), 0.0, 3.0);
+        let whole = models.chip.chipped(launched.position, launched.velocity, launched.climb, &models.ground);
+        let mut stepped = launched;
+        for step in 1..=40 {
+            stepped = stepped.after(0.05, &models);
+            let truth = whole.at(step as f32 * 0.05);
+            assert!(
+                stepped.position.distance(truth.ground.position) < 2e-3,
+                "step {step}: {stepped:?} {truth:?}"
+            );
+            assert!((stepped.height - truth.height).abs() < 2e-3, "step {step}");
+        }
+        assert!((launched.lands_in() - 6.0 / 9.81).abs() < 1e-5);
+        assert!(launched.rest(&models).distance(whole.rest()) < 1e-4);
+    }
+}
