@@ -23,6 +23,7 @@ mod rng;
 mod scenario;
 pub mod sensors;
 mod simulation;
+pub mod small_size;
 mod trace;
 pub mod world;
 

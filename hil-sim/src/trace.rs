@@ -13,7 +13,7 @@ use crate::world::{Ball, Walker, World};
 
 /// A running hash of a trial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TraceHash(Fnv);
+pub struct TraceHash(pub(crate) Fnv);
 
 impl TraceHash {
     /// A tick begins with the world like this.
@@ -28,6 +28,11 @@ impl TraceHash {
     /// A robot's body was given this order.
     pub fn order(&mut self, robot: RobotId, order: &ActuatorFrame) {
         self.0.add(&[robot.number()]);
+        self.frame(order);
+    }
+
+    /// An order's postcard bytes.
+    pub(crate) fn frame(&mut self, order: &ActuatorFrame) {
         let mut bytes = [0; ORDER_LEN_MAX];
         if let Ok(bytes) = postcard::to_slice(order, &mut bytes) {
             self.0.add(bytes);

@@ -1,0 +1,118 @@
+//! Which robots are in each other's way? Discs against discs, boards and goals; m, s, field frame.
+//!
+//! Where two overlap they are moved apart by their masses, and what they closed in with is exchanged. Only pairs that could
+//! meet within the next milliseconds are looked at.
+
+use geometry::{Field, Point, Vector};
+
+use super::World;
+use super::event::Event;
+use super::robot::Robot;
+
+impl World {
+    /// Robots against each other, goals and boards.
+    pub(super) fn part_robots(&mut self) {
+        if self.step >= self.pairs_until {
+            self.find_pairs();
+        }
+        for k in 0..self.pairs.len() {
+            let (a, b) = self.pairs[k];
+            self.part(usize::from(a), usize::from(b));
+        }
+        let [x, y] = self.pitch.corner();
+        let (zone, walls) = (self.goal_zone, self.goal_walls);
+        let bounce = self.parameters.bounce.robots;
+        for robot in &mut self.robots {
+            let (p, radius) = (robot.pose.position, robot.body.radius);
+            let at_boards = p.x().abs() > x - radius || p.y().abs() > y - radius;
+            if at_boards && robot.present {
+                let held =
+                    Point::new(p.x().clamp(radius - x, x - radius), p.y().clamp(radius - y, y - radius));
+                push_out(robot, held - p, bounce);
+            }
+            if p.x().abs() > zone && robot.present {
+                let mirror = if p.x() < 0.0 { -1.0 } else { 1.0 };
+                for wall in &walls {
+                    let p = robot.pose.position;
+                    let found = wall.nearest([p.x() * mirror, p.y()]);
+                    if found.distance < radius {
+                        let normal = Vector::new(found.normal[0] * mirror, found.normal[1]);
+                        push_out(robot, normal * (radius - found.distance), bounce);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Pairs that could touch before the next look.
+    fn find_pairs(&mut self) {
+        self.pairs.clear();
+        self.pairs_until = self.step + PAIRS_STEPS;
+        for a in 0..self.robots.len() {
+            let (first, rest) = self.robots.split_at(a + 1);
+            let one = &first[a];
+            if !one.present {
+                continue;
+            }
+            let (x, y) = (one.pose.position.x(), one.pose.position.y());
+            for (b, other) in (a + 1..).zip(rest) {
+                let (dx, dy) = (other.pose.position.x() - x, other.pose.position.y() - y);
+                let reach = one.body.radius + other.body.radius + PAIRS_REACH;
+                if dx * dx + dy * dy < reach * reach && other.present {
+                    self.pairs.push((a as u8, b as u8));
+                }
+            }
+        }
+    }
+
+    fn part(&mut self, a: usize, b: usize) {
+        let (first, rest) = self.robots.split_at_mut(b);
+        let (one, two) = (&mut first[a], &mut rest[0]);
+        let between = two.pose.position - one.pose.position;
+        let touching = one.body.radius + two.body.radius;
+        let squared = between.dot(between);
+        if squared >= touching * touching {
+            return;
+        }
+        let normal = between.unit().unwrap_or(Vector::new(1.0, 0.0));
+        let depth = touching - between.dot(normal);
+        let closing = (one.velocity - two.velocity).dot(normal);
+        let (robots, velocities) = ([one.who, two.who], [one.velocity, two.velocity]);
+        let heavy = one.body.mass + two.body.mass;
+        let (share_one, share_two) = (two.body.mass / heavy, one.body.mass / heavy);
+        one.pose.position += normal * (-depth * share_one);
+        two.pose.position += normal * (depth * share_two);
+        if closing > 0.0 {
+            let of = &self.parameters.bounce;
+            let push = (1.0 + of.robots) * closing;
+            let along = (one.velocity - two.velocity) - normal * closing;
+            let sliding = along.norm();
+            let rub = if sliding > 0.0 { (of.friction * push).min(sliding) / sliding } else { 0.0 };
+            let change = normal * push + along * rub;
+            one.velocity += change * -share_one;
+            two.velocity += change * share_two;
+        }
+        let at = one.pose.position + normal * one.body.radius;
+        let place = robots[0].slot() * super::SLOTS + robots[1].slot();
+        let before = std::mem::replace(&mut self.crashes[place], self.step + 1);
+        if before == 0 || self.step + 1 - before > super::TOUCH_GAP_STEPS {
+            self.events.push(Event::Crash { robots, at, velocities, closing });
+        }
+    }
+}
+
+/// A robot is moved by `by`, and loses its speed against it.
+fn push_out(robot: &mut Robot, by: Vector<Field>, bounce: f32) {
+    robot.pose.position += by;
+    if let Some(normal) = by.unit() {
+        let into = -robot.velocity.dot(normal);
+        if into > 0.0 {
+            robot.velocity += normal * (into * (1.0 + bounce));
+        }
+    }
+}
+
+/// Steps between looks for robots that are near each other.
+const PAIRS_STEPS: u64 = 8;
+/// m that two robots come nearer in that time, at most: 2 · 10 m/s · 8 ms.
+const PAIRS_REACH: f32 = 0.16;

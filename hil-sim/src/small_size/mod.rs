@@ -1,0 +1,327 @@
+//! What happens on a Small Size field? Robots on wheels and a golf ball in three dimensions, 1 ms a step (DESIGN §2, §7).
+//!
+//! A step of the [`World`]: wheels drive (`robot`), bodies part (`crowd`), kickers and dribblers act (`mouth`), the ball
+//! moves (`ball`) and bounces (`contact`), light barriers look. What happened comes out as [`Event`]s. SI units, field
+//! frame; heights are those of the ball's lowest point above the carpet.
+//!
+//! **Invariants.** No clock and no unseeded chance; robots are kept in order of colour and number, so who was put down first
+//! decides nothing; `geometry::math` only; nothing of `motion`'s models.
+
+mod ball;
+mod contact;
+mod crowd;
+mod event;
+mod mouth;
+mod parameters;
+mod pitch;
+mod robot;
+mod senses;
+mod surface;
+mod trace;
+mod wheels;
+
+pub use ball::Ball;
+pub use event::Event;
+pub use parameters::{
+    BallParameters, BatteryParameters, BodyParameters, BounceParameters, CameraParameters,
+    DribblerParameters, DriveParameters, FieldParameters, KickParameters, NoiseParameters, Parameters,
+};
+pub use pitch::Pitch;
+pub use robot::{Drive, Kick, Order, Robot, Who};
+
+use geometry::{Angle, Field, Point, Pose, Vector};
+use protocol::RobotId;
+use protocol::robot_io::ActuatorFrame;
+use rules::{Colour, League};
+
+use crate::rng::Stream;
+use senses::Senses;
+use surface::Slab;
+
+/// The true state of everything on the carpet.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// The ball.
+    pub ball: Ball,
+    robots: Vec<Robot>,
+    senses: Vec<Senses>,
+    step: u64,
+    parameters: Parameters,
+    pitch: Pitch,
+    seed: u64,
+    kicks: Stream,
+    events: Vec<Event>,
+    last_touch: Option<(Who, u64)>,
+    ball_drag: Option<BallDrag>,
+    /// Of each pair of slots the step after the one in which they last touched; 0: never.
+    crashes: Vec<u64>,
+    pairs: Vec<(u8, u8)>,
+    pairs_until: u64,
+    goal_walls: [Slab; 3],
+    /// m from the middle along x: nearer no goal is in anybody's way.
+    goal_zone: f32,
+    /// m.
+    highest_robot: f32,
+}
+
+/// Somebody pulls the ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BallDrag {
+    to: Point<Field>,
+    until: u64,
+}
+
+impl World {
+    /// A ball in the middle and nobody there; chance comes from `seed`.
+    pub fn new(league: League, parameters: &Parameters, seed: u64) -> Self {
+        let pitch = Pitch { field: league.field(), around: parameters.field };
+        let mut world = Self {
+            ball: Ball::default(),
+            robots: Vec::new(),
+            senses: Vec::new(),
+            step: 0,
+            parameters: parameters.clone(),
+            pitch,
+            seed,
+            kicks: Stream::new(seed, "small size kicks"),
+            events: Vec::new(),
+            last_touch: None,
+            ball_drag: None,
+            crashes: vec![0; SLOTS * SLOTS],
+            pairs: Vec::new(),
+            pairs_until: 0,
+            goal_walls: pitch.goal_walls(),
+            goal_zone: 0.0,
+            highest_robot: 0.0,
+        };
+        world.set_pitch(pitch);
+        world
+    }
+
+    /// Another field under the same robots and ball.
+    pub fn set_pitch(&mut self, pitch: Pitch) {
+        self.pitch = pitch;
+        self.goal_walls = pitch.goal_walls();
+        self.goal_zone = pitch.field.length * 0.5 - GOAL_ZONE;
+    }
+
+    /// Puts a robot there, at rest; it is made where it has never been.
+    pub fn put(&mut self, who: Who, pose: Pose<Field>) -> &mut Robot {
+        let place = match self.place_of(who) {
+            Ok(place) => place,
+            Err(place) => {
+                self.robots.insert(place, Robot::new(who, pose, &self.parameters));
+                self.senses.insert(place, Senses::new(self.parameters.noise, self.seed, who));
+                place
+            }
+        };
+        self.pairs_until = 0;
+        self.highest_robot = self.robots.iter().map(|robot| robot.body.height).fold(0.0, f32::max);
+        let robot = &mut self.robots[place];
+        robot.present = true;
+        robot.place(pose);
+        robot
+    }
+
+    /// Takes a robot off the carpet; it keeps its body and its battery.
+    pub fn remove(&mut self, who: Who) {
+        if let Ok(place) = self.place_of(who) {
+            let robot = &mut self.robots[place];
+            robot.present = false;
+            robot.touching = false;
+            robot.ball_contact = false;
+            robot.dribbling_from = None;
+            robot.push(Vector::default(), 0.0);
+        }
+    }
+
+    /// Changes a robot's body, limits or kicker.
+    pub fn alter(&mut self, who: Who, change: impl FnOnce(&mut Robot)) {
+        if let Ok(place) = self.place_of(who) {
+            change(&mut self.robots[place]);
+            self.pairs_until = 0;
+            self.highest_robot = self.robots.iter().map(|robot| robot.body.height).fold(0.0, f32::max);
+        }
+    }
+
+    /// Puts the ball somewhere, moving or not; nobody pulls it any longer.
+    pub fn put_ball(&mut self, ball: Ball) {
+        self.ball = ball;
+        self.ball_drag = None;
+    }
+
+    /// Moves robots off the ball, by the shortest way.
+    pub fn make_room_for_ball(&mut self) {
+        let (ball, radius) = (self.ball.position, self.parameters.ball.radius);
+        for robot in self.robots.iter_mut().filter(|robot| robot.present) {
+            let away = robot.pose.position - ball;
+            let room = robot.body.radius + radius + ROOM;
+            if self.ball.height < robot.body.height && away.dot(away) < room * room {
+                let direction = away.unit().unwrap_or(Vector::new(-1.0, 0.0));
+                robot.pose.position = ball + direction * room;
+            }
+        }
+        self.pairs_until = 0;
+    }
+
+    /// Somebody pulls the ball there along the carpet, through what gives way, for [`DRAG_STEPS`] at most.
+    pub fn drag_ball(&mut self, to: Point<Field>) {
+        self.ball_drag = Some(BallDrag { to, until: self.step + DRAG_STEPS });
+    }
+
+    /// Somebody pulls a robot there, for [`DRAG_STEPS`] at most.
+    pub fn drag_robot(&mut self, who: Who, to: Point<Field>, heading: Option<Angle>) {
+        let until = self.step + DRAG_STEPS;
+        if let Ok(place) = self.place_of(who) {
+            self.robots[place].dragged = Some(robot::Drag { to, heading, until });
+        }
+    }
+
+    /// What a robot's brain wants of its body; false where no such robot is.
+    pub fn command(&mut self, who: Who, frame: &ActuatorFrame) -> bool {
+        let order = Order::from_actuators(frame, &self.parameters);
+        self.order(who, order)
+    }
+
+    /// What a robot shall do; false where no such robot is.
+    pub fn order(&mut self, who: Who, order: Order) -> bool {
+        let now = self.step;
+        self.place_of(who).is_ok_and(|place| {
+            self.robots[place].obey(order, now, self.parameters.kick.recharge);
+            self.robots[place].present
+        })
+    }
+
+    /// A robot lies on its side, or stands again.
+    pub fn tip(&mut self, who: Who, tipped: bool) {
+        if let Ok(place) = self.place_of(who) {
+            self.robots[place].tipped = tipped;
+        }
+    }
+
+    /// 1 ms passes.
+    pub fn step(&mut self) {
+        self.step += 1;
+        let now = self.step;
+        for robot in &mut self.robots {
+            if robot.present {
+                robot.drive(now, &self.parameters.battery);
+                if robot.dragged.is_some_and(|drag| drag.until <= now) {
+                    robot.dragged = None;
+                }
+            }
+        }
+        self.part_robots();
+        self.kick();
+        self.dribble();
+        self.pull_ball();
+        self.move_ball();
+        self.look_into_mouths();
+    }
+
+    fn pull_ball(&mut self) {
+        let Some(drag) = self.ball_drag else { return };
+        let way = drag.to - self.ball.position;
+        let arrived = way.dot(way) < ARRIVED * ARRIVED;
+        if arrived || drag.until <= self.step {
+            self.ball_drag = None;
+        }
+        let velocity = if arrived { Vector::default() } else { (way * DRAG_RATE).clamped(DRAG_SPEED) };
+        self.ball = Ball::rolling(self.ball.position, velocity);
+    }
+
+    /// What robot `who` perceives now of itself; `None` where no such robot is.
+    pub fn sensors(&mut self, who: Who) -> Option<protocol::robot_io::SensorFrame> {
+        let place = self.place_of(who).ok()?;
+        let (now, battery) = (self.step, self.parameters.battery);
+        let robot = &mut self.robots[place];
+        robot.present.then(|| self.senses[place].look(robot, now, &battery))
+    }
+
+    /// What happened since the last call, in order, to the end of `into`.
+    pub fn take_events(&mut self, into: &mut Vec<Event>) {
+        into.append(&mut self.events);
+    }
+
+    /// All robots that ever were there, by colour and number.
+    pub fn robots(&self) -> &[Robot] {
+        &self.robots
+    }
+
+    /// That robot, present or not.
+    pub fn robot(&self, who: Who) -> Option<&Robot> {
+        self.place_of(who).ok().map(|place| &self.robots[place])
+    }
+
+    /// Steps so far; one is 1 ms.
+    pub fn now(&self) -> u64 {
+        self.step
+    }
+
+    /// Seconds so far.
+    pub fn time(&self) -> f64 {
+        self.step as f64 * 0.001
+    }
+
+    /// Who touched the ball last, and in which step.
+    pub fn last_touch(&self) -> Option<(Who, u64)> {
+        self.last_touch
+    }
+
+    /// How it behaves.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// What stands around.
+    pub fn pitch(&self) -> &Pitch {
+        &self.pitch
+    }
+
+    fn place_of(&self, who: Who) -> Result<usize, usize> {
+        self.robots.binary_search_by(|robot| robot.who.cmp(&who))
+    }
+}
+
+impl Who {
+    /// Yellow's robot of that number.
+    pub const fn yellow(id: RobotId) -> Self {
+        Self { colour: Colour::Yellow, id }
+    }
+
+    /// Blue's robot of that number.
+    pub const fn blue(id: RobotId) -> Self {
+        Self { colour: Colour::Blue, id }
+    }
+
+    /// One number for both: 0–15 yellow, 16–31 blue.
+    pub const fn slot(self) -> usize {
+        let team = match self.colour {
+            Colour::Yellow => 0,
+            Colour::Blue => RobotId::COUNT,
+        };
+        team + self.id.index()
+    }
+}
+
+/// Seconds in a step of physics (DESIGN §2: Small Size, every 1 ms).
+pub const STEP: f32 = 0.001;
+/// Robots of both colours that there can be.
+pub const SLOTS: usize = 2 * RobotId::COUNT;
+/// Steps apart after which robot and ball, or two robots, touch anew.
+pub const TOUCH_GAP_STEPS: u64 = 50;
+/// Steps that somebody pulls at most: a message of the protocol lasts half a second.
+pub const DRAG_STEPS: u64 = 500;
+/// m before the goal line where goals begin to be in the way: a robot's radius and a step.
+const GOAL_ZONE: f32 = 0.15;
+/// m between a ball and robots that were moved off it.
+const ROOM: f32 = 0.001;
+/// m: a ball that is pulled has arrived.
+const ARRIVED: f32 = 0.002;
+/// 1/s: how quickly somebody who pulls the ball closes the gap.
+const DRAG_RATE: f32 = 10.0;
+/// m/s: and no faster.
+const DRAG_SPEED: f32 = 3.0;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! What does a robot do with the ball in its mouth? Dribbler, kicker, light barrier; m, s, field frame.
+//!
+//! The dribbler pulls the ball towards the front and the middle of its roller, no harder than `pull` and `side`: a robot that
+//! jerks away loses it, one that is gentle keeps it, and no force pushes it away. A kick leaves along the robot's heading with
+//! the ordered speed in 3-D, whatever the ball did before but for what it did along the front.
+
+use geometry::{Angle, Vector, math};
+
+use super::event::Event;
+use super::parameters::DribblerParameters;
+use super::robot::Robot;
+use super::{Ball, STEP, World};
+
+impl World {
+    /// Kickers that are armed, charged and have the ball.
+    pub(super) fn kick(&mut self) {
+        let of = self.parameters.kick;
+        for i in 0..self.robots.len() {
+            let robot = &self.robots[i];
+            let Some(kick) = robot.order.kick else { continue };
+            let able = robot.present && !robot.tipped && robot.is_led(self.step) && robot.charged(self.step);
+            if !able || !self.in_mouth(robot, of.reach, KICKABLE_HEIGHT) {
+                continue;
+            }
+            let scatter = self.kicks.normal_within(of.scatter_limit) * of.speed_sd;
+            let askew = self.kicks.normal_within(of.scatter_limit) * of.angle_sd_deg;
+            let chip = kick.angle > 0.0;
+            let most = robot.kick_limits[usize::from(chip)];
+            let speed = (kick.speed * (1.0 + scatter)).min(most);
+            let (up, along) = math::sin_cos(kick.angle.clamp(0.0, math::FRAC_PI_2));
+            let ahead = robot.to_field([1.0, 0.0]);
+            let direction = ahead.rotated(Angle::degrees(askew));
+            // What the ball does along the front it keeps: a kick on the move goes askew.
+            let left = robot.to_field([0.0, 1.0]);
+            let aside = left.dot(self.ball.velocity).clamp(-speed, speed) * ASIDE_KEPT;
+            let flat = direction * (speed * along) + left * aside;
+            let velocity = flat.unit().unwrap_or(direction) * (speed * along);
+            self.ball = Ball {
+                position: self.ball.position,
+                height: self.ball.height,
+                velocity,
+                climb: speed * up,
+                spin: Vector::default(),
+                hops: 0,
+            };
+            let (who, at) = (robot.who, self.ball.position);
+            self.touch(i);
+            let robot = &mut self.robots[i];
+            robot.discharge(self.step, of.recharge, self.parameters.battery.kick);
+            robot.velocity += velocity * (-self.parameters.ball.mass / robot.body.mass);
+            self.events.push(Event::Kicked { robot: who, at, velocity, speed, chip });
+        }
+    }
+
+    /// Dribblers pull the ball.
+    pub(super) fn dribble(&mut self) {
+        if self.ball.height > DRIBBLE_HEIGHT {
+            return;
+        }
+        for i in 0..self.robots.len() {
+            let robot = &self.robots[i];
+            let turns = robot.order.dribbler > 0.0 && robot.present && !robot.tipped;
+            if !turns || !robot.is_led(self.step) {
+                continue;
+            }
+            let Some([gap, aside]) = self.place_in_mouth(robot) else { continue };
+            if gap > self.parameters.dribbler.reach || gap < -self.parameters.ball.radius {
+                continue;
+            }
+            let pull = pull(robot, &self.ball, [gap, aside], &self.parameters.dribbler);
+            self.ball.velocity += pull;
+            // The roller turns the ball as it pleases: leaving, it neither runs away nor comes back by its spin.
+            self.ball.spin = self.ball.velocity;
+            let mass = self.parameters.ball.mass / self.robots[i].body.mass;
+            let robot = &mut self.robots[i];
+            robot.velocity += pull * -mass;
+            self.touch(i);
+        }
+    }
+
+    /// Light barriers look, and a ball that has left a robot ends its dribbling.
+    pub(super) fn look_into_mouths(&mut self) {
+        let (now, apart) = (self.step, self.parameters.ball.radius + SEPARATE);
+        for i in 0..self.robots.len() {
+            let robot = &self.robots[i];
+            if robot.dribbling_from.is_none() && !robot.ball_contact && !robot.touching {
+                let reach = robot.body.radius + apart;
+                let (dx, dy) = (
+                    self.ball.position.x() - robot.pose.position.x(),
+                    self.ball.position.y() - robot.pose.position.y(),
+                );
+                if dx * dx + dy * dy > reach * reach {
+                    continue;
+                }
+            }
+            let contact =
+                robot.present && self.in_mouth(robot, self.parameters.dribbler.barrier, DRIBBLE_HEIGHT);
+            let left = !robot.present
+                || robot.pose.position.distance(self.ball.position) > robot.body.radius + apart
+                || self.ball.height > robot.body.height;
+            let robot = &mut self.robots[i];
+            robot.ball_contact = contact;
+            robot.touching = robot.touched_at == Some(now);
+            if left {
+                robot.dribbling_from = None;
+            }
+        }
+    }
+
+    fn in_mouth(&self, robot: &Robot, reach: f32, height: f32) -> bool {
+        self.ball.height <= height && self.place_in_mouth(robot).is_some_and(|[gap, _]| gap <= reach)
+    }
+
+    /// How far the ball is from the front, and how far to the left of its middle, if it is before the roller.
+    fn place_in_mouth(&self, robot: &Robot) -> Option<[f32; 2]> {
+        let away = self.ball.position - robot.pose.position;
+        let near = robot.body.radius + self.parameters.ball.radius + NEAR;
+        if away.dot(away) > near * near {
+            return None;
+        }
+        let [ahead, aside] = robot.to_body(away);
+        let gap = ahead - robot.body.front - self.parameters.ball.radius;
+        // A ball that has come to lie half within the front is no ball in the mouth.
+        let before = aside.abs() <= robot.body.mouth && gap > -self.parameters.ball.radius;
+        before.then_some([gap, aside])
+    }
+}
+
+/// What the roller does to the ball's velocity in a step.
+fn pull(
+    robot: &Robot,
+    ball: &Ball,
+    [gap, aside]: [f32; 2],
+    of: &DribblerParameters,
+) -> Vector<geometry::Field> {
+    let moves = robot.to_body(ball.velocity - robot.velocity_at(ball.position));
+    let wanted = [-gap.max(0.0) * of.draw, -aside * of.center];
+    // Towards the robot only: what comes in is the front's business.
+    let x = (wanted[0] - moves[0]).min(0.0);
+    let y = wanted[1] - moves[1];
+    let strength = robot.order.dribbler * STEP;
+    let (pull, side) = (of.pull * strength, of.side * strength);
+    robot.to_field([x.max(-pull), y.clamp(-side, side)])
+}
+
+/// m: the plunger meets a ball no higher.
+const KICKABLE_HEIGHT: f32 = 0.02;
+/// m: the roller and the light barrier meet a ball no higher.
+const DRIBBLE_HEIGHT: f32 = 0.03;
+/// m between hull and ball that everybody sees (rules: dribbling ends at visible separation); our reading of "visible".
+const SEPARATE: f32 = 0.02;
+/// m beyond touching where a mouth need not be looked into.
+const NEAR: f32 = 0.1;
+/// Share of its motion along the front that a kicked ball keeps: the plunger's face holds most of it by friction; estimate.
+const ASIDE_KEPT: f32 = 0.5;

@@ -1,0 +1,33 @@
+//! What stands around the carpet? Goals with posts, bars and nets, boards at the margin; m, field frame.
+
+use rules::FieldSpec;
+
+use super::parameters::FieldParameters;
+use super::surface::Slab;
+
+/// The field as bodies meet it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pitch {
+    /// Lines, goals, margins.
+    pub field: FieldSpec,
+    /// What crate `rules` does not know.
+    pub around: FieldParameters,
+}
+
+impl Pitch {
+    /// The carpet's corner in the positive quarter, at the boards.
+    pub fn corner(&self) -> [f32; 2] {
+        [self.field.length * 0.5 + self.field.goal_line_margin, self.field.width * 0.5 + self.field.margin]
+    }
+
+    /// The walls of the goal at +x; the other is its mirror image: two sides and the back.
+    pub(super) fn goal_walls(&self) -> [Slab; 3] {
+        let (line, half, wall) = (self.field.length * 0.5, self.field.goal_width * 0.5, self.field.goal_wall);
+        let back = line + self.field.goal_depth;
+        [
+            Slab { x: [line, back + wall], y: [half, half + wall] },
+            Slab { x: [line, back + wall], y: [-half - wall, -half] },
+            Slab { x: [back, back + wall], y: [-half - wall, half + wall] },
+        ]
+    }
+}

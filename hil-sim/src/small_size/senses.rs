@@ -1,0 +1,57 @@
+//! What does a robot on wheels know of itself? Wheels and gyroscope with noise, light barrier, battery (DESIGN §3).
+//!
+//! Where it is it learns from its host alone: no pose, no ball seen, no opponents.
+
+use geometry::{Twist, Vector};
+use protocol::robot_io::{Health, SensorFrame};
+
+use super::STEP;
+use super::parameters::{BatteryParameters, NoiseParameters};
+use super::robot::{Robot, Who};
+use crate::rng::Stream;
+
+/// One robot's senses.
+#[derive(Clone, Debug)]
+pub(super) struct Senses {
+    noise: NoiseParameters,
+    chance: Stream,
+}
+
+impl Senses {
+    pub(super) fn new(noise: NoiseParameters, seed: u64, who: Who) -> Self {
+        Self { noise, chance: Stream::new(seed, &format!("small size senses {}", who.slot())) }
+    }
+
+    /// What the robot measures now; speeds are means since it last looked.
+    pub(super) fn look(&mut self, robot: &mut Robot, now: u64, battery: &BatteryParameters) -> SensorFrame {
+        let odometer = std::mem::take(&mut robot.odometer);
+        let mean = 1.0 / odometer.steps.max(1) as f32;
+        let [x, y] = odometer.along.map(|sum| sum * mean);
+        let scale = self.deviation(self.noise.odometry);
+        let drift = self.deviation(self.noise.gyro);
+        SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: robot.ball_contact,
+            busy: false,
+            odometry: Twist {
+                linear: Vector::new(x, y) * (1.0 + scale),
+                angular: odometer.turned * mean + drift,
+            },
+            health: Health {
+                // Volts are told in hundredths, as converters give them.
+                battery: Some(geometry::math::round_to_i32(robot.volts(battery) * 100.0) as f32 * 0.01),
+                tipped: robot.tipped,
+                kicker_ready: robot.charged(now),
+            },
+        }
+    }
+
+    fn deviation(&mut self, sigma: f32) -> f32 {
+        if sigma > 0.0 { self.chance.normal() * sigma } else { 0.0 }
+    }
+}
+
+/// Steps are as long as the odometer believes.
+const _: () = assert!(STEP == 0.001);

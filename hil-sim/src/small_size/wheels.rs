@@ -1,0 +1,105 @@
+//! How do four wheels move a body, and how fast must each turn? m/s at the rim, rad/s, body frame.
+//!
+//! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four rims and three
+//! ways to move: the body follows the least squares. Written apart from `motion`'s kinematics, which robots believe.
+
+use geometry::Angle;
+
+use super::parameters::BodyParameters;
+
+/// Solved kinematics of one body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wheels {
+    /// Rim speed of each wheel for v_x, v_y, ω of 1.
+    rows: [[f32; 3]; 4],
+    /// v_x, v_y, ω for a rim speed of 1 of each wheel.
+    inverse: [[f32; 4]; 3],
+}
+
+impl Wheels {
+    /// `None` where the wheels leave a direction in which they cannot drive.
+    pub(super) fn new(body: &BodyParameters) -> Option<Self> {
+        let rows = body.wheels_deg.map(|degrees| {
+            let (s, c) = Angle::degrees(degrees).sin_cos();
+            [-s, c, body.wheel_distance]
+        });
+        // Gauss–Jordan on (JᵀJ | Jᵀ); at most six wheels' worth of numbers, once a body.
+        let mut system = [[0.0_f32; 7]; 3];
+        for (i, line) in system.iter_mut().enumerate() {
+            for (j, cell) in line.iter_mut().enumerate() {
+                *cell = if j < 3 { rows.iter().map(|row| row[i] * row[j]).sum() } else { rows[j - 3][i] };
+            }
+        }
+        for pivot in 0..3 {
+            let largest = (pivot..3).fold(pivot, |best, i| {
+                if system[i][pivot].abs() > system[best][pivot].abs() { i } else { best }
+            });
+            system.swap(pivot, largest);
+            let value = system[pivot][pivot];
+            // 1e-5 of a wheel at 10 mm: rounding of what is singular stays far below.
+            if value.abs() < 1e-5 * body.wheel_distance {
+                return None;
+            }
+            let line = system[pivot].map(|cell| cell / value);
+            system[pivot] = line;
+            for (_, other) in system.iter_mut().enumerate().filter(|(i, _)| *i != pivot) {
+                let factor = other[pivot];
+                for (cell, by) in other.iter_mut().zip(line) {
+                    *cell -= factor * by;
+                }
+            }
+        }
+        Some(Self { rows, inverse: system.map(|[_, _, _, a, b, c, d]| [a, b, c, d]) })
+    }
+
+    /// Rim speeds that move the body like this.
+    #[inline]
+    pub(super) fn rims(&self, [x, y, turn]: [f32; 3]) -> [f32; 4] {
+        self.rows.map(|[a, b, c]| a * x + b * y + c * turn)
+    }
+
+    /// How the body would move at these rim speeds.
+    #[inline]
+    pub(super) fn motion(&self, [p, q, r, s]: [f32; 4]) -> [f32; 3] {
+        self.inverse.map(|[a, b, c, d]| a * p + b * q + c * r + d * s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rules::League;
+
+    use super::*;
+    use crate::small_size::Parameters;
+
+    fn body() -> BodyParameters {
+        Parameters::of(League::DivisionB).unwrap().robot
+    }
+
+    #[test]
+    fn straight_ahead_the_right_wheels_turn_forward_and_the_left_backward_by_their_sines() {
+        let rims = Wheels::new(&body()).unwrap().rims([1.0, 0.0, 0.0]);
+        // sin 60° and sin 135°.
+        let (front, back) = (0.866_025, core::f32::consts::FRAC_1_SQRT_2);
+        for (rim, by_hand) in rims.into_iter().zip([front, back, -back, -front]) {
+            assert!((rim - by_hand).abs() < 1e-4, "{rims:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_on_the_spot_turns_all_rims_alike() {
+        let rims = Wheels::new(&body()).unwrap().rims([0.0, 0.0, 2.0]);
+        assert_eq!(rims, [0.162; 4]);
+    }
+
+    #[test]
+    fn motion_undoes_rims_and_rims_that_fight_move_nothing() {
+        let wheels = Wheels::new(&body()).unwrap();
+        let wanted = [0.7, -1.3, 4.0];
+        for (value, by) in wheels.motion(wheels.rims(wanted)).into_iter().zip(wanted) {
+            assert!((value - by).abs() < 1e-5);
+        }
+        let parallel = BodyParameters { wheels_deg: [90.0, -90.0, 90.0, -90.0], ..body() };
+        assert!(Wheels::new(&parallel).is_none());
+    }
+}
