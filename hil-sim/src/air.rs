@@ -1,11 +1,14 @@
 //! Which packet reaches whom, and when? A broadcast radio in steps of a tick: loss, delay, duplication, reordering, partition.
 //!
 //! Every fate is drawn per receiver from the air's own stream; packets that come in the same tick keep the order they were sent
-//! in unless reordering says otherwise. What does not fit into a tick ([`AIR_IN_MAX`]) waits for the next.
+//! in unless reordering says otherwise. What does not fit into a tick ([`AIR_IN_MAX`], [`AIR_IN_BYTES_MAX`]) waits for the next.
+//!
+//! A team may have its host on the air: it hears every robot, speaks to all or to one, and its packets share the fate of others'.
 
 use protocol::RobotId;
+use protocol::frame::Sender;
 use protocol::link::Packet;
-use protocol::lockstep::AIR_IN_MAX;
+use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
 
 use crate::rng::Stream;
 
@@ -22,17 +25,19 @@ pub struct AirSettings {
     pub reordering: f32,
     /// Which part of the field a robot's radio reaches, by id; packets pass within a part only.
     pub groups: [u8; RobotId::COUNT],
+    /// The part that the host's radio reaches.
+    pub host_group: u8,
     /// Links that lose more or less than `loss`.
     pub links: Vec<LinkLoss>,
 }
 
-/// One direction between two robots.
+/// One direction between two stations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkLoss {
     /// Who speaks.
-    pub from: RobotId,
+    pub from: Sender,
     /// Who may hear it.
-    pub to: RobotId,
+    pub to: Sender,
     /// Probability that it does not.
     pub loss: f32,
 }
@@ -46,6 +51,7 @@ impl Default for AirSettings {
             duplication: 0.0,
             reordering: 0.0,
             groups: [0; RobotId::COUNT],
+            host_group: 0,
             links: Vec::new(),
         }
     }
@@ -57,7 +63,14 @@ impl AirSettings {
         Self { loss, ..Self::default() }
     }
 
-    fn loss_between(&self, from: RobotId, to: RobotId) -> f32 {
+    fn group(&self, station: Sender) -> u8 {
+        match station {
+            Sender::Robot(robot) => self.groups[robot.index()],
+            Sender::Host => self.host_group,
+        }
+    }
+
+    fn loss_between(&self, from: Sender, to: Sender) -> f32 {
         let link = self.links.iter().find(|link| link.from == from && link.to == to);
         link.map_or(self.loss, |link| link.loss)
     }
@@ -76,13 +89,13 @@ pub struct AirCounts {
     pub delivered: u64,
 }
 
-/// The air between the robots of a team.
+/// The air between the robots of a team, and their host where there is one.
 #[derive(Clone, Debug)]
 pub struct Air {
     settings: AirSettings,
     chance: Stream,
     /// Packets on their way, by receiver, sorted by `(due, order)`.
-    inbound: Vec<(RobotId, Vec<InFlight>)>,
+    inbound: Vec<(Sender, Vec<InFlight>)>,
     order: u64,
     counts: AirCounts,
 }
@@ -103,10 +116,17 @@ impl Air {
         Self {
             settings,
             chance: Stream::new(seed, "air"),
-            inbound: receivers.into_iter().map(|robot| (robot, Vec::new())).collect(),
+            inbound: receivers.into_iter().map(|robot| (Sender::Robot(robot), Vec::new())).collect(),
             order: 0,
             counts: AirCounts::default(),
         }
+    }
+
+    /// Silent air between `robots` and their host.
+    pub fn with_host(settings: AirSettings, seed: u64, robots: &[RobotId]) -> Self {
+        let mut air = Self::new(settings, seed, robots);
+        air.inbound.push((Sender::Host, Vec::new()));
+        air
     }
 
     /// How it treats packets from now on; those on their way keep their fate.
@@ -124,12 +144,22 @@ impl Air {
         self.counts
     }
 
-    /// A robot speaks in tick `now`; the others hear it later, or not.
+    /// A robot speaks in tick `now`; the others, and the host, hear it later, or not.
     pub fn send(&mut self, now: u32, from: RobotId, packet: &Packet) {
+        self.spread(now, Sender::Robot(from), None, packet);
+    }
+
+    /// The host speaks in tick `now`, to all robots or to one.
+    pub fn send_from_host(&mut self, now: u32, to: Option<RobotId>, packet: &Packet) {
+        self.spread(now, Sender::Host, to.map(Sender::Robot), packet);
+    }
+
+    fn spread(&mut self, now: u32, from: Sender, only: Option<Sender>, packet: &Packet) {
         let Self { settings, chance, inbound, order, counts } = self;
-        for (to, queue) in inbound.iter_mut().filter(|(to, _)| *to != from) {
+        let meant = |to: Sender| to != from && only.is_none_or(|only| only == to);
+        for (to, queue) in inbound.iter_mut().filter(|(to, _)| meant(*to)) {
             counts.sent += 1;
-            let apart = settings.groups[from.index()] != settings.groups[to.index()];
+            let apart = settings.group(from) != settings.group(*to);
             if apart || chance.chance(settings.loss_between(from, *to)) {
                 counts.lost += 1;
                 continue;
@@ -150,21 +180,39 @@ impl Air {
 
     /// What robot `to` hears in tick `now`, in order.
     pub fn deliver(&mut self, now: u32, to: RobotId) -> heapless::Vec<Packet, AIR_IN_MAX> {
-        let Some((_, queue)) = self.inbound.iter_mut().find(|(robot, _)| *robot == to) else {
-            return heapless::Vec::new();
+        let Some(queue) = self.queue(Sender::Robot(to)) else { return heapless::Vec::new() };
+        let mut bytes = 0;
+        let fits = |arrived: &&InFlight| {
+            bytes += arrived.packet.len();
+            arrived.due <= now && bytes <= AIR_IN_BYTES_MAX
         };
-        let due = queue.iter().take_while(|packet| packet.due <= now).count().min(AIR_IN_MAX);
+        let due = queue.iter().take(AIR_IN_MAX).take_while(fits).count();
+        let packets = queue.drain(..due).map(|arrived| arrived.packet).collect();
         self.counts.delivered += due as u64;
-        queue.drain(..due).map(|arrived| arrived.packet).collect()
+        packets
+    }
+
+    /// What the host hears in tick `now`, in order: all of it.
+    pub fn deliver_to_host(&mut self, now: u32) -> Vec<Packet> {
+        let Some(queue) = self.queue(Sender::Host) else { return Vec::new() };
+        let due = queue.iter().take_while(|packet| packet.due <= now).count();
+        let packets = queue.drain(..due).map(|arrived| arrived.packet).collect();
+        self.counts.delivered += due as u64;
+        packets
     }
 
     /// A robot's radio is off: what is due for it by `now` is lost.
     pub fn discard(&mut self, now: u32, to: RobotId) {
-        if let Some((_, queue)) = self.inbound.iter_mut().find(|(robot, _)| *robot == to) {
+        if let Some(queue) = self.queue(Sender::Robot(to)) {
             let before = queue.len();
             queue.retain(|packet| packet.due > now);
-            self.counts.lost += (before - queue.len()) as u64;
+            let lost = before - queue.len();
+            self.counts.lost += lost as u64;
         }
+    }
+
+    fn queue(&mut self, to: Sender) -> Option<&mut Vec<InFlight>> {
+        self.inbound.iter_mut().find(|(station, _)| *station == to).map(|(_, queue)| queue)
     }
 }
 
@@ -259,7 +307,7 @@ mod tests {
     fn a_partition_and_a_bad_link_cut_only_what_they_name() {
         let mut settings = AirSettings::default();
         settings.groups[3] = 1;
-        settings.links.push(LinkLoss { from: id(1), to: id(2), loss: 1.0 });
+        settings.links.push(LinkLoss { from: Sender::Robot(id(1)), to: Sender::Robot(id(2)), loss: 1.0 });
         let mut air = air(settings);
         for robot in [1, 2, 3] {
             air.send(0, id(robot), &packet(u32::from(robot)));
@@ -272,13 +320,58 @@ mod tests {
     #[test]
     fn what_does_not_fit_into_a_tick_waits_and_what_a_dead_radio_misses_is_lost() {
         let mut air = air(AirSettings::default());
-        for n in 0..15 {
+        for n in 0..20 {
             air.send(0, id(1), &packet(n));
         }
         assert_eq!(air.deliver(1, id(2)).len(), AIR_IN_MAX);
-        assert_eq!(air.deliver(2, id(2)).len(), 15 - AIR_IN_MAX);
+        assert_eq!(air.deliver(2, id(2)).len(), 20 - AIR_IN_MAX);
         air.discard(2, id(3));
         assert!(air.deliver(3, id(3)).is_empty());
-        assert_eq!(air.counts().lost, 15);
+        assert_eq!(air.counts().lost, 20);
+    }
+
+    #[test]
+    fn long_packets_wait_where_their_bytes_do_not_fit_into_a_tick() {
+        let mut air = air(AirSettings::default());
+        let long = Packet::from_slice(&[7; 120]).unwrap();
+        (0..12).for_each(|_| air.send(0, id(1), &long));
+        assert_eq!(air.deliver(1, id(2)).len(), AIR_IN_BYTES_MAX / 120);
+        assert_eq!(air.deliver(2, id(2)).len(), 12 - AIR_IN_BYTES_MAX / 120);
+    }
+
+    #[test]
+    fn a_host_speaks_to_all_or_to_one_and_hears_everybody() {
+        let mut air = Air::with_host(AirSettings::default(), 9, &[id(2), id(1)]);
+        air.send_from_host(0, None, &packet(7));
+        air.send_from_host(0, Some(id(1)), &packet(8));
+        air.send_from_host(0, Some(id(9)), &packet(9));
+        air.send(0, id(1), &packet(1));
+        assert_eq!(air.deliver(1, id(1))[..], [packet(7), packet(8)]);
+        assert_eq!(air.deliver(1, id(2))[..], [packet(7), packet(1)]);
+        assert_eq!(air.deliver_to_host(1), [packet(1)]);
+        assert!(air.deliver_to_host(2).is_empty());
+        assert_eq!(air.counts().sent, 2 + 1 + 2);
+    }
+
+    #[test]
+    fn a_hosts_packets_are_lost_as_others_are() {
+        let deaf = LinkLoss { from: Sender::Host, to: Sender::Robot(id(2)), loss: 1.0 };
+        let settings = AirSettings { links: vec![deaf], ..AirSettings::with_loss(0.3) };
+        let mut air = Air::with_host(settings, 9, &[id(1), id(2)]);
+        let mut heard = [0, 0, 0];
+        for tick in 0..4_000 {
+            heard[0] += air.deliver(tick, id(1)).len();
+            heard[1] += air.deliver(tick, id(2)).len();
+            heard[2] += air.deliver_to_host(tick).len();
+            air.send_from_host(tick, None, &packet(tick));
+            air.send(tick, id(2), &packet(tick));
+        }
+        // Robot 1 hears two senders, robot 2 nobody, the host one; √(n·0.3·0.7) = 41 and 29, four of each.
+        assert!(heard[0].abs_diff(5_600) < 4 * 41 && heard[2].abs_diff(2_800) < 4 * 29, "{heard:?}");
+        assert_eq!(heard[1], 0);
+        air.discard(4_500, id(1));
+        air.set(AirSettings { host_group: 1, ..AirSettings::default() });
+        air.send_from_host(5_000, None, &packet(0));
+        assert!(air.deliver(5_001, id(1)).is_empty(), "out of reach");
     }
 }

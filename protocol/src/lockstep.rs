@@ -10,8 +10,12 @@ use serde::{Deserialize, Serialize};
 use crate::Instant;
 use crate::robot_io::{ActuatorFrame, SensorFrame};
 
-/// Packets of the air handed to a robot in one tick; the simulator keeps the rest for the next.
-pub const AIR_IN_MAX: usize = 12;
+/// Packets of the air handed to a robot in one tick; the simulator keeps the rest for the next. Eleven robots' world in
+/// four parts, a command, a welcome and a beacon of each of ten mates.
+pub const AIR_IN_MAX: usize = 16;
+/// Bytes of packets handed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it stays within
+/// [`MESSAGE_LEN_MAX`].
+pub const AIR_IN_BYTES_MAX: usize = 1_280;
 /// Packets a robot may send in one tick.
 pub const AIR_OUT_MAX: usize = 6;
 /// The longest message of this module, bytes; fits one Ethernet frame.
@@ -73,4 +77,33 @@ pub struct TickOut<'a> {
     pub air: heapless::Vec<&'a [u8], AIR_OUT_MAX>,
     /// Guest instructions the tick took, where they can be counted; else 0.
     pub instructions: u32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Duration;
+    use crate::robot_io::{BallSight, Health, OPPONENTS_MAX};
+    use geometry::{Angle, Point, Pose, Twist};
+
+    #[test]
+    fn the_fullest_tick_fits_into_a_message() {
+        let far = Point::new(f32::MAX, f32::MIN);
+        let sensors = SensorFrame {
+            pose: Some(Pose { position: far, heading: Angle::new(1.0) }),
+            ball: Some(BallSight { position: far, sigma: 1.0, age: Duration(u64::MAX) }),
+            opponents: [far; OPPONENTS_MAX].into_iter().collect(),
+            ball_contact: true,
+            busy: true,
+            odometry: Twist::default(),
+            health: Health { battery: Some(1.0), ..Health::default() },
+        };
+        let packet = [0; AIR_IN_BYTES_MAX / AIR_IN_MAX];
+        let air = [&packet[..]; AIR_IN_MAX].into_iter().collect();
+        let tick = TickIn { seq: u32::MAX, now: Instant(u64::MAX), air, sensors };
+        let mut out = [0; MESSAGE_LEN_MAX];
+        let written = postcard::to_slice(&ToRobot::Tick(tick), &mut out).map(|bytes| bytes.len());
+        // Two bytes of length go before it.
+        assert!(written.as_ref().is_ok_and(|len| len + 2 <= MESSAGE_LEN_MAX), "{written:?}");
+    }
 }

@@ -1,11 +1,17 @@
 //! Does the code write the bytes that `SPEC.md` says? Every worked example there is named and checked, both ways.
 
 use protocol::frame::{Frame, Sender, TeamKey};
+use protocol::host::{
+    Command, Condition, Directive, Duty, Hint, HostMessage, KickOrder, Telemetry, Welcome, WireBall,
+    WireRobot, WireWho, WorldPart,
+};
 use protocol::quantized::{WirePoint, WirePose};
+use protocol::serial::{Lines, line};
 use protocol::team::{
     AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
 };
 use protocol::{CaseId, CycleId, RobotId, TeamId};
+use rules::{Phase, Side};
 
 const SPEC: &str = include_str!("../SPEC.md");
 
@@ -71,15 +77,119 @@ fn aborted() -> Beacon {
     }
 }
 
+fn point(x: i16, y: i16) -> WirePoint {
+    WirePoint { x, y }
+}
+
+fn pose(x: i16, y: i16, heading: i16) -> WirePose {
+    WirePose { at: point(x, y), heading }
+}
+
+fn worlds() -> [(&'static str, HostMessage); 2] {
+    let ours = WireRobot {
+        who: WireWho { side: Side::Ours, id: robot(3) },
+        pose: pose(-720, 0, 1571),
+        vx: 0,
+        vy: 0,
+    };
+    let theirs = WireRobot {
+        who: WireWho { side: Side::Theirs, id: robot(0) },
+        pose: pose(100, -50, -3142),
+        vx: -300,
+        vy: 0,
+    };
+    let world = WorldPart {
+        picture: 7,
+        part: 1,
+        parts: 2,
+        phase: Phase::Run,
+        placement: None,
+        ball: Some(WireBall { at: point(-600, 10), height: 0, vx: 1500, vy: -20 }),
+        robots: [ours, theirs].into_iter().collect(),
+    };
+    let placement = WorldPart {
+        picture: 255,
+        part: 0,
+        parts: 1,
+        phase: Phase::BallPlacement(Side::Theirs),
+        placement: Some(point(-3000, 2000)),
+        ball: None,
+        robots: heapless::Vec::new(),
+    };
+    [("world", HostMessage::World(world)), ("placement", HostMessage::World(placement))]
+}
+
+fn commands() -> [(&'static str, Phase<Side>, Duty, Directive); 11] {
+    use Directive::{Block, Dribble, Gameplay, GetBall, GoTo, Kick, Pass, PlaceBall, Receive, Stand};
+    let (run, ours, player) = (Phase::Run, Side::Ours, Duty::Player);
+    let (meeting, goal) = (point(1000, 900), point(4500, 0));
+    let hint = Hint {
+        case: CaseId(300),
+        robots: [robot(3), robot(5)].into_iter().collect(),
+        pass_point: Some(meeting),
+    };
+    [
+        ("stand", Phase::Halt, player, Stand),
+        ("go-to", run, player, GoTo { pose: pose(-720, 0, 1571) }),
+        ("get-ball", Phase::FreeKick(ours), Duty::Taker, GetBall { face: Some(goal) }),
+        ("kick", run, player, Kick { at: point(4500, -200), kick: KickOrder::Flat(630) }),
+        (
+            "pass",
+            run,
+            player,
+            Pass { at: meeting, receiver: robot(4), kick: KickOrder::Chip(100), ready: false },
+        ),
+        ("receive", run, player, Receive { at: meeting, then: Some(goal) }),
+        ("dribble", run, player, Dribble { pose: pose(0, -1, -3142) }),
+        ("block", Phase::Stop, Duty::Keeper, Block { from: point(-4400, 400), to: point(-4400, -400) }),
+        ("place-ball", Phase::BallPlacement(ours), Duty::Taker, PlaceBall { at: point(-3000, 2000) }),
+        ("gameplay", run, player, Gameplay { hint: Some(hint) }),
+        ("gameplay-free", run, player, Gameplay { hint: None }),
+    ]
+}
+
+fn stand() -> HostMessage {
+    let (phase, duty, directive) = (Phase::Halt, Duty::Player, Directive::Stand);
+    HostMessage::Command(Command { to: robot(3), phase, duty, directive })
+}
+
+/// The message is these bytes, and these bytes are the message.
+fn both_ways<T>(name: &str, message: &T)
+where
+    T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
+{
+    let mut out = [0; 128];
+    let bytes = postcard::to_slice(message, &mut out).unwrap();
+    assert_eq!(bytes, &worked(name)[..], "{name}: {}", hex(bytes));
+    assert_eq!(postcard::from_bytes::<T>(&worked(name)).as_ref(), Ok(message), "{name}");
+}
+
 #[test]
-fn messages_have_the_bytes_of_the_specification() {
+fn robots_messages_have_the_bytes_of_the_specification() {
     for (name, beacon) in [("quiet", quiet()), ("playing", playing()), ("aborted", aborted())] {
-        let message = TeamMessage::Beacon(beacon);
-        let mut out = [0; 64];
-        let bytes = postcard::to_slice(&message, &mut out).unwrap();
-        assert_eq!(bytes, &worked(name)[..], "{name}: {}", hex(bytes));
-        assert_eq!(postcard::from_bytes::<TeamMessage>(&worked(name)), Ok(message), "{name}");
+        both_ways(name, &TeamMessage::Beacon(beacon));
     }
+    let telemetry = Telemetry {
+        condition: Condition::BALL_CONTACT.with(Condition::KICKER_READY),
+        battery: 1640,
+        heard: 500,
+        lost: 3,
+        refused: 1,
+        picture: 249,
+        silence: 73,
+    };
+    both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
+}
+
+#[test]
+fn the_hosts_messages_have_the_bytes_of_the_specification() {
+    for (name, world) in worlds() {
+        both_ways(name, &world);
+    }
+    for (name, phase, duty, directive) in commands() {
+        both_ways(name, &HostMessage::Command(Command { to: robot(3), phase, duty, directive }));
+    }
+    both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), life: 9 }));
 }
 
 #[test]
@@ -91,6 +201,31 @@ fn frames_have_the_bytes_of_the_specification() {
     let n = frame.emit(&TeamKey::ZERO, &mut out).unwrap();
     assert_eq!(&out[..n], &worked("frame")[..], "{}", hex(&out[..n]));
     assert_eq!(Frame::parse(&worked("frame"), TeamId(1)), Ok(frame));
+}
+
+#[test]
+fn a_keyed_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_on_a_line() {
+    let key = TeamKey(std::array::from_fn(|i| i as u8));
+    let bytes = worked("host-frame");
+    let mut payload = [0; 8];
+    let payload = &*postcard::to_slice(&stand(), &mut payload).unwrap();
+    let frame = Frame { team: TeamId(1), sender: Sender::Host, epoch: 0x6500_0000, counter: 4097, payload };
+    let mut out = [0; 64];
+    let n = frame.emit(&key, &mut out).unwrap();
+    assert_eq!(&out[..n], &bytes[..], "{}", hex(&out[..n]));
+    assert!(Frame::is_genuine(&bytes, &key) && !Frame::is_genuine(&bytes, &TeamKey::ZERO));
+    assert_eq!(line(&bytes)[..], worked("line")[..], "{}", hex(&line(&bytes)));
+    let mut lines = Lines::new();
+    let frames: Vec<_> = worked("line").into_iter().filter_map(|byte| lines.push(byte)).collect();
+    assert_eq!(frames.len(), 1);
+    assert_eq!(frames[0][..], bytes[..]);
+}
+
+#[test]
+fn every_example_of_the_specification_is_checked() {
+    let examples = SPEC.matches("```hex ").count();
+    // Four of robots, two worlds, a welcome, two frames and a line.
+    assert_eq!(examples, 4 + worlds().len() + 1 + 3 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {
