@@ -6,6 +6,7 @@
 //! same decisions.
 
 pub mod config;
+pub mod radio;
 pub mod strategy;
 pub mod trace;
 pub mod world;

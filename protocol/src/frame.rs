@@ -265,6 +265,11 @@ impl Sessions {
         self.last[sender.index()].map(|(epoch, _)| epoch)
     }
 
+    /// The sender's last counter, if it was heard.
+    pub fn counter(&self, sender: Sender) -> Option<u32> {
+        self.last[sender.index()].map(|(_, counter)| counter)
+    }
+
     /// Remembers a frame that was checked and found genuine.
     pub fn accept(&mut self, frame: &Frame<'_>) {
         self.last[frame.sender.index()] = Some((frame.epoch, frame.counter));

@@ -60,6 +60,11 @@ impl HostLink {
         self.sessions.epoch(Sender::Robot(robot))
     }
 
+    /// The number of that robot's last frame in this life.
+    pub fn counter(&self, robot: RobotId) -> Option<u32> {
+        self.sessions.counter(Sender::Robot(robot))
+    }
+
     fn try_open(&mut self, packet: &[u8]) -> Result<(RobotId, TeamMessage), Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };

@@ -88,7 +88,10 @@ impl Link {
         telemetry.heard = self.pictures.heard as u16;
         telemetry.lost = self.pictures.lost as u16;
         telemetry.picture = self.pictures.newest().unwrap_or(0);
-        telemetry.refused = self.refused.iter().fold(0_u32, |sum, count| sum.wrapping_add(*count)) as u16;
+        // A base station that sends to all gives a robot its own words back; that is no sign of trouble.
+        let echo = Refusal::Sender(self.me.number()).kind();
+        let counts = self.refused.iter().enumerate().filter(|(kind, _)| *kind != echo);
+        telemetry.refused = counts.fold(0_u32, |sum, (_, count)| sum.wrapping_add(*count)) as u16;
     }
 
     fn try_open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {

@@ -1,0 +1,295 @@
+//! What goes out to the robots, when, and what has come back? Pictures and commands into frames, robots' frames into
+//! telemetry and link quality (DESIGN §3, §6). Sans-IO: times come from the caller, packets go back to it.
+//!
+//! **Rate.** A picture goes out as soon as there is a new one, but not more than one in [`PERIOD_MIN`] (100 Hz); one that
+//! comes too early waits its turn, the newest wins. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last goes out
+//! again, carried forward. After [`REPEAT_MAX`] without a new one the radio falls silent: robots brake by themselves, and a
+//! guess that old would be worse.
+//!
+//! **Relay.** Where robots hear their host but not each other, the host passes each beacon on, the very bytes.
+//!
+//! No heap: capacities are named constants, what does not fit is dropped and counted.
+
+mod picture;
+mod quality;
+mod tally;
+
+use protocol::frame::{Refusal, TeamKey};
+use protocol::host::{Command, HostMessage, Telemetry, Welcome};
+use protocol::host_link::HostLink;
+use protocol::link::Packet;
+use protocol::team::{Beacon, TeamMessage};
+use protocol::{Duration, Instant, RobotId, TeamId};
+
+use crate::world::World;
+
+pub use picture::{PARTS_ROBOTS_MAX, Situation};
+pub use quality::{Quality, table};
+pub use tally::Tally;
+
+/// Not more than one picture in this time: 100 Hz, as fast as the league's cameras and the best published radios.
+pub const PERIOD_MIN: Duration = Duration::millis(10);
+/// A picture may come so much early, so that a camera of 100 Hz that trembles loses none; the next then waits longer.
+pub const EARLY: Duration = Duration::millis(2);
+/// The last picture goes out again after this time: 60 Hz.
+pub const PERIOD_MAX: Duration = Duration(16_600);
+/// How long a picture is carried forward: half a second, twice the longest blackout of vision that teams report (0.2 s).
+pub const REPEAT_MAX: Duration = Duration::millis(500);
+/// A robot is there if it was heard within this time; robots speak ten times a second or more.
+pub const PRESENT: Duration = Duration::millis(1_000);
+/// Robots are welcomed again this often, so that a lost welcome only delays.
+const WELCOME_EVERY: Duration = Duration::millis(100);
+/// Packets that wait to be fetched: four parts, a command and a welcome for each, and a beacon of each for each other.
+const OUT_MAX: usize = 320;
+
+/// Who shall receive a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum To {
+    /// Every robot of the team.
+    All,
+    /// This robot.
+    One(RobotId),
+}
+
+/// How robots' beacons reach their mates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relay {
+    /// They hear each other.
+    No,
+    /// One at a time: a link that has an address for each robot.
+    ToEach,
+    /// All at once: a base station. The speaker hears itself and knows it.
+    ToAll,
+}
+
+/// What is fixed for a host's life.
+#[derive(Clone, Copy, Debug)]
+pub struct RadioSettings {
+    /// Whose air.
+    pub team: TeamId,
+    /// The team's key.
+    pub key: TeamKey,
+    /// Which life of the host: must rise with every start; seconds of a calendar do.
+    pub epoch: u32,
+    /// Who passes beacons on.
+    pub relay: Relay,
+    /// How long a packet is on its way: pictures are carried forward by it. 3 ms is what ER-Force takes for theirs.
+    pub way: Duration,
+}
+
+impl RadioSettings {
+    /// With a key of zeros over a base station.
+    pub fn new(team: TeamId, epoch: u32) -> Self {
+        Self { team, key: TeamKey::ZERO, epoch, relay: Relay::ToAll, way: Duration::millis(3) }
+    }
+}
+
+/// What a robot said.
+#[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Heard {
+    /// To its mates: what it does and knows.
+    Beacon(RobotId, Beacon),
+    /// To us: how it is.
+    Telemetry(RobotId, Telemetry),
+}
+
+/// The host's radio.
+#[derive(Clone, Debug)]
+pub struct Radio {
+    settings: RadioSettings,
+    link: HostLink,
+    latest: Option<Latest>,
+    /// When the next picture may go out.
+    free: Instant,
+    /// When the last one did.
+    last: Option<Instant>,
+    picture: u8,
+    /// When which picture went out.
+    departures: [Option<Instant>; 256],
+    robots: [Quality; RobotId::COUNT],
+    out: heapless::Deque<(To, Packet), OUT_MAX>,
+    dropped: u32,
+}
+
+/// What the strategy said last.
+#[derive(Clone, Debug)]
+struct Latest {
+    since: Instant,
+    world: World,
+    situation: Situation,
+    commands: heapless::Vec<Command, { RobotId::COUNT }>,
+    /// It has not gone out yet.
+    fresh: bool,
+}
+
+impl Radio {
+    /// A radio that has said and heard nothing.
+    pub fn new(settings: RadioSettings) -> Self {
+        Self {
+            settings,
+            link: HostLink::new(settings.team, settings.key, settings.epoch),
+            latest: None,
+            free: Instant(0),
+            last: None,
+            picture: u8::MAX,
+            departures: [None; 256],
+            robots: Default::default(),
+            out: heapless::Deque::new(),
+            dropped: 0,
+        }
+    }
+
+    /// A new picture, and what everybody shall do: goes out now, or as soon as the rate allows. Of two commands for one
+    /// robot the first counts. Fetch packets afterwards.
+    pub fn offer(&mut self, now: Instant, world: &World, situation: Situation, commands: &[Command]) {
+        let mut kept = heapless::Vec::<Command, { RobotId::COUNT }>::new();
+        for command in commands {
+            if kept.iter().all(|known| known.to != command.to) {
+                // One per robot: there is room.
+                let _room = kept.push(command.clone());
+            }
+        }
+        self.latest =
+            Some(Latest { since: now, world: world.clone(), situation, commands: kept, fresh: true });
+        self.handle_timeout(now);
+    }
+
+    /// A deadline that [`Radio::poll_timeout`] announced has come (or not yet: then nothing happens).
+    pub fn handle_timeout(&mut self, now: Instant) {
+        if self.poll_timeout().is_some_and(|due| due <= now) {
+            self.transmit(now);
+        }
+    }
+
+    /// When to call [`Radio::handle_timeout`]; `None` while there is nothing to say.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        let latest = self.latest.as_ref()?;
+        if latest.fresh {
+            return Some(self.free.max(latest.since));
+        }
+        let due = self.last? + PERIOD_MAX;
+        (due <= latest.since + REPEAT_MAX).then_some(due)
+    }
+
+    /// The next packet to send. Call until `None` after everything handled.
+    pub fn poll_packet(&mut self) -> Option<(To, Packet)> {
+        self.out.pop_front()
+    }
+
+    /// A packet came from a robot's side: what it says, or why it is not believed (counted).
+    pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
+        let (robot, message) = self.link.open(packet)?;
+        let life = self.link.life(robot).unwrap_or(0);
+        let counter = self.link.counter(robot).unwrap_or(0);
+        let quality = &mut self.robots[robot.index()];
+        quality.hear(now, packet.len(), life, counter);
+        if quality.wants_welcome(now, WELCOME_EVERY) {
+            self.welcome(now, robot);
+        }
+        match message {
+            TeamMessage::Beacon(beacon) => {
+                self.relay(now, robot, packet);
+                Ok(Heard::Beacon(robot, beacon))
+            }
+            TeamMessage::Telemetry(telemetry) => {
+                let departed = self.departures[usize::from(telemetry.picture)];
+                self.robots[robot.index()].tell(now, telemetry, departed);
+                Ok(Heard::Telemetry(robot, telemetry))
+            }
+        }
+    }
+
+    /// How the link to that robot is; `None` until it was heard.
+    pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
+        Some(&self.robots[robot.index()]).filter(|quality| quality.heard_at().is_some())
+    }
+
+    /// Robots heard within [`PRESENT`], lowest number first.
+    pub fn present(&self, now: Instant) -> impl Iterator<Item = RobotId> {
+        RobotId::all().filter(move |robot| self.robots[robot.index()].is_present(now))
+    }
+
+    /// Frames refused, by [`Refusal::kind`].
+    pub fn refused(&self) -> &[u32; Refusal::KINDS] {
+        self.link.refused()
+    }
+
+    /// Frames on our air that are nobody's of the team: of others, forged, or broken on the way. What the league's table calls
+    /// interference.
+    pub fn foreign(&self) -> u32 {
+        let refused = self.link.refused();
+        let kinds = [Refusal::Version(0), Refusal::Team(TeamId(0)), Refusal::Sender(0), Refusal::Tag];
+        kinds.iter().fold(0, |sum, kind| sum.saturating_add(refused[kind.kind()]))
+    }
+
+    /// Packets that nobody fetched in time.
+    pub fn dropped(&self) -> u32 {
+        self.dropped
+    }
+
+    fn transmit(&mut self, now: Instant) {
+        // Taken out so that parts of it can be read while packets are queued.
+        let Some(mut latest) = self.latest.take() else { return };
+        self.free = self.free.max(now - EARLY) + PERIOD_MIN;
+        self.last = Some(now);
+        self.picture = self.picture.wrapping_add(1);
+        self.departures[usize::from(self.picture)] = Some(now);
+        let there = latest.world.at(now + self.settings.way);
+        for part in picture::parts(self.picture, &there, &latest.situation) {
+            self.say(now, To::All, &HostMessage::World(part));
+        }
+        for command in &latest.commands {
+            self.say(now, To::One(command.to), &HostMessage::Command(command.clone()));
+        }
+        for robot in RobotId::all() {
+            let quality = &self.robots[robot.index()];
+            if quality.is_present(now) && quality.wants_welcome(now, WELCOME_EVERY) {
+                self.welcome(now, robot);
+            }
+        }
+        latest.fresh = false;
+        self.latest = Some(latest);
+    }
+
+    fn welcome(&mut self, now: Instant, robot: RobotId) {
+        if let Some(life) = self.link.life(robot) {
+            self.robots[robot.index()].welcomed(now, life);
+            self.say(now, To::One(robot), &HostMessage::Welcome(Welcome { to: robot, life }));
+        }
+    }
+
+    fn say(&mut self, now: Instant, to: To, message: &HostMessage) {
+        let packet = self.link.seal(message);
+        for robot in RobotId::all() {
+            if matches!(to, To::All) || to == To::One(robot) {
+                self.robots[robot.index()].sent(now, packet.len());
+            }
+        }
+        self.push(to, packet);
+    }
+
+    fn relay(&mut self, now: Instant, from: RobotId, packet: &[u8]) {
+        let Ok(packet) = Packet::from_slice(packet) else { return };
+        match self.settings.relay {
+            Relay::No => {}
+            Relay::ToAll => self.push(To::All, packet),
+            Relay::ToEach => {
+                for mate in RobotId::all().filter(|mate| *mate != from) {
+                    if self.robots[mate.index()].is_present(now) {
+                        self.push(To::One(mate), packet.clone());
+                    }
+                }
+            }
+        }
+    }
+
+    fn push(&mut self, to: To, packet: Packet) {
+        if self.out.push_back((to, packet)).is_err() {
+            self.dropped = self.dropped.saturating_add(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,64 @@
+//! How does the world become parts that fit into frames? Ours first, then theirs, lowest number first, spread over as few
+//! parts as hold them. Field frame.
+
+use geometry::{Field, Point};
+use protocol::host::{PART_ROBOTS_MAX, PARTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
+use protocol::quantized::{length_to_mm, saturate, whole_mm};
+use rules::{Colour, Phase, Side};
+
+use crate::world::{Ball, Robot, World};
+
+/// Robots that fit into a picture; more (ghosts, a shoal of false detections) are left out from the end.
+pub const PARTS_ROBOTS_MAX: usize = PARTS_MAX * PART_ROBOTS_MAX;
+
+/// What the game is like, beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Situation {
+    /// Our colour.
+    pub us: Colour,
+    /// The phase, in our words.
+    pub phase: Phase<Side>,
+    /// Where the ball is to be placed, while that matters.
+    pub placement: Option<Point<Field>>,
+}
+
+/// The parts of a picture.
+pub(super) fn parts(
+    picture: u8,
+    world: &World,
+    situation: &Situation,
+) -> heapless::Vec<WorldPart, PARTS_MAX> {
+    let us = situation.us;
+    let ours = world.ours(us).map(|robot| wire_robot(Side::Ours, robot));
+    let robots: heapless::Vec<WireRobot, PARTS_ROBOTS_MAX> = ours
+        .chain(world.theirs(us).map(|robot| wire_robot(Side::Theirs, robot)))
+        .take(PARTS_ROBOTS_MAX)
+        .collect();
+    let parts = robots.len().div_ceil(PART_ROBOTS_MAX).max(1);
+    let per_part = robots.len().div_ceil(parts);
+    let ball = world.ball.as_ref().map(wire_ball);
+    let part = |part: usize| WorldPart {
+        picture,
+        part: part as u8,
+        parts: parts as u8,
+        phase: situation.phase,
+        placement: situation.placement.map(Into::into),
+        ball,
+        robots: robots.iter().skip(part * per_part).take(per_part).copied().collect(),
+    };
+    (0..parts).map(part).collect()
+}
+
+fn wire_robot(side: Side, robot: &Robot) -> WireRobot {
+    let (vx, vy) = (saturate(whole_mm(robot.velocity.x())), saturate(whole_mm(robot.velocity.y())));
+    WireRobot { who: WireWho { side, id: robot.who.id }, pose: robot.pose.into(), vx, vy }
+}
+
+fn wire_ball(ball: &Ball) -> WireBall {
+    WireBall {
+        at: ball.position.into(),
+        height: length_to_mm(ball.height),
+        vx: saturate(whole_mm(ball.velocity.x())),
+        vy: saturate(whole_mm(ball.velocity.y())),
+    }
+}

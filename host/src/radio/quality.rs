@@ -1,0 +1,255 @@
+//! How good is the link to a robot? The league's own table of a radio (technical challenge 2026): round trip, loss, data
+//! rate, interference, start-up; and what people look at during a match: silence, battery, refusals.
+//!
+//! What is scored there is the quality of the data, so each figure says from what it comes:
+//! - round trip: now − departure of the newest picture the robot had − the robot's silence since; the robot states its
+//!   silence in 0.1 ms, the picture's departure is that of its first part;
+//! - loss down: parts of pictures, by the robot's own counts; loss up: the robot's frames, by their counters;
+//! - data rate: bytes of frames to and from this robot (to all counts for each) in whole seconds, without the link's own
+//!   overhead;
+//! - start-up: from the first frame of the robot's life to its first telemetry that knows a picture.
+
+use std::fmt::Write as _;
+
+use protocol::host::{Condition, Telemetry};
+use protocol::{Duration, Instant, RobotId};
+
+use super::PRESENT;
+use super::tally::Tally;
+
+/// How long one data-rate sample is.
+const SECOND: Duration = Duration::millis(1_000);
+/// A round trip longer than this is a picture number that came round again (256 pictures take 2.5 s), not a trip.
+const TRIP_MAX: Duration = Duration::millis(1_000);
+
+/// The link to one robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quality {
+    heard_at: Option<Instant>,
+    telemetry: Option<(Instant, Telemetry)>,
+    life: Option<Life>,
+    welcomed: Option<(Instant, u32)>,
+    lives: u32,
+    trip: Tally,
+    down: Share,
+    up: Share,
+    rate: Tally,
+    frames: Tally,
+    window: Window,
+    start_up: Option<Duration>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Life {
+    epoch: u32,
+    counter: u32,
+    since: Instant,
+}
+
+/// What came and what did not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Share {
+    came: u64,
+    lost: u64,
+}
+
+impl Share {
+    fn lost_percent(self) -> Option<f64> {
+        let all = self.came + self.lost;
+        (all > 0).then(|| 100.0 * self.lost as f64 / all as f64)
+    }
+}
+
+/// The second that is being counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Window {
+    begin: Option<Instant>,
+    bytes: u32,
+    frames: u32,
+}
+
+impl Quality {
+    /// When it was last heard.
+    pub fn heard_at(&self) -> Option<Instant> {
+        self.heard_at
+    }
+
+    /// How long it has been silent.
+    pub fn silence(&self, now: Instant) -> Option<Duration> {
+        self.heard_at.map(|heard| now.since(heard))
+    }
+
+    /// Heard within [`PRESENT`].
+    pub fn is_present(&self, now: Instant) -> bool {
+        self.silence(now).is_some_and(|silence| silence <= PRESENT)
+    }
+
+    /// What it last said of itself, and when.
+    pub fn telemetry(&self) -> Option<&(Instant, Telemetry)> {
+        self.telemetry.as_ref()
+    }
+
+    /// Its battery, V, where it measures one.
+    pub fn battery(&self) -> Option<f32> {
+        let (_, telemetry) = self.telemetry?;
+        (telemetry.battery > 0).then(|| f32::from(telemetry.battery) * 0.01)
+    }
+
+    /// What it says of its body.
+    pub fn condition(&self) -> Condition {
+        self.telemetry.map_or(Condition::default(), |(_, telemetry)| telemetry.condition)
+    }
+
+    /// Round trip, ms.
+    pub fn round_trip(&self) -> &Tally {
+        &self.trip
+    }
+
+    /// Parts of our pictures that it did not hear, percent.
+    pub fn loss_down(&self) -> Option<f64> {
+        self.down.lost_percent()
+    }
+
+    /// Its frames that we did not hear, percent.
+    pub fn loss_up(&self) -> Option<f64> {
+        self.up.lost_percent()
+    }
+
+    /// kbit/s of frames, both ways, a value a second.
+    pub fn data_rate(&self) -> &Tally {
+        &self.rate
+    }
+
+    /// Frames heard from it, a value a second.
+    pub fn frame_rate(&self) -> &Tally {
+        &self.frames
+    }
+
+    /// From its first frame to its first word that it hears us; of its present life.
+    pub fn start_up(&self) -> Option<Duration> {
+        self.start_up
+    }
+
+    /// How often it was seen to boot, the first time included.
+    pub fn lives(&self) -> u32 {
+        self.lives
+    }
+
+    /// Frames it refused in this life, of any kind.
+    pub fn refused(&self) -> u16 {
+        self.telemetry.map_or(0, |(_, telemetry)| telemetry.refused)
+    }
+
+    /// A genuine frame of it came.
+    pub(super) fn hear(&mut self, now: Instant, len: usize, epoch: u32, counter: u32) {
+        self.heard_at = Some(now);
+        match &mut self.life {
+            Some(life) if life.epoch == epoch => {
+                self.up.came += 1;
+                self.up.lost += u64::from(counter.wrapping_sub(life.counter).saturating_sub(1));
+                life.counter = counter;
+            }
+            life => {
+                *life = Some(Life { epoch, counter, since: now });
+                self.lives = self.lives.saturating_add(1);
+                (self.telemetry, self.start_up) = (None, None);
+                self.up.came += 1;
+            }
+        }
+        self.roll(now);
+        self.window.frames += 1;
+        self.window.bytes += len as u32;
+    }
+
+    /// It told of itself; `departed` is when the picture it names went out.
+    pub(super) fn tell(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
+        if telemetry.heard > 0
+            && let (Some(departed), Some(life)) = (departed, self.life)
+        {
+            let held = Duration(u64::from(telemetry.silence) * 100);
+            let trip = now.since(departed + held);
+            let overdue = now.since(departed) > TRIP_MAX;
+            if telemetry.silence < u16::MAX && !overdue {
+                self.trip.add(trip.0 as f64 * 1e-3);
+                self.start_up = self.start_up.or(Some(now.since(life.since)));
+            }
+        }
+        if let Some((_, before)) = self.telemetry {
+            self.down.came += u64::from(telemetry.heard.wrapping_sub(before.heard));
+            self.down.lost += u64::from(telemetry.lost.wrapping_sub(before.lost));
+        }
+        self.telemetry = Some((now, telemetry));
+    }
+
+    /// Something went out to it.
+    pub(super) fn sent(&mut self, now: Instant, len: usize) {
+        if self.heard_at.is_some() {
+            self.roll(now);
+            self.window.bytes += len as u32;
+        }
+    }
+
+    /// It was not welcomed in its present life, or not lately.
+    pub(super) fn wants_welcome(&self, now: Instant, every: Duration) -> bool {
+        let life = self.life.map(|life| life.epoch);
+        self.welcomed.is_none_or(|(at, known)| Some(known) != life || now.since(at) >= every)
+    }
+
+    pub(super) fn welcomed(&mut self, now: Instant, life: u32) {
+        self.welcomed = Some((now, life));
+    }
+
+    /// Closes seconds that are over; those without a frame count as empty.
+    fn roll(&mut self, now: Instant) {
+        let begin = *self.window.begin.get_or_insert(now);
+        let mut over = now.since(begin).0 / SECOND.0;
+        if over == 0 {
+            return;
+        }
+        self.window.begin = Some(begin + SECOND * over);
+        // Bounded: a robot that was off for an hour was off, not slow.
+        over = over.min(10);
+        for _ in 0..over {
+            self.rate.add(f64::from(self.window.bytes) * 8.0 * 1e-3);
+            self.frames.add(f64::from(self.window.frames));
+            (self.window.bytes, self.window.frames) = (0, 0);
+        }
+    }
+}
+
+/// The league's table, a line a robot; `-` where nothing was measured.
+pub fn table<'q>(rows: impl Iterator<Item = (RobotId, &'q Quality)>, foreign: u32) -> String {
+    let mut text = String::from(
+        "robot  RTT mean  var  max ms  loss down  up %  rate kbit/s mean  var  start-up ms  battery V  refused\n",
+    );
+    for (robot, quality) in rows {
+        let (trip, rate) = (quality.round_trip(), quality.data_rate());
+        let start_up = quality.start_up().map(|time| time.0 as f64 * 1e-3);
+        let cells = [
+            cell(trip.mean(), 2),
+            cell(trip.variance(), 2),
+            cell(trip.max(), 2),
+            cell(quality.loss_down(), 2),
+            cell(quality.loss_up(), 2),
+            cell(rate.mean(), 1),
+            cell(rate.variance(), 1),
+            cell(start_up, 0),
+            cell(quality.battery().map(f64::from), 2),
+            quality.refused().to_string(),
+        ];
+        let widths = [8, 5, 8, 11, 6, 18, 5, 13, 11, 9];
+        // Into a string writing never fails.
+        let _ = write!(text, "{robot:>5}");
+        for (cell, width) in cells.iter().zip(widths) {
+            let _ = write!(text, "{cell:>width$}");
+        }
+        text.push('\n');
+    }
+    let verdict = if foreign == 0 { "no".to_owned() } else { format!("yes, {foreign} foreign frames") };
+    let _ = writeln!(text, "interference: {verdict}");
+    text
+}
+
+fn cell(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
+}

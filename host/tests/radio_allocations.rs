@@ -1,0 +1,100 @@
+//! Does the radio take memory while a match runs? Not one allocation after the first second (DESIGN §9).
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use geometry::{Angle, Field, Point, Pose, Vector};
+use host::radio::{Radio, RadioSettings, Relay, Situation};
+use host::world::{BallModels, Robot, Who, World};
+use protocol::frame::TeamKey;
+use protocol::host::{Command, Directive, Duty, Telemetry};
+use protocol::link::{Link, Packet};
+use protocol::quantized::WirePose;
+use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
+use protocol::{Instant, RobotId, TeamId};
+use rules::{Colour, Phase};
+
+struct Counting;
+
+thread_local! {
+    // Per thread, so that the test harness's own do not count.
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller keeps alloc's contract.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps dealloc's contract.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
+    let team = TeamId(1);
+    let mut radio = Radio::new(RadioSettings { relay: Relay::ToEach, ..RadioSettings::new(team, 70) });
+    let mut robots: Vec<Link> =
+        RobotId::all().take(11).map(|id| Link::new(team, id, TeamKey::ZERO, 5)).collect();
+    let mut world = World::empty(Instant(0), BallModels::default());
+    for colour in [Colour::Blue, Colour::Yellow] {
+        for id in RobotId::all().take(11) {
+            let pose = Pose { position: Point::<Field>::new(0.3, 0.1), heading: Angle::new(0.5) };
+            let who = Who { colour, id };
+            let (velocity, seen) = (Vector::new(0.5, 0.1), Instant(0));
+            world.put(Robot { who, pose, velocity, angular: 0.1, confidence: 1.0, seen });
+        }
+    }
+    let situation = Situation { us: Colour::Blue, phase: Phase::Run, placement: None };
+    let gameplay = Directive::Gameplay { hint: None };
+    let commands: Vec<Command> = RobotId::all()
+        .take(11)
+        .map(|to| Command { to, phase: Phase::Run, duty: Duty::Player, directive: gameplay.clone() })
+        .collect();
+    let (mut sent, mut heard) = (0_u64, 0_u64);
+    let mut second = |radio: &mut Radio, number: u64| {
+        for n in 0..100 {
+            let now = Instant(number * 1_000_000 + n * 10_000);
+            world.time = now;
+            radio.offer(now, &world, situation, &commands);
+            for (i, robot) in robots.iter_mut().enumerate() {
+                let packet = say(robot, (n + i as u64).is_multiple_of(2));
+                heard += u64::from(radio.handle_packet(now, &packet).is_ok());
+                while radio.poll_packet().is_some() {
+                    sent += 1;
+                }
+            }
+        }
+    };
+    second(&mut radio, 0);
+    let before = COUNT.with(Cell::get);
+    (1..10).for_each(|number| second(&mut radio, number));
+    let during = COUNT.with(Cell::get) - before;
+    assert!(sent > 10 * 100 * 15 && heard == 10 * 100 * 11, "{sent} sent, {heard} heard");
+    assert_eq!(radio.dropped(), 0);
+    assert_eq!(during, 0, "allocations in nine seconds");
+}
+
+fn say(robot: &mut Link, beacon: bool) -> Packet {
+    robot.seal(&if beacon {
+        TeamMessage::Beacon(Beacon {
+            pose: WirePose::default(),
+            ball: None,
+            status: Status::AVAILABLE,
+            case_base: 7,
+            cycle: None,
+            progress: Progress::Idle,
+            role: Role::None,
+        })
+    } else {
+        TeamMessage::Telemetry(Telemetry::default())
+    })
+}
