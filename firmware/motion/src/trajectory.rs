@@ -68,13 +68,14 @@ pub trait CalcMotion {
     /// `t*` alone, s: the duration of [`Self::plan`].
     fn time<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> f32;
 
-    /// Is it certain, without planning, that [`Self::time`] is over `within` seconds? A bound from the largest
-    /// acceleration and speed; `false` says nothing.
+    /// Is it certain, without planning, that [`Self::time`] to every place within `radius` m of `to` is over `within`
+    /// seconds? A bound from the largest acceleration and speed; `false` says nothing.
     fn is_surely_longer<F: Copy>(
         &self,
         from: Point<F>,
         velocity: Vector<F>,
         to: Point<F>,
+        radius: f32,
         within: f32,
     ) -> bool;
 }
@@ -96,20 +97,26 @@ fn somewhere<F>(from: Point<F>) -> Point<F> {
     if from.x().abs() <= COORDINATE_MAX && from.y().abs() <= COORDINATE_MAX { from } else { Point::default() }
 }
 
-/// No motion whose acceleration stays within `acceleration` and whose speed within `speed` brings `offset` about and ends
-/// at rest, within `time`: it would move by v·t/2 and at most a·t²/4 more.
-fn out_of_reach<F>(
-    offset: Vector<F>,
-    velocity: Vector<F>,
-    time: f32,
+/// The fastest a robot may be within a bound.
+#[derive(Clone, Copy)]
+struct Utmost {
+    /// m/s².
     acceleration: f32,
-    speed_squared: f32,
-) -> bool {
+    /// m/s.
+    speed: f32,
+}
+
+/// No motion within `utmost` brings about an offset within `radius` of `offset` and ends at rest, within `time`: it would
+/// move by v·t/2 and at most a·t²/4 more.
+#[inline]
+fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f32, utmost: Utmost) -> bool {
+    if time < 0.0 {
+        return true;
+    }
     let far = offset - velocity * (0.5 * time);
-    let reach = 0.25 * acceleration * time * time;
-    far.dot(far) > reach * reach * BOUND_SLACK
-        || offset.dot(offset) > speed_squared * time * time * BOUND_SLACK
-        || time < 0.0
+    let reach = (0.25 * utmost.acceleration * time * time + radius) * BOUND_SLACK;
+    let run = (utmost.speed * time + radius) * BOUND_SLACK;
+    far.dot(far) > reach * reach || offset.dot(offset) > run * run
 }
 
 /// What rounding may take from a bound: 10⁻⁴, a thousand times what `f32` errs.

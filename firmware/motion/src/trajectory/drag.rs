@@ -7,7 +7,7 @@
 use geometry::{Point, Vector, math};
 
 use super::balance::{Balance, balance};
-use super::{CalcMotion, Motion, State, out_of_reach, somewhere, usable};
+use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
 /// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v / `speed`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,12 +81,13 @@ impl CalcMotion for DragLimits {
         from: Point<F>,
         velocity: Vector<F>,
         to: Point<F>,
+        radius: f32,
         within: f32,
     ) -> bool {
-        let speed_squared = self.speed * self.speed + velocity.dot(velocity);
-        // Push and drag together: no faster than it starts, and no faster than `speed`, is it ever.
-        let strongest = self.acceleration * (1.0 + math::sqrt(speed_squared) / self.speed);
-        out_of_reach(to - from, velocity, within, strongest, speed_squared)
+        // Push and drag together; on each axis it is never faster than it starts and than `speed`.
+        let speed = math::sqrt(self.speed * self.speed + velocity.dot(velocity));
+        let utmost = Utmost { acceleration: self.acceleration * (1.0 + speed / self.speed), speed };
+        out_of_reach(to - from, velocity, radius, within, utmost)
     }
 }
 

@@ -1,10 +1,10 @@
 //! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other; SI.
 
-use geometry::{Point, Vector};
+use geometry::{Point, Vector, math};
 
 use super::axis::{AxisLimits, Phases};
 use super::balance::balance;
-use super::{CalcMotion, Motion, State, out_of_reach, somewhere, usable};
+use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
 /// Limits of a robot without drag.
 ///
@@ -68,10 +68,12 @@ impl CalcMotion for FreeLimits {
         from: Point<F>,
         velocity: Vector<F>,
         to: Point<F>,
+        radius: f32,
         within: f32,
     ) -> bool {
-        let speed_squared = self.speed * self.speed + velocity.dot(velocity);
-        out_of_reach(to - from, velocity, within, self.acceleration.max(self.braking), speed_squared)
+        let speed = math::sqrt(self.speed * self.speed + velocity.dot(velocity));
+        let utmost = Utmost { acceleration: self.acceleration.max(self.braking), speed };
+        out_of_reach(to - from, velocity, radius, within, utmost)
     }
 }
 

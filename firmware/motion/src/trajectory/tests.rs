@@ -195,17 +195,18 @@ fn both_take_hardly_longer_than_the_best_of_all_angles() {
 }
 
 #[test]
-fn what_is_surely_longer_is_longer() {
+fn what_is_surely_longer_is_longer_wherever_in_the_circle_it_goes() {
     let mut told = 0;
-    for (i, (from, velocity, to)) in tasks(20_000).enumerate() {
-        let within = (i % 40) as f32 * 0.1;
+    for (i, (from, velocity, centre)) in tasks(20_000).enumerate() {
+        let (within, radius) = ((i % 40) as f32 * 0.1, (i % 3) as f32 * 0.2);
+        let to = centre + Vector::polar(radius * 0.999, geometry::Angle::new(i as f32));
         let free = FreeLimits { speed: 2.5, acceleration: 3.0, braking: 4.0 };
-        if free.is_surely_longer(from, velocity, to, within) {
+        if free.is_surely_longer(from, velocity, centre, radius, within) {
             assert!(free.time(from, velocity, to) >= within, "{from:?} {velocity:?} {to:?} {within}");
             told += 1;
         }
         let drag = DragLimits::default();
-        if drag.is_surely_longer(from, velocity, to, within) {
+        if drag.is_surely_longer(from, velocity, centre, radius, within) {
             assert!(drag.time(from, velocity, to) >= within, "{from:?} {velocity:?} {to:?} {within}");
             told += 1;
         }

@@ -1,0 +1,273 @@
+//! Where can a robot meet a moving ball: soonest, or with the most time to spare? (paper 2 §2, equations 1 and 2; m, s)
+//!
+//! For future places of the ball, [`STEP`] apart in time: when is the ball there, when can the robot be behind it, looking
+//! at the kick's target? Their difference is the slack; only a slack ≥ 0 meets the ball. Places that a bound of the robot's
+//! reach rules out are skipped, [`BLOCK`] at a time and then singly, without planning a motion to them; the answer is that
+//! of the search through all of them.
+
+use geometry::{Point, Vector};
+
+use crate::ball::BallPath;
+use crate::trajectory::{CalcMotion, Motion};
+
+/// What is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Interception<'b, F> {
+    /// Where the robot is.
+    pub robot: Point<F>,
+    /// How it moves.
+    pub velocity: Vector<F>,
+    /// Where the ball goes.
+    pub ball: &'b BallPath<F>,
+    /// Where the ball shall be kicked to: the robot comes to stand on the far side of the ball.
+    pub target: Point<F>,
+    /// From the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm ([`kick_reach`]), m.
+    pub reach: f32,
+    /// The ball is of interest so long, s: until it leaves the field, or is taken. At most [`HORIZON`].
+    pub until: f32,
+}
+
+/// Which of the places that can be reached in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wish {
+    /// arg min t_ball: for an attacker, whose failure is cheap.
+    Soonest,
+    /// arg max slack: for a defender, whose failure is a goal.
+    Safest,
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict<F> {
+    /// The robot can be there in time.
+    Meets(Meeting<F>),
+    /// Nowhere in time: go where the ball comes to rest, or is lost from interest, and hope.
+    Chase {
+        /// The ball, then.
+        ball: Point<F>,
+        /// Where the robot stands behind it.
+        place: Point<F>,
+        /// When the robot can be there, s.
+        robot_time: f32,
+    },
+}
+
+/// A meeting of ball and robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting<F> {
+    /// The ball, then.
+    pub ball: Point<F>,
+    /// Where the robot stands behind it.
+    pub place: Point<F>,
+    /// When the ball is there, s from now.
+    pub ball_time: f32,
+    /// When the robot can be there, s from now.
+    pub robot_time: f32,
+}
+
+impl<F> Meeting<F> {
+    /// How long the robot waits, s.
+    pub fn slack(&self) -> f32 {
+        self.ball_time - self.robot_time
+    }
+}
+
+/// From the robot's centre to the ball's, when it kicks, m: the mouth lets the ball in by 10 mm.
+pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
+    robot_radius + ball_radius - MOUTH_DEPTH
+}
+
+/// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. Where ball and target are one, the robot
+/// comes from −x.
+pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Point<F> {
+    ball - (target - ball).unit().unwrap_or(Vector::new(1.0, 0.0)) * reach
+}
+
+impl<F: Copy> Interception<'_, F> {
+    /// Finds the place.
+    pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
+        let horizon = self.horizon();
+        // The last place is the horizon's own, wherever the steps end.
+        let steps = (horizon * (1.0 / STEP)) as u32;
+        let mut best: Option<Meeting<F>> = None;
+        let mut block = 0;
+        let mut begins = 0.0;
+        while block <= steps {
+            let end = steps.min(block + BLOCK - 1);
+            let time = if end == steps { horizon } else { end as f32 * STEP };
+            let (ends, _) = self.ball.progress(time);
+            if !self.is_out_of_reach(limits, [begins, ends], time, best.as_ref()) {
+                for step in block..=end {
+                    self.look(limits, step as f32 * STEP, &mut best);
+                    if wish == Wish::Soonest && best.is_some() {
+                        break;
+                    }
+                }
+                if end == steps && (wish == Wish::Safest || best.is_none()) {
+                    self.look(limits, horizon, &mut best);
+                }
+            }
+            if wish == Wish::Soonest && best.is_some() {
+                break;
+            }
+            begins = ends;
+            block = end + 1;
+        }
+        best.map_or_else(|| self.chase(limits, horizon), Verdict::Meets)
+    }
+
+    fn horizon(&self) -> f32 {
+        self.until.min(self.ball.duration()).clamp(0.0, HORIZON)
+    }
+
+    /// No place with the ball's ways in between is reached by `time` and with more slack than the best.
+    fn is_out_of_reach<L: CalcMotion>(
+        &self,
+        limits: &L,
+        ways: [f32; 2],
+        time: f32,
+        best: Option<&Meeting<F>>,
+    ) -> bool {
+        let [begins, ends] = ways;
+        let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
+        // One step more in front, as the steps of a block begin behind the end of the last.
+        let radius = 0.5 * (ends - begins) + self.reach;
+        let within = time - best.map_or(0.0, Meeting::slack);
+        limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
+    }
+
+    fn look<L: CalcMotion>(&self, limits: &L, time: f32, best: &mut Option<Meeting<F>>) {
+        let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
+        let place = kick_place(ball, self.target, self.reach);
+        let least = best.as_ref().map_or(0.0, Meeting::slack);
+        if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
+            return;
+        }
+        let robot_time = limits.time(self.robot, self.velocity, place);
+        let meeting = Meeting { ball, place, ball_time: time, robot_time };
+        let slack = meeting.slack();
+        if slack > least || (best.is_none() && slack >= 0.0) {
+            *best = Some(meeting);
+        }
+    }
+
+    fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
+        let ball = self.ball.at(horizon).position;
+        let place = kick_place(ball, self.target, self.reach);
+        Verdict::Chase { ball, place, robot_time: limits.time(self.robot, self.velocity, place) }
+    }
+}
+
+/// Between two future places of the ball, s.
+pub const STEP: f32 = 0.02;
+/// Places that are ruled out together.
+pub const BLOCK: u32 = 8;
+/// Nobody plans farther ahead, s: a kick of 6.5 m/s has left the field by then.
+pub const HORIZON: f32 = 5.0;
+/// m (paper 2's robots; papers-checklist D2).
+const MOUTH_DEPTH: f32 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ball::BallModel;
+    use crate::trajectory::{DragLimits, FreeLimits};
+    use geometry::{Angle, Field};
+    use rand_core::{RngCore, SeedableRng};
+    use rand_xoshiro::Xoshiro128PlusPlus;
+
+    /// The plain search through every place.
+    fn linear<L: CalcMotion>(asked: &Interception<'_, Field>, limits: &L, wish: Wish) -> Verdict<Field> {
+        let horizon = asked.horizon();
+        let mut best: Option<Meeting<Field>> = None;
+        let steps = (horizon / STEP) as u32;
+        for time in (0..=steps).map(|step| step as f32 * STEP).chain([horizon]) {
+            let ball = asked.ball.from() + asked.ball.along() * asked.ball.progress(time).0;
+            let place = kick_place(ball, asked.target, asked.reach);
+            let robot_time = limits.time(asked.robot, asked.velocity, place);
+            let meeting = Meeting { ball, place, ball_time: time, robot_time };
+            let better = best.is_none_or(|best| wish == Wish::Safest && meeting.slack() > best.slack());
+            if meeting.slack() >= 0.0 && better {
+                best = Some(meeting);
+            }
+        }
+        best.map_or_else(|| asked.chase(limits, horizon), Verdict::Meets)
+    }
+
+    #[test]
+    fn the_answer_is_that_of_the_search_through_every_place() {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(2);
+        let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
+        let (mut meetings, mut chases) = (0, 0);
+        for i in 0..1_500 {
+            let velocity = Vector::polar(3.25 + within(3.25), Angle::new(within(3.0)));
+            let start = Point::new(within(4.5), within(3.0));
+            let model = BallModel::default();
+            let ball =
+                if i % 2 == 0 { model.kicked(start, velocity) } else { model.rolling(start, velocity) };
+            let asked = Interception {
+                robot: Point::<Field>::new(within(4.5), within(3.0)),
+                velocity: Vector::new(within(2.0), within(2.0)),
+                ball: &ball,
+                target: Point::new(4.5, 0.0),
+                reach: kick_reach(0.09, 0.0215),
+                until: 3.0 + within(3.0),
+            };
+            for wish in [Wish::Soonest, Wish::Safest] {
+                let found = asked.find(&FreeLimits::default(), wish);
+                assert_eq!(found, linear(&asked, &FreeLimits::default(), wish), "{asked:?}");
+                match found {
+                    Verdict::Meets(_) => meetings += 1,
+                    Verdict::Chase { .. } => chases += 1,
+                }
+            }
+            if i < 100 {
+                let drag = DragLimits::default();
+                assert_eq!(asked.find(&drag, Wish::Soonest), linear(&asked, &drag, Wish::Soonest));
+            }
+        }
+        assert!(meetings > 500 && chases > 500, "{meetings} {chases}");
+    }
+
+    fn asked(ball: &BallPath<Field>, robot: Point<Field>) -> Interception<'_, Field> {
+        let target = Point::new(4.5, 0.0);
+        Interception { robot, velocity: Vector::default(), ball, target, reach: 0.1, until: 10.0 }
+    }
+
+    #[test]
+    fn a_ball_that_comes_by_is_met_soonest_where_the_robot_is_just_in_time() {
+        let ball = BallModel::default().rolling(Point::new(-2.0, 1.0), Vector::new(2.0, 0.0));
+        let question = asked(&ball, Point::new(0.0, 0.0));
+        let Verdict::Meets(soonest) = question.find(&FreeLimits::default(), Wish::Soonest) else { panic!() };
+        // One step earlier the robot would be late.
+        assert!(soonest.slack() >= 0.0 && soonest.slack() < 0.1, "{soonest:?}");
+        let Verdict::Meets(safest) = question.find(&FreeLimits::default(), Wish::Safest) else { panic!() };
+        assert!(safest.slack() > soonest.slack() && safest.ball_time > soonest.ball_time);
+        // It stands 0.1 m behind the ball, seen from the target.
+        assert!((soonest.place.distance(soonest.ball) - 0.1).abs() < 1e-5);
+        assert!(soonest.place.distance(question.target) > soonest.ball.distance(question.target));
+    }
+
+    #[test]
+    fn a_ball_that_runs_away_is_chased_to_its_rest() {
+        let ball = BallModel::default().rolling(Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
+        let slow = FreeLimits { speed: 0.1, acceleration: 1.0, braking: 1.0 };
+        let Verdict::Chase { ball: rest, robot_time, .. } =
+            asked(&ball, Point::new(-2.0, 0.0)).find(&slow, Wish::Soonest)
+        else {
+            panic!()
+        };
+        assert!((rest.x() - 1.0 / 0.7).abs() < 1e-3 && robot_time > 30.0);
+    }
+
+    #[test]
+    fn a_ball_at_rest_is_met_by_who_stands_behind_it_and_chased_by_others() {
+        let ball = BallModel::default().rolling(Point::new(1.0, 0.0), Vector::default());
+        let behind = asked(&ball, Point::new(0.9, 0.0));
+        assert!(
+            matches!(behind.find(&FreeLimits::default(), Wish::Safest), Verdict::Meets(m) if m.ball_time == 0.0)
+        );
+        let away = asked(&ball, Point::new(0.0, 0.0));
+        assert!(matches!(away.find(&FreeLimits::default(), Wish::Safest), Verdict::Chase { .. }));
+    }
+}
