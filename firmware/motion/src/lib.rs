@@ -5,6 +5,7 @@
 //! | How soon can a robot be there and at rest, and how? (paper 2 §2, CalcMotion2D) | [`trajectory`] |
 //! | Where will a kicked or chipped ball be? | [`ball`], [`ball::chip`] |
 //! | Where along a moving ball's way can a robot meet it, soonest or with most time to spare? (paper 2 §2) | [`intercept`] |
+//! | How does it get around others and forbidden places? | [`avoid`] |
 //! | Which rim speeds drive a body with four wheels like this, and how fast can it go that way? | [`omni`] |
 //! | The walking league: a ball that only rolls, and what an AIBO can do | [`rolling`], [`legged`] |
 //!
@@ -23,6 +24,7 @@
 //! simulator's physics are written apart from these models, so that a wrong model shows as missed passes instead of hiding.
 #![no_std]
 
+pub mod avoid;
 pub mod ball;
 pub mod intercept;
 pub mod legged;

@@ -81,7 +81,7 @@ pub trait CalcMotion {
 }
 
 /// All the numbers are ones that a field can have.
-fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bool {
+pub(crate) fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bool {
     // NaN is not below anything.
     let small = |x: f32| x.abs() <= COORDINATE_MAX;
     small(from.x())

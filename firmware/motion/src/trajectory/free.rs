@@ -35,7 +35,7 @@ impl FreeLimits {
     }
 
     /// All three are positive numbers.
-    fn are_usable(&self) -> bool {
+    pub(crate) fn are_usable(&self) -> bool {
         let positive = |x: f32| x > LIMIT_MIN && x.is_finite();
         positive(self.speed) && positive(self.acceleration) && positive(self.braking)
     }

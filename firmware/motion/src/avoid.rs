@@ -1,0 +1,233 @@
+//! How does a robot get around others and out of forbidden places, and what does it drive in the next control step?
+//!
+//! [`plan`] is called every step and remembers nothing. It answers in three parts:
+//!
+//! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left by a short way
+//!    ([`Verdict::Escape`]).
+//! 2. **Route.** The straight way, or the cheapest way found over tangent points of what stands in it: a search of at most
+//!    [`CHECKS_MAX`] straight pieces, in a fixed order. Cost is length, and what turning the present velocity costs.
+//! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can still brake
+//!    straight to rest without touching anything afterwards; else one that first loses its sideways speed; else braking.
+//!    So a robot that could brake before its first step can after every step: **it enters no obstacle that stands still.**
+//!    Moving ones are taken to keep their velocity for [`FORESIGHT`]; against these there is no guarantee.
+//!
+//! Obstacles are regions for the robot's *centre*: grow others' and the rules' shapes ([`Shape::grown`]) by the robot's own
+//! radius, and by what its sight and wheels err. Corners of boxes stay corners. SI units, field frame or any other.
+
+mod item;
+mod route;
+
+use geometry::{Point, Shape, Vector};
+
+use self::item::Scene;
+use self::route::Route;
+use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usable};
+
+/// What the robot's centre must not enter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle<F> {
+    /// Where, m.
+    pub shape: Shape<F>,
+    /// How it moves, m/s.
+    pub velocity: Vector<F>,
+}
+
+impl<F: Copy> Obstacle<F> {
+    /// One that stands still.
+    pub fn standing(shape: Shape<F>) -> Self {
+        Self { shape, velocity: Vector::default() }
+    }
+
+    /// A robot, as a disc of both radii and a margin.
+    pub fn robot(center: Point<F>, velocity: Vector<F>, radius: f32) -> Self {
+        Self { shape: Shape::Disc { center, radius }, velocity }
+    }
+}
+
+/// What is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<'o, F> {
+    /// Where the robot is.
+    pub from: Point<F>,
+    /// How it moves.
+    pub velocity: Vector<F>,
+    /// Where it shall come to rest.
+    pub to: Point<F>,
+    /// What it can do, and may now.
+    pub limits: FreeLimits,
+    /// What it must keep out of; the first [`OBSTACLES_MAX`] count.
+    pub obstacles: &'o [Obstacle<F>],
+    /// Where its centre must stay, as the carpet less the robot's radius; any shape without dents.
+    pub within: Option<Shape<F>>,
+    /// Until it asks again, s, at most 1.
+    pub step: f32,
+}
+
+/// Which way it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict<F> {
+    /// Straight to the goal.
+    Direct,
+    /// Around something.
+    Around {
+        /// The first corner.
+        via: Point<F>,
+    },
+    /// Out of the obstacle it is in.
+    Escape {
+        /// The point outside.
+        to: Point<F>,
+    },
+    /// No way was found; as near as it gets.
+    Blocked {
+        /// The reached point nearest to the goal.
+        at: Point<F>,
+    },
+}
+
+/// What became of the motion that the route asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restraint {
+    /// It is driven.
+    None,
+    /// It would not be safe; sideways speed is lost first.
+    Straightened,
+    /// Neither would be safe: it brakes.
+    Braked,
+    /// Not even braking avoids a touch: it brakes.
+    Unavoidable,
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way<F> {
+    /// Which way it goes.
+    pub verdict: Verdict<F>,
+    /// Where it will rest: the target, or the free point that stands for it.
+    pub goal: Point<F>,
+    /// Length of the route to the goal, m; of what is known of it where blocked.
+    pub length: f32,
+    /// Whether it drives what the route asks for.
+    pub restraint: Restraint,
+    /// **What to drive**: place, velocity and acceleration at the end of the step.
+    pub next: State<F>,
+    /// The motion that the route asks for: to the goal, or past the first corner.
+    pub motion: FreeMotion<F>,
+}
+
+/// Plans the next step.
+pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
+    let Course { from, velocity, to, limits, within, step, .. } = *course;
+    let time_passes = step > 0.0 && step <= STEP_MAX;
+    if !time_passes || !limits.are_usable() || !usable(from, velocity, to) {
+        // At rest where it is, if that is known.
+        let motion = FreeLimits::default().plan(from, Vector::new(f32::NAN, 0.0), to);
+        let next = motion.at(0.0);
+        let (verdict, restraint) = (Verdict::Blocked { at: next.position }, Restraint::Braked);
+        return Way { verdict, goal: next.position, length: 0.0, restraint, next, motion };
+    }
+    let mut scene = Scene::new(course.obstacles, within);
+    let goal = scene.nearest_free(to);
+    if scene.is_inside(from) {
+        let exit = scene.nearest_free(from);
+        let motion = limits.plan(from, velocity, exit);
+        let length = from.distance(exit) + exit.distance(goal);
+        let next = motion.at(course.step);
+        let verdict = Verdict::Escape { to: exit };
+        return Way { verdict, goal, length, restraint: Restraint::None, next, motion };
+    }
+    scene.keep_apart(from, goal);
+    let route = Route::find(&scene, from, velocity, goal, &limits);
+    let (verdict, towards) = match route.via {
+        _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
+        None => (Verdict::Direct, goal),
+        Some(via) => (Verdict::Around { via }, past(from, via, route.behind, &limits)),
+    };
+    let motion = limits.plan(from, velocity, towards);
+    let (next, restraint) = safe_step(course, &scene, &motion, towards);
+    Way { verdict, goal, length: route.length, restraint, next, motion }
+}
+
+/// A point beyond a corner, so far that the robot comes to the corner as fast as it can turn there: as fast as its limit
+/// straight on, from rest at a right angle.
+fn past<F: Copy>(from: Point<F>, via: Point<F>, behind: Point<F>, limits: &FreeLimits) -> Point<F> {
+    let (first, second) = (via - from, behind - via);
+    let (Some(along), Some(on)) = (first.unit(), second.unit()) else { return via };
+    let speed = limits.speed * along.dot(on).max(0.0);
+    let beyond = 0.5 * speed * speed / limits.braking;
+    via + along * beyond.min(second.norm())
+}
+
+/// The first of the possible steps after which the robot can brake to rest without touching anything.
+fn safe_step<F: Copy>(
+    course: &Course<'_, F>,
+    scene: &Scene<F>,
+    motion: &FreeMotion<F>,
+    towards: Point<F>,
+) -> (State<F>, Restraint) {
+    let wanted = motion.at(course.step);
+    if brakes_clear(course, scene, &wanted) {
+        return (wanted, Restraint::None);
+    }
+    let straight = straightened(course, towards);
+    if brakes_clear(course, scene, &straight) {
+        return (straight, Restraint::Straightened);
+    }
+    let braked = braked(course);
+    let restraint =
+        if brakes_clear(course, scene, &braked) { Restraint::Braked } else { Restraint::Unavoidable };
+    (braked, restraint)
+}
+
+/// From this state, braking straight ahead to rest touches nothing and stays within.
+fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<F>, state: &State<F>) -> bool {
+    let speed = state.velocity.norm();
+    let time = speed / course.limits.braking;
+    let way = state.velocity * (0.5 * time);
+    scene.stays_within_or_returns(course.from, state.position + way)
+        && scene.is_clear(state.position, way, course.step, time)
+}
+
+/// All that the limits leave goes into losing the speed across the way; the rest speeds up along it.
+fn straightened<F: Copy>(course: &Course<'_, F>, towards: Point<F>) -> State<F> {
+    let Course { from, velocity, limits, step, .. } = *course;
+    let along = (towards - from).unit().unwrap_or(Vector::new(1.0, 0.0));
+    let across = Vector::new(-along.y(), along.x());
+    let (ahead, side) = (velocity.dot(along), velocity.dot(across));
+    let loss = limits.braking * step;
+    let lost = side.clamp(-loss, loss);
+    // Nothing is left for speeding up where all of it is needed; a robot that goes back brakes that first.
+    let left = (1.0 - lost.abs() / loss.max(f32::MIN_POSITIVE)).max(0.0);
+    let gain = limits.acceleration * step * left;
+    let next = velocity + across * -lost + along * gain.min((limits.speed - ahead).max(0.0));
+    moved(course, next)
+}
+
+fn braked<F: Copy>(course: &Course<'_, F>) -> State<F> {
+    let speed = course.velocity.norm();
+    let loss = course.limits.braking * course.step;
+    let factor = if speed > loss { 1.0 - loss / speed } else { 0.0 };
+    moved(course, course.velocity * factor)
+}
+
+/// The state after a step in which the velocity changes evenly to `velocity`.
+fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
+    let step = course.step.max(f32::MIN_POSITIVE);
+    State {
+        position: course.from + (course.velocity + velocity) * (0.5 * course.step),
+        velocity,
+        acceleration: (velocity - course.velocity) * (1.0 / step),
+    }
+}
+
+/// Most obstacles that are regarded: 21 other robots, the rules' 12 shapes, and some to spare.
+pub const OBSTACLES_MAX: usize = 40;
+/// Most straight pieces that a search looks at.
+pub const CHECKS_MAX: u32 = 24;
+/// A control step is no longer, s.
+const STEP_MAX: f32 = 1.0;
+/// So long others are taken to keep their velocity, s: about what a robot needs to change it.
+pub const FORESIGHT: f32 = 0.5;
+
+#[cfg(test)]
+mod tests;

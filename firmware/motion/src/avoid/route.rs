@@ -1,0 +1,331 @@
+//! Which way leads around the obstacles? A bounded best-first search over tangent points; lengths in m.
+
+use geometry::{Point, Shape, Vector, math};
+
+use super::CHECKS_MAX;
+use super::item::{Item, Scene, tangent};
+use crate::trajectory::FreeLimits;
+
+/// What was found.
+#[derive(Clone, Copy)]
+pub(super) struct Route<F> {
+    /// Whether it leads to the goal.
+    pub(super) arrives: bool,
+    /// The first corner; none where it is straight.
+    pub(super) via: Option<Point<F>>,
+    /// What comes after the first corner.
+    pub(super) behind: Point<F>,
+    /// Where it ends.
+    pub(super) end: Point<F>,
+    pub(super) length: f32,
+}
+
+/// A corner that can be reached.
+#[derive(Clone, Copy)]
+struct Node<F> {
+    at: Point<F>,
+    /// Number of the corner before.
+    parent: usize,
+    /// Length so far, and with what turning costs.
+    length: f32,
+    cost: f32,
+    /// Cost with the straight rest; infinite once looked at.
+    estimate: f32,
+}
+
+struct Search<'s, F> {
+    scene: &'s Scene<F>,
+    goal: Point<F>,
+    velocity: Vector<F>,
+    limits: &'s FreeLimits,
+    nodes: [Node<F>; NODES_MAX],
+    count: usize,
+    checks: u32,
+    /// Towards the goal, m/s.
+    speed: f32,
+}
+
+impl<F: Copy> Route<F> {
+    pub(super) fn find(
+        scene: &Scene<F>,
+        from: Point<F>,
+        velocity: Vector<F>,
+        goal: Point<F>,
+        limits: &FreeLimits,
+    ) -> Self {
+        let length = from.distance(goal);
+        let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
+        let towards = (goal - from).unit().unwrap_or_default();
+        let speed = velocity.dot(towards).clamp(0.0, limits.speed);
+        let mut search =
+            Search { scene, goal, velocity, limits, nodes: [start; _], count: 1, checks: 0, speed };
+        match search.run() {
+            Some(last) => search.route(last, true),
+            None => search.route(search.nearest(), false),
+        }
+    }
+}
+
+impl<F: Copy> Search<'_, F> {
+    /// The number of the corner from which the goal is straight ahead.
+    fn run(&mut self) -> Option<usize> {
+        while self.checks < CHECKS_MAX {
+            let (number, node) = self.cheapest()?;
+            self.nodes.get_mut(number)?.estimate = f32::INFINITY;
+            let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
+            // What stands before a corner is gone around as well; each obstacle once on each side.
+            let mut turns = Turns::new(hit, self.goal);
+            while let Some(Turn { item: number_of_item, side, to }) = turns.next() {
+                let Some(item) = self.scene.items().get(number_of_item) else { continue };
+                let corner = self.corner(item, &node, to, side);
+                if let Some(before) =
+                    self.reach(number, &node, corner, ahead_of(item, corner - node.at, to - node.at))
+                {
+                    turns.add(before, side, corner);
+                    turns.add(before, -side, corner);
+                }
+            }
+        }
+        None
+    }
+
+    fn cheapest(&self) -> Option<(usize, Node<F>)> {
+        let mut best: Option<(usize, Node<F>)> = None;
+        for (i, node) in self.nodes.iter().take(self.count).enumerate() {
+            if node.estimate < best.map_or(f32::INFINITY, |(_, best)| best.estimate) {
+                best = Some((i, *node));
+            }
+        }
+        best
+    }
+
+    fn first_hit(&mut self, node: &Node<F>, to: Point<F>) -> Option<usize> {
+        self.checks += 1;
+        let way = to - node.at;
+        let (mut at, mut time) = (0.0, 0.0);
+        if self.scene.moves() {
+            at = self.time_after(node.length);
+            time = self.time_after(node.length + way.norm()) - at;
+        }
+        self.scene.first_hit(node.at, way, at, time)
+    }
+
+    /// About when the robot has gone so far: speeding up from its present speed to its limit, s.
+    fn time_after(&self, length: f32) -> f32 {
+        let peak = math::sqrt(self.speed * self.speed + 2.0 * self.limits.acceleration * length);
+        let faster = self.speed + peak;
+        let speeding = if faster > 0.0 { 2.0 * length / faster } else { 0.0 };
+        speeding.max(length / self.limits.speed)
+    }
+
+    /// Adds a corner that can be reached from the node; else the number of what stands before it.
+    fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
+        if !self.scene.stays_within(at) || self.checks >= CHECKS_MAX {
+            return None;
+        }
+        if let Some(hit) = self.first_hit(node, at) {
+            return Some(hit);
+        }
+        let way = at - node.at;
+        let piece = way.norm();
+        let turning = if number == 0 { self.turning(way, piece) } else { 0.0 };
+        let (length, cost) = (node.length + piece, node.cost + piece + turning + extra);
+        if let Some(free) = self.nodes.get_mut(self.count)
+            && piece > PIECE_MIN
+        {
+            let estimate = cost + at.distance(self.goal);
+            *free = Node { at, parent: number, length, cost, estimate };
+            self.count += 1;
+        }
+        None
+    }
+
+    /// What it costs to turn the present velocity into this way, as a length: nothing straight on, twice the way of
+    /// braking to rest where it goes back.
+    fn turning(&self, way: Vector<F>, piece: f32) -> f32 {
+        if piece <= 0.0 {
+            return 0.0;
+        }
+        let speed = self.velocity.norm();
+        0.5 * speed * (speed - self.velocity.dot(way) / piece) / self.limits.braking
+    }
+
+    /// A corner of the way around an obstacle on the left (`side` +1) or right, from the node on towards `to`.
+    fn corner(&self, item: &Item<F>, node: &Node<F>, to: Point<F>, side: f32) -> Point<F> {
+        let from = node.at;
+        let mut gap = item.margin + CORNER_SKIN;
+        let mut meeting = 0.0;
+        if item.moves {
+            // Where it will be when the robot comes by, and room for being early or late there.
+            for _ in 0..2 {
+                let distance = item.at(meeting).distance_to(from).max(0.0);
+                meeting = self.time_after(node.length + distance);
+            }
+            gap += EARLY_OR_LATE * item.velocity.norm();
+        }
+        match item.at(meeting) {
+            Shape::Disc { center, radius } => around(center, radius + gap, from, to, side, None),
+            Shape::Capsule { spine, radius } => {
+                // The end whose tangent leaves the other end on the inner side.
+                let outer = |seen: Point<F>, side: f32| {
+                    let normal = tangent(seen, spine.from, radius + gap, side);
+                    if normal.dot(spine.vector()) > 0.0 { spine.to } else { spine.from }
+                };
+                let (first, last) = (outer(from, side), outer(to, -side));
+                let along = (to - from).unit().unwrap_or(Vector::new(1.0, 0.0));
+                let flank = (first != last).then(|| {
+                    let bone = spine.vector().unit().unwrap_or(along);
+                    let normal = Vector::new(-bone.y(), bone.x());
+                    if normal.dot(Vector::new(-along.y(), along.x())) * side < 0.0 { -normal } else { normal }
+                });
+                around(first, radius + gap, from, to, side, flank)
+            }
+            Shape::Box { low, high } => {
+                // The outermost corner as seen over what routes keep; a robot may be within the skin of corners.
+                let off = |sx: f32, sy: f32, by: f32| {
+                    let (x, y) = (
+                        if sx < 0.0 { low.x() } else { high.x() },
+                        if sy < 0.0 { low.y() } else { high.y() },
+                    );
+                    Point::new(x + sx * by, y + sy * by)
+                };
+                let mut outer = (-1.0, -1.0);
+                for (sx, sy) in [(1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                    let seen = off(outer.0, outer.1, item.margin) - from;
+                    if seen.cross(off(sx, sy, item.margin) - from) * side > 0.0 {
+                        outer = (sx, sy);
+                    }
+                }
+                off(outer.0, outer.1, gap)
+            }
+        }
+    }
+
+    fn nearest(&self) -> usize {
+        let mut best = (0, f32::INFINITY);
+        for (i, node) in self.nodes.iter().take(self.count).enumerate() {
+            let distance = node.at.distance(self.goal);
+            if distance < best.1 {
+                best = (i, distance);
+            }
+        }
+        best.0
+    }
+
+    fn route(&self, last: usize, arrives: bool) -> Route<F> {
+        let [start, ..] = self.nodes;
+        let node = |i: usize| self.nodes.get(i).copied().unwrap_or(start);
+        let end = node(last).at;
+        let rest = if arrives { end.distance(self.goal) } else { 0.0 };
+        let mut route = Route {
+            arrives,
+            via: None,
+            behind: self.goal,
+            end: if arrives { self.goal } else { end },
+            length: node(last).length + rest,
+        };
+        let mut at = last;
+        let mut behind = route.end;
+        while at != 0 {
+            (route.via, route.behind) = (Some(node(at).at), behind);
+            behind = node(at).at;
+            at = node(at).parent;
+        }
+        route
+    }
+}
+
+/// What it costs to pass in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
+fn ahead_of<F: Copy>(item: &Item<F>, corner: Vector<F>, straight: Vector<F>) -> f32 {
+    if !item.moves {
+        return 0.0;
+    }
+    let (side, across) = (straight.cross(corner), straight.cross(item.velocity));
+    if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / straight.norm().max(PIECE_MIN) }
+}
+
+/// To go around this obstacle on this side, on the way to there.
+#[derive(Clone, Copy)]
+struct Turn<F> {
+    item: usize,
+    side: f32,
+    to: Point<F>,
+}
+
+/// What is still to be tried from a corner, first come, first served.
+struct Turns<F> {
+    list: [Turn<F>; TURNS_MAX],
+    begin: usize,
+    end: usize,
+    /// Obstacles that are in the list or were, on the left and on the right.
+    seen: [u64; 2],
+}
+
+impl<F: Copy> Turns<F> {
+    fn new(item: usize, to: Point<F>) -> Self {
+        let list = [Turn { item, side: 1.0, to }; _];
+        let mut turns = Self { list, begin: 0, end: 0, seen: [0; 2] };
+        turns.add(item, 1.0, to);
+        turns.add(item, -1.0, to);
+        turns
+    }
+
+    fn add(&mut self, item: usize, side: f32, to: Point<F>) {
+        let [left, right] = &mut self.seen;
+        let seen = if side > 0.0 { left } else { right };
+        if *seen >> item & 1 == 0
+            && let Some(free) = self.list.get_mut(self.end)
+        {
+            *seen |= 1 << item;
+            *free = Turn { item, side, to };
+            self.end += 1;
+        }
+    }
+
+    fn next(&mut self) -> Option<Turn<F>> {
+        let turn = self.list.get(..self.end)?.get(self.begin).copied()?;
+        self.begin += 1;
+        Some(turn)
+    }
+}
+
+/// Where the tangents of a disc from both points meet on one side; where they meet far out or not at all, a corner half
+/// the way round. With `flank`, the tangent along it takes the place of the one from `to`.
+fn around<F: Copy>(
+    center: Point<F>,
+    radius: f32,
+    from: Point<F>,
+    to: Point<F>,
+    side: f32,
+    flank: Option<Vector<F>>,
+) -> Point<F> {
+    let first = tangent(from, center, radius, side);
+    let last = flank.unwrap_or_else(|| tangent(to, center, radius, -side));
+    let along = (to - from).unit().unwrap_or(Vector::new(1.0, 0.0));
+    let outwards = Vector::new(-along.y(), along.x()) * side;
+    let both = first + last;
+    let opening = 1.0 + first.dot(last);
+    // Beyond 120°, or the long way round.
+    if opening > OPENING_MIN && both.dot(outwards) > 0.0 {
+        return center + both * (radius / opening);
+    }
+    let middle = both.unit().unwrap_or(outwards);
+    let middle = if middle.dot(outwards) < 0.0 { -middle } else { middle };
+    let opening = (1.0 + first.dot(middle)).max(OPENING_MIN);
+    center + (first + middle) * (radius / opening)
+}
+
+/// Most turns that are tried from a corner.
+const TURNS_MAX: usize = 12;
+/// Most corners of a search.
+const NODES_MAX: usize = 24;
+/// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
+const CORNER_SKIN: f32 = 0.002;
+/// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.
+const LATENESS: f32 = 0.5;
+/// Room for a moving obstacle around corners, by its speed, s.
+const EARLY_OR_LATE: f32 = 0.15;
+/// A nearer corner is no corner, m.
+const PIECE_MIN: f32 = 0.001;
+/// 1 + cos 120°.
+const OPENING_MIN: f32 = 0.5;
