@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-use geometry::{Angle, Field, Point, Pose, Vector};
+use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use host::radio::{Radio, RadioSettings, Relay, Situation};
 use host::world::{BallModels, Robot, Who, World};
 use protocol::frame::TeamKey;
@@ -57,7 +57,13 @@ fn eleven_robots_at_a_hundred_pictures_a_second_need_no_heap() {
     let gameplay = Directive::Gameplay { hint: None };
     let commands: Vec<Command> = RobotId::all()
         .take(11)
-        .map(|to| Command { to, phase: Phase::Run, duty: Duty::Player, directive: gameplay.clone() })
+        .map(|to| Command {
+            to,
+            defending: GoalEnd::Negative,
+            phase: Phase::Run,
+            duty: Duty::Player,
+            directive: gameplay.clone(),
+        })
         .collect();
     let (mut sent, mut heard) = (0_u64, 0_u64);
     let mut second = |radio: &mut Radio, number: u64| {

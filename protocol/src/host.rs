@@ -6,6 +6,7 @@
 //! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
 //! believes a host it must have had its [`Welcome`]: nobody can command it with a recording of an earlier life.
 
+use geometry::GoalEnd;
 pub use rules::Duty;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
@@ -133,6 +134,8 @@ impl TryFrom<u8> for WireWho {
 pub struct Command {
     /// Who is meant.
     pub to: RobotId,
+    /// The goal we defend: teams change ends at half-time.
+    pub defending: GoalEnd,
     /// The phase of the game, in our words.
     pub phase: Phase<Side>,
     /// What it is now, besides a field player.
@@ -306,7 +309,13 @@ mod tests {
         ];
         for directive in directives {
             let phase = Phase::BallPlacement(Side::Theirs);
-            let command = HostMessage::Command(Command { to: id, phase, duty: Duty::Taker, directive });
+            let command = HostMessage::Command(Command {
+                to: id,
+                defending: GoalEnd::Positive,
+                phase,
+                duty: Duty::Taker,
+                directive,
+            });
             assert!(len(&command) <= COMMAND_LEN_MAX, "{} bytes: {command:?}", len(&command));
         }
     }

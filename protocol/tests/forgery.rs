@@ -1,5 +1,6 @@
 //! Can anybody who does not have the key, or has only a recording, make a robot or a host believe something? 10^5 tries.
 
+use geometry::GoalEnd;
 use protocol::frame::{Frame, HEADER_LEN, Sender, TAG_LEN, TeamKey};
 use protocol::host::{Command, Directive, Duty, HostMessage, Telemetry, Welcome, WorldPart};
 use protocol::host_link::HostLink;
@@ -25,7 +26,13 @@ fn messages(n: u32) -> [HostMessage; 3] {
     let picture = n as u8;
     [
         HostMessage::Welcome(Welcome { to: robot(2), life: 9 }),
-        HostMessage::Command(Command { to: robot(2), phase, duty: Duty::Player, directive }),
+        HostMessage::Command(Command {
+            to: robot(2),
+            defending: GoalEnd::Negative,
+            phase,
+            duty: Duty::Player,
+            directive,
+        }),
         HostMessage::World(WorldPart {
             picture,
             part: 0,

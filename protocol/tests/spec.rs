@@ -1,5 +1,6 @@
 //! Does the code write the bytes that `SPEC.md` says? Every worked example there is named and checked, both ways.
 
+use geometry::GoalEnd;
 use protocol::frame::{Frame, Sender, TeamKey};
 use protocol::host::{
     Command, Condition, Directive, Duty, Hint, HostMessage, KickOrder, Telemetry, Welcome, WireBall,
@@ -150,7 +151,7 @@ fn commands() -> [(&'static str, Phase<Side>, Duty, Directive); 11] {
 
 fn stand() -> HostMessage {
     let (phase, duty, directive) = (Phase::Halt, Duty::Player, Directive::Stand);
-    HostMessage::Command(Command { to: robot(3), phase, duty, directive })
+    HostMessage::Command(Command { to: robot(3), defending: GoalEnd::Negative, phase, duty, directive })
 }
 
 /// The message is these bytes, and these bytes are the message.
@@ -187,7 +188,16 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
         both_ways(name, &world);
     }
     for (name, phase, duty, directive) in commands() {
-        both_ways(name, &HostMessage::Command(Command { to: robot(3), phase, duty, directive }));
+        both_ways(
+            name,
+            &HostMessage::Command(Command {
+                to: robot(3),
+                defending: GoalEnd::Negative,
+                phase,
+                duty,
+                directive,
+            }),
+        );
     }
     both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), life: 9 }));
 }

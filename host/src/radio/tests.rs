@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::world::{BallModels, Robot, Who};
+use geometry::GoalEnd;
 use geometry::{Angle, Field, Point, Pose, Vector};
 use protocol::host::{Directive, Duty};
 use protocol::link::{Heard as RobotHeard, Link};
@@ -46,7 +47,13 @@ fn world(now: Instant, ours: u8, theirs: u8) -> World {
 }
 
 fn stand(to: u8) -> Command {
-    Command { to: id(to), phase: Phase::Run, duty: Duty::Player, directive: Directive::Stand }
+    Command {
+        to: id(to),
+        defending: GoalEnd::Negative,
+        phase: Phase::Run,
+        duty: Duty::Player,
+        directive: Directive::Stand,
+    }
 }
 
 fn beacon() -> TeamMessage {
