@@ -21,12 +21,13 @@
 //!
 //! ```no_run
 //! use std::time::Duration;
-//! use ssl::Message;
 //! use ssl::net::{Interfaces, Receiver, addresses};
+//! use ssl::vision::Decoder;
 //!
+//! let mut decoder = Decoder::default(); // any message decodes by itself; this one takes no memory
 //! let mut receiver = Receiver::join(addresses::VISION, &Interfaces::All)?;
 //! while let Some(datagram) = receiver.receive(Duration::from_secs(2))? {
-//!     match ssl::vision::WrapperPacket::decode(datagram.bytes) {
+//!     match decoder.decode(datagram.bytes) {
 //!         Ok(packet) => println!("{:?}", packet.detection),
 //!         Err(error) => eprintln!("from {}: {error}", datagram.from),
 //!     }
@@ -49,5 +50,6 @@ pub mod simulation;
 pub mod stream;
 pub mod tracker;
 pub mod vision;
+mod wire;
 
 pub use prost::{DecodeError, Message, UnknownEnumValue};

@@ -5,6 +5,8 @@
 
 use prost::Message;
 
+use crate::wire::VARINT_MAX;
+
 /// Most bytes of a message on TCP that are accepted, length excluded. The largest that is needed, a [`CiInput`] with a
 /// tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its bytes.
 ///
@@ -16,9 +18,6 @@ pub const DATAGRAM_MAX: usize = 65_507;
 
 /// Most bytes of a datagram the league's own programs can hear (ssl-game-controller, ssl-go-tools: 8192).
 pub const LEAGUE_DATAGRAM_MAX: usize = 8192;
-
-/// A varint of 64 bits has at most this many bytes.
-const VARINT_MAX: usize = 10;
 
 /// The message as it goes over TCP: its length, then its bytes.
 pub fn delimited(message: &impl Message) -> Vec<u8> {

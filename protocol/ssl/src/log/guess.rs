@@ -7,6 +7,7 @@
 use prost::Message;
 
 use super::MessageKind;
+use crate::wire::{BYTES, FIXED64, Field, Fields, VARINT, Value};
 use crate::{referee, tracker, vision};
 
 /// The kind of a payload: vision, vision of 2014, referee or tracker; `None` if it is none of them.
@@ -28,11 +29,6 @@ pub fn guess(payload: &[u8]) -> Option<MessageKind> {
     let tracker = is(&fields, &TRACKER, &[1]) && tracker::TrackerWrapperPacket::decode(payload).is_ok();
     tracker.then_some(MessageKind::Tracker2020)
 }
-
-const VARINT: u8 = 0;
-const FIXED64: u8 = 1;
-const BYTES: u8 = 2;
-const FIXED32: u8 = 5;
 
 /// Numbers and wire types a message may have; numbers it must have.
 type Known = [(u32, u8)];
@@ -66,52 +62,27 @@ const DETECTION: [(u32, u8); 8] =
 const DETECTION_REQUIRED: [u32; 4] = [1, 2, 3, 4];
 const GEOMETRY: [(u32, u8); 3] = [(1, BYTES), (2, BYTES), (3, BYTES)];
 
-struct Field<'a> {
-    number: u32,
-    wire: u8,
-    bytes: &'a [u8],
-}
-
 fn is(fields: &[Field<'_>], known: &Known, required: &[u32]) -> bool {
-    fields.iter().all(|field| known.contains(&(field.number, field.wire)))
+    fields.iter().all(|field| known.contains(&(field.number, field.value.wire_type())))
         && required.iter().all(|number| fields.iter().any(|field| field.number == *number))
 }
 
 /// Is a field of the wrapper what vision puts there?
 fn vision_part(field: &Field<'_>) -> bool {
-    match field.number {
-        1 => fields(field.bytes).is_some_and(|frame| is(&frame, &DETECTION, &DETECTION_REQUIRED)),
-        2 => fields(field.bytes).is_some_and(|geometry| is(&geometry, &GEOMETRY, &[1])),
+    match (field.number, field.value) {
+        (1, Value::Bytes(frame)) => {
+            fields(frame).is_some_and(|frame| is(&frame, &DETECTION, &DETECTION_REQUIRED))
+        }
+        (2, Value::Bytes(geometry)) => {
+            fields(geometry).is_some_and(|geometry| is(&geometry, &GEOMETRY, &[1]))
+        }
         _ => true,
     }
 }
 
 /// The fields of a message, or `None` where the bytes are not one.
-fn fields(mut rest: &[u8]) -> Option<Vec<Field<'_>>> {
-    let mut fields = Vec::new();
-    while !rest.is_empty() {
-        let key = varint(&mut rest)?;
-        let wire = (key & 7) as u8;
-        let number = u32::try_from(key >> 3).ok().filter(|number| *number > 0)?;
-        let length = match wire {
-            VARINT => {
-                varint(&mut rest)?;
-                0
-            }
-            FIXED64 => 8,
-            FIXED32 => 4,
-            BYTES => usize::try_from(varint(&mut rest)?).ok()?,
-            _ => return None,
-        };
-        let (bytes, after) = rest.split_at_checked(length)?;
-        fields.push(Field { number, wire, bytes });
-        rest = after;
-    }
-    Some(fields)
-}
-
-fn varint(rest: &mut &[u8]) -> Option<u64> {
-    prost::encoding::decode_varint(rest).ok()
+fn fields(bytes: &[u8]) -> Option<Vec<Field<'_>>> {
+    Fields::of(bytes).collect::<Result<_, _>>().ok()
 }
 
 #[cfg(test)]

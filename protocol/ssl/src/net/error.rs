@@ -4,6 +4,8 @@ use std::fmt;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
+use crate::stream::StreamError;
+
 /// Why a socket cannot be opened or used.
 #[derive(Debug)]
 pub enum NetError {
@@ -41,6 +43,34 @@ pub enum NetError {
     TooLarge {
         /// Its bytes.
         bytes: usize,
+    },
+    /// Nobody took the TCP connection.
+    NotConnected {
+        /// Where to.
+        to: SocketAddr,
+        /// Why not.
+        error: io::Error,
+    },
+    /// The other side closed the TCP connection.
+    Closed {
+        /// Who.
+        by: SocketAddr,
+        /// Bytes of a message that did not come whole.
+        pending: usize,
+    },
+    /// What comes by TCP are no messages of the league's.
+    NotFramed {
+        /// From whom.
+        from: SocketAddr,
+        /// Why.
+        error: StreamError,
+    },
+    /// A message came by TCP that is not the one expected.
+    NotDecoded {
+        /// From whom.
+        from: SocketAddr,
+        /// Why.
+        error: prost::DecodeError,
     },
     /// Anything else the system refuses.
     System {
@@ -125,6 +155,19 @@ impl fmt::Display for NetError {
             Self::TooLarge { bytes } => {
                 write!(f, "a datagram of {bytes} bytes; UDP carries {}", crate::stream::DATAGRAM_MAX)
             }
+            Self::NotConnected { to, error } => write!(
+                f,
+                "nobody answers at {to} ({error}); is the game controller running? Teams: port 10008, automatic referees: \
+                 10007"
+            ),
+            Self::Closed { by, pending: 0 } => write!(f, "{by} closed the connection; connect again"),
+            Self::Closed { by, pending } => {
+                write!(f, "{by} closed the connection within a message, after {pending} bytes; connect again")
+            }
+            Self::NotFramed { from, error } => write!(f, "{from}: {error}"),
+            Self::NotDecoded { from, error } => {
+                write!(f, "{from}: {error}; is it the port for this kind of program?")
+            }
             Self::System { doing, address, error } => write!(f, "cannot {doing} {address}: {error}"),
         }
     }
@@ -133,7 +176,9 @@ impl fmt::Display for NetError {
 impl std::error::Error for NetError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::System { error, .. } => Some(error),
+            Self::System { error, .. } | Self::NotConnected { error, .. } => Some(error),
+            Self::NotFramed { error, .. } => Some(error),
+            Self::NotDecoded { error, .. } => Some(error),
             _ => None,
         }
     }

@@ -1,17 +1,20 @@
 //! How does the league's network work for a program? Sockets for multicast and unicast, as its own programs open them.
 //!
 //! [`Receiver`] hears a multicast group beside other programs on the same machine, [`Sender`] speaks to one, [`Port`] is a
-//! UDP port of one's own (simulators, robots). Every error says what to mend.
+//! UDP port of one's own (simulators, robots), [`Connection`] a talk with the game controller. Every error says what to
+//! mend.
 //!
 //! **No async runtime.** A receive waits at most as long as it is told and takes no memory, so one thread a socket, or
 //! one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets and under a thousand
 //! datagrams a second. Whoever wants a runtime calls these from a blocking task.
 
+mod connection;
 mod error;
 mod interfaces;
 mod probe;
 mod sockets;
 
+pub use connection::Connection;
 pub use error::NetError;
 pub use interfaces::{Interface, Interfaces, interfaces};
 pub use probe::{LoopbackProbe, probe_loopback, route};

@@ -3,12 +3,14 @@
 //! Units: mm and rad in the field frame, times in s as `f64`: Unix time, but grSim counts from its own start (README,
 //! trap 1). Fields that newer versions added are optional here; older ones lack them.
 
+mod decoder;
 mod detection;
 mod geometry;
 pub mod legacy;
 
 use prost::{Enumeration, Message};
 
+pub use decoder::Decoder;
 pub use detection::{DetectionBall, DetectionFrame, DetectionRobot};
 pub use geometry::{
     BallModelChipFixedLoss, BallModelStraightTwoPhase, FieldCircularArc, FieldLineSegment, FieldShapeType,

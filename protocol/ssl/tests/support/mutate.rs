@@ -113,7 +113,8 @@ fn stream(packet: &[u8], random: &mut impl RngCore) -> u64 {
     framed
 }
 
-fn mutated(seeds: &[Seed], random: &mut impl RngCore) -> (Decode, Vec<u8>) {
+/// A packet of the seeds with a few breaks, and how the whole one is read.
+pub(crate) fn mutated(seeds: &[Seed], random: &mut impl RngCore) -> (Decode, Vec<u8>) {
     let (decode, packet) = &seeds[below(random, seeds.len())];
     let mut packet = packet.clone();
     // One break in most of them, up to four in the others.
