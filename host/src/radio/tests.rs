@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::world::{BallModels, Robot, Who};
-use geometry::GoalEnd;
-use geometry::{Angle, Field, Point, Pose, Vector};
+use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use protocol::host::{Directive, Duty};
 use protocol::link::{Heard as RobotHeard, Link};
 use protocol::team::{Progress, Role, Status};

@@ -32,7 +32,13 @@ fn host(epoch: u32) -> HostLink {
 
 fn stand(to: u8) -> HostMessage {
     let directive = Directive::Stand;
-    HostMessage::Command(Command { to: robot(to), phase: Phase::Halt, duty: Duty::Player, directive })
+    HostMessage::Command(Command {
+        to: robot(to),
+        defending: geometry::GoalEnd::Negative,
+        phase: Phase::Halt,
+        duty: Duty::Player,
+        directive,
+    })
 }
 
 fn world(picture: u8, part: u8, parts: u8) -> HostMessage {

@@ -49,16 +49,16 @@ fn a_file_cut_at_any_byte_gives_all_whole_messages_and_says_where_it_was_cut() {
 fn a_long_file_cut_beside_any_message_and_anywhere_gives_all_whole_messages() {
     let records = recordings::records(GRSIM_NOISY);
     let (file, begins) = file_of(&records);
-    // Beside each message, in a file of that message and its neighbours: what stands further before plays no part.
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+    // Beside and within each message, in a file of that message and its neighbours: what stands further before plays no
+    // part.
     for window in records.windows(3) {
         let (file, begins) = file_of(window);
-        for begin in &begins[1..] {
-            for cut in begin - 1..=begin + 1 {
-                check_cut(&file[..cut.min(file.len())], window, &begins);
-            }
+        let beside = begins[1..].iter().flat_map(|begin| [begin - 1, *begin, begin + 1]);
+        for cut in beside.chain([random.next_u64() as usize % file.len()]) {
+            check_cut(&file[..cut.min(file.len())], window, &begins);
         }
     }
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     for _ in 0..60 {
         check_cut(&file[..random.next_u64() as usize % file.len()], &records, &begins);
     }

@@ -129,8 +129,8 @@ impl<R: Read> LogReader<R> {
         &self.counts
     }
 
-    /// Where the next message begins, bytes of the unzipped file.
-    pub fn position(&self) -> u64 {
+    /// Where the next unread message begins, bytes of the unzipped file.
+    pub(super) fn position(&self) -> u64 {
         self.at
     }
 
