@@ -41,6 +41,27 @@ pub enum Command {
     BallPlacement(Colour),
 }
 
+impl Command {
+    /// The phase that it leads to; none for NORMAL_START where nothing is prepared.
+    pub const fn leads_to(self, from: Phase<Colour>) -> Option<Phase<Colour>> {
+        Some(match self {
+            Self::Halt => Phase::Halt,
+            Self::Stop => Phase::Stop,
+            Self::ForceStart => Phase::Run,
+            Self::PrepareKickoff(who) => Phase::PrepareKickoff(who),
+            Self::PreparePenalty(who) => Phase::PreparePenalty(who),
+            Self::FreeKick(who) => Phase::FreeKick(who),
+            Self::Timeout(who) => Phase::Timeout(who),
+            Self::BallPlacement(who) => Phase::BallPlacement(who),
+            Self::NormalStart => match from {
+                Phase::PrepareKickoff(who) => Phase::Kickoff(who),
+                Phase::PreparePenalty(who) => Phase::Penalty(who),
+                _ => return None,
+            },
+        })
+    }
+}
+
 /// The part of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
@@ -212,22 +233,7 @@ impl GameState {
         if again {
             return self.repeat(command, at, ball);
         }
-        let wanted = match command {
-            Command::Halt => Some(Phase::Halt),
-            Command::Stop => Some(Phase::Stop),
-            Command::ForceStart => Some(Phase::Run),
-            Command::PrepareKickoff(who) => Some(Phase::PrepareKickoff(who)),
-            Command::PreparePenalty(who) => Some(Phase::PreparePenalty(who)),
-            Command::FreeKick(who) => Some(Phase::FreeKick(who)),
-            Command::Timeout(who) => Some(Phase::Timeout(who)),
-            Command::BallPlacement(who) => Some(Phase::BallPlacement(who)),
-            Command::NormalStart => match from {
-                Phase::PrepareKickoff(who) => Some(Phase::Kickoff(who)),
-                Phase::PreparePenalty(who) => Some(Phase::Penalty(who)),
-                _ => None,
-            },
-        };
-        let Some(to) = wanted else {
+        let Some(to) = command.leads_to(from) else {
             let longest = micros(if KICKOFF_TIME > PENALTY_TIME { KICKOFF_TIME } else { PENALTY_TIME });
             return self.stop_first(Phase::Run, at, at.saturating_add(longest));
         };
