@@ -6,7 +6,9 @@
 //! same decisions.
 
 pub mod config;
+pub mod geometry;
 pub mod radio;
+pub mod referee;
 pub mod strategy;
 pub mod trace;
 pub mod world;

@@ -1,0 +1,59 @@
+//! Where does a camera hang? Balls in the air are seen off their place, along the line from the camera.
+
+use ssl::vision::GeometryCameraCalibration;
+
+/// A camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it hangs, m: along x, y, and height, field frame.
+    pub position: [f32; 3],
+    /// Where that is from.
+    pub source: CameraSource,
+}
+
+/// Where a camera's place is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraSource {
+    /// The packet told it.
+    Told,
+    /// From rotation and translation.
+    Calibration,
+}
+
+/// Farther than this nobody hangs a camera, m.
+const FARTHEST: f32 = 50.0;
+/// A quaternion whose squared length is off 1 by more is a dummy (simulators send four times 0.7: 1.96).
+const QUATERNION_TOLERANCE: f32 = 0.02;
+
+impl Camera {
+    /// From a calibration; `None` where it tells no place, or none above the ground.
+    pub(super) fn from_wire(c: &GeometryCameraCalibration) -> Option<Self> {
+        let told = [c.derived_camera_world_tx, c.derived_camera_world_ty, c.derived_camera_world_tz];
+        let camera = if let [Some(x), Some(y), Some(z)] = told {
+            Self { position: [x, y, z].map(|mm| mm / 1000.0), source: CameraSource::Told }
+        } else {
+            Self { position: from_rotation(c)?, source: CameraSource::Calibration }
+        };
+        let [x, y, z] = camera.position;
+        // Not finite fails the comparisons too.
+        let sound = x.abs() < FARTHEST && y.abs() < FARTHEST && z > 0.0 && z < FARTHEST;
+        sound.then_some(camera)
+    }
+}
+
+/// A point p of the field is R p + t for the camera; the camera itself is where that is 0: −Rᵀ t.
+fn from_rotation(c: &GeometryCameraCalibration) -> Option<[f32; 3]> {
+    let [x, y, z, w] = [c.q0, c.q1, c.q2, c.q3];
+    let length = x * x + y * y + z * z + w * w;
+    if (length - 1.0).abs() > QUATERNION_TOLERANCE {
+        return None;
+    }
+    // Columns of R, so that a product with t is a row of Rᵀ t.
+    let columns = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+        [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+        [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+    ];
+    let t = [c.tx, c.ty, c.tz];
+    Some(columns.map(|column| -(column[0] * t[0] + column[1] * t[1] + column[2] * t[2]) / 1000.0))
+}

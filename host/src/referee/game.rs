@@ -1,0 +1,174 @@
+//! What stands on the referee's sheet? Phase, stage, times, teams and sides, as the newest packet and the state of the game
+//! have them. SI, field frame; times left in s.
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::RobotId;
+use rules::state::{GameState, Stage};
+use rules::{Colour, Phase};
+use ssl::referee::{HullColor, MatchType, Referee, TeamInfo};
+
+use super::words;
+
+/// No field reaches farther from its centre than this, m: what lies beyond is no place to put a ball.
+const FARTHEST: f32 = 20.0;
+
+/// The game as the referee and the ball have it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Game {
+    /// The phase now.
+    pub phase: Phase<Colour>,
+    /// The phase that will follow the current stop, if the referee says.
+    pub next: Option<Phase<Colour>>,
+    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), whatever packets hold (trap 3).
+    pub placement: Option<Point<Field>>,
+    /// The part of the match.
+    pub stage: Stage,
+    /// Playing time left in it, s; negative when it ran over.
+    pub stage_time_left: Option<f32>,
+    /// Time left for placement, free kick, kick-off or penalty, s; negative when it ran over.
+    pub action_time_left: Option<f32>,
+    /// The goal that blue defends, once that was said.
+    pub blue_goal: Option<GoalEnd>,
+    /// What kind of match.
+    pub match_type: MatchType,
+    /// What the referee waits for, in its words.
+    pub status: String,
+    /// Yellow's and blue's account, in this order.
+    pub teams: [TeamAccount; 2],
+    /// What the newest packet calls the designated position, in any phase.
+    designated: Option<Point<Field>>,
+    next_command: Option<i32>,
+}
+
+impl Default for Game {
+    fn default() -> Self {
+        Self {
+            phase: Phase::Halt,
+            next: None,
+            placement: None,
+            stage: Stage::FirstHalfPre,
+            stage_time_left: None,
+            action_time_left: None,
+            blue_goal: None,
+            match_type: MatchType::Unknown,
+            status: String::new(),
+            teams: Default::default(),
+            designated: None,
+            next_command: None,
+        }
+    }
+}
+
+/// One team's account.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TeamAccount {
+    /// Its name; empty while unknown.
+    pub name: String,
+    /// Goals.
+    pub score: u32,
+    /// The keeper's number, if it is one a robot can have.
+    pub keeper: Option<RobotId>,
+    /// Red cards.
+    pub red_cards: u32,
+    /// Yellow cards ever given.
+    pub yellow_cards: u32,
+    /// Time left of each yellow card that still counts, s.
+    pub yellow_card_times: Vec<f32>,
+    /// Fouls that count towards the next yellow card.
+    pub fouls: u32,
+    /// Robots it may have on the field now, if the referee says.
+    pub robots_allowed: Option<u32>,
+    /// Time-outs left.
+    pub timeouts: u32,
+    /// Time left for time-outs, s.
+    pub timeout_time: f32,
+    /// Whether it may place the ball: it can, and has not failed too often; if the referee does not say, it may.
+    pub may_place: bool,
+    /// Failed placements that count.
+    pub placement_failures: u32,
+    /// It asked for a substitution.
+    pub substitution_wanted: bool,
+    /// It may substitute now.
+    pub substitution_allowed: bool,
+    /// Substitutions left in this half, if the referee says.
+    pub substitutions_left: Option<u32>,
+    /// Time left for the running substitution, s.
+    pub substitution_time_left: f32,
+    /// Whether its hulls are dark; none where the referee does not say.
+    pub dark_hulls: Option<bool>,
+}
+
+impl Game {
+    /// A team's account.
+    pub fn team(&self, colour: Colour) -> &TeamAccount {
+        &self.teams[colour as usize]
+    }
+
+    /// The goal that a team defends, once that was said.
+    pub fn own_goal(&self, colour: Colour) -> Option<GoalEnd> {
+        self.blue_goal.map(|goal| if colour == Colour::Blue { goal } else { goal.opposite() })
+    }
+
+    /// Takes what a packet says, but for its command.
+    pub(super) fn read(&mut self, packet: &Referee) {
+        let place = |mm: f32| mm / 1000.0;
+        self.stage = words::stage_of(packet.stage).unwrap_or(self.stage);
+        self.stage_time_left = packet.stage_time_left.map(seconds);
+        self.action_time_left = packet.current_action_time_remaining.map(seconds);
+        self.designated = packet.designated_position.map(|at| Point::new(place(at.x), place(at.y)));
+        // Not finite fails the comparison too.
+        self.designated = self.designated.filter(|at| at.x().abs() < FARTHEST && at.y().abs() < FARTHEST);
+        let goal = |positive| if positive { GoalEnd::Positive } else { GoalEnd::Negative };
+        self.blue_goal = packet.blue_team_on_positive_half.map(goal).or(self.blue_goal);
+        self.match_type = packet.match_type();
+        self.status.clear();
+        self.status.push_str(packet.status_message());
+        self.next_command = packet.next_command;
+        self.teams[Colour::Yellow as usize].read(&packet.yellow);
+        self.teams[Colour::Blue as usize].read(&packet.blue);
+    }
+
+    /// Takes what the state of the game says.
+    pub(super) fn stands(&mut self, state: &GameState) {
+        self.phase = state.phase();
+        let placing = matches!(self.phase, Phase::BallPlacement(_));
+        self.placement = self.designated.filter(|_| placing);
+        let next = self.next_command.and_then(words::command_of);
+        self.next = next.and_then(|command| command.leads_to(self.phase));
+    }
+}
+
+impl TeamAccount {
+    fn read(&mut self, info: &TeamInfo) {
+        let micros = |time: u32| seconds(i64::from(time));
+        if self.name != info.name {
+            self.name.clone_from(&info.name);
+        }
+        self.score = info.score;
+        self.keeper = u8::try_from(info.goalkeeper).ok().and_then(RobotId::new);
+        self.red_cards = info.red_cards;
+        self.yellow_cards = info.yellow_cards;
+        self.yellow_card_times.clear();
+        self.yellow_card_times.extend(info.yellow_card_times.iter().map(|time| micros(*time)));
+        self.fouls = info.foul_counter();
+        self.robots_allowed = info.max_allowed_bots;
+        self.timeouts = info.timeouts;
+        self.timeout_time = micros(info.timeout_time);
+        self.may_place = info.can_place_ball.unwrap_or(true) && !info.ball_placement_failures_reached();
+        self.placement_failures = info.ball_placement_failures();
+        self.substitution_wanted = info.bot_substitution_intent();
+        self.substitution_allowed = info.bot_substitution_allowed();
+        self.substitutions_left = info.bot_substitutions_left;
+        self.substitution_time_left = micros(info.bot_substitution_time_left());
+        self.dark_hulls = match info.hull_color() {
+            HullColor::Unknown => None,
+            HullColor::Dark => Some(true),
+            HullColor::Light => Some(false),
+        };
+    }
+}
+
+/// µs → s.
+fn seconds(micros: i64) -> f32 {
+    (micros as f64 * 1e-6) as f32
+}

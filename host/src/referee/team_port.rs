@@ -1,0 +1,328 @@
+//! How do we tell the game controller who keeps our goal? A client of its port for teams (TCP 10008), without the socket.
+//!
+//! The controller speaks first (a reply with a token), we register under the name it shows, and every request gets a reply, one at a
+//! time. The shell connects where [`TeamPort::wants_connection`] says so, tells [`connected`](TeamPort::connected) and
+//! [`lost`](TeamPort::lost), brings bytes with [`receive`](TeamPort::receive), sends what
+//! [`poll_transmit`](TeamPort::poll_transmit) gives, calls [`tick`](TeamPort::tick) and tells people what
+//! [`poll_event`](TeamPort::poll_event) gives. Requests are unsigned: the controller accepts those unless it was given the
+//! team's public key, and says so. The token of the next message is kept for who signs ([`TeamPort::token`]).
+
+use std::collections::VecDeque;
+
+use protocol::{Duration, Instant, RobotId};
+use rules::Colour;
+use ssl::Message;
+use ssl::controller::{
+    AdvantageChoice, ControllerReply, ControllerToTeam, StatusCode, TeamRegistration, TeamRequest,
+    TeamToController, Verification,
+};
+use ssl::stream::{FrameReader, MESSAGE_MAX, delimited};
+
+use super::words::team_of;
+
+/// The controller answers within this, or the connection is taken for dead. It answers at once; a loaded machine was seen to
+/// pause for 1.6 s.
+pub const REPLY_TIME: Duration = Duration::millis(3_000);
+/// An idle connection is tried this often: a controller that is gone is found out between two stoppages.
+pub const PING_EVERY: Duration = Duration::millis(5_000);
+/// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough for a name
+/// that its operator just entered.
+pub const RETRY_AFTER: Duration = Duration::millis(2_000);
+/// What a team may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// This robot keeps our goal from now on; granted while the ball is out of play or in their half.
+    Keeper(RobotId),
+    /// We want to substitute a robot at the next chance, or no more.
+    Substitute(bool),
+    /// After a card against them: go on, or stop.
+    Advantage {
+        /// Go on.
+        go_on: bool,
+    },
+    /// Is anybody there?
+    Ping,
+}
+
+/// What people, or the host, are told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// The controller knows us now; `verified`: by a signature.
+    Registered {
+        /// By a signature.
+        verified: bool,
+    },
+    /// It will not have us; we try again after [`RETRY_AFTER`].
+    RegistrationRefused {
+        /// Its words.
+        reason: String,
+    },
+    /// A request was granted.
+    Granted(Request),
+    /// A request was refused.
+    Refused {
+        /// Which.
+        request: Request,
+        /// Its words.
+        reason: String,
+    },
+    /// The connection is given up; we connect again after [`RETRY_AFTER`].
+    GivenUp(Trouble),
+}
+
+/// Why a connection is given up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// It was closed, or could not be opened; the requests that waited are kept.
+    Closed,
+    /// No answer within [`REPLY_TIME`].
+    NoAnswer,
+    /// What came is not the protocol of the port for teams.
+    NotTheTeamPort(String),
+}
+
+impl std::fmt::Display for Trouble {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Closed => write!(f, "the game controller's port for teams closed, or is not open"),
+            Self::NoAnswer => {
+                write!(f, "no answer from the game controller within {} s", REPLY_TIME.as_secs_f32())
+            }
+            Self::NotTheTeamPort(why) => {
+                write!(f, "this is not the game controller's port for teams (10008): {why}")
+            }
+        }
+    }
+}
+
+/// How far a connection is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Not connected.
+    Apart,
+    /// Connected; the controller speaks first.
+    Greeted,
+    /// We said who we are.
+    Registering,
+    /// It knows us.
+    Registered,
+}
+
+/// A team's talk with the game controller.
+#[derive(Debug)]
+pub struct TeamPort {
+    name: String,
+    colour: Colour,
+    stage: Stage,
+    reader: FrameReader,
+    token: Option<String>,
+    out: VecDeque<Vec<u8>>,
+    events: VecDeque<Event>,
+    waiting: VecDeque<Request>,
+    /// The request whose reply is awaited.
+    asked: Option<Request>,
+    /// When something must have come, if something must.
+    deadline: Option<Instant>,
+    /// When to try again.
+    retry: Instant,
+    /// When the last message went out.
+    spoke: Instant,
+}
+
+impl TeamPort {
+    /// A team of that name and colour; nothing is connected.
+    pub fn new(name: impl Into<String>, colour: Colour) -> Self {
+        Self {
+            name: name.into(),
+            colour,
+            stage: Stage::Apart,
+            reader: FrameReader::new(MESSAGE_MAX),
+            token: None,
+            out: VecDeque::new(),
+            events: VecDeque::new(),
+            waiting: VecDeque::new(),
+            asked: None,
+            deadline: None,
+            retry: Instant(0),
+            spoke: Instant(0),
+        }
+    }
+
+    /// How far the connection is.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// What the signature of the next message would be over.
+    pub fn token(&self) -> Option<&str> {
+        self.token.as_deref()
+    }
+
+    /// Whether the shell should (try to) connect now.
+    pub fn wants_connection(&self, now: Instant) -> bool {
+        self.stage == Stage::Apart && now >= self.retry
+    }
+
+    /// The connection is open.
+    pub fn connected(&mut self, now: Instant) {
+        self.forget();
+        self.stage = Stage::Greeted;
+        self.deadline = Some(now + REPLY_TIME);
+    }
+
+    /// The connection was closed, or could not be opened.
+    pub fn lost(&mut self, now: Instant) {
+        self.give_up(Trouble::Closed, now);
+    }
+
+    /// Asks for something, as soon as the controller knows us and has answered what was asked before. A request takes
+    /// the place of one of its kind that still waits, so no more wait than there are kinds.
+    pub fn ask(&mut self, request: Request, now: Instant) {
+        match self.waiting.iter_mut().find(|waiting| same_kind(**waiting, request)) {
+            Some(waiting) => *waiting = request,
+            None => self.waiting.push_back(request),
+        }
+        self.send_next(now);
+    }
+
+    /// Bytes that came, in any pieces.
+    pub fn receive(&mut self, bytes: &[u8], now: Instant) {
+        if self.stage == Stage::Apart {
+            return;
+        }
+        self.reader.push(bytes);
+        loop {
+            let reply = match self.reader.next_message() {
+                Ok(None) => return,
+                Ok(Some(message)) => match ControllerToTeam::decode(message) {
+                    Ok(ControllerToTeam { controller_reply: Some(reply) }) => reply,
+                    // A message of a newer controller that is none of our business.
+                    Ok(_) => continue,
+                    Err(broken) => return self.give_up(Trouble::NotTheTeamPort(broken.to_string()), now),
+                },
+                Err(broken) => return self.give_up(Trouble::NotTheTeamPort(broken.to_string()), now),
+            };
+            self.reply(reply, now);
+            if self.stage == Stage::Apart {
+                return;
+            }
+        }
+    }
+
+    /// The time is `now`.
+    pub fn tick(&mut self, now: Instant) {
+        if self.deadline.is_some_and(|deadline| now >= deadline) {
+            self.give_up(Trouble::NoAnswer, now);
+        } else if self.stage == Stage::Registered
+            && self.asked.is_none()
+            && now.since(self.spoke) >= PING_EVERY
+        {
+            self.ask(Request::Ping, now);
+        }
+    }
+
+    /// Bytes to be sent, in order.
+    pub fn poll_transmit(&mut self) -> Option<Vec<u8>> {
+        self.out.pop_front()
+    }
+
+    /// What happened, in order. On [`Event::GivenUp`] and [`Event::RegistrationRefused`] the shell closes the connection.
+    pub fn poll_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    fn reply(&mut self, reply: ControllerReply, now: Instant) {
+        let code = reply.status_code();
+        let rejected = code == StatusCode::Rejected;
+        let verified = reply.verification() == Verification::Verified;
+        let reason = reply.reason.unwrap_or_else(|| "without a reason".to_owned());
+        self.token = reply.next_token.or(self.token.take());
+        self.deadline = None;
+        match self.stage {
+            Stage::Apart => {}
+            Stage::Greeted => {
+                let registration = TeamRegistration {
+                    team_name: self.name.clone(),
+                    signature: None,
+                    team: Some(team_of(self.colour) as i32),
+                };
+                self.stage = Stage::Registering;
+                self.send(delimited(&registration), now);
+            }
+            Stage::Registering if rejected => {
+                self.forget();
+                self.retry = now + RETRY_AFTER;
+                self.events.push_back(Event::RegistrationRefused { reason });
+            }
+            Stage::Registering => {
+                self.stage = Stage::Registered;
+                self.events.push_back(Event::Registered { verified });
+                self.send_next(now);
+            }
+            Stage::Registered => {
+                // A reply that nobody asked for changes nothing.
+                match self.asked.take() {
+                    None | Some(Request::Ping) => {}
+                    Some(request) if rejected => self.events.push_back(Event::Refused { request, reason }),
+                    Some(request) => self.events.push_back(Event::Granted(request)),
+                }
+                self.send_next(now);
+            }
+        }
+    }
+
+    fn send_next(&mut self, now: Instant) {
+        if self.stage != Stage::Registered || self.asked.is_some() {
+            return;
+        }
+        let Some(request) = self.waiting.pop_front() else { return };
+        let msg = match request {
+            Request::Keeper(id) => TeamRequest::DesiredKeeper(i32::from(id.number())),
+            Request::Substitute(wanted) => TeamRequest::SubstituteBot(wanted),
+            Request::Advantage { go_on: true } => {
+                TeamRequest::AdvantageChoice(AdvantageChoice::Continue as i32)
+            }
+            Request::Advantage { go_on: false } => TeamRequest::AdvantageChoice(AdvantageChoice::Stop as i32),
+            Request::Ping => TeamRequest::Ping(true),
+        };
+        self.asked = Some(request);
+        self.send(delimited(&TeamToController { signature: None, msg: Some(msg) }), now);
+    }
+
+    fn send(&mut self, bytes: Vec<u8>, now: Instant) {
+        self.out.push_back(bytes);
+        self.spoke = now;
+        self.deadline = Some(now + REPLY_TIME);
+    }
+
+    fn give_up(&mut self, trouble: Trouble, now: Instant) {
+        // What was asked and not answered is asked again, unless something newer of its kind waits.
+        let asked = self.asked.take();
+        if let Some(asked) = asked
+            && !self.waiting.iter().any(|waiting| same_kind(*waiting, asked))
+        {
+            self.waiting.push_front(asked);
+        }
+        self.forget();
+        self.retry = now + RETRY_AFTER;
+        self.events.push_back(Event::GivenUp(trouble));
+    }
+
+    /// Nothing of the connection stays; requests do, but for pings.
+    fn forget(&mut self) {
+        self.stage = Stage::Apart;
+        self.reader = FrameReader::new(MESSAGE_MAX);
+        self.token = None;
+        self.out.clear();
+        self.asked = None;
+        self.deadline = None;
+        self.waiting.retain(|request| *request != Request::Ping);
+    }
+}
+
+fn same_kind(a: Request, b: Request) -> bool {
+    std::mem::discriminant(&a) == std::mem::discriminant(&b)
+}
+
+#[cfg(test)]
+mod tests;
