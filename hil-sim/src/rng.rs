@@ -50,6 +50,13 @@ impl Stream {
         radius * math::sin_cos(math::TAU * self.share()).1
     }
 
+    /// Two of them, independent, for the price of one.
+    pub fn normals(&mut self) -> (f32, f32) {
+        let radius = math::sqrt(-2.0 * math::ln(1.0 - self.share()));
+        let (sin, cos) = math::sin_cos(math::TAU * self.share());
+        (radius * cos, radius * sin)
+    }
+
     /// Normal, drawn again until within ±`limit` standard deviations.
     pub fn normal_within(&mut self, limit: f32) -> f32 {
         for _ in 0..REDRAWS {
@@ -88,6 +95,10 @@ mod tests {
         assert!(mean.abs() < 0.02, "mean {mean}");
         assert!((variance - 1.0).abs() < 0.028, "variance {variance}");
         assert!((0..n).all(|_| stream.normal_within(2.0).abs() <= 2.0));
+        let pairs: Vec<_> = (0..n).map(|_| stream.normals()).collect();
+        let mean = |of: fn(&(f32, f32)) -> f32| pairs.iter().map(of).sum::<f32>() / n as f32;
+        assert!((mean(|p| p.0 * p.0) - 1.0).abs() < 0.028 && (mean(|p| p.1 * p.1) - 1.0).abs() < 0.028);
+        assert!(mean(|p| p.0 * p.1).abs() < 0.02, "the two do not hang together");
     }
 
     #[test]

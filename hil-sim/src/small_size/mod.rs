@@ -8,12 +8,14 @@
 //! decides nothing; `geometry::math` only; nothing of `motion`'s models.
 
 mod ball;
+pub mod camera;
 mod contact;
 mod crowd;
 mod event;
 mod mouth;
 mod parameters;
 mod pitch;
+pub mod quirks;
 mod robot;
 mod senses;
 mod surface;

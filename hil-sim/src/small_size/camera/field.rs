@@ -1,0 +1,131 @@
+//! How is the field described on the wire? Lines, arc, numbers, cameras and the ball's model; mm, as SSL-Vision sends them.
+//!
+//! Names and directions are SSL-Vision's; grSim draws its lines inside the edge and the goals too.
+
+use ssl::vision::{
+    BallModelChipFixedLoss, BallModelStraightTwoPhase, FieldCircularArc, FieldLineSegment, FieldShapeType,
+    GeometryData, GeometryFieldSize, GeometryModels, Vector2f,
+};
+
+use super::view::View;
+use crate::small_size::World;
+use crate::small_size::quirks::{Quirks, ToldBall};
+
+/// The description of `world`'s field with these cameras.
+pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> GeometryData {
+    let field = &world.pitch().field;
+    let told = quirks.told_ball.unwrap_or_else(|| ToldBall::of(&world.parameters().ball));
+    let mm = |m: f32| geometry::math::round_to_i32(m * 1000.0);
+    let full = |value: i32| quirks.full_geometry.then_some(value);
+    let newer = (quirks.full_geometry || quirks.drawn_goals).then_some(mm(field.goal_line_margin));
+    let inset = if quirks.drawn_goals { field.line_width * 500.0 } else { 0.0 };
+    GeometryData {
+        field: GeometryFieldSize {
+            field_length: mm(field.length),
+            field_width: mm(field.width),
+            goal_width: mm(field.goal_width),
+            goal_depth: mm(field.goal_depth),
+            boundary_width: mm(field.margin),
+            field_lines: lines(world, quirks),
+            field_arcs: vec![FieldCircularArc {
+                name: "CenterCircle".into(),
+                center: Vector2f { x: 0.0, y: 0.0 },
+                radius: field.center_radius * 1000.0 - inset,
+                a1: 0.0,
+                a2: geometry::math::TAU,
+                thickness: field.line_width * 1000.0,
+                r#type: quirks.full_geometry.then_some(FieldShapeType::CenterCircle as i32),
+            }],
+            penalty_area_depth: full(mm(field.penalty_depth)),
+            penalty_area_width: full(mm(field.penalty_width)),
+            center_circle_radius: full(mm(field.center_radius)),
+            line_thickness: full(mm(field.line_width)),
+            goal_center_to_penalty_mark: full(mm(field.penalty_mark)),
+            goal_height: full(mm(field.goal_height)),
+            ball_radius: quirks.full_geometry.then_some(world.parameters().ball.radius * 1000.0),
+            max_robot_radius: quirks.full_geometry.then_some(world.parameters().robot.radius * 1000.0),
+            boundary_width_goal_line: newer,
+            goal_substitution_area_width: newer.map(|_| 0),
+        },
+        calib: views.iter().map(|view| view.calibration(quirks.full_geometry)).collect(),
+        models: Some(GeometryModels {
+            straight_two_phase: Some(BallModelStraightTwoPhase {
+                acc_slide: told.slide,
+                acc_roll: told.roll,
+                k_switch: told.switch,
+            }),
+            chip_fixed_loss: Some(BallModelChipFixedLoss {
+                damping_xy_first_hop: told.hops[0],
+                damping_xy_other_hops: told.hops[1],
+                damping_z: told.hops[2],
+            }),
+        }),
+    }
+}
+
+fn lines(world: &World, quirks: &Quirks) -> Vec<FieldLineSegment> {
+    use FieldShapeType as Shape;
+    let field = &world.pitch().field;
+    let thickness = field.line_width * 1000.0;
+    let inset = if quirks.drawn_goals { thickness * 0.5 } else { 0.0 };
+    let (x, y) = (field.length * 500.0 - inset, field.width * 500.0 - inset);
+    let depth = field.length * 500.0 - field.penalty_depth * 1000.0;
+    let half = field.penalty_width * 500.0;
+    let line = |name: &str, shape: Option<Shape>, p1: [f32; 2], p2: [f32; 2]| FieldLineSegment {
+        name: name.into(),
+        p1: Vector2f { x: p1[0], y: p1[1] },
+        p2: Vector2f { x: p2[0], y: p2[1] },
+        thickness,
+        r#type: if quirks.full_geometry { shape.map(|shape| shape as i32) } else { None },
+    };
+    let mut lines = vec![
+        line("TopTouchLine", Some(Shape::TopTouchLine), [-x, y], [x, y]),
+        line("BottomTouchLine", Some(Shape::BottomTouchLine), [-x, -y], [x, -y]),
+        line("LeftGoalLine", Some(Shape::LeftGoalLine), [-x, -y], [-x, y]),
+        line("RightGoalLine", Some(Shape::RightGoalLine), [x, -y], [x, y]),
+        line("HalfwayLine", Some(Shape::HalfwayLine), [0.0, -y], [0.0, y]),
+        line("CenterLine", Some(Shape::CenterLine), [-x, 0.0], [x, 0.0]),
+        line("LeftPenaltyStretch", Some(Shape::LeftPenaltyStretch), [-depth, -half], [-depth, half]),
+        line("RightPenaltyStretch", Some(Shape::RightPenaltyStretch), [depth, -half], [depth, half]),
+    ];
+    if quirks.drawn_goals {
+        let (goal, back) = (field.goal_width * 500.0, x + field.goal_depth * 1000.0);
+        for (side, sign) in [("Right", 1.0), ("Left", -1.0)] {
+            let goal_line = |name: &str, p1: [f32; 2], p2: [f32; 2]| {
+                line(&format!("{side}Goal{name}Line"), None, [sign * p1[0], p1[1]], [sign * p2[0], p2[1]])
+            };
+            lines.push(goal_line("Top", [x, goal], [back, goal]));
+            lines.push(goal_line("Bottom", [x, -goal], [back, -goal]));
+            lines.push(goal_line("Depth", [back, -goal], [back, goal]));
+        }
+    }
+    // SSL-Vision's names; grSim names all four the other way round.
+    let first = if quirks.drawn_goals { -half } else { half };
+    lines.extend([
+        line(
+            "LeftFieldLeftPenaltyStretch",
+            Some(Shape::LeftFieldLeftPenaltyStretch),
+            [-x, -first],
+            [-depth, -first],
+        ),
+        line(
+            "LeftFieldRightPenaltyStretch",
+            Some(Shape::LeftFieldRightPenaltyStretch),
+            [-x, first],
+            [-depth, first],
+        ),
+        line(
+            "RightFieldRightPenaltyStretch",
+            Some(Shape::RightFieldRightPenaltyStretch),
+            [x, -first],
+            [depth, -first],
+        ),
+        line(
+            "RightFieldLeftPenaltyStretch",
+            Some(Shape::RightFieldLeftPenaltyStretch),
+            [x, first],
+            [depth, first],
+        ),
+    ]);
+    lines
+}
