@@ -2,11 +2,12 @@
 //!
 //! Robots' skills, host and referee ask here, so that there is one truth. Shapes are for the robot's *body*: who plans for its
 //! centre grows them by its radius, and by what it takes for its own noise ([`KeepOut::offence`] does the former).
-//! Field frame, m. Nothing here remembers: double touches, graces and counts are the caller's.
+//! Lines belong to the areas they bound. Field frame, m. Nothing here remembers: double touches, graces and counts are the caller's.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape};
 use heapless::Vec;
 
+use crate::legality::{InArea, in_area};
 use crate::limits::{
     BALL_DISTANCE, BALL_RADIUS, OPPONENT_AREA_DISTANCE, PENALTY_BEHIND, ROBOT_RADIUS, STOP_SPEED,
 };
@@ -195,10 +196,9 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     if matches!(s.phase, Phase::BallPlacement(_)) {
         return Touch::Allowed; // "it is allowed to enter the defence area during ball placement"
     }
-    let reach = |goal: GoalEnd| s.field.distance_to_area(goal, center);
-    if reach(s.own.opposite()) <= ROBOT_RADIUS {
+    if in_area(s.field, s.own.opposite(), center) != InArea::Out {
         Touch::InOpponentArea
-    } else if s.duty != Duty::Keeper && reach(s.own) <= -ROBOT_RADIUS {
+    } else if s.duty != Duty::Keeper && in_area(s.field, s.own, center) == InArea::Entirely {
         Touch::InOwnArea
     } else {
         Touch::Allowed
@@ -223,14 +223,14 @@ impl List {
     fn own_area(&mut self, s: &Situation) {
         if s.duty != Duty::Keeper {
             for shape in s.field.defence_area(s.own) {
-                self.add(Why::OwnArea, shape);
+                self.add(Why::OwnArea, shape.grown(s.field.line_width * 0.5));
             }
         }
     }
 
     fn opponent_area(&mut self, s: &Situation, by: f32) {
         for shape in s.field.defence_area(s.own.opposite()) {
-            self.add(Why::OpponentArea, shape.grown(by));
+            self.add(Why::OpponentArea, shape.grown(by + s.field.line_width * 0.5));
         }
     }
 

@@ -1,7 +1,7 @@
 //! Was that an offence? The predicates an automatic referee needs, each with its rule (2026); none of them remembers anything.
 //!
-//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m; those to lines from their
-//! outer edges where a ball has to cross them, else from their centres. Field frame, m, m/s.
+//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
+//! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector};
 
@@ -155,7 +155,8 @@ pub fn too_close_to_ball(robot: Point<Field>, ball: Point<Field>) -> bool {
 
 /// Too close to the opponents' defence area on STOP or at a free kick.
 pub fn too_close_to_area(field: &FieldSpec, opponents: GoalEnd, robot: Point<Field>) -> bool {
-    field.distance_to_area(opponents, robot) - ROBOT_RADIUS < OPPONENT_AREA_DISTANCE
+    let edge = field.line_width * 0.5;
+    field.distance_to_area(opponents, robot) - edge - ROBOT_RADIUS < OPPONENT_AREA_DISTANCE
 }
 
 /// In the way of the opponents' placement: within 0.5 m of the line from the ball to its target.

@@ -88,6 +88,14 @@ pub const ROBOT_RADIUS: f32 = 0.09;
 pub const ROBOT_HEIGHT: f32 = 0.15;
 /// The ball's radius, m: a golf ball of 43 mm [playing environment].
 pub const BALL_RADIUS: f32 = 0.0215;
+/// The ball's mass, kg [playing environment].
+pub const BALL_MASS: f32 = 0.046;
+/// A robot covers at most this share of the ball, seen from above [robots].
+pub const BALL_COVERED: f32 = 0.2;
+/// Teams have this long to take their places for a kick-off or penalty, s (the game controller's setting).
+pub const PREPARE_TIME: f32 = 10.0;
+/// Numbers that a robot can have: 0 to 15 [robots].
+pub const ROBOT_IDS: u32 = 16;
 /// Robots of a team on any field of these leagues, at most.
 pub const ROBOTS_MAX: usize = 11;
 

@@ -38,7 +38,7 @@ fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
 #[test]
 fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_out_of_it() {
     let field = League::DivisionB.field();
-    // The area begins at x = 3.5; with the body's 0.09: 3.21 and 3.41.
+    // The area begins at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
     let at = |phase, x| why(&field, phase, Duty::Player, (x, 0.0));
     for phase in [Phase::Stop, Phase::FreeKick(Side::Ours), Phase::FreeKick(Side::Theirs)] {
         assert_eq!((at(phase, 3.22), at(phase, 3.20)), (Some(Why::OpponentArea), None), "{phase:?}");
@@ -63,7 +63,7 @@ fn only_the_keeper_is_in_its_own_area() {
 #[test]
 fn the_round_area_of_2013_lets_robots_cut_its_corner() {
     let field = League::Ssl2013.field();
-    // 0.09 m beyond the curve at 45°: 0.89 / √2 = 0.629 from its centre at (−3, 0.175).
+    // 0.095 m beyond the curve at 45°: 0.895 / √2 = 0.633 from its centre at (−3, 0.175).
     let at = |d: f32| why(&field, Phase::Run, Duty::Player, (-3.0 + d, 0.175 + d));
     assert_eq!((at(0.62), at(0.64)), (Some(Why::OwnArea), None));
 }
@@ -229,11 +229,44 @@ fn the_ball_is_touched_by_who_may() {
             assert_eq!(touch(phase, duty, 0.0), expected, "{phase:?} {duty:?}");
         }
     }
-    // Areas begin at 3.5: partly in theirs from 3.41, entirely in ours from −3.59.
+    // Areas begin at 3.495: partly in theirs from 3.405, entirely in ours from −3.585.
     assert_eq!(touch(Phase::Run, Duty::Player, 3.42), Touch::InOpponentArea);
     assert_eq!(touch(Phase::Run, Duty::Player, 3.40), Touch::Allowed);
     assert_eq!(touch(Phase::Run, Duty::Player, -3.60), Touch::InOwnArea);
     assert_eq!(touch(Phase::Run, Duty::Player, -3.58), Touch::Allowed);
     assert_eq!(touch(Phase::Run, Duty::Keeper, -4.0), Touch::Allowed);
     assert_eq!(touch(Phase::BallPlacement(Side::Ours), Duty::Taker, 4.0), Touch::Allowed);
+}
+
+#[test]
+fn what_keep_out_forbids_is_what_the_referee_whistles() {
+    use crate::legality::{InArea, in_area, interferes, too_close_to_area, too_close_to_ball};
+    let field = &League::DivisionB.field();
+    let (ball, target) = (Point::new(1.03, -0.52), Point::new(-2.01, 1.47));
+    let grid = (-120..=120).flat_map(|i| (-80..=80).map(move |j| (i as f32 * 0.037, j as f32 * 0.037)));
+    let mut offences = 0;
+    for (x, y) in grid {
+        let at = Point::new(x, y);
+        let found = |phase, why| {
+            let (own, duty) = (GoalEnd::Negative, Duty::Player);
+            let (ball, placement) = (Some(ball), Some(target));
+            let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: false };
+            let list = keep_out(&s).forbidden;
+            list.iter().any(|region| region.why == why && region.shape.distance_to(at) < ROBOT_RADIUS)
+        };
+        let both = [
+            (found(Phase::Stop, Why::BallDistance), too_close_to_ball(at, ball)),
+            (found(Phase::Stop, Why::OpponentArea), too_close_to_area(field, GoalEnd::Positive, at)),
+            (found(Phase::BallPlacement(Side::Theirs), Why::Stadium), interferes(at, ball, target)),
+            (found(Phase::Run, Why::OwnArea), in_area(field, GoalEnd::Negative, at) != InArea::Out),
+        ];
+        for (forbidden, whistled) in both {
+            // Corners of grown boxes stay corners: more is forbidden there than is whistled, never less.
+            assert!(forbidden || !whistled, "{at:?}: {both:?}");
+            offences += u32::from(whistled);
+        }
+        assert_eq!(both[0].0, both[0].1, "{at:?}");
+        assert_eq!(both[2].0, both[2].1, "{at:?}");
+    }
+    assert!(offences > 1000);
 }
