@@ -47,7 +47,8 @@ pub fn ball_is_out(field: &FieldSpec, ball: Point<Field>) -> bool {
 
 /// The line that the ball crossed between two sightings, the second of which is out; `None` while it is in.
 ///
-/// A ball first seen outside (`before` out too) is taken to have come over the nearest line, straight.
+/// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line, straight: at most a
+/// ball's radius off.
 pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> Option<Crossing> {
     if !ball_is_out(field, now) {
         return None;

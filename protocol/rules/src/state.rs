@@ -186,6 +186,8 @@ pub struct GameState {
     ball_at: Option<Point<Field>>,
     penalty_in_play: bool,
     later: Option<(Phase<Colour>, u64)>,
+    /// Nobody starts off before, µs: a standstill was left without a STOP.
+    still_until: u64,
 }
 
 impl Default for GameState {
@@ -198,7 +200,8 @@ impl GameState {
     /// Nothing heard yet: nobody moves.
     pub const fn new() -> Self {
         let phase = Phase::Halt;
-        Self { phase, command: None, since: 0, ball_at: None, penalty_in_play: false, later: None }
+        let (ball_at, later) = (None, None);
+        Self { phase, command: None, since: 0, ball_at, penalty_in_play: false, later, still_until: 0 }
     }
 
     /// The phase now.
@@ -233,14 +236,19 @@ impl GameState {
         if again {
             return self.repeat(command, at, ball);
         }
-        let Some(to) = command.leads_to(from) else {
+        if matches!(command, Command::Halt | Command::Stop | Command::Timeout(_)) {
+            self.still_until = 0;
+        } else if matches!(from, Phase::Halt | Phase::Timeout(_)) && !first {
+            self.still_until = at.saturating_add(micros(GRACE));
+        }
+        // NORMAL_START starts what is prepared, even where that is still read as STOP.
+        let prepared = self.later.map_or(from, |(phase, _)| phase);
+        let Some(to) = command.leads_to(prepared) else {
             let longest = micros(if KICKOFF_TIME > PENALTY_TIME { KICKOFF_TIME } else { PENALTY_TIME });
             return self.stop_first(Phase::Run, at, at.saturating_add(longest));
         };
-        let stands = matches!(to, Phase::Halt | Phase::Timeout(_) | Phase::Stop);
-        let stood = matches!(from, Phase::Halt | Phase::Timeout(_));
-        if stood && !stands && !first {
-            return self.stop_first(to, at, at.saturating_add(micros(GRACE)));
+        if at < self.still_until {
+            return self.stop_first(to, at, self.still_until);
         }
         self.enter(to, at, ball);
         if first || follows(from, to) { Heard::Followed } else { Heard::OffGraph { from } }

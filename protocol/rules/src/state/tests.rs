@@ -196,6 +196,16 @@ fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
 }
 
 #[test]
+fn a_kick_off_prepared_out_of_halt_is_still_a_kick_off() {
+    let mut state = after(&[Command::Stop, Command::Halt]).0;
+    let heard = state.hear(Command::PrepareKickoff(B), 10 * S, None);
+    assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::PrepareKickoff(B), at: 12 * S });
+    state.hear(Command::NormalStart, 11 * S, None);
+    assert_eq!((state.phase(), state.tick(12 * S, None, &limits())), (Phase::Stop, Ticked::Released));
+    assert_eq!(state.phase(), Phase::Kickoff(B));
+}
+
+#[test]
 fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     let mut state = GameState::new();
     assert_eq!(state.phase(), Phase::Halt);
@@ -256,4 +266,39 @@ fn stages_are_played_or_breaks_or_before() {
     let breaks = Stage::ALL.iter().filter(|stage| stage.is_break()).count();
     assert_eq!((played, breaks, Stage::ALL.len()), (5, 5, 14));
     assert!(Stage::ALL.is_sorted());
+}
+
+#[test]
+fn whatever_is_said_nobody_starts_from_a_standstill_within_two_seconds_without_stop() {
+    let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut random = move |below: u64| {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        bits % below
+    };
+    let (all, mut state, mut now) = (commands(), GameState::new(), 0);
+    // The time of the first command that would have us move out of HALT or a time-out.
+    let (mut stands, mut called) = (false, None);
+    let (mut held, mut moved) = (0, 0);
+    for _ in 0..100_000 {
+        now += random(700_000);
+        state.tick(now, at(random(100) as f32 * 0.001, 0.0), &limits());
+        if random(3) == 0 {
+            let command = all[random(all.len() as u64) as usize];
+            state.hear(command, now, at(0.0, 0.0));
+            match command {
+                Command::Halt | Command::Timeout(_) => (stands, called) = (true, None),
+                Command::Stop => stands = false,
+                _ => called = called.or(Some(now)),
+            }
+        }
+        let may_move = called.is_some_and(|since| now >= since + 2 * S);
+        if stands && !may_move {
+            assert!(freedom(state.phase()) <= 1, "{state:?} at {now}");
+            held += 1;
+        }
+        moved += u32::from(freedom(state.phase()) > 1);
+    }
+    assert!(held > 10_000 && moved > 10_000, "{held} {moved}");
 }
