@@ -8,6 +8,7 @@
 pub mod config;
 pub mod geometry;
 pub mod radio;
+pub mod recording;
 pub mod referee;
 pub mod strategy;
 pub mod trace;

@@ -1,0 +1,249 @@
+//! With what did the hosts of a recording begin, so that they can be built again? The header of a trace, as JSON (DESIGN §7).
+//!
+//! A team's key stands in no file that is handed on: the header says only that there was one ([`HostHeader::keyed`]), and whoever
+//! builds the host again brings it.
+
+use std::fmt;
+
+use geometry::GoalEnd;
+use protocol::frame::TeamKey;
+use protocol::{Duration, Instant, RobotId, TeamId};
+use rules::{Colour, League};
+use serde::{Deserialize, Serialize};
+
+use crate::radio::{RadioSettings, Relay};
+
+/// What a trace begins with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordingHeader {
+    /// The program's version.
+    pub version: String,
+    /// The commit it was built from.
+    pub commit: String,
+    /// Where a simulated match had its chance from; none on a real field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// The league's name.
+    pub league: String,
+    /// Unix time of the hosts' instant 0, µs, where it is known: what their clock shows is since then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_unix_us: Option<u64>,
+    /// The hosts, by the number that records have.
+    pub hosts: Vec<HostHeader>,
+}
+
+/// With what one host began.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HostHeader {
+    /// `blue` or `yellow`.
+    pub colour: String,
+    /// Its goal until the referee says: `yellow` is the one at −x, `cyan` the one at +x, as in problems.
+    pub defending: String,
+    /// Its keeper until the referee says.
+    pub keeper: u8,
+    /// Ball speed over speed ordered, by robot.
+    pub kick: Vec<f32>,
+    /// When it began, on its own clock, µs.
+    #[serde(default)]
+    pub began_us: u64,
+    /// The team's number on the radio.
+    pub team: u8,
+    /// Which life of the host it was.
+    pub epoch: u32,
+    /// Who passes beacons on: `no`, `to-each` or `to-all`.
+    pub relay: String,
+    /// How long a packet is on its way, µs.
+    pub way_us: u64,
+    /// Were frames sealed with a key other than zeros?
+    #[serde(default)]
+    pub keyed: bool,
+}
+
+/// Why a header builds no host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HeaderError {
+    /// What is wrong, with its place.
+    pub words: String,
+}
+
+impl fmt::Display for HeaderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the recording's header: {}", self.words)
+    }
+}
+
+impl std::error::Error for HeaderError {}
+
+fn wrong(words: impl Into<String>) -> HeaderError {
+    HeaderError { words: words.into() }
+}
+
+impl RecordingHeader {
+    /// As a trace begins with it.
+    pub fn to_json(&self) -> String {
+        // Strings, numbers and lists of them: nothing that JSON cannot say.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// From a trace's first words.
+    pub fn from_json(text: &str) -> Result<Self, HeaderError> {
+        serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
+    }
+
+    /// The league itself.
+    pub fn league(&self) -> Result<League, HeaderError> {
+        [League::Ssl2013, League::DivisionB, League::DivisionA]
+            .into_iter()
+            .find(|league| league.name() == self.league)
+            .ok_or_else(|| {
+                wrong(format!("league: `{}` is none; ssl-2013, division-b or division-a", self.league))
+            })
+    }
+}
+
+const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
+
+impl HostHeader {
+    /// Of a host that begins at `began`.
+    pub fn new(
+        (colour, keeper, defending): (Colour, RobotId, GoalEnd),
+        kick: &[f32; RobotId::COUNT],
+        radio: &RadioSettings,
+        began: Instant,
+    ) -> Self {
+        let relay = RELAYS.iter().find(|(_, relay)| *relay == radio.relay).map_or("no", |(word, _)| word);
+        Self {
+            colour: colour.word().to_owned(),
+            defending: defending.word().to_owned(),
+            keeper: keeper.number(),
+            kick: kick.to_vec(),
+            began_us: began.0,
+            team: radio.team.0,
+            epoch: radio.epoch,
+            relay: relay.to_owned(),
+            way_us: radio.way.0,
+            keyed: radio.key != TeamKey::ZERO,
+        }
+    }
+
+    /// Its colour.
+    pub fn colour(&self) -> Result<Colour, HeaderError> {
+        [Colour::Blue, Colour::Yellow]
+            .into_iter()
+            .find(|colour| colour.word() == self.colour)
+            .ok_or_else(|| wrong(format!("colour: `{}` is none; blue or yellow", self.colour)))
+    }
+
+    /// The goal it began to defend.
+    pub fn defending(&self) -> Result<GoalEnd, HeaderError> {
+        GoalEnd::from_word(&self.defending).ok_or_else(|| {
+            wrong(format!("defending: `{}` is no goal; yellow (−x) or cyan (+x)", self.defending))
+        })
+    }
+
+    /// Its keeper.
+    pub fn keeper(&self) -> Result<RobotId, HeaderError> {
+        RobotId::new(self.keeper)
+            .ok_or_else(|| wrong(format!("keeper: {} is no robot; ids are 0 to 15", self.keeper)))
+    }
+
+    /// Ball speed over speed ordered, by robot.
+    pub fn kick(&self) -> Result<[f32; RobotId::COUNT], HeaderError> {
+        let good = self.kick.iter().all(|factor| (0.5..=2.0).contains(factor));
+        <[f32; RobotId::COUNT]>::try_from(&self.kick[..])
+            .ok()
+            .filter(|_| good)
+            .ok_or_else(|| wrong(format!("kick: {} factors of 0.5 to 2, one for each robot", RobotId::COUNT)))
+    }
+
+    /// When it began.
+    pub fn began(&self) -> Instant {
+        Instant(self.began_us)
+    }
+
+    /// Its radio, sealed with that key.
+    pub fn radio(&self, key: TeamKey) -> Result<RadioSettings, HeaderError> {
+        let relay = RELAYS.iter().find(|(word, _)| *word == self.relay);
+        let (_, relay) =
+            relay.ok_or_else(|| wrong(format!("relay: `{}`; no, to-each or to-all", self.relay)))?;
+        Ok(RadioSettings {
+            team: TeamId(self.team),
+            key,
+            epoch: self.epoch,
+            relay: *relay,
+            way: Duration(self.way_us),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header() -> RecordingHeader {
+        let mut kick = [1.0; RobotId::COUNT];
+        kick[3] = 1.06;
+        let radio = RadioSettings {
+            key: TeamKey([7; 16]),
+            relay: Relay::ToEach,
+            ..RadioSettings::new(TeamId(2), 1_795_000_000)
+        };
+        let who = (Colour::Blue, RobotId::new(0).unwrap(), GoalEnd::Positive);
+        RecordingHeader {
+            version: "0.1.0".to_owned(),
+            commit: "unknown".to_owned(),
+            seed: Some(7),
+            league: "division-b".to_owned(),
+            zero_unix_us: None,
+            hosts: vec![HostHeader::new(who, &kick, &radio, Instant(25))],
+        }
+    }
+
+    #[test]
+    fn what_a_host_began_with_is_read_again_from_the_words() {
+        let written = header();
+        let read = RecordingHeader::from_json(&written.to_json()).unwrap();
+        assert_eq!(read, written);
+        assert_eq!(read.league().unwrap(), League::DivisionB);
+        let host = &read.hosts[0];
+        assert_eq!((host.colour().unwrap(), host.defending().unwrap()), (Colour::Blue, GoalEnd::Positive));
+        assert_eq!(
+            (host.keeper().unwrap(), host.kick().unwrap()[3], host.began()),
+            (RobotId::new(0).unwrap(), 1.06, Instant(25))
+        );
+        let radio = host.radio(TeamKey([7; 16])).unwrap();
+        assert_eq!((radio.team, radio.epoch, radio.relay), (TeamId(2), 1_795_000_000, Relay::ToEach));
+        assert_eq!(radio.way, Duration::millis(3));
+    }
+
+    #[test]
+    fn a_key_is_never_written_down_but_that_there_was_one_is() {
+        let written = header();
+        assert!(written.hosts[0].keyed);
+        assert!(!written.to_json().contains("7,7,7"), "{}", written.to_json());
+    }
+
+    #[test]
+    fn every_fault_of_a_header_names_its_place() {
+        let faulty = |change: fn(&mut HostHeader)| {
+            let mut host = header().hosts.remove(0);
+            change(&mut host);
+            host
+        };
+        assert!(
+            faulty(|h| h.colour = "red".into()).colour().unwrap_err().to_string().contains("blue or yellow")
+        );
+        assert!(
+            faulty(|h| h.defending = "blue".into()).defending().unwrap_err().to_string().contains("cyan")
+        );
+        assert!(faulty(|h| h.keeper = 16).keeper().unwrap_err().to_string().contains("0 to 15"));
+        assert!(faulty(|h| h.kick.truncate(15)).kick().unwrap_err().to_string().contains("16"));
+        assert!(faulty(|h| h.kick[0] = f32::NAN).kick().unwrap_err().to_string().contains("0.5 to 2"));
+        assert!(
+            faulty(|h| h.relay = "x".into()).radio(TeamKey::ZERO).unwrap_err().to_string().contains("to-all")
+        );
+        let other = RecordingHeader { league: "four-legged".into(), ..header() };
+        assert!(other.league().unwrap_err().to_string().contains("division-b"));
+        assert!(RecordingHeader::from_json("{\"version\":1}").unwrap_err().to_string().contains("line 1"));
+    }
+}
