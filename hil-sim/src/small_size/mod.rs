@@ -16,6 +16,7 @@ mod mouth;
 mod parameters;
 mod pitch;
 pub mod quirks;
+pub mod referee;
 mod robot;
 mod senses;
 mod surface;

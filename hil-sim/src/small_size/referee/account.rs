@@ -1,0 +1,160 @@
+//! What has each team to its account? Goals, fouls, cards, placements, time-outs (rules: sanctions, game structure).
+
+use protocol::{Instant, RobotId};
+use rules::{Colour, limits};
+
+use super::event::Event;
+use super::settings::TeamSettings;
+use super::{micros, observation::Who};
+
+/// One team's account.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// Its name on the wire.
+    pub name: String,
+    /// Its keeper's shell number.
+    pub keeper: RobotId,
+    /// Goals.
+    pub score: u32,
+    /// Fouls that count towards cards, oldest first.
+    pub(super) fouls: Vec<Event>,
+    /// Playing time left of each active yellow card, µs.
+    pub yellow_cards: Vec<i64>,
+    /// Yellow cards ever given.
+    pub yellow_cards_given: u32,
+    /// Red cards.
+    pub red_cards: u32,
+    /// Does it place the ball at all?
+    pub can_place_ball: bool,
+    /// Failed placements, less the successful ones.
+    pub placement_failures: u32,
+    /// It failed too often to place again in this half.
+    pub placement_barred: bool,
+    /// Time-outs it may still take.
+    pub timeouts: u32,
+    /// Time it has for them, µs.
+    pub timeout_left: i64,
+    pub(super) timeout_wanted: Option<i64>,
+    /// When the last yellow card was given.
+    pub(super) carded: Option<Instant>,
+    /// Robots that were taken off for cards, in this order.
+    pub(super) taken_off: Vec<RobotId>,
+    /// Its last robot that committed a foul.
+    pub(super) last_offender: Option<RobotId>,
+}
+
+impl Account {
+    pub(super) fn new(settings: &TeamSettings) -> Self {
+        Self {
+            name: settings.name.clone(),
+            keeper: settings.keeper,
+            score: 0,
+            fouls: Vec::new(),
+            yellow_cards: Vec::new(),
+            yellow_cards_given: 0,
+            red_cards: 0,
+            can_place_ball: settings.can_place_ball,
+            placement_failures: 0,
+            placement_barred: false,
+            timeouts: limits::TIMEOUTS,
+            timeout_left: micros(limits::TIMEOUT_TIME),
+            timeout_wanted: None,
+            carded: None,
+            taken_off: Vec::new(),
+            last_offender: None,
+        }
+    }
+
+    /// Fouls that count towards cards.
+    pub fn foul_count(&self) -> u32 {
+        self.fouls.len() as u32
+    }
+
+    /// Robots it may have now.
+    pub fn allowed(&self, most: u32) -> u32 {
+        most.saturating_sub(self.yellow_cards.len() as u32 + self.red_cards)
+    }
+
+    /// May it place the ball now?
+    pub fn places(&self) -> bool {
+        self.can_place_ball && !self.placement_barred
+    }
+
+    /// A yellow card; false where it must be a red one.
+    pub(super) fn show_yellow(&mut self, now: Instant) -> bool {
+        if self.yellow_cards.len() as u32 >= limits::YELLOW_CARDS_MAX {
+            return false;
+        }
+        self.yellow_cards.push(micros(limits::YELLOW_CARD_TIME));
+        self.yellow_cards_given += 1;
+        self.carded = Some(now);
+        true
+    }
+
+    pub(super) fn show_red(&mut self, now: Instant) {
+        self.red_cards += 1;
+        self.carded = Some(now);
+    }
+
+    /// Playing time passes for its cards.
+    pub(super) fn play(&mut self, us: i64) {
+        for left in &mut self.yellow_cards {
+            *left -= us;
+        }
+        self.yellow_cards.retain(|left| *left > 0);
+    }
+
+    pub(super) fn placed(&mut self, succeeded: bool) {
+        if succeeded {
+            self.placement_failures = self.placement_failures.saturating_sub(1);
+        } else {
+            self.placement_failures += 1;
+            self.placement_barred |= self.placement_failures >= limits::PLACEMENT_FAILURES_MAX;
+        }
+    }
+
+    pub(super) fn begin_half(&mut self) {
+        self.placement_failures = 0;
+        self.placement_barred = false;
+    }
+
+    /// The last foul after which the game went on.
+    pub(super) fn last_non_stopping_foul(&self) -> Option<&Event> {
+        self.fouls.iter().rev().find(|foul| foul.what.kind().is_non_stopping_foul())
+    }
+}
+
+/// Both teams' accounts.
+#[derive(Clone, Debug)]
+pub struct Accounts {
+    /// Yellow's.
+    pub yellow: Account,
+    /// Blue's.
+    pub blue: Account,
+}
+
+impl Accounts {
+    /// One team's.
+    pub fn of(&self, colour: Colour) -> &Account {
+        match colour {
+            Colour::Yellow => &self.yellow,
+            Colour::Blue => &self.blue,
+        }
+    }
+
+    pub(super) fn of_mut(&mut self, colour: Colour) -> &mut Account {
+        match colour {
+            Colour::Yellow => &mut self.yellow,
+            Colour::Blue => &mut self.blue,
+        }
+    }
+
+    pub(super) fn both_mut(&mut self) -> [&mut Account; 2] {
+        [&mut self.yellow, &mut self.blue]
+    }
+
+    /// Is that robot its team's keeper?
+    pub fn is_keeper(&self, who: Who) -> bool {
+        self.of(who.colour).keeper == who.id
+    }
+}

@@ -1,0 +1,400 @@
+//! What happened, who did it, and what follows? The rules' table of game events, with the evidence of each.
+//!
+//! Rules 2026, appendix "game events". m, m/s, s, field frame.
+
+use geometry::{Field, Point};
+use protocol::{Instant, RobotId};
+use rules::Colour;
+
+use super::observation::Who;
+
+/// Something the referee noticed or decided.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// When, µs of the simulation.
+    pub at: Instant,
+    /// Whose doing it was; `None` where nobody's or both teams'.
+    pub by: Option<Colour>,
+    /// The robot that did it.
+    pub robot: Option<RobotId>,
+    /// Where it happened.
+    pub place: Point<Field>,
+    /// What, with its evidence.
+    pub what: What,
+}
+
+/// A ball in a goal; [`Event::by`] is the team that scores.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// Who touched the ball last, of either team.
+    pub kicker: Option<Who>,
+    /// Where the ball was then.
+    pub from: Point<Field>,
+    /// How high it was at most since the scoring team's last touch, m.
+    pub max_height: f32,
+    /// When the scoring team touched it last.
+    pub last_touch: Option<Instant>,
+    /// Robots the scoring team had on the field.
+    pub robots: u32,
+}
+
+/// Why a ball in the goal is no goal (rules: scoring goals).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Invalid {
+    /// The scoring team had more robots than it may.
+    TooManyRobots,
+    /// The ball was above 0.15 m after the scoring team's last touch.
+    TooHigh,
+    /// The scoring team had committed a foul that does not stop the game less than 2 s before.
+    RecentFoul(Kind),
+}
+
+/// Why a penalty brought no goal (rules: penalty kick).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PenaltyEnd {
+    /// The ball crossed a line elsewhere.
+    Out,
+    /// The keeper turned it by 90° or more.
+    Saved,
+    /// The ball moved away from the goal.
+    MovedBack,
+    /// The shooting team broke a rule.
+    Foul(Kind),
+    /// 10 s were over.
+    TimeUp,
+}
+
+impl PenaltyEnd {
+    /// In words, for the wire.
+    pub fn words(self) -> String {
+        match self {
+            Self::Out => "ball left the field".into(),
+            Self::Saved => "saved by the keeper".into(),
+            Self::MovedBack => "ball moved away from the goal".into(),
+            Self::Foul(kind) => format!("foul of the shooting team: {}", kind.word()),
+            Self::TimeUp => "time is up".into(),
+        }
+    }
+}
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $kind:ident $({ $($(#[$fdoc:meta])* $field:ident: $type:ty),+ $(,)? })? = $word:literal),+ $(,)?) => {
+        /// What happened, with its evidence.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum What { $($(#[$doc])* $kind $({ $($(#[$fdoc])* $field: $type),+ })?),+ }
+
+        /// What happened, without the evidence: to count by.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Kind { $($(#[$doc])* $kind),+ }
+
+        impl Kind {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$kind),+];
+
+            /// The league's name of it in small letters, as reports have it; ours where the league has none.
+            pub const fn word(self) -> &'static str {
+                match self { $(Self::$kind => $word),+ }
+            }
+        }
+
+        impl What {
+            /// Which kind it is.
+            pub const fn kind(&self) -> Kind {
+                match self { $(Self::$kind { .. } => Kind::$kind),+ }
+            }
+        }
+    };
+}
+
+kinds! {
+    /// The ball crossed a touch line with all of itself.
+    LeftTouchLine = "ball_left_field_touch_line",
+    /// The ball crossed a goal line outside the goal.
+    LeftGoalLine = "ball_left_field_goal_line",
+    /// The same, from the own half and untouched by anybody else (division B).
+    AimlessKick {
+        /// Where it was kicked.
+        from: Point<Field>,
+    } = "aimless_kick",
+    /// The ball is in a goal; not judged yet.
+    PossibleGoal {
+        /// How it came there.
+        shot: Shot,
+    } = "possible_goal",
+    /// It counts.
+    Goal {
+        /// How it came there; `None` where it is awarded for a foul in a penalty.
+        shot: Option<Shot>,
+    } = "goal",
+    /// It does not count.
+    InvalidGoal {
+        /// How it came there.
+        shot: Shot,
+        /// Why.
+        reason: Invalid,
+    } = "invalid_goal",
+    /// The ball stayed where it was.
+    NoProgress {
+        /// How long, s.
+        duration: f32,
+    } = "no_progress_in_game",
+    /// The taker of a kick-off or free kick touched the ball again.
+    DoubleTouch = "attacker_double_touched_ball",
+    /// The ball stayed in a defence area; by its owner.
+    KeeperHeldBall {
+        /// How long, s.
+        duration: f32,
+    } = "keeper_held_ball",
+    /// The ball was kicked over the wall around the carpet; the place is where it was kicked.
+    BoundaryCrossing = "boundary_crossing",
+    /// A ball over the speed limit.
+    BallTooFast {
+        /// In space, m/s.
+        speed: f32,
+        /// Did it fly?
+        chipped: bool,
+    } = "bot_kicked_ball_too_fast",
+    /// Dribbled further than allowed; the place is where the contact began.
+    DribbledTooFar {
+        /// Where it was over the limit.
+        end: Point<Field>,
+    } = "bot_dribbled_ball_too_far",
+    /// A robot within 0.2 m of the opponents' defence area in stop or at a free kick; the place is the robot's.
+    AttackerTooClose {
+        /// From the area, m.
+        distance: f32,
+        /// Where the ball was.
+        ball: Point<Field>,
+    } = "attacker_too_close_to_defense_area",
+    /// A robot partly in the opponents' defence area touched the ball.
+    AttackerTouchedBall {
+        /// How deep it was in, m.
+        depth: f32,
+    } = "attacker_touched_ball_in_defense_area",
+    /// A robot other than the keeper touched the ball when entirely in its own defence area.
+    DefenderInArea {
+        /// How deep it was in, m.
+        depth: f32,
+    } = "defender_in_defense_area",
+    /// A robot within 0.5 m of the ball at the opponents' kick-off or free kick.
+    DefenderTooClose {
+        /// From the ball, m.
+        distance: f32,
+    } = "defender_too_close_to_kick_point",
+    /// A robot faster than 1.5 m/s in stop.
+    TooFastInStop {
+        /// m/s.
+        speed: f32,
+    } = "bot_too_fast_in_stop",
+    /// A robot stood too near the line from ball to target in a placement of the other team.
+    InterferedPlacement = "bot_interfered_placement",
+    /// Two robots of different teams ran into each other; the faster one is at fault.
+    CrashUnique {
+        /// The other robot's shell number.
+        victim: RobotId,
+        /// Difference of the velocities along the line between the two, m/s.
+        crash_speed: f32,
+        /// Difference of the two speeds, m/s.
+        speed_difference: f32,
+        /// Between the difference of the velocities and the line between the two, rad.
+        angle: f32,
+    } = "bot_crash_unique",
+    /// Two robots of different teams ran into each other; both are at fault.
+    CrashDrawn {
+        /// Yellow's robot.
+        yellow: RobotId,
+        /// Blue's robot.
+        blue: RobotId,
+        /// Difference of the velocities along the line between the two, m/s.
+        crash_speed: f32,
+        /// Difference of the two speeds, m/s.
+        speed_difference: f32,
+        /// Between the difference of the velocities and the line between the two, rad.
+        angle: f32,
+    } = "bot_crash_drawn",
+    /// A robot pushed an opponent.
+    Pushed {
+        /// The other robot's shell number.
+        victim: RobotId,
+        /// How far, m.
+        distance: f32,
+    } = "bot_pushed_bot",
+    /// A team's robots closed in the ball.
+    HeldBall {
+        /// How long, s.
+        duration: f32,
+    } = "bot_held_ball_deliberately",
+    /// More robots than allowed, for longer than a team has to take one off.
+    TooManyRobots {
+        /// How many it may have.
+        allowed: u32,
+        /// How many it had.
+        on_field: u32,
+        /// Where the ball was.
+        ball: Point<Field>,
+    } = "too_many_robots",
+    /// A penalty brought no goal.
+    PenaltyFailed {
+        /// Why.
+        reason: PenaltyEnd,
+    } = "penalty_kick_failed",
+    /// The ball is where it should be.
+    PlacementSucceeded {
+        /// s.
+        took: f32,
+        /// Ball to target, m.
+        precision: f32,
+        /// From where it was to the target, m.
+        distance: f32,
+    } = "placement_succeeded",
+    /// It is not, and time is up.
+    PlacementFailed {
+        /// Ball to target, m.
+        remaining: f32,
+        /// The placing team's nearest robot to the target, m; negative without one.
+        nearest: f32,
+    } = "placement_failed",
+    /// Every third foul: a yellow card.
+    MultipleFouls {
+        /// The three.
+        caused_by: Vec<Event>,
+    } = "multiple_fouls",
+    /// A third active yellow card: it turns red.
+    MultipleCards = "multiple_cards",
+    /// A robot moved more than 2 s after a halt (ours: the league's automatic referees do not look).
+    MovedInHalt {
+        /// m/s.
+        speed: f32,
+    } = "bot_moved_in_halt",
+    /// A robot within 0.5 m of the ball in stop after 2 s (ours: the rules leave it to the human referee).
+    TooCloseInStop {
+        /// From the ball, m.
+        distance: f32,
+    } = "bot_too_close_to_ball_in_stop",
+}
+
+/// What the game goes on with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restart {
+    /// From the centre.
+    Kickoff(Colour),
+    /// From the penalty mark.
+    Penalty(Colour),
+    /// From the place of the event, or the nearest valid one.
+    FreeKick(Colour),
+    /// For both.
+    ForceStart,
+}
+
+impl Restart {
+    /// Whose it is.
+    pub const fn team(self) -> Option<Colour> {
+        match self {
+            Self::Kickoff(team) | Self::Penalty(team) | Self::FreeKick(team) => Some(team),
+            Self::ForceStart => None,
+        }
+    }
+
+    /// The ball lies on a mark that people put it on.
+    pub const fn is_set_by_hand(self) -> bool {
+        matches!(self, Self::Kickoff(_) | Self::Penalty(_))
+    }
+}
+
+impl Kind {
+    /// Does it raise the foul counter, and is so counted towards a yellow card? ([`Kind::InterferedPlacement`] only the
+    /// first time in a placement.)
+    pub const fn is_foul(self) -> bool {
+        matches!(
+            self,
+            Self::AttackerTooClose
+                | Self::Pushed
+                | Self::HeldBall
+                | Self::BoundaryCrossing
+                | Self::KeeperHeldBall
+                | Self::DribbledTooFar
+                | Self::InterferedPlacement
+                | Self::TooFastInStop
+                | Self::DefenderTooClose
+        ) || self.is_non_stopping_foul()
+    }
+
+    /// A foul after which the game goes on.
+    pub const fn is_non_stopping_foul(self) -> bool {
+        matches!(self, Self::AttackerTouchedBall | Self::BallTooFast | Self::CrashUnique | Self::CrashDrawn)
+    }
+
+    /// Something a team did wrong, sanctioned or not: what reports count as fouls.
+    pub const fn is_offence(self) -> bool {
+        self.is_foul()
+            || matches!(
+                self,
+                Self::DoubleTouch
+                    | Self::DefenderInArea
+                    | Self::TooManyRobots
+                    | Self::MovedInHalt
+                    | Self::TooCloseInStop
+            )
+    }
+
+    /// Does it stop a running game?
+    pub const fn stops_the_game(self) -> bool {
+        matches!(
+            self,
+            Self::LeftTouchLine
+                | Self::LeftGoalLine
+                | Self::AimlessKick
+                | Self::AttackerTooClose
+                | Self::DefenderInArea
+                | Self::BoundaryCrossing
+                | Self::KeeperHeldBall
+                | Self::DribbledTooFar
+                | Self::Pushed
+                | Self::HeldBall
+                | Self::DoubleTouch
+                | Self::TooManyRobots
+                | Self::NoProgress
+                | Self::PenaltyFailed
+                | Self::PlacementSucceeded
+                | Self::PlacementFailed
+                | Self::InvalidGoal
+                | Self::Goal
+        )
+    }
+
+    /// In a penalty: a goal where the defenders do it, no goal where the shooting team does.
+    pub const fn decides_a_penalty(self) -> bool {
+        self.is_non_stopping_foul()
+            || matches!(self, Self::BoundaryCrossing | Self::DribbledTooFar | Self::Pushed)
+    }
+
+    /// How the game goes on after it; `None` where it changes nothing.
+    pub const fn restart(self, by: Option<Colour>) -> Option<Restart> {
+        match (self, by) {
+            (Self::NoProgress | Self::TooManyRobots, _) => Some(Restart::ForceStart),
+            (Self::Goal, Some(by)) => Some(Restart::Kickoff(by.other())),
+            (Self::DefenderInArea, Some(by)) => Some(Restart::Penalty(by.other())),
+            (
+                Self::LeftTouchLine
+                | Self::LeftGoalLine
+                | Self::AimlessKick
+                | Self::AttackerTooClose
+                | Self::Pushed
+                | Self::HeldBall
+                | Self::KeeperHeldBall
+                | Self::BoundaryCrossing
+                | Self::DribbledTooFar
+                | Self::DoubleTouch
+                | Self::PenaltyFailed
+                | Self::InvalidGoal,
+                Some(by),
+            ) => Some(Restart::FreeKick(by.other())),
+            _ => None,
+        }
+    }
+
+    /// Did the ball leave the field by it?
+    pub const fn is_ball_out(self) -> bool {
+        matches!(self, Self::LeftTouchLine | Self::LeftGoalLine | Self::AimlessKick | Self::PossibleGoal)
+    }
+}

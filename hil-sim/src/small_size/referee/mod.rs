@@ -1,0 +1,332 @@
+//! Who runs a simulated match, and who sees the fouls? Game controller and automatic referee of the Small Size League in
+//! one value, without sockets (rules 2026, chapters on referee commands, offenses, game structure and sanctions).
+//!
+//! [`InternalReferee::observe`] takes the true state of the world every 1 to 20 ms; [`InternalReferee::poll_packet`] gives
+//! what the league's game controller would send, [`InternalReferee::poll_order`] what people at the field would do:
+//! put the ball down, take robots off. The same observations give the same match: no clock, one seeded stream for the draw.
+//!
+//! ```text
+//! observation ─► watch (one file a question) ─► events ─► judge: fouls, cards, goals, what follows, from where
+//!                                                           │
+//! clock, stages ─► flow: halt, stop, placement, restarts ◄──┘ ─► commands ─► rules::GameState ─► packets
+//! ```
+//! A match goes on whatever the teams do: every phase has a longest time (30 s of placement, then the other team, then a
+//! person; 10 s of patience in stop and preparation; 5 or 10 s for kicks; 10 s for penalties), and robots that break the
+//! rules again and again are taken off by cards.
+
+mod account;
+mod event;
+mod flow;
+mod judge;
+mod look;
+mod metrics;
+mod observation;
+mod people;
+mod scene;
+mod settings;
+mod spots;
+mod stages;
+#[cfg(test)]
+mod tests;
+mod watch;
+mod wire;
+mod wire_event;
+
+use std::collections::VecDeque;
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::Instant;
+use rules::state::{Command, GameState, Heard, Stage};
+use rules::{Colour, FieldSpec, League, Limits, Phase};
+
+pub use account::{Account, Accounts};
+pub use event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+pub use metrics::{FoulCounts, Metrics, TeamMetrics};
+pub use observation::{BallSeen, CrashSeen, Observation, RobotSeen};
+pub use people::WorldOrder;
+pub use settings::{MatchClock, RefereeSettings, TeamSettings};
+
+use crate::rng::Stream;
+use people::People;
+use scene::{GameView, Scene};
+use watch::Watch;
+
+/// The four-legged league is refereed by `hil_sim::Referee`, by other rules.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoRules(pub League);
+
+impl core::fmt::Display for NoRules {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(
+            f,
+            "{} has no referee of the Small Size League; use ssl-2013, division-b or division-a",
+            self.0.name()
+        )
+    }
+}
+
+impl core::error::Error for NoRules {}
+
+/// Runs a match.
+#[derive(Clone, Debug)]
+pub struct InternalReferee {
+    settings: RefereeSettings,
+    field: FieldSpec,
+    limits: Limits,
+    state: GameState,
+    stage: Stage,
+    /// µs; negative when it ran over.
+    stage_left: i64,
+    /// When simulated time ends the match.
+    ends_at: Option<Instant>,
+    shoot_out: stages::ShootOut,
+    command: Command,
+    command_counter: u32,
+    command_at: Instant,
+    /// Time left for placement, kick or penalty, µs.
+    action_left: i64,
+    /// What follows the stop.
+    next: Option<Restart>,
+    /// Where the ball is to lie then.
+    placement: Option<Point<Field>>,
+    /// Which team places where none is in favour.
+    drawn: Option<Colour>,
+    /// Since the ball was last allowed to move.
+    recent: Vec<Event>,
+    accounts: Accounts,
+    blue_on_positive: bool,
+    watch: Watch,
+    people: People,
+    metrics: Metrics,
+    log: Vec<Event>,
+    chance: Stream,
+    now: Instant,
+    begun: bool,
+    ball: BallSeen,
+    ball_seen_at: Instant,
+    ball_at_command: Point<Field>,
+    /// Since when nothing speaks against going on.
+    ready_since: Option<Instant>,
+    packets: VecDeque<ssl::referee::Referee>,
+    next_packet: Instant,
+    off_graph: u32,
+}
+
+impl InternalReferee {
+    /// A referee before the match. Not for the four-legged league.
+    pub fn new(settings: RefereeSettings, seed: u64) -> Result<Self, NoRules> {
+        let limits = settings.league.limits().ok_or(NoRules(settings.league))?;
+        let accounts =
+            Accounts { yellow: Account::new(&settings.yellow), blue: Account::new(&settings.blue) };
+        Ok(Self {
+            field: settings.league.field(),
+            limits,
+            state: GameState::new(),
+            stage: Stage::FirstHalfPre,
+            stage_left: 0,
+            ends_at: None,
+            shoot_out: stages::ShootOut::new(settings.first_kickoff),
+            command: Command::Halt,
+            command_counter: 0,
+            command_at: Instant(0),
+            action_left: 0,
+            next: None,
+            placement: None,
+            drawn: None,
+            recent: Vec::new(),
+            accounts,
+            blue_on_positive: settings.blue_on_positive_half,
+            watch: Watch::default(),
+            people: People::default(),
+            metrics: Metrics::default(),
+            log: Vec::new(),
+            chance: Stream::new(seed, "small-size-referee"),
+            now: Instant(0),
+            begun: false,
+            ball: BallSeen::at(Point::default()),
+            ball_seen_at: Instant(0),
+            ball_at_command: Point::default(),
+            ready_since: None,
+            packets: VecDeque::new(),
+            next_packet: Instant(0),
+            off_graph: 0,
+            settings,
+        })
+    }
+
+    /// The world as it is now; decides what follows from it.
+    pub fn observe(&mut self, seen: &Observation<'_>) {
+        if self.begun && seen.time < self.now {
+            return;
+        }
+        let passed = if self.begun { seen.time.since(self.now).0 } else { 0 };
+        self.now = seen.time;
+        if let Some(ball) = seen.ball.filter(BallSeen::is_finite) {
+            self.ball = ball;
+            self.ball_seen_at = self.now;
+        }
+        if !self.begun {
+            self.begun = true;
+            self.ball_seen_at = self.now;
+            self.begin();
+        }
+        let finite = |robot: &RobotSeen| robot.pose.position.is_finite() && robot.velocity.is_finite();
+        let robots: Vec<RobotSeen> = seen.robots.iter().copied().filter(finite).collect();
+
+        self.pass_time(passed);
+        let (mut watch, mut events) = (std::mem::take(&mut self.watch), Vec::new());
+        let view = self.view();
+        let scene = Scene {
+            now: self.now,
+            ball: self.ball,
+            fastest: seen.fastest.max(self.ball.speed()),
+            robots: &robots,
+            crashes: seen.crashes,
+            game: &view,
+        };
+        watch.look(&scene, &mut events);
+        let touching = robots.iter().any(|robot| robot.touches_ball);
+        self.count_moment(self.ball, touching, watch.last_touch(), passed);
+        self.watch = watch;
+        for event in &events {
+            self.judge(event);
+        }
+        self.keep_numbers(&robots);
+        self.go_on(&robots);
+        self.state.tick(self.now.0, Some(self.ball.position), &self.limits);
+        self.send_when_due();
+    }
+
+    /// What may be done now.
+    pub fn phase(&self) -> Phase<Colour> {
+        self.state.phase()
+    }
+
+    /// The part of the match.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// The command that stands.
+    pub fn command(&self) -> Command {
+        self.command
+    }
+
+    /// Is the match over?
+    pub fn is_over(&self) -> bool {
+        self.stage == Stage::PostGame
+    }
+
+    /// Goals, fouls, cards and the rest of each team.
+    pub fn accounts(&self) -> &Accounts {
+        &self.accounts
+    }
+
+    /// Where the ball is to lie for the next restart.
+    pub fn placement(&self) -> Option<Point<Field>> {
+        self.placement
+    }
+
+    /// What follows the stop.
+    pub fn next(&self) -> Option<Restart> {
+        self.next
+    }
+
+    /// The end at which that team's own goal stands now.
+    pub fn own_end(&self, team: Colour) -> GoalEnd {
+        scene::own_end(self.blue_on_positive, team)
+    }
+
+    /// Everything that happened so far, oldest first.
+    pub fn events(&self) -> &[Event] {
+        &self.log
+    }
+
+    /// What the match report needs.
+    pub fn metrics(&self) -> &Metrics {
+        &self.metrics
+    }
+
+    /// Commands that did not follow the league's state graph; 0 unless something is wrong here.
+    pub fn off_graph(&self) -> u32 {
+        self.off_graph
+    }
+
+    /// The next packet of the game controller, if one is due: one for each command, and about 40 a second.
+    pub fn poll_packet(&mut self) -> Option<ssl::referee::Referee> {
+        self.packets.pop_front()
+    }
+
+    /// What people at the field do next.
+    pub fn poll_order(&mut self) -> Option<WorldOrder> {
+        self.people.orders.pop_front()
+    }
+
+    /// That team wants a time-out of this length at the next stop; false where it has none left.
+    pub fn request_timeout(&mut self, team: Colour, length: protocol::Duration) -> bool {
+        let account = self.accounts.of_mut(team);
+        let granted = account.timeouts > 0 && account.timeout_left > 0 && self.stage != Stage::ShootOut;
+        if granted {
+            account.timeout_wanted = Some(length.0 as i64);
+        }
+        granted
+    }
+
+    /// That team changes its keeper; false while the ball is in play in its own half (rules: choosing keeper id).
+    pub fn set_keeper(&mut self, team: Colour, keeper: protocol::RobotId) -> bool {
+        let own_half = self.ball.position.x() * self.own_end(team).sign() as f32 >= 0.0;
+        let allowed = !(scene::is_running(self.phase()) && own_half);
+        if allowed {
+            self.accounts.of_mut(team).keeper = keeper;
+        }
+        allowed
+    }
+
+    fn view(&self) -> GameView<'_> {
+        GameView {
+            phase: self.phase(),
+            is_break: self.stage.is_break(),
+            since: Instant(self.state.since()),
+            ball_at_command: self.ball_at_command,
+            target: self.placement,
+            field: &self.field,
+            limits: &self.limits,
+            blue_on_positive: self.blue_on_positive,
+            accounts: &self.accounts,
+            judge_manual_fouls: self.settings.judge_manual_fouls,
+        }
+    }
+
+    /// Gives a command.
+    fn give(&mut self, command: Command) {
+        let heard = self.state.hear(command, self.now.0, Some(self.ball.position));
+        if !matches!(heard, Heard::Followed | Heard::Repeated) {
+            self.off_graph += 1;
+        }
+        self.command = command;
+        self.command_counter += 1;
+        self.command_at = self.now;
+        self.ball_at_command = self.ball.position;
+        self.action_left = self.time_for(command);
+        self.ready_since = None;
+        self.people.command_given();
+        self.watch.command_given();
+        let starts = matches!(command, Command::NormalStart | Command::ForceStart | Command::FreeKick(_));
+        if starts {
+            self.play_begins(command);
+            self.recent.clear();
+            self.placement = None;
+            self.next = None;
+            self.drawn = None;
+        } else if command == Command::Stop {
+            self.shoot_out_goes_on();
+        }
+        self.next_packet = self.now;
+        self.send_when_due();
+    }
+}
+
+/// s → µs.
+fn micros(seconds: f32) -> i64 {
+    (f64::from(seconds) * 1e6) as i64
+}

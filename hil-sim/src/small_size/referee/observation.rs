@@ -1,0 +1,78 @@
+//! What does the referee see? The true state of the world at one moment, as the simulator's glue fills it in.
+//!
+//! m, m/s, rad, field frame; times in µs since the simulation's start.
+
+use geometry::{Field, Point, Pose, Vector};
+use protocol::Instant;
+
+pub(super) use crate::small_size::Who;
+
+/// The ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallSeen {
+    /// Over this point of the ground, m.
+    pub position: Point<Field>,
+    /// Its lowest point above the carpet, m: 0 while it rolls.
+    pub height: f32,
+    /// Along the ground, m/s.
+    pub velocity: Vector<Field>,
+    /// Upwards, m/s.
+    pub climb: f32,
+}
+
+impl BallSeen {
+    /// At rest on the ground.
+    pub fn at(position: Point<Field>) -> Self {
+        Self { position, height: 0.0, velocity: Vector::default(), climb: 0.0 }
+    }
+
+    /// Its speed in space, m/s.
+    pub fn speed(&self) -> f32 {
+        geometry::math::sqrt(self.velocity.dot(self.velocity) + self.climb * self.climb)
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        self.position.is_finite()
+            && self.velocity.is_finite()
+            && self.height.is_finite()
+            && self.climb.is_finite()
+    }
+}
+
+/// A robot that is on the carpet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotSeen {
+    /// Which one.
+    pub who: Who,
+    /// Where it is.
+    pub pose: Pose<Field>,
+    /// m/s.
+    pub velocity: Vector<Field>,
+    /// It touched the ball at some time since the last observation.
+    pub touches_ball: bool,
+}
+
+/// Two robots ran into each other since the last observation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrashSeen {
+    /// Which two.
+    pub between: [Who; 2],
+    /// Their velocities just before, in the same order, m/s.
+    pub velocities: [Vector<Field>; 2],
+}
+
+/// One moment of the world, every 1 to 20 ms (10 ms is what detectors are tuned and tested with).
+#[derive(Clone, Copy, Debug)]
+pub struct Observation<'a> {
+    /// µs since the simulation's start; must not go back (an earlier one is ignored).
+    pub time: Instant,
+    /// `None` while there is no ball on the carpet.
+    pub ball: Option<BallSeen>,
+    /// The ball's greatest speed in space since the last observation, m/s, where a kick's is known better than from its
+    /// speed now; else 0.
+    pub fastest: f32,
+    /// Robots on the carpet, in any order; a robot with a number that is not finite is ignored.
+    pub robots: &'a [RobotSeen],
+    /// Collisions of robots since the last observation.
+    pub crashes: &'a [CrashSeen],
+}

@@ -1,0 +1,86 @@
+//! From where does the game go on after an event? `rules::restart`, asked for every kind of event. m, field frame.
+
+use geometry::{Field, GoalEnd, Point};
+use rules::Colour;
+use rules::legality::{Crossing, Line};
+use rules::restart::{after_out, nearest_free_kick_spot};
+
+use super::event::{Event, Shot, What};
+use super::{InternalReferee, Kind};
+
+impl InternalReferee {
+    /// Where the ball goes after this event; `None` where it changes nothing.
+    pub(super) fn spot_after(&self, event: &Event) -> Option<Point<Field>> {
+        let free_kick = |place| Some(nearest_free_kick_spot(&self.field, &self.limits, place));
+        match &event.what {
+            What::LeftTouchLine => {
+                let line = Line::Touch { positive: event.place.y() > 0.0 };
+                Some(self.after_line(line, event.place, event.by))
+            }
+            What::LeftGoalLine => {
+                Some(self.after_line(Line::Goal(end_at(event.place)), event.place, event.by))
+            }
+            What::InvalidGoal { shot, .. } => {
+                let touched = kicking_team(shot, event.by);
+                Some(self.after_line(Line::Goal(end_at(event.place)), event.place, touched))
+            }
+            What::PenaltyFailed { .. } => {
+                // A goal kick of the defenders, wherever the ball was when it failed.
+                let end = self.own_end(event.by?.other());
+                let place = Point::new(self.field.goal_line(end), event.place.y());
+                Some(self.after_line(Line::Goal(end), place, event.by))
+            }
+            What::Goal { .. } => Some(Point::new(0.0, 0.0)),
+            What::DefenderInArea { .. } => Some(self.penalty_spot(event.by?.other())),
+            What::AimlessKick { from } => free_kick(*from),
+            What::AttackerTooClose { ball, .. } | What::TooManyRobots { ball, .. } => free_kick(*ball),
+            What::Pushed { .. } => free_kick(self.ball.position),
+            What::KeeperHeldBall { .. }
+            | What::BoundaryCrossing
+            | What::DribbledTooFar { .. }
+            | What::DoubleTouch
+            | What::HeldBall { .. }
+            | What::NoProgress { .. } => free_kick(event.place),
+            _ => None,
+        }
+    }
+
+    /// The mark from which that team takes its penalty.
+    pub(super) fn penalty_spot(&self, team: Colour) -> Point<Field> {
+        self.field.penalty_spot(self.own_end(team).opposite())
+    }
+
+    fn after_line(&self, line: Line, at: Point<Field>, touched: Option<Colour>) -> Point<Field> {
+        let crossing = Crossing { line, at };
+        // Nobody known to have touched it: as if the attackers had.
+        let own = match (touched, line) {
+            (Some(team), _) => self.own_end(team),
+            (None, Line::Goal(end) | Line::Mouth(end)) => end.opposite(),
+            (None, Line::Touch { .. }) => GoalEnd::Negative,
+        };
+        let spot = after_out(&self.field, &self.limits, crossing, own, None, false).spot;
+        nearest_free_kick_spot(&self.field, &self.limits, spot)
+    }
+}
+
+/// Who sent the ball into the goal that did not count.
+pub(super) fn kicking_team(shot: &Shot, scorer: Option<Colour>) -> Option<Colour> {
+    shot.kicker.map(|kicker| kicker.colour).or(scorer)
+}
+
+/// Whose ball it is after an event that a team is to blame for, where that is not simply the other team.
+pub(super) fn blamed(event: &Event) -> Option<Colour> {
+    match &event.what {
+        What::InvalidGoal { shot, .. } => kicking_team(shot, event.by),
+        _ => event.by,
+    }
+}
+
+/// What the event leads to when nobody is to blame: a ball out that nobody touched belongs to nobody.
+pub(super) fn is_nobodys(kind: Kind, by: Option<Colour>) -> bool {
+    by.is_none() && kind.is_ball_out()
+}
+
+fn end_at(place: Point<Field>) -> GoalEnd {
+    if place.x() > 0.0 { GoalEnd::Positive } else { GoalEnd::Negative }
+}

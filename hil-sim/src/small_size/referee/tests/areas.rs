@@ -1,0 +1,219 @@
+//! Defence areas: blue's reaches from x = 3.5 to 4.5 m and 1 m to either side; robots have a radius of 0.09 m.
+
+use super::*;
+
+#[test]
+fn an_attacker_that_touches_the_ball_partly_in_the_area_is_told_once_in_two_seconds() {
+    let mut stage = in_play();
+    stage.move_ball(at(3.55, 0.0));
+    stage.put(yellow(2), at(3.4, 0.0));
+    stage.touch(yellow(2));
+    assert_eq!(stage.count(Kind::AttackerTouchedBall), 0, "outside by 1 cm");
+    stage.put(yellow(2), at(3.45, 0.0));
+    for _ in 0..50 {
+        stage.touch(yellow(2));
+    }
+    let event = stage.only(Kind::AttackerTouchedBall);
+    let What::AttackerTouchedBall { depth } = event.what else { panic!() };
+    assert!((depth - 0.04).abs() < 0.006, "{depth}");
+    assert_eq!((stage.phase(), stage.referee.accounts().yellow.foul_count()), (Phase::Run, 1));
+    for _ in 0..160 {
+        stage.touch(yellow(2));
+    }
+    assert_eq!(stage.count(Kind::AttackerTouchedBall), 2);
+}
+
+#[test]
+fn a_defender_entirely_in_its_area_that_touches_the_ball_is_a_penalty() {
+    let mut stage = in_play();
+    stage.move_ball(at(4.0, 0.0));
+    stage.put(blue(1), at(3.5, 0.0));
+    stage.touch(blue(1));
+    assert_eq!(stage.count(Kind::DefenderInArea), 0, "partly in");
+    stage.put(blue(1), at(3.9, 0.0));
+    stage.touch(blue(1));
+    assert_eq!(stage.only(Kind::DefenderInArea).robot, Some(id(1)));
+    assert_eq!(stage.phase(), Phase::Stop);
+    assert_eq!(stage.referee.next(), Some(Restart::Penalty(Colour::Yellow)));
+    // 6 m from the goal at +4.5 m.
+    assert!(close(stage.referee.placement().unwrap(), at(-1.5, 0.0)));
+    assert_eq!(stage.referee.accounts().blue.foul_count(), 0);
+}
+
+#[test]
+fn the_keeper_may_touch_the_ball_in_its_area_and_nobody_commits_anything_without_touching_it() {
+    let mut stage = in_play();
+    stage.move_ball(at(4.2, 0.0));
+    stage.put(blue(1), at(3.9, 0.5));
+    stage.put(yellow(2), at(3.6, 0.5));
+    stage.touch(blue(0));
+    stage.run(0.5);
+    assert_eq!(stage.referee.metrics().offences, FoulCounts::default());
+}
+
+#[test]
+fn the_keeper_changes_while_the_ball_is_in_the_other_half_only() {
+    let mut stage = in_play();
+    stage.move_ball(at(2.0, 0.0));
+    stage.step();
+    assert!(!stage.referee.set_keeper(Colour::Blue, id(1)));
+    assert!(stage.referee.set_keeper(Colour::Yellow, id(1)));
+    stage.move_ball(at(-2.0, 0.0));
+    stage.step();
+    assert!(stage.referee.set_keeper(Colour::Blue, id(1)));
+    stage.move_ball(at(4.2, 0.0));
+    stage.put(blue(1), at(4.1, 0.0));
+    stage.touch(blue(1));
+    assert_eq!(stage.count(Kind::DefenderInArea), 0);
+}
+
+/// Stop after a throw-in of yellow's at (1, 2.8), where nobody is asked to place.
+fn stopped() -> Stage {
+    let mut stage = in_play();
+    stage.move_ball(at(1.0, 2.9));
+    stage.touch(blue(1));
+    stage.move_ball(at(1.0, 3.1));
+    stage.step();
+    assert_eq!(stage.phase(), Phase::Stop);
+    stage.move_ball(at(1.0, 2.8));
+    stage
+}
+
+#[test]
+fn in_stop_attackers_have_two_seconds_to_leave_the_20_cm_around_the_area() {
+    let mut stage = stopped();
+    // 0.19 m from hull to area.
+    stage.put(yellow(2), at(3.22, 0.0));
+    stage.put(blue(1), at(1.1, 2.5));
+    stage.run(1.9);
+    assert_eq!(stage.count(Kind::AttackerTooClose), 0);
+    stage.run(0.2);
+    let event = stage.only(Kind::AttackerTooClose);
+    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(2))));
+    let What::AttackerTooClose { distance, .. } = event.what else { panic!() };
+    assert!((distance - 0.19).abs() < 0.006, "{distance}");
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    assert_eq!(stage.phase(), Phase::Stop);
+}
+
+#[test]
+fn at_20_cm_nobody_is_too_close() {
+    let mut stage = stopped();
+    stage.put(yellow(2), at(3.20, 0.0));
+    stage.put(blue(1), at(1.1, 2.5));
+    stage.run(5.0);
+    assert_eq!(stage.count(Kind::AttackerTooClose), 0);
+}
+
+#[test]
+fn the_second_such_foul_in_a_stop_halts_the_game() {
+    let mut stage = stopped();
+    stage.put(yellow(2), at(3.2, 0.5));
+    stage.put(yellow(2), at(3.3, 0.0));
+    // Who stands at the ball keeps the game from going on.
+    stage.put(blue(1), at(1.0, 2.6));
+    stage.put(yellow(1), at(1.0, 2.55));
+    stage.run(4.1);
+    assert_eq!(stage.phase(), Phase::Halt);
+    assert_eq!(stage.count(Kind::AttackerTooClose), 2);
+    stage.run(3.1);
+    assert_eq!(stage.phase(), Phase::Stop);
+}
+
+#[test]
+fn at_a_free_kick_the_game_is_stopped_and_the_others_get_it() {
+    let mut stage = stopped();
+    stage.until(Phase::FreeKick(Colour::Yellow), 3.0);
+    stage.put(yellow(2), at(3.3, 0.0));
+    stage.run(1.9);
+    assert_eq!(stage.phase(), Phase::FreeKick(Colour::Yellow));
+    stage.run(0.2);
+    assert_eq!(stage.phase(), Phase::Stop);
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+}
+
+#[test]
+fn every_third_foul_is_a_yellow_card_and_the_offender_goes_off() {
+    let mut stage = in_play();
+    for _ in 0..3 {
+        stage.move_ball(at(-3.0, 1.0));
+        stage.touch(blue(2));
+        stage.kick(7.0, 0.0);
+        stage.step();
+        stage.kick(0.0, 0.0);
+        stage.run(0.5);
+    }
+    stage.only(Kind::MultipleFouls);
+    let account = &stage.referee.accounts().blue;
+    assert_eq!((account.yellow_cards.len(), account.allowed(6)), (1, 5));
+    assert_eq!(stage.referee.packet().blue.max_allowed_bots, Some(5));
+    // Three robots are fewer than five; with six it has one too many.
+    for number in 3..6 {
+        stage.put(blue(number), at(2.5, -2.5 + 0.5 * f32::from(number)));
+    }
+    stage.move_ball(at(0.5, 0.5));
+    stage.run(5.0);
+    stage.move_ball(at(1.0, 0.5));
+    stage.run(4.9);
+    assert_eq!((stage.phase(), stage.count(Kind::TooManyRobots)), (Phase::Run, 0));
+    stage.run(0.2);
+    stage.only(Kind::TooManyRobots);
+    assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
+    assert_eq!(stage.orders, [WorldOrder::RemoveRobot(blue(2))]);
+}
+
+#[test]
+fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop() {
+    let mut stage = in_play();
+    stage.referee.accounts.blue.show_yellow(Instant(0));
+    for number in 3..6 {
+        stage.put(blue(number), at(2.5, -2.5 + 0.5 * f32::from(number)));
+    }
+    stage.touch(blue(1));
+    stage.kick(0.0, 6.0);
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.move_ball(stage.referee.placement().unwrap());
+    stage.until(Phase::FreeKick(Colour::Yellow), 10.0);
+    let Some(WorldOrder::RemoveRobot(taken)) = stage.orders.last().copied() else { panic!() };
+    stage.orders.clear();
+    while !stage.referee.accounts().blue.yellow_cards.is_empty() {
+        stage.step();
+        assert!(stage.seconds() < 400.0);
+    }
+    while stage.orders.is_empty() {
+        stage.step();
+        assert!(stage.seconds() < 450.0);
+    }
+    assert_eq!(stage.phase(), Phase::Stop);
+    assert!(
+        matches!(stage.orders[..], [WorldOrder::ReturnRobot(who, _)] if who == taken),
+        "{:?}",
+        stage.orders
+    );
+}
+
+#[test]
+fn the_third_card_at_a_time_is_red_and_cards_can_be_switched_off() {
+    let foul = |stage: &mut Stage| {
+        for _ in 0..9 {
+            stage.move_ball(at(-3.0, 1.0));
+            stage.touch(blue(2));
+            stage.kick(7.0, 0.0);
+            stage.step();
+            stage.kick(0.0, 0.0);
+            stage.run(0.5);
+        }
+    };
+    let mut stage = in_play();
+    foul(&mut stage);
+    let account = &stage.referee.accounts().blue;
+    assert_eq!((account.yellow_cards.len(), account.red_cards, account.allowed(6)), (2, 1, 3));
+    stage.only(Kind::MultipleCards);
+
+    let mut stage = in_play();
+    stage.referee.settings.cards = false;
+    foul(&mut stage);
+    let account = &stage.referee.accounts().blue;
+    assert_eq!((account.foul_count(), account.allowed(6)), (9, 6));
+}

@@ -1,0 +1,159 @@
+//! Goals, and balls that leave: which counts, whose ball it is, from where. Field of 9 × 6 m, the defence areas 2 × 1 m.
+
+use super::*;
+
+/// The last touch was that robot's; the ball rolls from `from` with that velocity until the game stands still.
+fn shoot(who: Who, from: Point<Field>, x: f32, y: f32) -> Stage {
+    let mut stage = in_play();
+    stage.put(blue(0), at(4.45, 0.8));
+    stage.put(yellow(0), at(-4.45, 0.8));
+    stage.move_ball(from);
+    stage.touch(who);
+    stage.kick(x, y);
+    while stage.phase() == Phase::Run {
+        assert!(stage.seconds() < 60.0);
+        stage.step();
+    }
+    stage
+}
+
+#[test]
+fn a_ball_between_the_posts_is_a_goal_and_the_other_team_kicks_off() {
+    let mut stage = shoot(yellow(2), at(2.0, 0.0), 5.0, 0.0);
+    assert_eq!(stage.phase(), Phase::Halt);
+    assert_eq!(stage.referee.accounts().yellow.score, 1);
+    let What::Goal { shot: Some(shot) } = &stage.only(Kind::Goal).what else { panic!() };
+    assert_eq!((shot.kicker, shot.from), (Some(yellow(2)), at(2.0, 0.0)));
+    stage.until(Phase::Stop, 3.1);
+    stage.until(Phase::PrepareKickoff(Colour::Blue), 10.0);
+    assert_eq!(stage.place_of_ball(), at(0.0, 0.0));
+}
+
+#[test]
+fn a_ball_on_the_goal_line_is_no_goal_yet() {
+    let mut stage = in_play();
+    stage.touch(yellow(2));
+    stage.move_ball(at(4.52, 0.0));
+    stage.run(0.1);
+    assert_eq!(stage.phase(), Phase::Run);
+    stage.move_ball(at(4.53, 0.0));
+    stage.step();
+    assert_eq!(stage.phase(), Phase::Halt);
+}
+
+#[test]
+fn an_own_goal_counts_for_the_other_team() {
+    let stage = shoot(yellow(2), at(-2.0, 0.0), -5.0, 0.0);
+    assert_eq!(stage.referee.accounts().blue.score, 1);
+    assert_eq!(stage.only(Kind::Goal).by, Some(Colour::Blue));
+}
+
+#[test]
+fn a_ball_that_was_above_15_cm_since_the_scorers_last_touch_is_no_goal_but_a_goal_kick() {
+    let mut stage = in_play();
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.ball_mut().height = 0.16;
+    stage.step();
+    stage.ball_mut().height = 0.0;
+    stage.until(Phase::Halt, 1.0);
+    let What::InvalidGoal { reason, .. } = stage.only(Kind::InvalidGoal).what else { panic!() };
+    assert_eq!(reason, Invalid::TooHigh);
+    assert_eq!(stage.referee.accounts().yellow.score, 0);
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    // A goal kick: 1 m from the goal line, 0.2 m from the touch line.
+    let spot = stage.referee.placement().unwrap();
+    assert!(close(at(3.5, spot.y()), spot) && (spot.y().abs() - 2.8).abs() < 0.01, "{spot:?}");
+}
+
+#[test]
+fn a_high_ball_that_the_scorers_touch_again_counts() {
+    let mut stage = in_play();
+    stage.ball_mut().height = 0.5;
+    stage.touch(yellow(1));
+    stage.step();
+    stage.ball_mut().height = 0.0;
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.until(Phase::Halt, 1.0);
+    assert_eq!(stage.referee.accounts().yellow.score, 1);
+}
+
+#[test]
+fn a_ball_over_the_bar_is_out() {
+    let mut stage = in_play();
+    stage.move_ball(at(4.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.ball_mut().height = 0.2;
+    stage.until(Phase::Stop, 1.0);
+    stage.only(Kind::LeftGoalLine);
+}
+
+#[test]
+fn no_goal_within_two_seconds_of_a_foul_that_did_not_stop_the_game() {
+    let mut stage = in_play();
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(7.0, 0.0);
+    stage.until(Phase::Halt, 1.0);
+    stage.only(Kind::BallTooFast);
+    let What::InvalidGoal { reason, .. } = stage.only(Kind::InvalidGoal).what else { panic!() };
+    assert_eq!(reason, Invalid::RecentFoul(Kind::BallTooFast));
+}
+
+#[test]
+fn no_goal_with_too_many_robots() {
+    let mut stage = in_play();
+    for number in 3..7 {
+        stage.put(yellow(number), at(-3.0, -2.5 + 0.3 * f32::from(number)));
+    }
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.until(Phase::Halt, 1.0);
+    let What::InvalidGoal { reason, shot } = stage.only(Kind::InvalidGoal).what else { panic!() };
+    assert_eq!((reason, shot.robots), (Invalid::TooManyRobots, 7));
+}
+
+#[test]
+fn a_ball_over_the_touch_line_is_a_throw_in_of_the_others_20_cm_inside() {
+    let stage = shoot(blue(1), at(1.0, 2.0), 0.0, 3.0);
+    assert_eq!(stage.phase(), Phase::Stop);
+    let event = stage.only(Kind::LeftTouchLine);
+    assert_eq!((event.by, event.robot), (Some(Colour::Blue), Some(id(1))));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Yellow)));
+    assert!(close(stage.referee.placement().unwrap(), at(1.0, 2.8)));
+}
+
+#[test]
+fn over_the_goal_line_it_is_a_goal_kick_or_a_corner() {
+    let goal_kick = shoot(yellow(2), at(1.0, 1.5), 5.0, 0.0);
+    assert_eq!(goal_kick.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    assert!(close(goal_kick.referee.placement().unwrap(), at(3.5, 2.8)));
+    let corner = shoot(blue(2), at(1.0, -1.5), 5.0, 0.0);
+    assert_eq!(corner.referee.next(), Some(Restart::FreeKick(Colour::Yellow)));
+    assert!(close(corner.referee.placement().unwrap(), at(4.3, -2.8)));
+}
+
+#[test]
+fn in_division_b_a_kick_from_the_own_half_over_the_other_goal_line_is_aimless() {
+    let stage = shoot(yellow(2), at(-1.0, 1.5), 6.0, 0.0);
+    let event = stage.only(Kind::AimlessKick);
+    assert_eq!(event.by, Some(Colour::Yellow));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    assert!(close(stage.referee.placement().unwrap(), at(-1.0, 1.5)));
+}
+
+#[test]
+fn a_ball_over_the_wall_is_a_free_kick_from_where_it_was_kicked_and_a_foul() {
+    let mut stage = shoot(yellow(2), at(1.0, 1.0), 0.0, 6.0);
+    assert_eq!(stage.phase(), Phase::Stop);
+    stage.run(0.3);
+    let event = stage.only(Kind::BoundaryCrossing);
+    assert_eq!(event.by, Some(Colour::Yellow));
+    assert!(close(stage.referee.placement().unwrap(), at(1.0, 1.0)));
+    assert_eq!(stage.referee.accounts().yellow.foul_count(), 1);
+}

@@ -1,0 +1,256 @@
+//! Does the referee do what the rules say? Scripted observations against truth made by hand.
+//!
+//! The stage: division B, blue's goal at +x in the first half, yellow kicks off; robots stand where they offend nobody
+//! unless a test moves them; the ball keeps its velocity. Steps of 10 ms.
+
+mod areas;
+mod calm;
+mod goals;
+mod penalties;
+mod play;
+mod robust;
+mod run;
+mod wire;
+mod world;
+
+use geometry::{Angle, Field, Point, Pose, Vector};
+use protocol::{Duration, Instant, RobotId};
+use rules::state::GameState;
+use rules::{Colour, League, Phase};
+
+use super::*;
+use crate::small_size::Who;
+
+/// A match on a stage.
+struct Stage {
+    referee: InternalReferee,
+    ball: Option<BallSeen>,
+    robots: Vec<RobotSeen>,
+    crashes: Vec<CrashSeen>,
+    now: Instant,
+    /// Does somebody carry out what people are asked to do?
+    obeyed: bool,
+    orders: Vec<WorldOrder>,
+    /// A game state that knows the packets alone.
+    heard: GameState,
+    counter: Option<u32>,
+    action_left: i64,
+    packets: Vec<ssl::referee::Referee>,
+}
+
+const STEP: Duration = Duration::millis(10);
+
+fn id(number: u8) -> RobotId {
+    RobotId::new(number).unwrap()
+}
+
+fn yellow(number: u8) -> Who {
+    Who { colour: Colour::Yellow, id: id(number) }
+}
+
+fn blue(number: u8) -> Who {
+    Who { colour: Colour::Blue, id: id(number) }
+}
+
+fn at(x: f32, y: f32) -> Point<Field> {
+    Point::new(x, y)
+}
+
+fn settings() -> RefereeSettings {
+    RefereeSettings::new(League::DivisionB)
+}
+
+/// Before the first observation; keepers in their goals, two more of each team at the sides of their own half.
+fn stage_with(settings: RefereeSettings) -> Stage {
+    let mut stage = Stage {
+        referee: InternalReferee::new(settings, 1).unwrap(),
+        ball: Some(BallSeen::at(at(0.0, 0.0))),
+        robots: Vec::new(),
+        crashes: Vec::new(),
+        now: Instant(0),
+        obeyed: true,
+        orders: Vec::new(),
+        heard: GameState::new(),
+        counter: None,
+        action_left: 0,
+        packets: Vec::new(),
+    };
+    for (who, place) in [
+        (yellow(0), at(-4.45, 0.0)),
+        (yellow(1), at(-2.0, 2.0)),
+        (yellow(2), at(-2.0, -2.0)),
+        (blue(0), at(4.45, 0.0)),
+        (blue(1), at(2.0, 2.0)),
+        (blue(2), at(2.0, -2.0)),
+    ] {
+        stage.put(who, place);
+    }
+    stage
+}
+
+fn stage() -> Stage {
+    stage_with(settings())
+}
+
+/// The first half runs, the ball lies at the centre, nobody touched it.
+fn in_play() -> Stage {
+    let mut stage = stage();
+    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    stage.put(yellow(1), at(-0.1, 0.0));
+    stage.touch(yellow(1));
+    stage.kick(0.0, 0.0);
+    stage.move_ball(at(0.3, 0.0));
+    stage.step();
+    assert_eq!(stage.phase(), Phase::Run);
+    stage.put(yellow(1), at(-2.0, 2.0));
+    stage.touch(blue(1));
+    stage
+}
+
+impl Stage {
+    fn put(&mut self, who: Who, place: Point<Field>) {
+        self.take(who);
+        let pose = Pose { position: place, heading: Angle::ZERO };
+        self.robots.push(RobotSeen { who, pose, velocity: Vector::default(), touches_ball: false });
+    }
+
+    fn take(&mut self, who: Who) {
+        self.robots.retain(|robot| robot.who != who);
+    }
+
+    fn robot(&mut self, who: Who) -> &mut RobotSeen {
+        self.robots.iter_mut().find(|robot| robot.who == who).unwrap()
+    }
+
+    fn drive(&mut self, who: Who, x: f32, y: f32) {
+        self.robot(who).velocity = Vector::new(x, y);
+    }
+
+    /// One step in which that robot touches the ball.
+    fn touch(&mut self, who: Who) {
+        self.robot(who).touches_ball = true;
+        self.step();
+        self.robot(who).touches_ball = false;
+    }
+
+    fn kick(&mut self, x: f32, y: f32) {
+        self.ball_mut().velocity = Vector::new(x, y);
+    }
+
+    fn ball_mut(&mut self) -> &mut BallSeen {
+        self.ball.as_mut().unwrap()
+    }
+
+    fn move_ball(&mut self, place: Point<Field>) {
+        self.ball_mut().position = place;
+    }
+
+    fn place_of_ball(&self) -> Point<Field> {
+        self.ball.unwrap().position
+    }
+
+    fn phase(&self) -> Phase<Colour> {
+        self.referee.phase()
+    }
+
+    fn step(&mut self) {
+        self.now += STEP;
+        if let Some(ball) = &mut self.ball {
+            ball.position += ball.velocity * STEP.as_secs_f32();
+        }
+        let seen = Observation {
+            time: self.now,
+            ball: self.ball,
+            fastest: 0.0,
+            robots: &self.robots,
+            crashes: &self.crashes,
+        };
+        self.referee.observe(&seen);
+        self.crashes.clear();
+        while let Some(order) = self.referee.poll_order() {
+            self.orders.push(order);
+            if self.obeyed {
+                self.obey(order);
+            }
+        }
+        self.hear_packets();
+        let after = self.referee.limits;
+        self.heard.tick(self.now.0, self.ball.map(|ball| ball.position), &after);
+        assert_eq!(self.referee.off_graph(), 0, "off the graph at {:?}", self.now);
+        assert_eq!(
+            self.heard.phase(),
+            self.phase(),
+            "who hears the packets alone disagrees at {:?}",
+            self.now
+        );
+    }
+
+    fn obey(&mut self, order: WorldOrder) {
+        match order {
+            WorldOrder::PutBall(place) => self.ball = Some(BallSeen::at(place)),
+            WorldOrder::RemoveRobot(who) => self.take(who),
+            WorldOrder::ReturnRobot(who, pose) => self.put(who, pose.position),
+        }
+    }
+
+    /// Follows the commands of the packets, each once.
+    fn hear_packets(&mut self) {
+        while let Some(packet) = self.referee.poll_packet() {
+            let new = self.counter != Some(packet.command_counter);
+            self.counter = Some(packet.command_counter);
+            if let Some(command) = wire::from_wire(packet.command).filter(|_| new) {
+                let ball = self.ball.map(|ball| ball.position);
+                let heard = self.heard.hear(command, packet.command_timestamp, ball);
+                use rules::state::Heard;
+                assert!(matches!(heard, Heard::Followed | Heard::Repeated), "{heard:?} for {command:?}");
+            }
+            // More time than before: the taker was disturbed and has its time again.
+            let action_left = packet.current_action_time_remaining.unwrap();
+            if !new
+                && action_left > self.action_left
+                && let Some(command) = self.heard.command()
+            {
+                self.heard.hear(command, packet.packet_timestamp, None);
+            }
+            self.action_left = action_left;
+            self.packets.push(packet);
+        }
+    }
+
+    fn run(&mut self, seconds: f32) {
+        for _ in 0..(seconds * 100.0) as u32 {
+            self.step();
+        }
+    }
+
+    /// Steps until that phase.
+    fn until(&mut self, phase: Phase<Colour>, seconds: f32) {
+        for _ in 0..(seconds * 100.0) as u32 {
+            if self.phase() == phase {
+                return;
+            }
+            self.step();
+        }
+        panic!("{:?} after {seconds} s, not {phase:?}; {:#?}", self.phase(), self.referee.events());
+    }
+
+    fn count(&self, kind: Kind) -> usize {
+        self.referee.events().iter().filter(|event| event.what.kind() == kind).count()
+    }
+
+    /// The only event of that kind.
+    fn only(&self, kind: Kind) -> &Event {
+        let mut same = self.referee.events().iter().filter(|event| event.what.kind() == kind);
+        let first = same.next().unwrap_or_else(|| panic!("no {kind:?} in {:#?}", self.referee.events()));
+        assert_eq!(same.count(), 0, "more than one {kind:?}");
+        first
+    }
+
+    fn seconds(&self) -> f32 {
+        self.now.as_secs_f32()
+    }
+}
+
+fn close(a: Point<Field>, b: Point<Field>) -> bool {
+    a.distance(b) < 0.012
+}

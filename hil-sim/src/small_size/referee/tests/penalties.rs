@@ -1,0 +1,165 @@
+//! Penalties: yellow shoots at the goal at +4.5 m from the mark at (−1.5, 0); 10 s.
+
+use super::*;
+
+/// NORMAL_START was given; shooter is yellow's robot 1, keeper blue's robot 0.
+fn penalty() -> Stage {
+    let mut stage = in_play();
+    stage.move_ball(at(4.0, 0.0));
+    stage.put(blue(1), at(3.9, 0.0));
+    stage.touch(blue(1));
+    stage.until(Phase::Stop, 0.1);
+    stage.put(blue(0), at(4.5, 0.0));
+    stage.put(blue(1), at(-3.0, 1.0));
+    stage.put(blue(2), at(-3.0, -1.0));
+    stage.put(yellow(2), at(-3.0, -2.0));
+    stage.put(yellow(1), at(-1.7, 0.0));
+    stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
+    stage.until(Phase::Penalty(Colour::Yellow), 3.0);
+    assert_eq!(stage.place_of_ball(), at(-1.5, 0.0));
+    stage
+}
+
+fn shoot(stage: &mut Stage, x: f32, y: f32) {
+    stage.touch(yellow(1));
+    stage.kick(x, y);
+}
+
+fn failed(stage: &Stage) -> PenaltyEnd {
+    let What::PenaltyFailed { reason } = stage.only(Kind::PenaltyFailed).what else { panic!() };
+    reason
+}
+
+#[test]
+fn the_penalty_begins_when_keeper_and_others_stand_right_or_after_ten_seconds() {
+    let mut stage = in_play();
+    stage.move_ball(at(4.0, 0.0));
+    stage.put(blue(1), at(3.9, 0.0));
+    stage.touch(blue(1));
+    stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
+    let began = stage.seconds();
+    stage.until(Phase::Penalty(Colour::Yellow), 11.0);
+    assert!((stage.seconds() - began - 10.0).abs() < 0.03);
+}
+
+#[test]
+fn a_goal_counts_whatever_its_height_was() {
+    let mut stage = penalty();
+    shoot(&mut stage, 6.0, 0.0);
+    stage.ball_mut().height = 0.3;
+    stage.run(0.5);
+    stage.ball_mut().height = 0.0;
+    stage.until(Phase::Halt, 2.0);
+    assert_eq!(stage.referee.accounts().yellow.score, 1);
+    assert_eq!(stage.referee.next(), Some(Restart::Kickoff(Colour::Blue)));
+}
+
+#[test]
+fn a_ball_beside_the_goal_is_a_goal_kick() {
+    let mut stage = penalty();
+    shoot(&mut stage, 6.0, 1.0);
+    stage.until(Phase::Stop, 3.0);
+    assert_eq!(failed(&stage), PenaltyEnd::Out);
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    assert!(close(stage.referee.placement().unwrap(), at(3.5, 2.8)));
+}
+
+#[test]
+fn a_keeper_that_turns_the_ball_back_saves() {
+    let mut stage = penalty();
+    shoot(&mut stage, 6.0, 0.0);
+    stage.run(0.8);
+    stage.kick(-1.0, 1.0);
+    stage.touch(blue(0));
+    assert_eq!((failed(&stage), stage.phase()), (PenaltyEnd::Saved, Phase::Stop));
+}
+
+#[test]
+fn a_keeper_that_slows_the_ball_down_does_not_save_yet() {
+    let mut stage = penalty();
+    shoot(&mut stage, 6.0, 0.0);
+    stage.run(0.8);
+    stage.kick(1.0, 0.5);
+    stage.touch(blue(0));
+    stage.run(0.1);
+    assert_eq!(stage.phase(), Phase::Penalty(Colour::Yellow));
+}
+
+#[test]
+fn the_ball_may_not_move_away_from_the_goal() {
+    let mut stage = penalty();
+    shoot(&mut stage, 1.0, 0.0);
+    stage.run(0.5);
+    stage.kick(-1.0, 0.0);
+    stage.run(0.1);
+    assert_eq!(failed(&stage), PenaltyEnd::MovedBack);
+}
+
+#[test]
+fn after_ten_seconds_it_is_over() {
+    let mut stage = penalty();
+    stage.run(9.9);
+    assert_eq!(stage.phase(), Phase::Penalty(Colour::Yellow));
+    stage.until(Phase::Stop, 0.2);
+    assert_eq!(failed(&stage), PenaltyEnd::TimeUp);
+}
+
+#[test]
+fn a_foul_of_the_shooting_team_fails_it_one_of_the_others_is_a_goal() {
+    let mut stage = penalty();
+    shoot(&mut stage, 7.0, 0.0);
+    stage.run(0.1);
+    assert_eq!(failed(&stage), PenaltyEnd::Foul(Kind::BallTooFast));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+
+    let mut stage = penalty();
+    shoot(&mut stage, 3.0, 0.0);
+    stage.put(yellow(2), at(-3.0, -1.0));
+    stage.put(blue(2), at(-3.0, -0.82));
+    let velocities = [Vector::default(), Vector::new(0.0, -2.0)];
+    stage.crashes.push(CrashSeen { between: [yellow(2), blue(2)], velocities });
+    stage.step();
+    assert_eq!(stage.only(Kind::Goal).by, Some(Colour::Yellow));
+    assert_eq!(stage.referee.accounts().yellow.score, 1);
+    assert_eq!(stage.referee.next(), Some(Restart::Kickoff(Colour::Blue)));
+}
+
+#[test]
+fn a_half_lasts_until_its_last_penalty_is_over() {
+    let mut stage = penalty();
+    stage.referee.stage_left = 1_000_000;
+    stage.run(5.0);
+    assert_eq!(stage.phase(), Phase::Penalty(Colour::Yellow));
+    shoot(&mut stage, 6.0, 1.0);
+    stage.run(2.0);
+    assert_eq!(stage.referee.stage(), rules::state::Stage::HalfTime);
+}
+
+#[test]
+fn in_a_shoot_out_the_teams_take_turns_and_five_each_decide() {
+    use rules::state::Stage as Part;
+    let mut stage = stage();
+    stage.step();
+    stage.referee.stage = Part::ShootOutBreak;
+    stage.referee.stage_left = 0;
+    let mut shooters = Vec::new();
+    while !stage.referee.is_over() {
+        if let Phase::Penalty(team) = stage.phase() {
+            shooters.push(team);
+            // Yellow scores, blue shoots beside.
+            stage.kick(
+                if team == Colour::Yellow { 6.0 } else { -6.0 },
+                if team == Colour::Yellow { 0.0 } else { 2.0 },
+            );
+            while matches!(stage.phase(), Phase::Penalty(_)) {
+                stage.step();
+            }
+            stage.kick(0.0, 0.0);
+        }
+        stage.step();
+        assert!(stage.seconds() < 600.0);
+    }
+    let expected: Vec<_> = [Colour::Yellow, Colour::Blue].into_iter().cycle().take(10).collect();
+    assert_eq!(shooters, expected);
+    assert_eq!((stage.referee.accounts().yellow.score, stage.referee.accounts().blue.score), (5, 0));
+}

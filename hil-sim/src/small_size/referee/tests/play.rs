@@ -1,0 +1,354 @@
+//! Fouls with the ball: speed, dribbling, double touch, keeper, no progress, crashes, pushing, holding, placements.
+
+use super::*;
+
+#[test]
+fn a_kick_over_the_limit_is_told_once_and_the_game_goes_on() {
+    let mut stage = in_play();
+    stage.move_ball(at(-3.0, 1.0));
+    stage.touch(yellow(1));
+    stage.kick(6.6, 0.0);
+    stage.run(0.5);
+    let event = stage.only(Kind::BallTooFast).clone();
+    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    let What::BallTooFast { speed, chipped } = event.what else { panic!() };
+    assert!((speed - 6.6).abs() < 1e-3 && !chipped);
+    assert_eq!((stage.phase(), stage.referee.accounts().yellow.foul_count()), (Phase::Run, 1));
+}
+
+#[test]
+fn speed_counts_in_three_dimensions() {
+    let mut stage = in_play();
+    stage.move_ball(at(-3.0, 1.0));
+    stage.touch(yellow(1));
+    // √(4.7² + 4.7²) = 6.65 m/s.
+    stage.kick(4.7, 0.0);
+    stage.ball_mut().climb = 4.7;
+    stage.step();
+    assert!(matches!(stage.only(Kind::BallTooFast).what, What::BallTooFast { chipped: true, .. }));
+    let mut stage = in_play();
+    stage.touch(yellow(1));
+    stage.kick(6.5, 0.0);
+    stage.run(0.2);
+    assert_eq!(stage.count(Kind::BallTooFast), 0);
+}
+
+/// Yellow's robot 1 takes the ball along from the centre by that far.
+fn dribble(metres: f32) -> Stage {
+    let mut stage = in_play();
+    stage.move_ball(at(-1.0, 1.0));
+    let steps = (metres * 100.0) as u32;
+    for step in 0..steps {
+        let x = -1.0 + 0.01 * step as f32;
+        stage.put(yellow(1), at(x - 0.095, 1.0));
+        stage.move_ball(at(x, 1.0));
+        stage.touch(yellow(1));
+    }
+    stage
+}
+
+#[test]
+fn dribbling_further_than_a_metre_is_a_free_kick_from_where_it_began() {
+    let stage = dribble(0.99);
+    assert_eq!(stage.count(Kind::DribbledTooFar), 0);
+    let stage = dribble(1.1);
+    let event = stage.only(Kind::DribbledTooFar);
+    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    assert!(close(event.place, at(-1.0, 1.0)));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    assert!(close(stage.referee.placement().unwrap(), at(-1.0, 1.0)));
+}
+
+#[test]
+fn a_ball_that_is_let_go_in_between_is_dribbled_anew() {
+    let mut stage = dribble(0.8);
+    // 5 cm away from the robot.
+    stage.move_ball(at(-0.05, 1.0));
+    stage.put(yellow(1), at(-0.25, 1.0));
+    stage.step();
+    for step in 0..80 {
+        let x = -0.05 + 0.01 * step as f32;
+        stage.put(yellow(1), at(x - 0.095, 1.0));
+        stage.move_ball(at(x, 1.0));
+        stage.touch(yellow(1));
+    }
+    assert_eq!(stage.count(Kind::DribbledTooFar), 0);
+}
+
+/// Yellow's kick-off; robot 1 has touched the ball, which is now at `x`.
+fn kicked_off(x: f32) -> Stage {
+    let mut stage = stage();
+    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    stage.put(yellow(1), at(-0.11, 0.0));
+    stage.touch(yellow(1));
+    stage.move_ball(at(x, 0.0));
+    stage.step();
+    stage
+}
+
+#[test]
+fn the_taker_may_not_touch_the_ball_again() {
+    let mut stage = kicked_off(0.1);
+    stage.put(yellow(1), at(0.0, 0.0));
+    stage.touch(yellow(1));
+    let event = stage.only(Kind::DoubleTouch);
+    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+    // No foul: it does not lead to a card.
+    assert_eq!(stage.referee.accounts().yellow.foul_count(), 0);
+}
+
+#[test]
+fn bumping_the_ball_within_5_cm_is_no_double_touch() {
+    let mut stage = kicked_off(0.03);
+    for _ in 0..5 {
+        stage.touch(yellow(1));
+        stage.step();
+    }
+    assert_eq!((stage.phase(), stage.count(Kind::DoubleTouch)), (Phase::Kickoff(Colour::Yellow), 0));
+}
+
+#[test]
+fn after_another_robots_touch_the_taker_may() {
+    let mut stage = kicked_off(0.1);
+    stage.touch(yellow(2));
+    stage.put(yellow(1), at(0.0, 0.0));
+    stage.touch(yellow(1));
+    assert_eq!(stage.count(Kind::DoubleTouch), 0);
+}
+
+#[test]
+fn a_ball_in_a_defence_area_for_ten_seconds_is_a_foul_of_its_owner() {
+    let mut stage = in_play();
+    stage.move_ball(at(4.2, 0.3));
+    stage.run(5.0);
+    // It moves, so that there is progress.
+    stage.move_ball(at(4.2, -0.3));
+    stage.run(5.0);
+    assert_eq!(stage.count(Kind::KeeperHeldBall), 0);
+    stage.run(0.1);
+    assert_eq!(stage.only(Kind::KeeperHeldBall).by, Some(Colour::Blue));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Yellow)));
+}
+
+#[test]
+fn no_progress_for_ten_seconds_is_a_force_start() {
+    let mut stage = in_play();
+    stage.run(9.9);
+    assert_eq!(stage.phase(), Phase::Run);
+    stage.run(0.2);
+    stage.only(Kind::NoProgress);
+    assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
+    stage.until(Phase::Run, 5.0);
+    assert_eq!(stage.referee.command(), Command::ForceStart);
+}
+
+/// Yellow's robot 1 and blue's robot 1 meet face to face with these speeds.
+fn crash(yellow_speed: f32, blue_speed: f32) -> Stage {
+    let mut stage = in_play();
+    stage.put(yellow(1), at(0.0, 1.0));
+    stage.put(blue(1), at(0.18, 1.0));
+    let velocities = [Vector::new(yellow_speed, 0.0), Vector::new(-blue_speed, 0.0)];
+    stage.crashes.push(CrashSeen { between: [yellow(1), blue(1)], velocities });
+    stage.step();
+    stage.run(0.1);
+    stage
+}
+
+#[test]
+fn the_faster_of_two_that_crash_is_at_fault_both_where_they_are_about_equally_fast() {
+    let stage = crash(1.2, 0.2);
+    assert_eq!(stage.count(Kind::CrashUnique), 0);
+    let stage = crash(0.5, 1.2);
+    let event = stage.only(Kind::CrashUnique);
+    assert_eq!((event.by, event.robot), (Some(Colour::Blue), Some(id(1))));
+    let What::CrashUnique { victim, crash_speed, speed_difference, .. } = event.what else { panic!() };
+    assert_eq!(victim, id(1));
+    assert!((crash_speed - 1.7).abs() < 1e-5 && (speed_difference - 0.7).abs() < 1e-5);
+    let stage = crash(1.0, 0.9);
+    stage.only(Kind::CrashDrawn);
+    let fouls = |account: &Account| account.foul_count();
+    let accounts = stage.referee.accounts();
+    assert_eq!((fouls(&accounts.yellow), fouls(&accounts.blue)), (1, 1));
+}
+
+#[test]
+fn a_glancing_crash_counts_along_the_line_between_the_robots_only() {
+    let mut stage = in_play();
+    stage.put(yellow(1), at(0.0, 1.0));
+    stage.put(blue(1), at(0.0, 1.18));
+    // 3 m/s past each other, nothing towards each other.
+    let velocities = [Vector::new(1.5, 0.0), Vector::new(-1.5, 0.0)];
+    stage.crashes.push(CrashSeen { between: [yellow(1), blue(1)], velocities });
+    stage.step();
+    assert_eq!(stage.count(Kind::CrashUnique) + stage.count(Kind::CrashDrawn), 0);
+}
+
+#[test]
+fn who_drives_an_opponent_before_it_for_30_cm_pushes() {
+    let mut stage = in_play();
+    let mut push = |metres: f32| {
+        for step in 0..(metres * 100.0) as u32 {
+            let x = 0.01 * step as f32;
+            stage.put(yellow(1), at(x, 1.0));
+            stage.put(blue(1), at(x + 0.18, 1.0));
+            stage.drive(yellow(1), 1.0, 0.0);
+            stage.drive(blue(1), 1.0, 0.0);
+            stage.step();
+        }
+        stage.count(Kind::Pushed)
+    };
+    assert_eq!(push(0.28), 0);
+    assert_eq!(push(0.1), 1);
+    let event = stage.only(Kind::Pushed);
+    assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+}
+
+#[test]
+fn three_robots_around_the_ball_for_two_seconds_hold_it() {
+    let mut stage = in_play();
+    let ball = at(-1.0, 1.0);
+    stage.move_ball(ball);
+    for (number, degrees) in [(1, 0.0), (2, 120.0), (3, 240.0)] {
+        stage.put(blue(number), ball + Vector::polar(0.15, Angle::degrees(degrees)));
+    }
+    stage.run(1.9);
+    assert_eq!(stage.count(Kind::HeldBall), 0);
+    stage.run(0.2);
+    assert_eq!(stage.only(Kind::HeldBall).by, Some(Colour::Blue));
+    let mut lenient = stage_with(RefereeSettings { judge_manual_fouls: false, ..settings() });
+    lenient.robots = stage.robots.clone();
+    lenient.run(30.0);
+    assert_eq!(lenient.count(Kind::HeldBall), 0);
+}
+
+/// The ball went out over blue's touch line; yellow has to place it at (1, 2.8).
+fn placement() -> Stage {
+    let mut stage = in_play();
+    stage.move_ball(at(1.0, 2.9));
+    stage.touch(blue(1));
+    stage.kick(0.0, 5.0);
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.put(blue(1), at(2.0, 1.0));
+    stage.put(yellow(1), at(-2.0, 1.0));
+    stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
+    stage
+}
+
+#[test]
+fn a_placed_ball_is_taken_at_once_by_the_team_that_placed_it() {
+    let mut stage = placement();
+    stage.put(yellow(1), at(1.0, 2.5));
+    stage.move_ball(at(1.0, 2.75));
+    stage.run(1.5);
+    assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Yellow), "not before 2 s");
+    stage.until(Phase::FreeKick(Colour::Yellow), 1.0);
+    let What::PlacementSucceeded { took, precision, .. } = stage.only(Kind::PlacementSucceeded).what else {
+        panic!()
+    };
+    assert!((2.0..2.1).contains(&took) && (precision - 0.05).abs() < 0.01, "{took} {precision}");
+}
+
+#[test]
+fn a_ball_with_a_robot_at_it_is_not_placed_yet() {
+    let mut stage = placement();
+    // 4 cm from hull to ball centre.
+    stage.put(yellow(1), at(1.0, 2.67));
+    stage.move_ball(at(1.0, 2.8));
+    stage.run(4.0);
+    assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Yellow));
+}
+
+#[test]
+fn after_30_s_the_other_team_places_and_after_60_s_a_person() {
+    let mut stage = placement();
+    stage.run(29.9);
+    assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Yellow));
+    stage.run(0.2);
+    assert_eq!(stage.only(Kind::PlacementFailed).by, Some(Colour::Yellow));
+    assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Blue));
+    stage.run(30.1);
+    assert_eq!(stage.count(Kind::PlacementFailed), 2);
+    stage.until(Phase::FreeKick(Colour::Yellow), 5.0);
+    assert!(close(stage.place_of_ball(), at(1.0, 2.8)));
+    let failures = |account: &Account| account.placement_failures;
+    let accounts = stage.referee.accounts();
+    assert_eq!((failures(&accounts.yellow), failures(&accounts.blue)), (1, 1));
+}
+
+#[test]
+fn a_team_that_failed_five_times_places_no_more() {
+    let mut stage = placement();
+    stage.referee.accounts.yellow.placement_failures = 4;
+    stage.run(30.1);
+    let yellow = &stage.referee.accounts().yellow;
+    assert!(yellow.placement_barred && !yellow.places());
+}
+
+#[test]
+fn a_team_of_division_b_that_does_not_place_leaves_it_to_the_other() {
+    let mut settings = settings();
+    settings.yellow.can_place_ball = false;
+    let mut stage = stage_with(settings);
+    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    stage.move_ball(at(1.0, 2.9));
+    stage.step();
+    stage.touch(blue(1));
+    stage.kick(0.0, 5.0);
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.until(Phase::BallPlacement(Colour::Blue), 1.0);
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Yellow)));
+}
+
+#[test]
+fn in_division_a_who_fails_to_place_a_ball_that_went_out_loses_the_free_kick() {
+    let mut stage = stage_with(RefereeSettings::new(League::DivisionA));
+    stage.until(Phase::Kickoff(Colour::Yellow), 30.0);
+    stage.move_ball(at(1.0, 4.4));
+    stage.step();
+    stage.touch(blue(1));
+    stage.kick(0.0, 5.0);
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.until(Phase::BallPlacement(Colour::Yellow), 1.0);
+    stage.run(30.1);
+    assert_eq!(stage.phase(), Phase::BallPlacement(Colour::Blue));
+    assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));
+}
+
+#[test]
+fn a_ball_near_its_place_needs_no_placement() {
+    let mut stage = in_play();
+    stage.move_ball(at(1.0, 2.5));
+    stage.touch(blue(1));
+    stage.move_ball(at(1.0, 3.1));
+    stage.step();
+    assert_eq!(stage.phase(), Phase::Stop);
+    stage.move_ball(at(1.5, 2.4));
+    stage.run(1.9);
+    assert_eq!(stage.phase(), Phase::Stop);
+    stage.until(Phase::FreeKick(Colour::Yellow), 0.3);
+    assert_eq!(stage.orders, []);
+}
+
+#[test]
+fn a_ball_in_the_goal_is_fetched_by_a_person() {
+    let mut stage = in_play();
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.ball_mut().height = 0.2;
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.ball_mut().height = 0.0;
+    stage.run(2.2);
+    assert!(
+        matches!(stage.orders[..], [WorldOrder::PutBall(place)] if place.y().abs() > 2.7),
+        "{:?}",
+        stage.orders
+    );
+    stage.until(Phase::FreeKick(Colour::Blue), 3.0);
+}

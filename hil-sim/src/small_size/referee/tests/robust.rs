@@ -1,0 +1,161 @@
+//! Teams that stand, teams that are not there, worlds that make no sense: the match goes on and nothing panics.
+
+use super::*;
+use crate::rng::Stream;
+
+/// A match of 300 simulated seconds is over in time, and was played for a part of them.
+fn plays_to_the_end(stage: Stage) -> Stage {
+    let stage = ends_in_time(stage);
+    let metrics = stage.referee.metrics();
+    assert!(metrics.running_s > 30.0, "{metrics:?}");
+    stage
+}
+
+fn ends_in_time(mut stage: Stage) -> Stage {
+    let clock = MatchClock::Simulated { total: Duration::millis(300_000) };
+    let settings = RefereeSettings { clock, ..settings() };
+    stage.referee = InternalReferee::new(settings, 3).unwrap();
+    while !stage.referee.is_over() {
+        stage.step();
+        assert!(stage.seconds() < 301.0);
+    }
+    stage
+}
+
+#[test]
+fn robots_that_never_move_do_not_hold_up_the_match() {
+    let stage = plays_to_the_end(stage());
+    assert!(stage.count(Kind::NoProgress) > 3);
+}
+
+#[test]
+fn a_match_without_robots_goes_on() {
+    let mut stage = stage();
+    stage.robots.clear();
+    plays_to_the_end(stage);
+}
+
+#[test]
+fn robots_where_they_must_not_be_are_taken_off_one_by_one() {
+    let mut stage = stage();
+    for (number, x) in [(1, 3.4), (2, 3.6)] {
+        stage.put(yellow(number), at(x, 0.5));
+        stage.put(blue(number), at(-x, 0.5));
+    }
+    stage.put(blue(3), at(0.3, 0.0));
+    stage.put(yellow(3), at(-0.3, 0.0));
+    let stage = plays_to_the_end(stage);
+    assert!(stage.count(Kind::MultipleFouls) > 0);
+}
+
+#[test]
+fn where_nobody_puts_the_ball_down_the_game_goes_on_all_the_same() {
+    let mut stage = stage();
+    stage.obeyed = false;
+    stage.move_ball(at(2.0, 1.0));
+    plays_to_the_end(stage);
+}
+
+#[test]
+fn a_match_without_a_ball_goes_on() {
+    let mut stage = stage();
+    stage.obeyed = false;
+    stage.ball = None;
+    let stage = ends_in_time(stage);
+    assert!(stage.count(Kind::NoProgress) > 3);
+}
+
+#[test]
+fn the_same_observations_give_the_same_match() {
+    let play = || plays_to_the_end(wild(7)).referee.log;
+    assert_eq!(play(), play());
+}
+
+/// Six robots of each team at random places.
+fn wild(seed: u64) -> Stage {
+    let mut stage = stage();
+    let mut chance = Stream::new(seed, "wild stage");
+    for number in 0..6 {
+        for who in [yellow(number), blue(number)] {
+            stage.put(who, at(chance.between(-4.6, 4.6), chance.between(-3.1, 3.1)));
+        }
+    }
+    stage
+}
+
+/// What a fuzzer does to the world in a step.
+fn disturb(stage: &mut Stage, chance: &mut Stream) {
+    match chance.whole(0, 400) {
+        0 => stage.kick(chance.between(-8.0, 8.0), chance.between(-8.0, 8.0)),
+        1 => stage.kick(0.0, 0.0),
+        2 => stage.move_ball(at(chance.between(-6.0, 6.0), chance.between(-4.0, 4.0))),
+        3 => stage.ball_mut().height = chance.between(0.0, 1.0),
+        4 => stage.ball_mut().height = 0.0,
+        5 | 6 => {
+            let index = chance.whole(0, stage.robots.len().max(1) as u32 - 1) as usize;
+            let ball = stage.place_of_ball();
+            if let Some(robot) = stage.robots.get_mut(index) {
+                robot.pose.position =
+                    ball + Vector::new(chance.between(-0.2, 0.2), chance.between(-0.2, 0.2));
+                robot.touches_ball = true;
+                robot.velocity = Vector::new(chance.between(-3.0, 3.0), chance.between(-3.0, 3.0));
+            }
+        }
+        7 => stage.robots.iter_mut().for_each(|robot| robot.touches_ball = false),
+        8 => {
+            let who = Who {
+                id: id(chance.whole(0, 15) as u8),
+                ..if chance.chance(0.5) { yellow(0) } else { blue(0) }
+            };
+            stage.put(who, at(chance.between(-5.0, 5.0), chance.between(-3.5, 3.5)));
+        }
+        9 => {
+            let velocities =
+                [0, 1].map(|_| Vector::new(chance.between(-3.0, 3.0), chance.between(-3.0, 3.0)));
+            stage.crashes.push(CrashSeen { between: [yellow(1), blue(1)], velocities });
+        }
+        10 => {
+            let _ = stage.referee.request_timeout(Colour::Blue, Duration::millis(500));
+        }
+        11 => {
+            // What is not a number is not there.
+            let index = chance.whole(0, stage.robots.len().max(1) as u32 - 1) as usize;
+            if let Some(robot) = stage.robots.get_mut(index) {
+                robot.pose.position = at(f32::NAN, f32::INFINITY);
+            }
+        }
+        _ => {}
+    }
+    for robot in &mut stage.robots {
+        robot.pose.position += robot.velocity * 0.01;
+        robot.velocity = robot.velocity * 0.98;
+    }
+}
+
+#[test]
+fn a_wild_world_ends_in_time_and_never_leaves_the_state_graph() {
+    // `Stage::step` compares with a listener after every step and asserts the graph.
+    for seed in 0..12 {
+        let mut stage = wild(seed);
+        let clock = MatchClock::Simulated { total: Duration::millis(200_000) };
+        let knockout = seed % 4 == 3;
+        let settings = RefereeSettings { clock, knockout, ..settings() };
+        stage.referee = InternalReferee::new(settings, seed).unwrap();
+        let mut chance = Stream::new(seed, "disturbances");
+        while !stage.referee.is_over() {
+            disturb(&mut stage, &mut chance);
+            stage.step();
+            assert!(stage.seconds() < 3_000.0);
+        }
+        assert!(stage.referee.events().len() > 20, "{}", stage.referee.events().len());
+    }
+}
+
+#[test]
+fn time_that_goes_back_is_ignored() {
+    let mut stage = in_play();
+    let before = stage.referee.log.len();
+    let seen = Observation { time: Instant(5), ball: None, fastest: 0.0, robots: &[], crashes: &[] };
+    stage.referee.observe(&seen);
+    assert_eq!((stage.referee.now, stage.referee.log.len()), (stage.now, before));
+}

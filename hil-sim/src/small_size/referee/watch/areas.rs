@@ -1,0 +1,82 @@
+//! Who is in or too near a defence area? Rules: robot too close to opponent defense area, attacker touched ball, multiple
+//! defenders. m, s, field frame; distances from a robot's nearest side.
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::Instant;
+use rules::legality::{self, InArea};
+use rules::{Colour, FieldSpec, Phase, limits};
+
+use super::super::event::{Event, What};
+use super::super::observation::{RobotSeen, Who};
+use super::super::scene::{COLOURS, Scene};
+use super::Episodes;
+
+/// Watches the defence areas.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Areas {
+    attackers: Episodes<Who>,
+    defenders: Episodes<Who>,
+    /// When each team last committed the foul of being too close, in the order of [`COLOURS`].
+    too_close: [Option<Instant>; 2],
+}
+
+impl Areas {
+    pub(super) fn command_given(&mut self) {
+        self.defenders.clear();
+        self.too_close = [None; 2];
+    }
+
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+        if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) {
+            for (team, told) in COLOURS.into_iter().zip(&mut self.too_close) {
+                events.extend(too_close(scene, team, told));
+            }
+        }
+        if !scene.game.is_running() {
+            return;
+        }
+        for robot in scene.robots {
+            let (field, place) = (scene.game.field, robot.pose.position);
+            let own = scene.game.own_end(robot.who.colour);
+            let touches = |end: GoalEnd, least: InArea| {
+                robot.touches_ball && legality::in_area(field, end, place) >= least
+            };
+            let attacks = touches(own.opposite(), InArea::Partly);
+            if self.attackers.tell(robot.who, attacks, scene.now) {
+                let depth = depth_in(field, own.opposite(), place);
+                events.push(scene.by(robot.who, place, What::AttackerTouchedBall { depth }));
+            }
+            let defends = !scene.game.accounts.is_keeper(robot.who) && touches(own, InArea::Entirely);
+            if self.defenders.tell(robot.who, defends, scene.now) {
+                let depth = depth_in(field, own, place);
+                events.push(scene.by(robot.who, place, What::DefenderInArea { depth }));
+            }
+        }
+    }
+}
+
+/// The team's robot that is nearest to the opponents' area, where it is too near and the team's grace is over.
+fn too_close(scene: &Scene<'_>, team: Colour, told: &mut Option<Instant>) -> Option<Event> {
+    let grace_began = told.map_or(scene.game.since, |told| told.max(scene.game.since));
+    if scene.now.since(grace_began).as_secs_f32() <= limits::GRACE {
+        return None;
+    }
+    let end = scene.game.own_end(team).opposite();
+    let distance = |robot: &RobotSeen| {
+        scene.game.field.distance_to_area(end, robot.pose.position) - limits::ROBOT_RADIUS
+    };
+    let ours = scene.robots.iter().filter(|robot| robot.who.colour == team);
+    let nearest = ours.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let distance = distance(nearest);
+    let close = legality::too_close_to_area(scene.game.field, end, nearest.pose.position);
+    close.then(|| {
+        *told = Some(scene.now);
+        let what = What::AttackerTooClose { distance: distance.max(0.0), ball: scene.ball.position };
+        scene.by(nearest.who, nearest.pose.position, what)
+    })
+}
+
+/// How far that robot's nearest side is within the area, m: negative outside.
+fn depth_in(field: &FieldSpec, end: GoalEnd, position: Point<Field>) -> f32 {
+    limits::ROBOT_RADIUS - field.distance_to_area(end, position)
+}

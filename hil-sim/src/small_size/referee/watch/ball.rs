@@ -1,0 +1,145 @@
+//! Is the ball too fast, dribbled too far, touched twice, held by the keeper, or getting nowhere? Rules: offenses.
+//!
+//! m, m/s, s, field frame.
+
+use geometry::{Field, Point};
+use protocol::Instant;
+use rules::{Colour, Phase, legality, limits};
+
+use super::super::event::{Event, What};
+use super::super::observation::Who;
+use super::super::scene::{COLOURS, Scene};
+use super::{Episodes, Touches};
+
+/// Watches the ball.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BallWatch {
+    too_fast: Episodes<Who>,
+    dribbled: Episodes<(Who, [u32; 2])>,
+    taker: Taker,
+    /// In whose defence area the ball is, and since when.
+    held: Option<(Colour, Instant)>,
+    /// Where the ball stays, and since when.
+    rests: Option<(Point<Field>, Instant)>,
+}
+
+/// Who took the kick-off or free kick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Taker {
+    /// Nobody may be caught: no such restart, or another robot has touched the ball since.
+    #[default]
+    None,
+    /// Nobody has touched the ball yet.
+    Awaited,
+    /// This robot, and nobody after it.
+    Is(Who),
+}
+
+impl BallWatch {
+    pub(super) fn command_given(&mut self) {
+        self.taker = Taker::Awaited;
+        self.held = None;
+        self.rests = None;
+        self.dribbled.clear();
+        self.too_fast.clear();
+    }
+
+    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
+        if !scene.game.is_running() {
+            return;
+        }
+        events.extend(self.speed(scene, touches));
+        events.extend(self.dribbling(scene, touches));
+        events.extend(self.double_touch(scene, touches));
+        events.extend(self.keeper_held(scene));
+        events.extend(self.no_progress(scene));
+    }
+
+    fn speed(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+        let touch = touches.last()?;
+        let speed = scene.fastest;
+        let chipped = scene.ball.climb > 0.0 || scene.ball.height > limits::BALL_RADIUS;
+        let holds = legality::kicked_too_fast(scene.game.limits, speed - ROUNDING);
+        let told = self.too_fast.tell(touch.who, holds, scene.now);
+        told.then(|| scene.by(touch.who, touch.ball, What::BallTooFast { speed, chipped }))
+    }
+
+    fn dribbling(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+        let end = scene.ball.position;
+        for (who, contact) in touches.contacts() {
+            let far = legality::dribbled_too_far(scene.game.limits, contact.start, end);
+            let start = [contact.start.x().to_bits(), contact.start.y().to_bits()];
+            if self.dribbled.tell((who, start), far, scene.now) {
+                return Some(scene.by(who, contact.start, What::DribbledTooFar { end }));
+            }
+        }
+        None
+    }
+
+    fn double_touch(&mut self, scene: &Scene<'_>, touches: &Touches) -> Option<Event> {
+        let mut touching = scene.robots.iter().filter(|robot| robot.touches_ball).map(|robot| robot.who);
+        match (self.taker, scene.game.phase) {
+            (Taker::Awaited, Phase::FreeKick(team) | Phase::Kickoff(team)) => {
+                let first = touching.next()?;
+                self.taker = if first.colour == team { Taker::Is(first) } else { Taker::None };
+                None
+            }
+            (Taker::Awaited, _) => {
+                self.taker = Taker::None;
+                None
+            }
+            (Taker::Is(taker), _) => {
+                if touching.any(|who| who != taker) {
+                    self.taker = Taker::None;
+                    return None;
+                }
+                let (place, ball) = (scene.game.ball_at_command, scene.ball.position);
+                let again = scene.robot(taker).is_some_and(|robot| robot.touches_ball)
+                    && touches.has_contact(taker)
+                    && legality::double_touch(place, ball, false);
+                again.then(|| {
+                    self.taker = Taker::None;
+                    scene.by(taker, scene.ball.position, What::DoubleTouch)
+                })
+            }
+            (Taker::None, _) => None,
+        }
+    }
+
+    fn keeper_held(&mut self, scene: &Scene<'_>) -> Option<Event> {
+        let game = scene.game;
+        let within = |team: &Colour| game.field.in_penalty_area(game.own_end(*team), scene.ball.position);
+        let Some(team) = COLOURS.into_iter().find(within) else {
+            self.held = None;
+            return None;
+        };
+        let since = self.held.filter(|(owner, _)| *owner == team).map_or(scene.now, |(_, since)| since);
+        self.held = Some((team, since));
+        let duration = scene.now.since(since).as_secs_f32();
+        (duration > game.limits.keeper_hold).then(|| {
+            self.held = None;
+            scene.of(Some(team), scene.ball.position, What::KeeperHeldBall { duration })
+        })
+    }
+
+    fn no_progress(&mut self, scene: &Scene<'_>) -> Option<Event> {
+        let place = scene.ball.position;
+        let (rest, since) = self.rests.unwrap_or((place, scene.now));
+        // A taker has its own time before this one begins.
+        if scene.game.phase != Phase::Run || rest.distance(place) > NO_PROGRESS_DISTANCE {
+            self.rests = Some((place, scene.now));
+            return None;
+        }
+        self.rests = Some((rest, since));
+        let duration = scene.now.since(since).as_secs_f32();
+        (duration > scene.game.limits.no_progress).then(|| {
+            self.rests = None;
+            scene.of(None, place, What::NoProgress { duration })
+        })
+    }
+}
+
+/// A kick at exactly the limit is lawful, whatever the simulator's rounding makes of it, m/s.
+const ROUNDING: f32 = 0.01;
+/// A ball that stays within this of a place makes no progress, m: the game controller's tolerance.
+const NO_PROGRESS_DISTANCE: f32 = 0.1;

@@ -1,0 +1,158 @@
+//! Who ran into whom, who pushed whom, who closed in the ball? Rules: crashing, pushing, ball holding.
+//!
+//! m, m/s, s, field frame. What the rules leave to the human referee's eye has numbers of ours here, estimated.
+
+use std::collections::BTreeMap;
+
+use geometry::{Angle, Vector, math};
+use protocol::Instant;
+use rules::legality::{self, Blame};
+use rules::{Colour, limits};
+
+use super::super::event::{Event, What};
+use super::super::observation::{CrashSeen, RobotSeen, Who};
+use super::super::scene::{COLOURS, Scene};
+use super::Episodes;
+
+/// Watches robots against robots.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Bodies {
+    crashes: Episodes<[Who; 2]>,
+    /// How far the first has pushed the second, and when it last did.
+    pushes: BTreeMap<[Who; 2], Push>,
+    /// Since when a team closes in the ball, in the order of [`COLOURS`].
+    closed: [Option<Instant>; 2],
+    before: Option<Instant>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Push {
+    distance: f32,
+    at: Instant,
+}
+
+impl Bodies {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+        for crash in scene.crashes {
+            events.extend(self.crash(scene, crash));
+        }
+        let dt = scene.now.since(self.before.unwrap_or(scene.now)).as_secs_f32();
+        self.before = Some(scene.now);
+        if !scene.game.judge_manual_fouls || !scene.game.is_running() {
+            self.pushes.clear();
+            self.closed = [None; 2];
+            return;
+        }
+        for yellow in scene.robots.iter().filter(|robot| robot.who.colour == COLOURS[0]) {
+            for blue in scene.robots.iter().filter(|robot| robot.who.colour == COLOURS[1]) {
+                events.extend(self.push(scene, yellow, blue, dt));
+                events.extend(self.push(scene, blue, yellow, dt));
+            }
+        }
+        for (team, since) in COLOURS.into_iter().zip(&mut self.closed) {
+            events.extend(holding(scene, team, since));
+        }
+    }
+
+    fn crash(&mut self, scene: &Scene<'_>, crash: &CrashSeen) -> Option<Event> {
+        let [a, b] = crash.between;
+        if a.colour == b.colour {
+            return None;
+        }
+        let (one, other) = (scene.robot(a)?, scene.robot(b)?);
+        let (places, velocities) = ([one, other].map(|robot| robot.pose.position), crash.velocities);
+        let fault = legality::crash((places[0], velocities[0]), (places[1], velocities[1]));
+        let pair = if a < b { [a, b] } else { [b, a] };
+        if !self.crashes.tell(pair, fault.is_some(), scene.now) {
+            return None;
+        }
+        let fault = fault?;
+        let (crash_speed, speed_difference) = (fault.speed, fault.difference.abs());
+        let angle = angle_between(velocities[0] - velocities[1], places[1] - places[0]);
+        let place = places[0] + (places[1] - places[0]) * 0.5;
+        let unique = |violator: Who, victim: Who| {
+            let what = What::CrashUnique { victim: victim.id, crash_speed, speed_difference, angle };
+            scene.by(violator, place, what)
+        };
+        Some(match fault.blame {
+            Blame::First => unique(a, b),
+            Blame::Second => unique(b, a),
+            Blame::Both => {
+                let (yellow, blue) = if a.colour == Colour::Yellow { (a.id, b.id) } else { (b.id, a.id) };
+                let what = What::CrashDrawn { yellow, blue, crash_speed, speed_difference, angle };
+                scene.of(None, place, what)
+            }
+        })
+    }
+
+    /// Both in contact, and both on the way from the first to the second.
+    fn push(&mut self, scene: &Scene<'_>, from: &RobotSeen, to: &RobotSeen, dt: f32) -> Option<Event> {
+        let pair = [from.who, to.who];
+        let between = to.pose.position - from.pose.position;
+        let apart = between.norm() - 2.0 * limits::ROBOT_RADIUS;
+        let at_ball = from.touches_ball && to.touches_ball;
+        let line = between.unit()?;
+        let pushed = to.velocity.dot(line);
+        let pushes = (apart <= CONTACT || at_ball) && pushed > MOVING && from.velocity.dot(line) > MOVING;
+        if !pushes {
+            if self.pushes.get(&pair).is_some_and(|push| scene.now.since(push.at).as_secs_f32() > PUSH_PAUSE)
+            {
+                self.pushes.remove(&pair);
+            }
+            return None;
+        }
+        let push = self.pushes.entry(pair).or_insert(Push { distance: 0.0, at: scene.now });
+        push.at = scene.now;
+        let before = push.distance;
+        push.distance += pushed * dt;
+        let told = before <= PUSH_DISTANCE && push.distance > PUSH_DISTANCE;
+        let what = What::Pushed { victim: to.who.id, distance: push.distance };
+        told.then(|| scene.by(from.who, from.pose.position, what))
+    }
+}
+
+/// A team's robots stand around the ball so that no opponent fits between them.
+fn holding(scene: &Scene<'_>, team: Colour, since: &mut Option<Instant>) -> Option<Event> {
+    let around = scene
+        .robots
+        .iter()
+        .filter(|robot| robot.who.colour == team && scene.distance_to_ball(robot) <= AROUND_BALL);
+    let mut directions: Vec<f32> =
+        around.map(|robot| scene.ball.position.direction_to(robot.pose.position).radians()).collect();
+    directions.sort_by(f32::total_cmp);
+    let next = directions.iter().cycle().skip(1);
+    let widest = directions
+        .iter()
+        .zip(next)
+        .map(|(from, to)| if to > from { to - from } else { to - from + math::TAU })
+        .fold(0.0, f32::max);
+    if directions.len() < 3 || widest > GAP {
+        *since = None;
+        return None;
+    }
+    let began = *since.get_or_insert(scene.now);
+    let duration = scene.now.since(began).as_secs_f32();
+    (duration > HOLD_TIME).then(|| {
+        *since = None;
+        scene.of(Some(team), scene.ball.position, What::HeldBall { duration })
+    })
+}
+
+fn angle_between(a: Vector<geometry::Field>, b: Vector<geometry::Field>) -> f32 {
+    Angle::new(math::atan2(b.cross(a), b.dot(a))).radians()
+}
+
+/// Hulls nearer than this are in contact, m.
+const CONTACT: f32 = 0.01;
+/// A robot that moves is faster than this, m/s: what a blocked wheel still makes is slower.
+const MOVING: f32 = 0.2;
+/// Pushed so far is a foul, m: three robots' radii, a distance that a human referee sees.
+const PUSH_DISTANCE: f32 = 0.3;
+/// Pauses up to this do not end a push, s.
+const PUSH_PAUSE: f32 = 0.2;
+/// Robots within this of the ball are around it, m: an opponent of 0.18 m fits behind them only.
+const AROUND_BALL: f32 = 0.18;
+/// The widest gap between two neighbours, seen from the ball, through which no opponent reaches it, rad (150°).
+const GAP: f32 = 2.617_994;
+/// How long a ball may be closed in, s: as the rules' other graces.
+const HOLD_TIME: f32 = limits::GRACE;

@@ -1,0 +1,78 @@
+//! When is it a new offence, and when still the same? An offence is told when it begins and, as long as it goes on, again
+//! after the rules' 2 s; one that pauses shorter than 0.2 s is still the same.
+
+use std::collections::BTreeMap;
+
+use protocol::{Duration, Instant};
+use rules::limits;
+
+/// Offences that go on, by who commits them.
+#[derive(Clone, Debug)]
+pub(super) struct Episodes<K>(BTreeMap<K, Episode>);
+
+#[derive(Clone, Copy, Debug)]
+struct Episode {
+    told: Instant,
+    seen: Instant,
+}
+
+impl<K> Default for Episodes<K> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<K: Ord> Episodes<K> {
+    /// Whether what holds now is to be told.
+    pub(super) fn tell(&mut self, who: K, holds: bool, now: Instant) -> bool {
+        let Some(episode) = self.0.get_mut(&who) else {
+            if holds {
+                self.0.insert(who, Episode { told: now, seen: now });
+            }
+            return holds;
+        };
+        if !holds {
+            if now.since(episode.seen) > PAUSE {
+                self.0.remove(&who);
+            }
+            return false;
+        }
+        episode.seen = now;
+        let again = now.since(episode.told) >= Duration::from_secs_f32(limits::FOUL_REPEAT);
+        if again {
+            episode.told = now;
+        }
+        again
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+/// A robot that bounces off the ball or a line for so long has not stopped what it does: two frames of a camera and
+/// some, estimated.
+const PAUSE: Duration = Duration::millis(200);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offence_is_told_at_its_beginning_and_every_two_seconds() {
+        let mut episodes = Episodes::default();
+        let told: Vec<u64> =
+            (0..500).filter(|step| episodes.tell((), true, Instant(step * 10_000))).collect();
+        assert_eq!(told, [0, 200, 400]);
+    }
+
+    #[test]
+    fn a_short_pause_makes_no_new_offence_a_longer_one_does() {
+        let mut episodes = Episodes::default();
+        assert!(episodes.tell((), true, Instant(0)));
+        assert!(!episodes.tell((), false, Instant(100_000)));
+        assert!(!episodes.tell((), true, Instant(150_000)));
+        assert!(!episodes.tell((), false, Instant(400_000)));
+        assert!(episodes.tell((), true, Instant(410_000)));
+    }
+}

@@ -1,0 +1,101 @@
+//! Where did the ball leave, and is it in a goal? Rules: ball leaves the field, scoring goals, boundary crossing.
+//!
+//! m, field frame.
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::Instant;
+use rules::legality::{self, Crossing, Line};
+use rules::restart::{OutKind, after_out};
+use rules::{Colour, Phase, limits};
+
+use super::super::event::{Event, PenaltyEnd, Shot, What};
+use super::super::scene::Scene;
+use super::Touches;
+
+/// Watches the lines.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lines {
+    before: Option<Point<Field>>,
+    /// The kick that sent the ball out: it may still fly over the wall.
+    sent_out: Option<(Event, Instant)>,
+}
+
+impl Lines {
+    pub(super) fn look(&mut self, scene: &Scene<'_>, touches: &Touches, events: &mut Vec<Event>) {
+        let now = scene.ball.position;
+        let before = self.before.replace(now).unwrap_or(now);
+        if !scene.game.is_running() {
+            events.extend(self.over_the_wall(scene));
+            return;
+        }
+        self.sent_out = None;
+        let Some(crossing) = legality::crossing(scene.game.field, before, now) else { return };
+        let event = judge(scene, touches, crossing);
+        if let (Some(touch), true) = (touches.last(), event.what.kind().is_ball_out()) {
+            let what = What::BoundaryCrossing;
+            self.sent_out = Some((scene.by(touch.who, touch.ball, what), scene.now));
+        }
+        events.push(event);
+    }
+
+    /// The ball that left flies on over the wall before anybody touches it.
+    fn over_the_wall(&mut self, scene: &Scene<'_>) -> Option<Event> {
+        let (event, at) = self.sent_out.take()?;
+        let touched = scene.robots.iter().any(|robot| robot.touches_ball);
+        if touched || scene.now.since(at).as_secs_f32() > FLIGHT {
+            return None;
+        }
+        if scene.game.field.carpet().distance_to(scene.ball.position) > limits::BALL_RADIUS {
+            return Some(Event { at: scene.now, ..event });
+        }
+        self.sent_out = Some((event, at));
+        None
+    }
+}
+
+fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
+    let (game, place, last) = (scene.game, crossing.at, touches.last());
+    if let Line::Mouth(end) = crossing.line
+        && scene.ball.height < game.field.goal_height
+    {
+        let scorer = if game.own_end(Colour::Blue) == end { Colour::Yellow } else { Colour::Blue };
+        if !matches!(game.phase, Phase::Penalty(team) if team != scorer) {
+            return scene.of(Some(scorer), place, What::PossibleGoal { shot: shot(scene, touches, scorer) });
+        }
+    }
+    if let Phase::Penalty(team) = game.phase {
+        return scene.of(Some(team), place, What::PenaltyFailed { reason: PenaltyEnd::Out });
+    }
+    let goal_line = |end: GoalEnd| {
+        let aimless = last.filter(|touch| {
+            let own = game.own_end(touch.who.colour);
+            let from_kickoff = touch.ball.distance(Point::new(0.0, 0.0)) < limits::IN_PLAY_DISTANCE;
+            let crossing = Crossing { line: Line::Goal(end), at: place };
+            let out = after_out(game.field, game.limits, crossing, own, Some(touch.ball), from_kickoff);
+            out.kind == OutKind::AimlessKick
+        });
+        aimless.map_or(What::LeftGoalLine, |touch| What::AimlessKick { from: touch.ball })
+    };
+    let what = match crossing.line {
+        Line::Touch { .. } => What::LeftTouchLine,
+        Line::Goal(end) | Line::Mouth(end) => goal_line(end),
+    };
+    match last {
+        Some(touch) => scene.by(touch.who, place, what),
+        None => scene.of(None, place, what),
+    }
+}
+
+fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
+    let last = touches.last();
+    Shot {
+        kicker: last.map(|touch| touch.who),
+        from: last.map_or(scene.ball.position, |touch| touch.ball),
+        max_height: touches.height_since(scorer),
+        last_touch: touches.last_of(scorer),
+        robots: scene.robots.iter().filter(|robot| robot.who.colour == scorer).count() as u32,
+    }
+}
+
+/// How long a ball that left may take to fly over the wall, s: a chip at 6.5 m/s is in the air for less than 1 s.
+const FLIGHT: f32 = 2.0;

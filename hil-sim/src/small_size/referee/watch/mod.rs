@@ -1,0 +1,70 @@
+//! Which offences and events does an automatic referee see in the true state? One watcher a question, one event an offence.
+//!
+//! Rules 2026, chapters on offenses, ball leaves the field and scoring goals. m, m/s, s, field frame.
+
+mod areas;
+mod ball;
+mod bodies;
+mod calm;
+mod episodes;
+mod lines;
+mod penalty;
+mod touches;
+
+use geometry::{Field, Point};
+
+use super::event::Event;
+use super::observation::Who;
+use super::scene::Scene;
+use areas::Areas;
+use ball::BallWatch;
+use bodies::Bodies;
+use calm::Calm;
+use episodes::Episodes;
+use lines::Lines;
+use penalty::PenaltyWatch;
+use touches::Touches;
+
+/// All watchers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watch {
+    touches: Touches,
+    lines: Lines,
+    ball: BallWatch,
+    areas: Areas,
+    calm: Calm,
+    bodies: Bodies,
+    penalty: PenaltyWatch,
+}
+
+impl Watch {
+    /// Adds what happened since the last moment.
+    pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
+        self.touches.look(scene);
+        self.penalty.look(scene, &self.touches, events);
+        self.lines.look(scene, &self.touches, events);
+        self.ball.look(scene, &self.touches, events);
+        self.areas.look(scene, events);
+        self.calm.look(scene, events);
+        self.bodies.look(scene, events);
+    }
+
+    /// A command was given: what a restart or stop is watched for begins anew.
+    pub(super) fn command_given(&mut self) {
+        self.ball.command_given();
+        self.areas.command_given();
+        self.calm.command_given();
+        self.penalty.command_given();
+    }
+
+    /// Who touched the ball last, and where the ball was then.
+    pub(super) fn last_touch(&self) -> Option<(Who, Point<Field>)> {
+        self.touches.last().map(|touch| (touch.who, touch.ball))
+    }
+
+    /// The ball was put somewhere by hand: who had it does not matter any more.
+    pub(super) fn ball_was_put_down(&mut self) {
+        self.touches = Touches::default();
+        self.lines = Lines::default();
+    }
+}

@@ -1,0 +1,103 @@
+//! Who touched the ball last, and who has it? Contacts begin with a touch and end with a separation that can be seen.
+//!
+//! m, field frame.
+
+use std::collections::BTreeMap;
+
+use geometry::{Field, Point};
+use protocol::Instant;
+use rules::{Colour, limits};
+
+use super::super::observation::{RobotSeen, Who};
+use super::super::scene::{COLOURS, Scene};
+
+/// The last touch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) who: Who,
+    /// Where the ball was when the contact was last seen.
+    pub(super) ball: Point<Field>,
+}
+
+/// A contact that lasts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// Where the ball was when it began.
+    pub(super) start: Point<Field>,
+}
+
+/// Who deals with the ball.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Touches {
+    last: Option<Touch>,
+    contacts: BTreeMap<Who, Contact>,
+    /// Greatest height since each team's last touch, in the order of [`COLOURS`], m.
+    heights: [f32; 2],
+    /// Each team's last touch.
+    times: [Option<Instant>; 2],
+}
+
+impl Touches {
+    pub(super) fn look(&mut self, scene: &Scene<'_>) {
+        let ball = scene.ball;
+        self.contacts.retain(|who, _| scene.robot(*who).is_some_and(|robot| is_close(scene, robot)));
+        let mut next: Option<(bool, f32, Who)> = None;
+        for robot in scene.robots.iter().filter(|robot| robot.touches_ball) {
+            let new = !self.contacts.contains_key(&robot.who);
+            if is_close(scene, robot) {
+                self.contacts.entry(robot.who).or_insert(Contact { start: ball.position });
+            }
+            // A new toucher before one that still touches, the nearer one of two.
+            let distance = robot.pose.position.distance(ball.position);
+            if next.is_none_or(|(was_new, least, _)| (new, -distance) > (was_new, -least)) {
+                next = Some((new, distance, robot.who));
+            }
+            let team = index(robot.who.colour);
+            self.heights[team] = 0.0;
+            self.times[team] = Some(scene.now);
+        }
+        if let Some((_, _, who)) = next {
+            self.last = Some(Touch { who, ball: ball.position });
+        }
+        for height in &mut self.heights {
+            *height = height.max(ball.height);
+        }
+    }
+
+    pub(super) fn last(&self) -> Option<Touch> {
+        self.last
+    }
+
+    /// Robots that have been in contact without a separation.
+    pub(super) fn contacts(&self) -> impl Iterator<Item = (Who, Contact)> + '_ {
+        self.contacts.iter().map(|(who, contact)| (*who, *contact))
+    }
+
+    pub(super) fn has_contact(&self, who: Who) -> bool {
+        self.contacts.contains_key(&who)
+    }
+
+    /// How high the ball was at most since that team's last touch, m.
+    pub(super) fn height_since(&self, team: Colour) -> f32 {
+        self.heights[index(team)]
+    }
+
+    /// When that team touched the ball last.
+    pub(super) fn last_of(&self, team: Colour) -> Option<Instant> {
+        self.times[index(team)]
+    }
+}
+
+/// No separation can be seen between that robot and the ball.
+fn is_close(scene: &Scene<'_>, robot: &RobotSeen) -> bool {
+    scene.distance_to_ball(robot) - limits::BALL_RADIUS <= SEPARATION
+        && scene.ball.height <= limits::ROBOT_HEIGHT
+}
+
+fn index(team: Colour) -> usize {
+    usize::from(team == COLOURS[1])
+}
+
+/// A gap between hull and ball that a camera sees, m: about the ball's radius, estimated. (The mouth of a robot lies some
+/// 17 mm inside its hull, so that a ball at the dribbler is 17 mm "within".)
+const SEPARATION: f32 = 0.02;
