@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod radio;
 pub mod recording;
 pub mod referee;
+pub mod shell;
 pub mod strategy;
 pub mod trace;
 pub mod world;

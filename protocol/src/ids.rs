@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use rules::Colour;
 use serde::{Deserialize, Serialize};
 
 /// A robot of one team, 0–15; fixed for its life (paper §4.1: "each robot has a unique fixed Id").
@@ -69,6 +70,16 @@ impl fmt::Display for RobotId {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct TeamId(pub u8);
+
+impl TeamId {
+    /// The team of that colour, numbered as the referee does: 1 yellow, 2 blue.
+    pub const fn of(colour: Colour) -> Self {
+        match colour {
+            Colour::Yellow => Self(1),
+            Colour::Blue => Self(2),
+        }
+    }
+}
 
 /// A stored case: 4 × authored index + symmetry (DESIGN §4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -1,0 +1,109 @@
+//! Why can robots not be reached, and what is to be done about it?
+
+use std::fmt;
+use std::io;
+
+/// One variant per thing the people can do something about.
+#[derive(Debug)]
+pub enum LinkError {
+    /// `udp://` names a host that nobody knows.
+    UnknownHost {
+        /// As given.
+        address: String,
+        /// The system's words.
+        error: io::Error,
+    },
+    /// No socket could be had, or it failed.
+    Socket {
+        /// What was tried.
+        doing: String,
+        /// The system's words.
+        error: io::Error,
+    },
+    /// The serial line is not there.
+    NoSuchLine {
+        /// As given.
+        device: String,
+        /// Lines that are there.
+        present: Vec<String>,
+    },
+    /// The serial line may not be used by this person.
+    NotAllowed {
+        /// As given.
+        device: String,
+    },
+    /// The serial line does not do this rate, or failed.
+    Line {
+        /// As given.
+        device: String,
+        /// What was tried.
+        doing: String,
+        /// The system's words.
+        error: io::Error,
+    },
+    /// A virtual robot could not be started.
+    Start {
+        /// The program.
+        program: String,
+        /// The system's words.
+        error: io::Error,
+    },
+    /// A virtual robot ended again and again.
+    GivesUp {
+        /// Which.
+        robot: u8,
+        /// How it last ended.
+        how: String,
+        /// How often.
+        times: u32,
+    },
+}
+
+impl fmt::Display for LinkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownHost { address, error } => {
+                write!(
+                    f,
+                    "nobody knows the host of `{address}` ({error}); give udp://HOST:PORT of the base station"
+                )
+            }
+            Self::Socket { doing, error } => write!(f, "cannot {doing}: {error}"),
+            Self::NoSuchLine { device, present } if present.is_empty() => {
+                write!(f, "there is no serial line {device}, nor any other; plug the base station in")
+            }
+            Self::NoSuchLine { device, present } => {
+                write!(f, "there is no serial line {device}; there are: {}", present.join(", "))
+            }
+            Self::NotAllowed { device } => write!(
+                f,
+                "{device} may not be opened by you; on Linux join its group (`sudo usermod -aG dialout $USER`, then log in again)"
+            ),
+            Self::Line { device, doing, error } => write!(
+                f,
+                "cannot {doing} {device}: {error}; is the base station plugged in, and does it run at this rate \
+                 (serial:{device}:BAUD)?"
+            ),
+            Self::Start { program, error } => {
+                write!(f, "cannot start a virtual robot with {program}: {error}")
+            }
+            Self::GivesUp { robot, how, times } => write!(
+                f,
+                "virtual robot {robot} ended {times} times in a row ({how}); start it by hand to see why: \
+                 `onetwo virtual-robot --help`"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for LinkError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::UnknownHost { error, .. }
+            | Self::Socket { error, .. }
+            | Self::Line { error, .. }
+            | Self::Start { error, .. } => Some(error),
+            Self::NoSuchLine { .. } | Self::NotAllowed { .. } | Self::GivesUp { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Which key does the team have? A file with 32 hexadecimal digits, which nobody else should be able to read.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use protocol::frame::TeamKey;
+
+/// A key that was read, and what is to be said about its file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyFile {
+    /// The key.
+    pub key: TeamKey,
+    /// Others may read the file, or the key is the one everybody knows.
+    pub warning: Option<String>,
+}
+
+/// Why there is no key.
+#[derive(Debug)]
+pub enum KeyError {
+    /// The file cannot be read.
+    Unreadable {
+        /// Which.
+        path: PathBuf,
+        /// The system's words.
+        error: std::io::Error,
+    },
+    /// It does not hold 32 hexadecimal digits.
+    Malformed {
+        /// Which.
+        path: PathBuf,
+        /// What it holds instead; never its text.
+        what: String,
+    },
+}
+
+impl fmt::Display for KeyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, error } => {
+                write!(
+                    f,
+                    "the key file {} cannot be read: {error}; `openssl rand -hex 16` makes a key",
+                    path.display()
+                )
+            }
+            Self::Malformed { path, what } => write!(
+                f,
+                "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
+                 makes them",
+                path.display()
+            ),
+        }
+    }
+}
+
+impl std::error::Error for KeyError {}
+
+/// Reads a key file.
+pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
+    let unreadable = |error| KeyError::Unreadable { path: path.to_owned(), error };
+    let bytes = fs::read(path).map_err(unreadable)?;
+    let malformed = |what| KeyError::Malformed { path: path.to_owned(), what };
+    let text = str::from_utf8(&bytes).map_err(|_| malformed("bytes that are no text".to_owned()))?;
+    let key = parse(text).map_err(malformed)?;
+    let warning = if key == TeamKey::ZERO {
+        Some(format!("the key in {} is all zeros, which everybody knows", path.display()))
+    } else {
+        readable_by_others(path)
+    };
+    Ok(KeyFile { key, warning })
+}
+
+/// 32 hexadecimal digits, or what is there instead.
+pub fn parse(text: &str) -> Result<TeamKey, String> {
+    let digits = text.trim().as_bytes();
+    if let Some(at) = digits.iter().position(|digit| !digit.is_ascii_hexdigit()) {
+        return Err(format!("something that is no hexadecimal digit at place {}", at + 1));
+    }
+    let (pairs, []) = digits.as_chunks::<2>() else { return Err(format!("{} digits", digits.len())) };
+    let nibble = |digit: u8| char::from(digit).to_digit(16).unwrap_or(0) as u8;
+    let bytes: Vec<u8> = pairs.iter().map(|[high, low]| nibble(*high) << 4 | nibble(*low)).collect();
+    let key = bytes.try_into().map_err(|_| format!("{} digits", digits.len()))?;
+    Ok(TeamKey(key))
+}
+
+/// The key as [`parse`] reads it.
+pub fn format(key: &TeamKey) -> String {
+    // The first digit of a byte is its upper half.
+    let halves = key.0.iter().flat_map(|byte| [byte >> 4, byte & 0x0f]);
+    halves.filter_map(|half| char::from_digit(u32::from(half), 16)).collect()
+}
+
+#[cfg(unix)]
+fn readable_by_others(path: &Path) -> Option<String> {
+    use std::os::unix::fs::PermissionsExt as _;
+    let mode = fs::metadata(path).ok()?.permissions().mode();
+    (mode & 0o077 != 0).then(|| format!("others may read the key file {}; `chmod 600` it", path.display()))
+}
+
+#[cfg(not(unix))]
+fn readable_by_others(_path: &Path) -> Option<String> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_read_and_written_as_32_digits() {
+        let text = "000102030405060708090a0b0c0d0eFF\n";
+        let key = parse(text).unwrap();
+        assert_eq!((key.0[1], key.0[15]), (1, 0xff));
+        assert_eq!(parse(&format(&key)), Ok(key));
+    }
+
+    #[test]
+    fn what_is_no_key_is_told_without_telling_what_it_is() {
+        assert_eq!(parse("00"), Err("2 digits".into()));
+        assert_eq!(parse("123"), Err("3 digits".into()));
+        assert_eq!(parse("0001secret"), Err("something that is no hexadecimal digit at place 5".into()));
+        let missing = read(Path::new("no-such.key")).unwrap_err().to_string();
+        assert!(missing.contains("no-such.key") && missing.contains("openssl"), "{missing}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_others_may_read_is_warned_of() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let path = std::env::temp_dir().join(format!("onetwo-key-test-{}", std::process::id()));
+        fs::write(&path, "000102030405060708090a0b0c0d0e0f").unwrap();
+        let warned = |mode| {
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            read(&path).unwrap().warning.is_some()
+        };
+        assert_eq!((warned(0o600), warned(0o640), warned(0o604)), (false, true, true));
+        fs::write(&path, "0".repeat(32)).unwrap();
+        assert!(read(&path).unwrap().warning.unwrap().contains("all zeros"));
+        fs::remove_file(&path).unwrap();
+    }
+}

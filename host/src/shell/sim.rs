@@ -1,0 +1,295 @@
+//! How are robots reached that are brains of our own in a simulator? `sim://HOST`: a process each, `onetwo virtual-robot`,
+//! that speaks radio frames with us and the league's simulation protocol with the simulator.
+//!
+//! **Life.** They are started here, each started again a second after it ended, and told of. They end with us, however we
+//! end: the pipe to their standard input closes, and that is their sign. It also brings them the key, which no list of
+//! processes shows.
+
+use std::ffi::OsString;
+use std::io::Write as _;
+use std::net::{SocketAddr, UdpSocket};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use protocol::frame::{Frame, Sender, TeamKey};
+use protocol::link::Packet;
+use protocol::{RobotId, TeamId};
+use rules::{Colour, League};
+
+use super::hub::Hub;
+use super::udp::{receive, send};
+use super::{Link, LinkError, key};
+use crate::radio::{Relay, To};
+
+/// A robot that ended is started again after this time; its next life then has a greater epoch, which counts seconds.
+const RESTART: Duration = Duration::from_millis(1_100);
+/// A robot that ended this often in a row within [`SHORT`] will not do better.
+const GIVE_UP: u32 = 5;
+/// A life shorter than this is none.
+const SHORT: Duration = Duration::from_secs(3);
+/// How often it is looked whether all live.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Which robots to start, and how.
+#[derive(Clone, Debug)]
+pub struct SimSettings {
+    /// The program that has the verb `virtual-robot`; this one, mostly.
+    pub program: PathBuf,
+    /// Our colour.
+    pub colour: Colour,
+    /// The league played.
+    pub league: League,
+    /// Which robots.
+    pub robots: Vec<RobotId>,
+    /// Where the simulator takes our robots' commands: port 10301 for blue, 10302 for yellow.
+    pub simulator: SocketAddr,
+    /// The team's key.
+    pub key: TeamKey,
+    /// More words for each robot's command line: library, settings.
+    pub more: Vec<OsString>,
+}
+
+/// Robots' processes and the sockets to them.
+#[derive(Debug)]
+pub struct SimLink {
+    settings: SimSettings,
+    socket: UdpSocket,
+    own: SocketAddr,
+    hub: Hub,
+    robots: Vec<Robot>,
+    looked: Instant,
+    notices: Vec<String>,
+}
+
+#[derive(Debug)]
+struct Robot {
+    id: RobotId,
+    process: Option<Child>,
+    since: Instant,
+    address: Option<SocketAddr>,
+    restarts: u32,
+    short_lives: u32,
+}
+
+impl SimLink {
+    /// Starts all robots.
+    pub fn start(settings: SimSettings) -> Result<Self, LinkError> {
+        let system = |error| LinkError::Socket { doing: "open a socket for virtual robots".into(), error };
+        let socket = UdpSocket::bind("127.0.0.1:0").map_err(system)?;
+        let own = socket.local_addr().map_err(system)?;
+        let hub = Hub::start(settings.simulator)?;
+        let now = Instant::now();
+        let robot = |id: &RobotId| Robot {
+            id: *id,
+            process: None,
+            since: now,
+            address: None,
+            restarts: 0,
+            short_lives: 0,
+        };
+        let robots = settings.robots.iter().map(robot).collect();
+        let mut link = Self { settings, socket, own, hub, robots, looked: now, notices: Vec::new() };
+        for place in 0..link.robots.len() {
+            link.boot(place)?;
+        }
+        Ok(link)
+    }
+
+    /// How often a robot had to be started again, all together.
+    pub fn restarts(&self) -> u32 {
+        self.robots.iter().map(|robot| robot.restarts).sum()
+    }
+
+    /// The process of each robot that lives.
+    pub fn processes(&self) -> impl Iterator<Item = (RobotId, u32)> {
+        self.robots.iter().filter_map(|robot| Some((robot.id, robot.process.as_ref()?.id())))
+    }
+
+    fn boot(&mut self, place: usize) -> Result<(), LinkError> {
+        let Some(robot) = self.robots.get_mut(place) else { return Ok(()) };
+        let settings = &self.settings;
+        let start = |error| LinkError::Start { program: settings.program.display().to_string(), error };
+        let mut process = Command::new(&settings.program)
+            .arg("virtual-robot")
+            .args(["--id", &robot.id.to_string(), "--team", settings.colour.word()])
+            .args(["--league", settings.league.name(), "--host", &self.own.to_string()])
+            .args(["--simulator", &self.hub.address().to_string(), "--with-parent"])
+            .args(&settings.more)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .map_err(start)?;
+        if let Some(pipe) = &mut process.stdin {
+            // Where it has ended already, that is seen at the next look.
+            let _ = writeln!(pipe, "{}", key::format(&settings.key));
+        }
+        robot.process = Some(process);
+        robot.since = Instant::now();
+        Ok(())
+    }
+
+    /// Sees who has ended, and starts whom it is time for.
+    fn look(&mut self) -> Result<(), LinkError> {
+        let now = Instant::now();
+        if now.duration_since(self.looked) < LOOK {
+            return Ok(());
+        }
+        self.looked = now;
+        for place in 0..self.robots.len() {
+            let Some(robot) = self.robots.get_mut(place) else { continue };
+            match &mut robot.process {
+                Some(process) => {
+                    let how = match process.try_wait() {
+                        Ok(None) => continue,
+                        Ok(Some(status)) => status.to_string(),
+                        Err(error) => format!("it cannot be watched: {error}"),
+                    };
+                    let short = now.duration_since(robot.since) < SHORT;
+                    robot.short_lives = if short { robot.short_lives + 1 } else { 0 };
+                    (robot.process, robot.address, robot.since) = (None, None, now);
+                    if robot.short_lives >= GIVE_UP {
+                        let times = robot.short_lives;
+                        return Err(LinkError::GivesUp { robot: robot.id.number(), how, times });
+                    }
+                    self.notices
+                        .push(format!("virtual robot {} ended ({how}); it is started again", robot.id));
+                }
+                None if now.duration_since(robot.since) >= RESTART => {
+                    robot.restarts += 1;
+                    self.boot(place)?;
+                }
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Learns where a robot is, from a frame that nobody else can have made.
+    fn learn(&mut self, packet: &[u8], from: SocketAddr) {
+        let team = TeamId::of(self.settings.colour);
+        let Ok(Frame { sender: Sender::Robot(id), .. }) = Frame::parse(packet, team) else { return };
+        let known = self.robots.iter_mut().find(|robot| robot.id == id);
+        if let Some(robot) = known.filter(|robot| robot.address != Some(from))
+            && Frame::is_genuine(packet, &self.settings.key)
+        {
+            robot.address = Some(from);
+        }
+    }
+}
+
+impl Link for SimLink {
+    fn send(&mut self, to: To, packet: &[u8]) -> Result<(), LinkError> {
+        for robot in &self.robots {
+            if let (true, Some(address)) = (to == To::All || to == To::One(robot.id), robot.address) {
+                send(&self.socket, address, packet)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<Packet>, LinkError> {
+        self.look()?;
+        let Some((packet, from)) = receive(&self.socket, wait)? else { return Ok(None) };
+        self.learn(&packet, from);
+        Ok(Some(packet))
+    }
+
+    fn relay(&self) -> Relay {
+        Relay::ToEach
+    }
+
+    fn notice(&mut self) -> Option<String> {
+        (!self.notices.is_empty()).then(|| self.notices.remove(0))
+    }
+
+    fn advice(&self) -> String {
+        let alive = self.robots.iter().filter(|robot| robot.process.is_some()).count();
+        format!(
+            "{alive} of {} virtual robots run; does a simulator listen at {}?",
+            self.robots.len(),
+            self.settings.simulator
+        )
+    }
+}
+
+impl Drop for SimLink {
+    fn drop(&mut self) {
+        for robot in &mut self.robots {
+            if let Some(process) = &mut robot.process {
+                // The closed pipe asks it; the signal does not wait for an answer.
+                drop(process.stdin.take());
+                let _ = process.kill();
+                let _ = process.wait();
+            }
+        }
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use protocol::host::Telemetry;
+    use protocol::link::Link as RobotEnd;
+    use protocol::team::TeamMessage;
+
+    fn id(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn settings(program: &str, robots: &[u8]) -> SimSettings {
+        SimSettings {
+            program: program.into(),
+            colour: Colour::Blue,
+            league: League::DivisionB,
+            robots: robots.iter().map(|n| id(*n)).collect(),
+            simulator: ([127, 0, 0, 1], 9).into(),
+            key: TeamKey([3; 16]),
+            more: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_robot_is_spoken_to_where_its_genuine_frames_come_from() {
+        // `cat` keeps its standard input open and says nothing: it stands for a robot's process (and complains of its words).
+        let mut link = SimLink::start(settings("cat", &[2, 4])).unwrap();
+        let robot = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let mut end = RobotEnd::new(TeamId::of(Colour::Blue), id(4), TeamKey([3; 16]), 9);
+        let mut forger = RobotEnd::new(TeamId::of(Colour::Blue), id(2), TeamKey::ZERO, 9);
+        let telemetry = TeamMessage::Telemetry(Telemetry::default());
+        for packet in [end.seal(&telemetry), forger.seal(&telemetry)] {
+            robot.send_to(&packet, link.own).unwrap();
+            assert_eq!(link.receive(Duration::from_secs(2)).unwrap(), Some(packet));
+        }
+        link.send(To::One(id(2)), b"to nobody known").unwrap();
+        link.send(To::One(id(4)), b"to four").unwrap();
+        link.send(To::All, b"to all").unwrap();
+        let (first, _) = receive(&robot, Duration::from_secs(2)).unwrap().unwrap();
+        let (second, _) = receive(&robot, Duration::from_secs(2)).unwrap().unwrap();
+        assert_eq!((&first[..], &second[..]), (&b"to four"[..], &b"to all"[..]));
+    }
+
+    #[test]
+    fn a_robot_that_ends_again_and_again_is_given_up_and_told_of() {
+        let mut link = SimLink::start(settings("false", &[0])).unwrap();
+        let mut error = None;
+        for _ in 0..200 {
+            // The second between two lives need not pass in a test.
+            for robot in &mut link.robots {
+                robot.since -= RESTART;
+            }
+            link.looked -= LOOK;
+            std::thread::sleep(Duration::from_millis(5));
+            if let Err(why) = link.look() {
+                error = Some(why.to_string());
+                break;
+            }
+        }
+        let error = error.expect("given up");
+        assert!(error.contains("virtual robot 0 ended 5 times"), "{error}");
+        assert_eq!(link.restarts(), 4);
+        assert!(link.notice().unwrap().contains("virtual robot 0 ended (exit status: 1)"));
+        let missing = SimLink::start(settings("no-such-program", &[0])).unwrap_err().to_string();
+        assert!(missing.contains("no-such-program"), "{missing}");
+    }
+}
