@@ -13,4 +13,5 @@ pub mod referee;
 pub mod shell;
 pub mod strategy;
 pub mod trace;
+pub mod tracking;
 pub mod world;

@@ -1,0 +1,129 @@
+//! Which blob is the ball? The one that goes on from where the ball was, while it is in sight; else one that was seen
+//! steadily, in the field rather than outside, near rather than far. m; times on vision's clock, µs.
+
+use super::kick::Air;
+use super::track::{Glimpse, Track};
+use super::{Around, Balls, UNSEEN};
+use crate::tracking::robots::micros;
+use crate::tracking::scene::Scene;
+use crate::tracking::seen::{BallSeen, Captured, Frame};
+
+impl Balls {
+    /// The blob nearest to where the ball should seem to be, if one can be it.
+    pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
+        let track = self.chosen_track()?;
+        let fits = |(index, seen): (usize, &BallSeen)| {
+            let glimpse = self.glimpse(frame, seen, around.scene);
+            let off = match &self.air {
+                Air::Flying(_, flight) => {
+                    let off = flight.position(frame.at).distance(glimpse.position);
+                    (off <= FLIGHT_GATE).then_some(off)
+                }
+                _ => track.fits(glimpse.position, frame.at, &around.scene.models),
+            };
+            off.map(|off| (index, off))
+        };
+        let near = frame.balls.iter().enumerate().filter_map(fits);
+        near.reduce(|best, next| if next.1 < best.1 { next } else { best }).map(|(index, _)| index)
+    }
+
+    /// Follows a blob that is not the ball.
+    pub(super) fn see_other(&mut self, frame: &Frame, seen: &BallSeen, around: Around<'_>) {
+        let models = &around.scene.models;
+        let (position, at) = (seen.position, frame.at);
+        let glimpse = Glimpse { position, apparent: position, camera: frame.camera, at };
+        let twin =
+            |track: &Track| track.seen == at && track.moved(at, models).0.distance(position) < SAME_BALL;
+        *if self.chosen.is_some() { &mut self.counts.others } else { &mut self.counts.new } += 1;
+        if self.chosen_track().is_some_and(twin) {
+            return;
+        }
+        let chosen = self.chosen;
+        let others = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
+        let fitting = others.filter_map(|(_, track)| {
+            let track = track.as_mut()?;
+            track.fits(position, at, models).map(|off| (off, track))
+        });
+        if let Some((_, track)) = fitting.reduce(|best, next| if next.0 < best.0 { next } else { best }) {
+            track.note(at, seen);
+            track.see(&glimpse, models, around.sigma);
+            return;
+        }
+        // A new one; where there is no room, the one unseen the longest makes it.
+        let room = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
+        let seen_last = |track: &Option<Track>| track.map_or(Captured::MIN, |track| track.seen);
+        if let Some((_, place)) = room.min_by_key(|(_, track)| seen_last(track)) {
+            *place = Some(Track::new(&glimpse, seen, around.sigma));
+        }
+    }
+
+    /// Drops what nobody saw for long.
+    pub(super) fn forget(&mut self, now: Captured) {
+        let patience = micros(self.patience());
+        for (index, place) in self.tracks.iter_mut().enumerate() {
+            let kept = if self.chosen == Some(index) { patience } else { micros(OTHER_GONE) };
+            if place.is_some_and(|track| now - track.seen > kept) {
+                *place = None;
+            }
+        }
+        if self.chosen.is_some_and(|index| self.tracks[index].is_none()) {
+            self.become_ball(None);
+        }
+    }
+
+    /// How long an unseen ball is kept, s.
+    pub(super) fn patience(&self) -> f32 {
+        let at_front = self.contact.zip(self.chosen_track());
+        let held = at_front.is_some_and(|(contact, track)| track.seen - contact.until <= micros(UNSEEN));
+        if held { HELD_GONE } else { GONE }
+    }
+
+    /// Lets another track be the ball where this one is out of sight, or out of the field.
+    pub(super) fn choose(&mut self, now: Captured, scene: &Scene) {
+        let playable = |track: &Track| scene.is_playable(track.plane.position);
+        let current = self.chosen_track();
+        let lost = current.is_none_or(|track| now - track.seen > micros(LOST));
+        if !lost && current.is_some_and(playable) {
+            return;
+        }
+        let needed = if current.is_some() { IMAGES_TO_TAKE_OVER } else { IMAGES_TO_BELIEVE };
+        let last = current.map(|track| track.plane.position);
+        let mut best: Option<(usize, (bool, f32))> = None;
+        for (index, track) in self.tracks.iter().enumerate() {
+            let Some(track) = track.as_ref().filter(|_| self.chosen != Some(index)) else { continue };
+            let steady = track.images >= needed && now - track.seen <= micros(UNSEEN);
+            if !steady || (!lost && !playable(track)) {
+                continue;
+            }
+            let away = last.map_or(0.0, |last| last.distance(track.plane.position));
+            let rank = (!playable(track), away);
+            if best.is_none_or(|(_, least)| rank < least) {
+                best = Some((index, rank));
+            }
+        }
+        if let Some((index, _)) = best {
+            self.become_ball(Some(index));
+        }
+    }
+
+    fn become_ball(&mut self, index: Option<usize>) {
+        self.chosen = index;
+        (self.air, self.kicked, self.contact) = (Air::Down, None, None);
+    }
+}
+
+/// Images that make a blob the ball when there is none ...
+const IMAGES_TO_BELIEVE: u16 = 2;
+/// ... and when there is one that is out of sight.
+const IMAGES_TO_TAKE_OVER: u16 = 5;
+/// Out of sight for so long, another ball may be the one, s: six images of 60 Hz.
+const LOST: f32 = 0.1;
+/// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, later.
+const GONE: f32 = 1.0;
+const HELD_GONE: f32 = 3.0;
+/// Other balls are forgotten sooner, s.
+const OTHER_GONE: f32 = 0.3;
+/// Two blobs of one image nearer than this are one ball, m: its diameter.
+const SAME_BALL: f32 = 0.045;
+/// A flying ball seems to be at most this far from its parabola, m; farther, it is another ball or hit something.
+const FLIGHT_GATE: f32 = 0.4;

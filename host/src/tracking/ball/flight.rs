@@ -1,0 +1,298 @@
+//! Did the kicked ball leave the ground, and where will it come down? m, m/s, s.
+//!
+//! Vision takes every ball to lie on the carpet: one at height z below a camera at (c, H) seems to be at
+//! a = c + (p − c) · H / (H − z), which is the same as p + (a − c) · z / H = a. With p = p₀ + v t and
+//! z = w t − g t² / 2 that is linear in p₀, v and w:
+//!
+//! p₀ + v t + w · t (a − c) / H = a + (g t² / 2)(a − c) / H
+//!
+//! so the flight is found by least squares, and beside it a flat kick that slows down as it likes; the ball flies when
+//! only the flight explains what was seen. A camera right above cannot tell the two apart, but then nothing seems displaced.
+
+use geometry::{Field, Point, Vector};
+
+use super::super::robots::seconds;
+use super::super::scene::Camera;
+use super::super::seen::Captured;
+use crate::world::{GRAVITY, Who};
+
+/// A kick that is being watched.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Launch {
+    pub(super) at: Captured,
+    pub(super) from: Point<Field>,
+    /// Who stood there.
+    pub(super) by: Option<Who>,
+    /// How well the moment is known, s.
+    slack: f32,
+    samples: [Sample; SAMPLES_MAX],
+    count: usize,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sample {
+    /// Since the kick, s.
+    time: f32,
+    /// From the kick's place to where the ball seemed to be.
+    seen: Vector<Field>,
+    /// (a − c) / H.
+    slant: Vector<Field>,
+}
+
+/// A ball's flight up to its first touch of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Flight {
+    pub(super) at: Captured,
+    pub(super) from: Point<Field>,
+    pub(super) velocity: Vector<Field>,
+    pub(super) climb: f32,
+}
+
+impl Launch {
+    /// A kick at that moment, known to `slack` s, from there.
+    pub(super) fn new(at: Captured, from: Point<Field>, by: Option<Who>, slack: f32) -> Self {
+        Self { at, from, by, slack, samples: [Sample::default(); SAMPLES_MAX], count: 0 }
+    }
+
+    /// Adds a glimpse of a camera; without room or without a camera's place it is left out.
+    pub(super) fn add(&mut self, apparent: Point<Field>, at: Captured, camera: Option<Camera>) {
+        let Some(camera) = camera.filter(|_| !self.is_full()) else { return };
+        let time = seconds(at - self.at);
+        if self.count > 0 && time < self.samples[self.count - 1].time + SAMPLES_APART {
+            return;
+        }
+        self.samples[self.count] = Sample {
+            time,
+            seen: apparent - self.from,
+            slant: (apparent - camera.above) * (1.0 / camera.height),
+        };
+        self.count += 1;
+    }
+
+    fn samples(&self) -> &[Sample] {
+        &self.samples[..self.count]
+    }
+
+    /// Whether it is time to ask [`Self::flight`].
+    pub(super) fn is_ripe(&self) -> bool {
+        self.count >= SAMPLES_MIN && self.samples[self.count - 1].time >= TIME_MIN
+    }
+
+    /// Whether another glimpse finds room.
+    pub(super) fn is_full(&self) -> bool {
+        self.count == SAMPLES_MAX
+    }
+
+    /// The flight that explains the glimpses, if a flat kick does not; `decided` asks for the best flight in any case.
+    pub(super) fn flight(&self, sigma: f32, slide: f32, decided: bool) -> Option<Flight> {
+        let mut best: Option<(f32, f32, [f32; UNKNOWNS])> = None;
+        for share in SHIFTS {
+            let shift = share * self.slack;
+            let rows = |sample: &Sample| {
+                let t = sample.time - shift;
+                let fall = 0.5 * GRAVITY * t * t;
+                (t, sample.slant * t, sample.seen + sample.slant * fall)
+            };
+            let Some((solution, error)) = solve(self.samples(), sigma, None, rows) else {
+                continue;
+            };
+            let error = error + share * share;
+            if best.is_none_or(|(_, least, _)| error < least) {
+                best = Some((shift, error, solution));
+            }
+        }
+        let (shift, error, [x, y, vx, vy, climb]) = best?;
+        let freedoms = (2 * self.count).saturating_sub(UNKNOWNS).max(1) as f32;
+        let mean = error / freedoms;
+        if !(CLIMB_MIN..=CLIMB_MAX).contains(&climb) {
+            return None;
+        }
+        if !decided && (mean > FIT_MAX || self.flat_error(sigma, slide) < error + FLAT_WORSE * (1.0 + mean)) {
+            return None;
+        }
+        let at = self.at + (shift * 1e6) as Captured;
+        let flight = Flight { at, from: self.from + Vector::new(x, y), velocity: Vector::new(vx, vy), climb };
+        Some(flight)
+    }
+
+    /// How badly the best flat kick explains the glimpses, in variances.
+    fn flat_error(&self, sigma: f32, slide: f32) -> f32 {
+        let Some(last) = self.samples().last() else { return 0.0 };
+        let along = last.seen.unit().unwrap_or_default();
+        let rows = |sample: &Sample| {
+            let t = sample.time;
+            (t, along * (-0.5 * t * t), sample.seen)
+        };
+        let most = slide * SLIDE_MORE;
+        let Some((solution, error)) = solve(self.samples(), sigma, None, rows) else { return 0.0 };
+        if (0.0..=most).contains(&solution[4]) {
+            return error;
+        }
+        solve(self.samples(), sigma, Some(solution[4].clamp(0.0, most)), rows).map_or(0.0, |(_, error)| error)
+    }
+}
+
+impl Flight {
+    /// Height and climb that long after the kick, until it lands, m and m/s.
+    pub(super) fn height(&self, at: Captured) -> (f32, f32) {
+        let t = seconds(at - self.at).max(0.0);
+        ((self.climb * t - 0.5 * GRAVITY * t * t).max(0.0), self.climb - GRAVITY * t)
+    }
+
+    /// Above which point it is.
+    pub(super) fn position(&self, at: Captured) -> Point<Field> {
+        self.from + self.velocity * seconds(at - self.at)
+    }
+
+    /// When it touches the ground.
+    pub(super) fn lands(&self) -> Captured {
+        self.at + (self.climb * (2.0 / GRAVITY) * 1e6) as Captured
+    }
+}
+
+/// Least squares for p₀, v and one more unknown u: p₀ + v t + u · `slope` = `value` for each sample, p₀ near 0.
+/// Gives the solution and the sum of squared errors in variances.
+fn solve(
+    samples: &[Sample],
+    sigma: f32,
+    fixed: Option<f32>,
+    rows: impl Fn(&Sample) -> (f32, Vector<Field>, Vector<Field>),
+) -> Option<([f32; UNKNOWNS], f32)> {
+    let mut normal = [[0.0_f32; UNKNOWNS + 1]; UNKNOWNS];
+    // The kick's place is known to some millimetres.
+    let known = (sigma / FROM_SIGMA) * (sigma / FROM_SIGMA);
+    normal[0][0] = known;
+    normal[1][1] = known;
+    let mut add = |row: [f32; UNKNOWNS + 1]| {
+        for (i, line) in normal.iter_mut().enumerate() {
+            for (cell, value) in line.iter_mut().zip(row) {
+                *cell += row[i] * value;
+            }
+        }
+    };
+    for sample in samples {
+        let (t, slope, value) = rows(sample);
+        add([1.0, 0.0, t, 0.0, slope.x(), value.x()]);
+        add([0.0, 1.0, 0.0, t, slope.y(), value.y()]);
+    }
+    if let Some(fixed) = fixed {
+        normal[4] = [0.0, 0.0, 0.0, 0.0, 1.0, fixed];
+    }
+    let solution = eliminate(&mut normal)?;
+    let [x, y, vx, vy, u] = solution;
+    let error = |sample: &Sample| {
+        let (t, slope, value) = rows(sample);
+        let off = Vector::<Field>::new(x + vx * t, y + vy * t) + slope * u - value;
+        off.dot(off)
+    };
+    let sum: f32 = samples.iter().map(error).sum();
+    Some((solution, (sum + known * (x * x + y * y)) / (sigma * sigma)))
+}
+
+/// Gauss with the largest pivot; `None` where the unknowns cannot be told apart.
+fn eliminate(normal: &mut [[f32; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f32; UNKNOWNS]> {
+    for column in 0..UNKNOWNS {
+        let pivot = (column..UNKNOWNS).max_by(|a, b| {
+            let size = |row: &usize| normal[*row][column].abs();
+            size(a).total_cmp(&size(b))
+        })?;
+        normal.swap(column, pivot);
+        let head = normal[column];
+        if head[column].abs() < PIVOT_MIN {
+            return None;
+        }
+        for row in normal.iter_mut().skip(column + 1) {
+            let factor = row[column] / head[column];
+            for (cell, above) in row.iter_mut().zip(head) {
+                *cell -= factor * above;
+            }
+        }
+    }
+    let mut solution = [0.0; UNKNOWNS];
+    for row in (0..UNKNOWNS).rev() {
+        let mut value = normal[row][UNKNOWNS];
+        for column in row + 1..UNKNOWNS {
+            value -= normal[row][column] * solution[column];
+        }
+        solution[row] = value / normal[row][row];
+    }
+    solution.iter().all(|x| x.is_finite()).then_some(solution)
+}
+
+/// p₀ and v along x and y, and climb or deceleration.
+const UNKNOWNS: usize = 5;
+/// Glimpses of one flight: 0.4 s and more; what comes later refines nothing much.
+const SAMPLES_MAX: usize = 48;
+/// Glimpses nearer to each other than this tell nothing new, s: four cameras that see the ball at once.
+const SAMPLES_APART: f32 = 0.006;
+/// Fewer glimpses, or a shorter time (s), do not tell a flight from a flat kick: in 60 ms a ball that rises with 2 m/s is
+/// 0.1 m high, which shows as 25 mm at one metre from below a camera 4 m high.
+const SAMPLES_MIN: usize = 5;
+const TIME_MIN: f32 = 0.06;
+/// The kick's moment is sought around the one two glimpses told, in units of how well it is known.
+const SHIFTS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+/// A turn shows its moment this well, s: half an image.
+pub(super) const SHARP: f32 = 0.008;
+/// Where it showed late, the moment is known to two images, s.
+pub(super) const VAGUE: f32 = 0.03;
+/// How well the kick's place is known, m.
+const FROM_SIGMA: f32 = 0.01;
+/// Climbs that are flights, m/s: slower ones stay below 50 mm; a kick of 10 m/s straight up is no robot's.
+const CLIMB_MIN: f32 = 1.0;
+const CLIMB_MAX: f32 = 10.0;
+/// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as told; the noise of
+/// cameras that disagree is larger).
+const FIT_MAX: f32 = 6.0;
+/// A flat kick explains as well unless its summed squared error is worse by this, in variances (times the flight's own mean):
+/// 1 in 10⁶ by chance.
+const FLAT_WORSE: f32 = 25.0;
+/// A flat kick slows down by at most this much more than the carpet's sliding deceleration.
+const SLIDE_MORE: f32 = 1.5;
+/// Normal equations with a smaller pivot say nothing (m², s², as samples weigh 1).
+const PIVOT_MIN: f32 = 1e-9;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAMERA: Camera = Camera { above: Point::new(2.0, 1.0), height: 4.0 };
+
+    fn watched(position: impl Fn(f32) -> (Point<Field>, f32), count: usize) -> Launch {
+        let mut launch = Launch::new(1_000_000, Point::new(0.0, 0.0), None, SHARP);
+        for i in 1..=count {
+            let t = i as f32 / 60.0;
+            let (p, z) = position(t);
+            let apparent = CAMERA.above + (p - CAMERA.above) * (CAMERA.height / (CAMERA.height - z));
+            launch.add(apparent, 1_000_000 + (t * 1e6) as i64, Some(CAMERA));
+        }
+        launch
+    }
+
+    #[test]
+    fn an_exact_flight_is_found_with_its_landing() {
+        let launch = watched(|t| (Point::new(3.0 * t, -t), 2.5 * t - 0.5 * 9.81 * t * t), 10);
+        let flight = launch.flight(0.003, 3.9, false).unwrap();
+        assert!((flight.velocity - Vector::new(3.0, -1.0)).norm() < 0.02, "{flight:?}");
+        assert!((flight.climb - 2.5).abs() < 0.02);
+        let landing = flight.position(flight.lands());
+        let truth = Vector::<Field>::new(3.0, -1.0).norm() * (5.0 / 9.81);
+        assert!((landing.distance(Point::default()) - truth).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_sliding_ball_does_not_fly() {
+        for count in 5..30 {
+            let launch =
+                watched(|t| (Point::new(4.0 * t - 1.95 * t * t, 2.0 * t - 0.97 * t * t), 0.0), count);
+            assert_eq!(launch.flight(0.003, 3.9, false), None, "{count} glimpses");
+        }
+    }
+
+    #[test]
+    fn a_kick_that_no_known_camera_saw_is_not_judged() {
+        let mut launch = Launch::new(0, Point::default(), None, SHARP);
+        launch.add(Point::new(1.0, 0.0), 100_000, None);
+        assert!(!launch.is_ripe() && !launch.is_full());
+        assert_eq!(launch.flight(0.003, 3.9, true), None);
+    }
+}

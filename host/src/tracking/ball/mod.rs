@@ -1,0 +1,169 @@
+//! Which of the blobs is the ball, who kicked it, does it fly, and where is it when nobody sees it? m, m/s; times on
+//! vision's clock, µs.
+//!
+//! Every blob that stays becomes a track. One of them is the ball, and stays the ball while it is seen: a second ball, a
+//! hand or a shoe never takes over from a ball in sight. A ball that vanishes at a robot's front is taken to be held there.
+
+mod choice;
+mod flight;
+mod kick;
+mod track;
+
+use geometry::{Field, Point};
+use protocol::Instant;
+
+use self::kick::{Air, Kicked};
+use self::track::{Glimpse, Track};
+use super::filter::Plane;
+use super::robots::{Moved, Robots, micros};
+use super::scene::Scene;
+use super::seen::{BallSeen, Captured, Frame};
+use crate::world::{Ball, Kick};
+
+/// What became of blobs, counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct BallCounts {
+    /// Glimpses of the ball.
+    pub taken: u64,
+    /// Glimpses of balls while none was believed yet.
+    pub new: u64,
+    /// Glimpses of other balls, hands, shoes.
+    pub others: u64,
+    /// Kicks noticed, flat ones and chips.
+    pub kicks: u64,
+    /// ... of these, chips.
+    pub chips: u64,
+    /// Turns that nobody kicked: off robots, posts and walls.
+    pub bounces: u64,
+}
+
+/// All balls.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Balls {
+    tracks: [Option<Track>; TRACKS_MAX],
+    /// Which of them is the ball.
+    chosen: Option<usize>,
+    air: Air,
+    kicked: Option<Kicked>,
+    contact: Option<kick::Contact>,
+    pub(super) counts: BallCounts,
+}
+
+/// What everything here needs to know besides the image.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) robots: &'a Robots,
+    pub(super) scene: &'a Scene,
+    /// Standard deviation of a blob's coordinate, m.
+    pub(super) sigma: f32,
+}
+
+impl Balls {
+    /// Takes an image's blobs in.
+    pub(super) fn see(&mut self, frame: &Frame, around: Around<'_>) {
+        self.forget(frame.at);
+        self.hold(frame.at, around.robots);
+        let ball = self.nearest_to_chosen(frame, around);
+        if let Some(index) = ball {
+            self.see_ball(frame, &frame.balls[index], around);
+        }
+        for (_, seen) in frame.balls.iter().enumerate().filter(|(index, _)| Some(*index) != ball) {
+            self.see_other(frame, seen, around);
+        }
+        self.choose(frame.at, around.scene);
+    }
+
+    fn see_ball(&mut self, frame: &Frame, seen: &BallSeen, around: Around<'_>) {
+        self.counts.taken += 1;
+        let models = &around.scene.models;
+        self.land(frame.at, models);
+        let glimpse = self.glimpse(frame, seen, around.scene);
+        let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) else { return };
+        track.note(frame.at, seen);
+        if matches!(self.air, Air::Flying(..)) {
+            self.see_flying(&glimpse, around);
+            return;
+        }
+        let turn = track.see(&glimpse, models, around.sigma);
+        if let Some(turn) = turn {
+            self.turned(&turn, around);
+        } else {
+            self.watch(&glimpse, around);
+        }
+        self.touch(frame.at, around);
+        self.refine(models);
+    }
+
+    /// A blob, put below the ball if the ball is known to fly.
+    fn glimpse(&self, frame: &Frame, seen: &BallSeen, scene: &Scene) -> Glimpse {
+        let height = self.height(frame.at, &scene.models).0;
+        let camera = scene.camera(frame.camera).filter(|_| height > 0.0);
+        let position = camera.map_or(seen.position, |camera| {
+            seen.position + (camera.above - seen.position) * (height / camera.height)
+        });
+        Glimpse { position, apparent: seen.position, camera: frame.camera, at: frame.at }
+    }
+
+    /// A ball that vanished at a robot's front goes with the robot.
+    fn hold(&mut self, now: Captured, robots: &Robots) {
+        let Some((place, robot)) = self.held(now, robots) else { return };
+        if let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) {
+            let plane = Plane::sent_off(place, robot.velocity, HELD_UNSURE, HELD_SPEED_UNSURE);
+            track.put(now.max(track.at), plane);
+        }
+    }
+
+    fn held(&self, now: Captured, robots: &Robots) -> Option<(Point<Field>, Moved)> {
+        let (track, contact) = (self.chosen_track()?, self.contact?);
+        let unseen = now - track.seen > micros(UNSEEN) && track.seen - contact.until <= micros(UNSEEN);
+        let robot = robots.robot(contact.who, now).filter(|_| unseen)?;
+        Some((robot.pose.to_field(contact.place), robot))
+    }
+
+    fn chosen_track(&self) -> Option<&Track> {
+        self.chosen.and_then(|index| self.tracks[index].as_ref())
+    }
+
+    /// The ball at that moment; `ours` tells moments on our clock.
+    pub(super) fn picture(
+        &self,
+        at: Captured,
+        around: Around<'_>,
+        ours: impl Fn(Captured) -> Instant,
+    ) -> Option<Ball> {
+        let track = self.chosen_track()?;
+        let models = &around.scene.models;
+        let (position, velocity) = match (self.held(at, around.robots), &self.air) {
+            (Some((place, robot)), _) => (place, robot.velocity),
+            (None, Air::Flying(_, flight)) => (flight.position(at), flight.velocity),
+            (None, _) => track.moved(at, models),
+        };
+        let (height, climb) = self.height(at, models);
+        let kicked = self.kicked.map(|kicked| Kick {
+            by: kicked.by,
+            from: kicked.from,
+            velocity: kicked.velocity,
+            climb: kicked.climb,
+            at: ours(kicked.at),
+        });
+        Some(Ball {
+            position,
+            height,
+            velocity,
+            climb,
+            rolls_below: track.rolls_below,
+            bounced: matches!(self.air, Air::Hopping(_)),
+            confidence: track.confidence(at, self.patience()),
+            seen: ours(track.seen),
+            kicked,
+        })
+    }
+}
+
+/// Balls at once: more are a box of balls, not a game.
+const TRACKS_MAX: usize = 6;
+/// Not seen just now, s: two to three images of 60 Hz.
+const UNSEEN: f32 = 0.045;
+/// How unsure a hidden ball is: within a ball's radius of where it was, m; let go slowly, m/s.
+const HELD_UNSURE: f32 = 0.02;
+const HELD_SPEED_UNSURE: f32 = 0.5;

@@ -1,0 +1,180 @@
+//! Where is one ball on the ground, and did it turn? A filter that knows how balls slow down, and notices when something
+//! else moved it. m, m/s, s; times on vision's clock, µs.
+//!
+//! A glimpse far from the prediction is held back: the next one tells whether it was a misreading or the beginning of a
+//! new way. So a kick is known by the second image that shows it, and one wrong blob moves nothing.
+
+use geometry::{Field, Point, Vector};
+use motion::trajectory::Motion;
+
+use super::super::filter::{Freedom, Plane};
+use super::super::robots::seconds;
+use super::super::seen::{BallSeen, Captured};
+use crate::world::BallModels;
+
+/// A blob and when it was seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Glimpse {
+    /// On the ground; for a ball in the air, below it.
+    pub(super) position: Point<Field>,
+    /// Where the camera saw it on the carpet.
+    pub(super) apparent: Point<Field>,
+    pub(super) camera: u32,
+    pub(super) at: Captured,
+}
+
+/// A change of velocity that no carpet makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turn {
+    pub(super) at: Captured,
+    pub(super) from: Point<Field>,
+    pub(super) before: Vector<Field>,
+    pub(super) after: Vector<Field>,
+    /// The two glimpses that showed it.
+    pub(super) shown: [Glimpse; 2],
+    /// Between the old way and the new one, m; large where the ball was put elsewhere.
+    pub(super) gap: f32,
+}
+
+/// A ball.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Track {
+    pub(super) plane: Plane,
+    /// Of the state.
+    pub(super) at: Captured,
+    pub(super) seen: Captured,
+    counted: Captured,
+    pub(super) images: u16,
+    quality: f32,
+    /// It slides above this speed, m/s.
+    pub(super) rolls_below: f32,
+    strange: Option<Glimpse>,
+}
+
+impl Track {
+    pub(super) fn new(glimpse: &Glimpse, seen: &BallSeen, sigma: f32) -> Self {
+        Self {
+            plane: Plane::new(glimpse.position, sigma, SPEED_SIGMA),
+            at: glimpse.at,
+            seen: glimpse.at,
+            counted: glimpse.at,
+            images: 1,
+            quality: seen.confidence,
+            rolls_below: f32::INFINITY,
+            strange: None,
+        }
+    }
+
+    /// Where it is at `at` if nobody met it, and its velocity.
+    pub(super) fn moved(&self, at: Captured, models: &BallModels) -> (Point<Field>, Vector<Field>) {
+        let dt = seconds(at - self.at);
+        if dt <= 0.0 {
+            return (self.plane.position + self.plane.velocity * dt, self.plane.velocity);
+        }
+        let path = models.ground.moving(self.plane.position, self.plane.velocity, self.rolls_below);
+        let state = path.at(dt);
+        (state.position, state.velocity)
+    }
+
+    /// How far a glimpse is from the prediction, and whether it can be this ball.
+    pub(super) fn fits(&self, position: Point<Field>, at: Captured, models: &BallModels) -> Option<f32> {
+        let off = self.moved(at, models).0.distance(position);
+        let reach = GATE + GATE_SPEED * seconds(at - self.seen).clamp(0.0, GATE_TIME_MAX);
+        // What began to go elsewhere may go on there.
+        let begun = self.strange.is_some_and(|strange| {
+            let reach = GATE + GATE_SPEED * seconds(at - strange.at).clamp(0.0, GATE_TIME_MAX);
+            strange.position.distance(position) <= reach
+        });
+        (off <= reach || begun).then_some(off)
+    }
+
+    /// Puts it where it is known to be otherwise.
+    pub(super) fn put(&mut self, at: Captured, plane: Plane) {
+        (self.at, self.plane, self.strange) = (at, plane, None);
+    }
+
+    /// Notes that it was seen.
+    pub(super) fn note(&mut self, at: Captured, seen: &BallSeen) {
+        self.seen = self.seen.max(at);
+        if at - self.counted >= IMAGE_APART {
+            self.counted = at;
+            self.images = self.images.saturating_add(1);
+        }
+        self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
+    }
+
+    /// Takes a glimpse in; a turn if it is the second that shows one.
+    pub(super) fn see(&mut self, glimpse: &Glimpse, models: &BallModels, sigma: f32) -> Option<Turn> {
+        let dt = seconds(glimpse.at - self.at).max(0.0);
+        let (position, velocity) = self.moved(self.at.max(glimpse.at), models);
+        let mut plane = self.plane;
+        plane.pass_as(dt, position, velocity, FREEDOM);
+        let (off, surprise) = plane.surprise(glimpse.position, sigma);
+        if surprise <= SURPRISE_MAX || off.dot(off) <= STRANGE_MIN * STRANGE_MIN {
+            plane.see(glimpse.position, sigma);
+            (self.plane, self.at, self.strange) = (plane, self.at.max(glimpse.at), None);
+            return None;
+        }
+        let Some(first) = self.strange else {
+            self.strange = Some(*glimpse);
+            return None;
+        };
+        let between = glimpse.at - first.at;
+        if between < IMAGE_APART {
+            return None;
+        }
+        let after = (glimpse.position - first.position) * (1.0 / seconds(between));
+        if after.dot(after) > SPEED_MAX * SPEED_MAX {
+            self.strange = Some(*glimpse);
+            return None;
+        }
+        let turn = self.turn(&first, glimpse, after);
+        let speed_sigma = SPEED_UNSURE + 2.0 * sigma / seconds(between);
+        self.put(glimpse.at, Plane::sent_off(glimpse.position, after, sigma, speed_sigma));
+        Some(turn)
+    }
+
+    /// Where and when the old way met the new one.
+    fn turn(&self, first: &Glimpse, second: &Glimpse, after: Vector<Field>) -> Turn {
+        let (start, before) = (self.plane.position, self.plane.velocity);
+        let span = seconds(first.at - self.at).max(0.0);
+        let begin = first.position - after * span;
+        let (apart, relative) = (begin - start, after - before);
+        let squared = relative.dot(relative);
+        let met = if squared > 0.0 { (-apart.dot(relative) / squared).clamp(0.0, span) } else { span };
+        let from = start + before * met;
+        let gap = from.distance(begin + after * met);
+        let at = self.at + (met * 1e6) as Captured;
+        Turn { at, from, before, after, shown: [*first, *second], gap }
+    }
+
+    pub(super) fn confidence(&self, at: Captured, patience: f32) -> f32 {
+        let freshness = 1.0 - seconds(at - self.seen) / patience;
+        let often = f32::from(self.images.min(IMAGES_FULL)) * (1.0 / IMAGES_FULL as f32);
+        (freshness * often * self.quality).clamp(0.0, 1.0)
+    }
+}
+
+/// White acceleration of a ball on its way, m²/s³: calm is a carpet that slows it 0.3 m/s² more or less than told;
+/// changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+const FREEDOM: Freedom = Freedom { calm: 0.02, changing: 8.0 };
+/// A glimpse is strange when its distance squared is more variances than this ...
+const SURPRISE_MAX: f32 = 20.0;
+/// ... and it is farther than this off, m: noise of fusing cameras is no turn.
+const STRANGE_MIN: f32 = 0.012;
+/// A new ball's speed may be anything of that size, m/s.
+const SPEED_SIGMA: f32 = 2.0;
+/// A turned ball's speed is this unsure besides the noise of two glimpses, m/s.
+const SPEED_UNSURE: f32 = 0.3;
+/// No ball is faster, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
+const SPEED_MAX: f32 = 15.0;
+/// It can be seen that far from its prediction, m, and that much farther for every second unseen (m/s), up to a time (s).
+const GATE: f32 = 0.1;
+const GATE_SPEED: f32 = 10.0;
+const GATE_TIME_MAX: f32 = 0.15;
+/// Glimpses nearer to each other are of one tick, µs.
+const IMAGE_APART: Captured = 5_000;
+/// Images after which confidence is full.
+const IMAGES_FULL: u16 = 8;
+/// Weight of the newest glimpse in the quality.
+const QUALITY_SHARE: f32 = 0.1;

@@ -1,0 +1,221 @@
+//! When was an image taken, on our clock? Vision stamps images by a clock of its own: Unix seconds, or a simulator's
+//! seconds from 0 (trap 1), which may run slower than ours, stop, jump and begin anew. µs.
+//!
+//! Only differences are used. The packet that came quickest of the last few tells how the two clocks lie to each other;
+//! what vision itself needed from image to packet is known from the packet. An image of another time is not believed
+//! until the old clock has fallen silent and the new one has gone on for a few images.
+
+use protocol::{Duration, Instant};
+
+use super::seen::Captured;
+
+/// Whose time is it?
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Judgement {
+    /// The clock we follow.
+    Ours,
+    /// Another one.
+    Foreign,
+    /// Another one, and ours is silent: follow it from now on, and forget what was.
+    Restart,
+}
+
+/// How vision's clock lies to ours.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Clock {
+    /// Image time and arrival of the newest image.
+    newest: Option<(Captured, i64)>,
+    rival: Option<Rival>,
+    /// Least difference of clocks seen in the current and in the last stretch.
+    least: Option<[i64; 2]>,
+    stretch_start: i64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rival {
+    newest: Captured,
+    images: u32,
+}
+
+impl Clock {
+    /// Is an image of that time one of the clock we follow? `late` images are judged by [`Self::late`].
+    pub(super) fn judge(&mut self, captured: Captured, arrived: Instant) -> Judgement {
+        let Some((newest, newest_arrived)) = self.newest else { return Judgement::Ours };
+        let (ahead, passed) = (captured - newest, arrived.0 as i64 - newest_arrived);
+        let told = ahead > FAR && (ahead - passed).abs() <= FAR / 4 + passed / 4;
+        if ahead.abs() <= FAR || told { Judgement::Ours } else { self.foreign(captured, passed, SILENCE_FAR) }
+    }
+
+    /// An image that came too late by the clock we follow: does that clock still run?
+    pub(super) fn late(&mut self, captured: Captured, arrived: Instant) -> Judgement {
+        let passed = self.newest.map_or(0, |(_, newest_arrived)| arrived.0 as i64 - newest_arrived);
+        self.foreign(captured, passed, SILENCE_NEAR)
+    }
+
+    fn foreign(&mut self, captured: Captured, silent: i64, patience: i64) -> Judgement {
+        let follows = self.rival.filter(|rival| (captured - rival.newest).abs() <= FAR);
+        let rival = match follows {
+            Some(rival) if captured > rival.newest => Rival { newest: captured, images: rival.images + 1 },
+            Some(rival) => rival,
+            None => Rival { newest: captured, images: 1 },
+        };
+        self.rival = Some(rival);
+        if rival.images >= IMAGES_TO_BELIEVE && silent >= patience {
+            *self = Self::default();
+            return Judgement::Restart;
+        }
+        Judgement::Foreign
+    }
+
+    /// Learns from an image of the clock we follow that was not seen before; `sent` is when vision sent it.
+    pub(super) fn hear(&mut self, captured: Captured, sent: Option<Captured>, arrived: Instant) {
+        let arrived = arrived.0 as i64;
+        if self.newest.is_none_or(|(newest, _)| captured > newest) {
+            self.newest = Some((captured, arrived));
+            self.rival = None;
+        }
+        let sent = sent.filter(|sent| (captured..=captured + PROCESSING_MAX).contains(sent));
+        let difference = arrived - sent.unwrap_or(captured);
+        match &mut self.least {
+            Some([current, _]) if arrived < self.stretch_start + STRETCH => {
+                *current = difference.min(*current);
+            }
+            Some([current, last]) => {
+                // After a pause the stretch before says nothing any more.
+                let just_before = arrived < self.stretch_start + 2 * STRETCH;
+                *last = if just_before { *current } else { difference };
+                *current = difference;
+                self.stretch_start = arrived;
+            }
+            None => {
+                self.least = Some([difference; 2]);
+                self.stretch_start = arrived;
+            }
+        }
+    }
+
+    /// That moment on our clock.
+    pub(super) fn ours(&self, captured: Captured) -> Instant {
+        let offset = self.least.map_or(0, |[current, last]| current.min(last));
+        Instant((captured + offset).max(0) as u64)
+    }
+
+    /// How long ago the newest image was taken when its packet came.
+    pub(super) fn delay(&self) -> Duration {
+        let delay =
+            |(captured, arrived): (Captured, i64)| Instant(arrived.max(0) as u64).since(self.ours(captured));
+        self.newest.map_or(Duration(0), delay)
+    }
+}
+
+/// Images of one clock are not farther apart without a reason, µs.
+const FAR: i64 = 1_000_000;
+/// A clock that jumped far is followed when ours has been silent that long, µs: a dozen images of 60 Hz.
+const SILENCE_FAR: i64 = 200_000;
+/// One that jumped back a little could be late copies of the clock we follow, so it waits longer, µs.
+const SILENCE_NEAR: i64 = 500_000;
+/// Images in order that make another clock believable.
+const IMAGES_TO_BELIEVE: u32 = 5;
+/// The quickest packet of one to two stretches counts, µs: short enough to follow a simulator that runs at nine tenths of
+/// real time (recorded; off by a tenth of the window at most), long enough to hold eight images of a 60 Hz camera.
+const STRETCH: i64 = 150_000;
+/// What vision may need from image to packet, µs; a larger difference is no processing time (recorded: 0 and 10 ms).
+const PROCESSING_MAX: i64 = 250_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TICK: i64 = 16_000;
+
+    /// Images of a clock that shows `start` when ours shows 0 and runs at `rate`, each `delay(i)` µs under way.
+    fn run(
+        clock: &mut Clock,
+        start: i64,
+        rate: f64,
+        images: std::ops::Range<i64>,
+        delay: impl Fn(i64) -> i64,
+    ) {
+        for i in images {
+            let captured = start + ((i * TICK) as f64 * rate) as i64;
+            let arrived = Instant((i * TICK + delay(i)) as u64);
+            match clock.judge(captured, arrived) {
+                Judgement::Foreign => {}
+                Judgement::Ours | Judgement::Restart => clock.hear(captured, None, arrived),
+            }
+        }
+    }
+
+    #[test]
+    fn the_quickest_packet_tells_how_the_clocks_lie() {
+        for start in [0, 1_795_220_511_000_000] {
+            let mut clock = Clock::default();
+            run(&mut clock, start, 1.0, 10..60, |i| 2_000 + (i * 7_919) % 9_000);
+            let off = clock.ours(start + 60 * TICK).0 as i64 - 60 * TICK;
+            assert!((2_000..3_500).contains(&off), "{off}");
+        }
+    }
+
+    #[test]
+    fn what_vision_needed_itself_counts_as_delay() {
+        let mut clock = Clock::default();
+        clock.hear(1_000_000, Some(1_010_000), Instant(5_011_000));
+        assert_eq!(clock.ours(1_000_000), Instant(5_001_000));
+        assert_eq!(clock.delay(), Duration(10_000));
+    }
+
+    #[test]
+    fn trap_01_a_simulators_clock_that_runs_slower_than_ours_does_not_look_like_a_growing_delay() {
+        let mut clock = Clock::default();
+        run(&mut clock, 800_000, 0.88, 0..3_600, |_| 1_000);
+        assert!(clock.delay() < Duration::millis(40), "{:?}", clock.delay());
+    }
+
+    #[test]
+    fn a_clock_that_begins_anew_is_followed_after_a_fifth_of_a_second() {
+        let mut clock = Clock::default();
+        run(&mut clock, 50_000_000, 1.0, 0..100, |_| 0);
+        let mut followed = None;
+        for i in 100..140 {
+            let (captured, arrived) = ((i - 100) * TICK, Instant((i * TICK) as u64));
+            match clock.judge(captured, arrived) {
+                Judgement::Restart => {
+                    followed = Some(i);
+                    break;
+                }
+                judged => assert_eq!(judged, Judgement::Foreign),
+            }
+        }
+        assert_eq!(followed, Some(99 + 200_000 / TICK + 1));
+    }
+
+    #[test]
+    fn another_clock_beside_ours_is_never_followed() {
+        let mut clock = Clock::default();
+        for i in 0..1_000 {
+            let arrived = Instant((i * TICK) as u64);
+            assert_eq!(clock.judge(i * TICK, arrived), Judgement::Ours);
+            clock.hear(i * TICK, None, arrived);
+            if i > 0 {
+                assert_eq!(clock.judge(1_795_220_511_000_000 + i * TICK, arrived), Judgement::Foreign);
+                assert_eq!(clock.late(i * TICK - 100_000, arrived), Judgement::Foreign);
+            }
+        }
+    }
+
+    #[test]
+    fn after_a_minute_without_vision_the_same_clock_goes_on() {
+        let mut clock = Clock::default();
+        run(&mut clock, 7_000_000, 1.0, 0..100, |_| 0);
+        let minute = 60_000_000;
+        assert_eq!(
+            clock.judge(7_000_000 + 99 * TICK + minute, Instant((99 * TICK + minute) as u64)),
+            Judgement::Ours
+        );
+        // A single image from the far future is not.
+        assert_eq!(
+            clock.judge(7_000_000 + 99 * TICK + minute, Instant((100 * TICK) as u64)),
+            Judgement::Foreign
+        );
+    }
+}

@@ -1,0 +1,201 @@
+//! Where does something move, given noisy glimpses of it? Kalman filters of position and velocity: one for a point of the
+//! plane, one for a heading. m, m/s, rad, rad/s, s.
+//!
+//! Both know two kinds of motion: calm, and changing. While glimpses scatter around the prediction the filter smooths;
+//! when several in a row lie on one side of it, the body has begun to change its mind and the filter follows quickly.
+
+use geometry::{Angle, Field, Point, Vector, math};
+
+/// How freely a velocity changes by itself: white acceleration of this density, m²/s³ (or rad²/s³).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Freedom {
+    /// While predictions fit.
+    pub(super) calm: f32,
+    /// When they lag behind.
+    pub(super) changing: f32,
+}
+
+impl Freedom {
+    fn at(self, lag: f32) -> f32 {
+        let share = ((lag - LAG_CALM) * (1.0 / (LAG_CHANGING - LAG_CALM))).clamp(0.0, 1.0);
+        self.calm + (self.changing - self.calm) * share
+    }
+}
+
+/// How sure position and velocity of one axis are: their covariance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spread {
+    place: f32,
+    both: f32,
+    speed: f32,
+}
+
+impl Spread {
+    fn new(place: f32, speed: f32) -> Self {
+        Self { place, both: 0.0, speed }
+    }
+
+    fn pass(&mut self, dt: f32, density: f32) {
+        self.place += dt * (2.0 * self.both + dt * self.speed) + density * dt * dt * dt * (1.0 / 3.0);
+        self.both += dt * self.speed + 0.5 * density * dt * dt;
+        self.speed += density * dt;
+    }
+
+    /// Takes in a measurement of that variance: the shares of the innovation that go to position and velocity.
+    fn measure(&mut self, variance: f32) -> (f32, f32) {
+        let inverse = 1.0 / (self.place + variance);
+        let (k_place, k_speed) = (self.place * inverse, self.both * inverse);
+        self.speed = (self.speed - k_speed * self.both).max(SPEED_VARIANCE_MIN);
+        self.place = variance * k_place;
+        self.both = variance * k_speed;
+        (k_place, k_speed)
+    }
+}
+
+/// A point and its velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Plane {
+    /// m.
+    pub(super) position: Point<Field>,
+    /// m/s.
+    pub(super) velocity: Vector<Field>,
+    spread: Spread,
+    /// Innovations in units of their deviation, averaged over the last few.
+    lag: Vector<Field>,
+}
+
+impl Plane {
+    /// First seen there; its speed may be anything of `speed_sigma`, m/s.
+    pub(super) fn new(position: Point<Field>, sigma: f32, speed_sigma: f32) -> Self {
+        let spread = Spread::new(sigma * sigma, speed_sigma * speed_sigma);
+        Self { position, velocity: Vector::default(), spread, lag: Vector::default() }
+    }
+
+    /// The same place with another velocity, of which `speed_sigma` is known, m/s.
+    pub(super) fn sent_off(
+        position: Point<Field>,
+        velocity: Vector<Field>,
+        sigma: f32,
+        speed_sigma: f32,
+    ) -> Self {
+        Self { velocity, ..Self::new(position, sigma, speed_sigma) }
+    }
+
+    /// Lets time pass, straight on.
+    pub(super) fn pass(&mut self, dt: f32, freedom: Freedom) {
+        self.position += self.velocity * dt;
+        self.pass_as(dt, self.position, self.velocity, freedom);
+    }
+
+    /// Lets time pass with a motion that somebody else worked out.
+    pub(super) fn pass_as(
+        &mut self,
+        dt: f32,
+        position: Point<Field>,
+        velocity: Vector<Field>,
+        freedom: Freedom,
+    ) {
+        (self.position, self.velocity) = (position, velocity);
+        self.spread.pass(dt, freedom.at(self.lag.dot(self.lag)));
+    }
+
+    /// How far a glimpse is from the prediction, and that distance squared in units of its variance.
+    pub(super) fn surprise(&self, seen: Point<Field>, sigma: f32) -> (Vector<Field>, f32) {
+        let off = seen - self.position;
+        (off, off.dot(off) / (self.spread.place + sigma * sigma))
+    }
+
+    /// Takes a glimpse in.
+    pub(super) fn see(&mut self, seen: Point<Field>, sigma: f32) {
+        let off = seen - self.position;
+        let deviation = math::sqrt(self.spread.place + sigma * sigma);
+        self.lag = self.lag * (1.0 - LAG_SHARE) + off * (LAG_SHARE / deviation);
+        let (k_place, k_speed) = self.spread.measure(sigma * sigma);
+        self.position += off * k_place;
+        self.velocity += off * k_speed;
+    }
+}
+
+/// A heading and its rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Turning {
+    /// Where it points.
+    pub(super) heading: Angle,
+    /// rad/s, counter-clockwise.
+    pub(super) rate: f32,
+    spread: Spread,
+    lag: f32,
+}
+
+impl Turning {
+    /// First seen pointing there; its rate may be anything of `rate_sigma`, rad/s.
+    pub(super) fn new(heading: Angle, sigma: f32, rate_sigma: f32) -> Self {
+        Self { heading, rate: 0.0, spread: Spread::new(sigma * sigma, rate_sigma * rate_sigma), lag: 0.0 }
+    }
+
+    /// Lets time pass.
+    pub(super) fn pass(&mut self, dt: f32, freedom: Freedom) {
+        self.heading = self.heading + Angle::new(self.rate * dt);
+        self.spread.pass(dt, freedom.at(self.lag * self.lag));
+    }
+
+    /// Takes a glimpse in, the short way round.
+    pub(super) fn see(&mut self, seen: Angle, sigma: f32) {
+        let off = (seen - self.heading).radians();
+        let deviation = math::sqrt(self.spread.place + sigma * sigma);
+        self.lag = self.lag * (1.0 - LAG_SHARE) + off * (LAG_SHARE / deviation);
+        let (k_place, k_speed) = self.spread.measure(sigma * sigma);
+        self.heading = self.heading + Angle::new(off * k_place);
+        self.rate += off * k_speed;
+    }
+}
+
+/// Weight of the newest innovation in the average: about the last three count.
+const LAG_SHARE: f32 = 0.3;
+/// Squared averages below this are chance: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
+const LAG_CALM: f32 = 1.2;
+/// Squared averages above this are a change for sure (exp(−4 / 0.35) by chance).
+const LAG_CHANGING: f32 = 4.0;
+/// Rounding never makes a speed surer than 1 mm/s, (m/s)².
+const SPEED_VARIANCE_MIN: f32 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FREEDOM: Freedom = Freedom { calm: 0.1, changing: 10.0 };
+
+    #[test]
+    fn two_exact_glimpses_of_a_free_point_give_its_velocity() {
+        let mut plane = Plane::new(Point::new(1.0, 1.0), 1e-4, 10.0);
+        plane.pass(0.1, FREEDOM);
+        plane.see(Point::new(1.2, 0.9), 1e-4);
+        assert!((plane.velocity - Vector::new(2.0, -1.0)).norm() < 1e-3, "{plane:?}");
+    }
+
+    #[test]
+    fn a_heading_turns_over_the_seam_without_swinging_round() {
+        let mut turning = Turning::new(Angle::degrees(170.0), 0.01, 10.0);
+        for step in 1..=20 {
+            turning.pass(0.01, Freedom { calm: 1.0, changing: 100.0 });
+            turning.see(Angle::degrees(170.0 + step as f32 * 2.0), 0.01);
+        }
+        assert!((turning.rate.to_degrees() - 200.0).abs() < 5.0, "{turning:?}");
+        assert!((turning.heading - Angle::degrees(-150.0)).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_point_that_speeds_up_is_followed_more_freely_than_one_that_does_not() {
+        let glimpses = |acceleration: f32| {
+            let mut plane = Plane::new(Point::default(), 0.003, 3.0);
+            for step in 1..=60 {
+                let t = step as f32 / 60.0;
+                plane.pass(1.0 / 60.0, FREEDOM);
+                plane.see(Point::new(0.5 * acceleration * t * t, 0.0), 0.003);
+            }
+            (plane.velocity.x() - acceleration).abs()
+        };
+        assert!(glimpses(0.0) < 1e-4);
+        assert!(glimpses(3.0) < 0.15, "lag {} m/s at 3 m/s²", glimpses(3.0));
+    }
+}

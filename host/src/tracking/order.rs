@@ -1,0 +1,169 @@
+//! In which order were the images taken, whatever order their packets came in? Nothing counts twice, and what comes
+//! late within a short window is put where it belongs: everything after it is worked out again.
+//!
+//! So the picture depends on what was seen, not on how the network shuffled it. A team lost a match to the other way:
+//! vision came over cable and wireless at once, and late copies were taken for news.
+
+use heapless::Vec;
+
+use super::seen::{Captured, Frame};
+
+/// What became of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Placed {
+    /// It is the newest.
+    Newest,
+    /// It was put before this many newer ones.
+    Before(usize),
+    /// This camera's image of this moment is there already.
+    Repeated,
+    /// Older than the newest by this many µs: too old.
+    Late(Captured),
+}
+
+/// The last images, each with the state before it.
+#[derive(Clone, Debug)]
+pub(super) struct Timeline<S> {
+    slots: Box<[Slot<S>]>,
+    /// Slots in use, oldest image first.
+    order: Vec<u8, DEPTH>,
+}
+
+#[derive(Clone, Debug)]
+struct Slot<S> {
+    frame: Frame,
+    before: S,
+}
+
+impl<S: Copy> Timeline<S> {
+    pub(super) fn new(state: S) -> Self {
+        let slot = Slot { frame: Frame::empty(), before: state };
+        Self { slots: vec![slot; DEPTH].into(), order: Vec::new() }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.order.clear();
+    }
+
+    /// When the newest image was taken.
+    pub(super) fn newest(&self) -> Option<Captured> {
+        self.order.last().map(|slot| self.slots[usize::from(*slot)].frame.at)
+    }
+
+    /// Puts an image in its place and brings `state` up to date by `apply`.
+    pub(super) fn put(
+        &mut self,
+        frame: &Frame,
+        state: &mut S,
+        mut apply: impl FnMut(&mut S, &Frame),
+    ) -> Placed {
+        let key = |slot: u8| {
+            let frame = &self.slots[usize::from(slot)].frame;
+            (frame.at, frame.camera)
+        };
+        let own = (frame.at, frame.camera);
+        let place = self.order.iter().rposition(|slot| key(*slot) <= own).map_or(0, |last| last + 1);
+        if place > 0 && key(self.order[place - 1]) == own {
+            return Placed::Repeated;
+        }
+        let newest = self.newest().unwrap_or(frame.at);
+        if newest - frame.at > WINDOW || (place == 0 && self.order.is_full()) {
+            return Placed::Late(newest - frame.at);
+        }
+        // The oldest image makes room; it is not the one to come, or that would be too late.
+        let (slot, place) = if self.order.is_full() {
+            (self.order.remove(0), place - 1)
+        } else {
+            (self.order.len() as u8, place)
+        };
+        // There is room, so it goes in.
+        let _ = self.order.insert(place, slot);
+        self.replay(place, frame, state, &mut apply)
+    }
+
+    fn replay(
+        &mut self,
+        place: usize,
+        frame: &Frame,
+        state: &mut S,
+        apply: &mut impl FnMut(&mut S, &Frame),
+    ) -> Placed {
+        let after = self.order.len() - 1 - place;
+        if let Some(next) = self.order.get(place + 1) {
+            *state = self.slots[usize::from(*next)].before;
+        }
+        self.slots[usize::from(self.order[place])].frame.clone_from(frame);
+        for slot in &self.order[place..] {
+            let slot = &mut self.slots[usize::from(*slot)];
+            slot.before = *state;
+            apply(state, &slot.frame);
+        }
+        if after == 0 { Placed::Newest } else { Placed::Before(after) }
+    }
+}
+
+/// How late an image may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes decisions already made.
+const WINDOW: Captured = 50_000;
+/// Images kept: what eight cameras of 60 Hz take within the window.
+const DEPTH: usize = 24;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A state that tells every order apart: a list of what was applied.
+    type Seen = [(Captured, u32); 40];
+
+    fn frame(at: Captured, camera: u32) -> Frame {
+        Frame { at, camera, ..Frame::empty() }
+    }
+
+    fn feed(frames: &[(Captured, u32)]) -> (Vec<(Captured, u32), 40>, std::vec::Vec<Placed>) {
+        let mut state: (Seen, usize) = ([(0, 0); 40], 0);
+        let mut timeline = Timeline::new(state);
+        let placed = frames.iter().map(|(at, camera)| {
+            timeline.put(&frame(*at, *camera), &mut state, |(seen, count), frame| {
+                seen[*count] = (frame.at, frame.camera);
+                *count += 1;
+            })
+        });
+        let placed = placed.collect();
+        (Vec::from_slice(&state.0[..state.1]).unwrap(), placed)
+    }
+
+    #[test]
+    fn images_that_come_out_of_order_leave_the_same_state_as_in_order() {
+        let sorted: std::vec::Vec<(Captured, u32)> =
+            (0..30).map(|i| (i64::from(i / 2) * 10_000, i as u32 % 2)).collect();
+        let mut shuffled = sorted.clone();
+        for (i, j) in [(2, 4), (9, 7), (12, 15), (20, 21), (28, 29)] {
+            shuffled.swap(i, j);
+        }
+        assert_eq!(feed(&shuffled).0, feed(&sorted).0);
+        assert_eq!(feed(&sorted).0[..], sorted[..]);
+    }
+
+    #[test]
+    fn a_copy_is_told_and_changes_nothing() {
+        let (seen, placed) = feed(&[(0, 0), (0, 1), (16_000, 0), (0, 1), (16_000, 0), (16_000, 1)]);
+        assert_eq!(seen[..], [(0, 0), (0, 1), (16_000, 0), (16_000, 1)]);
+        let expected = [Placed::Newest, Placed::Newest, Placed::Newest, Placed::Repeated, Placed::Repeated];
+        assert_eq!(placed[..5], expected);
+    }
+
+    #[test]
+    fn what_is_older_than_the_window_is_late() {
+        let (seen, placed) = feed(&[(100_000, 0), (50_000, 1), (49_999, 1), (0, 1)]);
+        assert_eq!(placed[1..], [Placed::Before(1), Placed::Late(50_001), Placed::Late(100_000)]);
+        assert_eq!(seen[..], [(50_000, 1), (100_000, 0)]);
+    }
+
+    #[test]
+    fn more_cameras_than_it_holds_images_of_are_still_in_order() {
+        let mut images: std::vec::Vec<(Captured, u32)> = (1..=30).map(|i| (i * 1_000, 0)).collect();
+        images.extend([(29_500, 1), (1, 1)]);
+        let (seen, placed) = feed(&images);
+        assert_eq!(placed[30..], [Placed::Before(1), Placed::Late(29_999)]);
+        assert_eq!(seen[29..], [(29_500, 1), (30_000, 0)]);
+    }
+}

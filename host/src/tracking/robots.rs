@@ -1,0 +1,271 @@
+//! Which robots are there, where, and how do they move? A track per shell number and colour, merged over all cameras.
+//!
+//! A robot is believed once it was seen in several images. What is seen far from where its robot can be is a misread
+//! pattern until it stays there while the robot is seen nowhere else; a name read where another robot stands is a wrong
+//! name. An unseen robot coasts, its confidence falls, and after a second it is gone.
+
+use geometry::{Angle, Field, Point, Pose, Vector};
+use protocol::{Instant, RobotId};
+use rules::Colour;
+
+use super::filter::{Freedom, Plane, Turning};
+use super::seen::{Captured, RobotSeen};
+use crate::world::{Robot, Who, index};
+
+/// What became of robots that cameras claimed to see, counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct RobotCounts {
+    /// Taken into a robot's track.
+    pub taken: u64,
+    /// Seen too seldom yet to be believed.
+    pub new: u64,
+    /// Farther from the robot of that name than it can have come.
+    pub jumped: u64,
+    /// Where another robot stands: a wrong number or colour.
+    pub wrong_name: u64,
+}
+
+/// All robots.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Robots {
+    believed: [[Option<Track>; RobotId::COUNT]; 2],
+    candidates: [[Option<Track>; RobotId::COUNT]; 2],
+    pub(super) counts: RobotCounts,
+}
+
+/// How images of this field scatter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotNoise {
+    /// Standard deviation of a robot's coordinate, m.
+    pub place: f32,
+    /// Standard deviation of its heading, rad.
+    pub heading: f32,
+}
+
+impl Default for RobotNoise {
+    /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm, 0.010 rad;
+    /// both from second differences, `cargo run -p host --example track`).
+    fn default() -> Self {
+        Self { place: 0.003, heading: 0.03 }
+    }
+}
+
+/// A robot's state at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved {
+    pub(super) pose: Pose<Field>,
+    pub(super) velocity: Vector<Field>,
+    pub(super) angular: f32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Track {
+    plane: Plane,
+    turning: Turning,
+    /// Of the state.
+    at: Captured,
+    /// Image times of the last glimpse and of the last that counted.
+    seen: Captured,
+    counted: Captured,
+    images: u16,
+    /// What cameras think of their glimpses, averaged, 0–1.
+    quality: f32,
+}
+
+impl Track {
+    fn new(seen: &RobotSeen, at: Captured, noise: RobotNoise) -> Self {
+        Self {
+            plane: Plane::new(seen.position, noise.place, SPEED_SIGMA),
+            turning: Turning::new(seen.heading.unwrap_or(Angle::ZERO), noise.heading, RATE_SIGMA),
+            at,
+            seen: at,
+            counted: at,
+            images: 1,
+            quality: seen.confidence,
+        }
+    }
+
+    /// How far from the prediction a glimpse at `at` is, beyond what the robot can have moved besides, m.
+    fn misses_by(&self, position: Point<Field>, at: Captured) -> f32 {
+        let unseen = seconds(at - self.seen);
+        self.moved(at).pose.position.distance(position) - (GATE + GATE_SPEED * unseen.min(GATE_TIME_MAX))
+    }
+
+    fn see(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
+        let dt = seconds(at - self.at);
+        if dt > COAST {
+            // Long unseen: the place is believed, the velocity is not.
+            let moved = self.moved(at);
+            self.plane = Plane::new(moved.pose.position, GATE, SPEED_SIGMA);
+            self.turning = Turning::new(moved.pose.heading, LOST_HEADING, RATE_SIGMA);
+        } else {
+            self.plane.pass(dt, PLACE_FREEDOM);
+            self.turning.pass(dt, HEADING_FREEDOM);
+        }
+        self.plane.see(seen.position, noise.place);
+        if let Some(heading) = seen.heading {
+            self.turning.see(heading, noise.heading);
+        }
+        (self.at, self.seen) = (at, at);
+        if at - self.counted >= IMAGE_APART {
+            self.counted = at;
+            self.images = self.images.saturating_add(1);
+        }
+        self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
+    }
+
+    /// Straight on for a while, then at rest.
+    fn moved(&self, at: Captured) -> Moved {
+        let dt = seconds(at - self.at).clamp(0.0, COAST);
+        let rests = at - self.at > micros(COAST);
+        let heading = self.turning.heading + Angle::new(self.turning.rate * dt);
+        Moved {
+            pose: Pose { position: self.plane.position + self.plane.velocity * dt, heading },
+            velocity: if rests { Vector::default() } else { self.plane.velocity },
+            angular: if rests { 0.0 } else { self.turning.rate },
+        }
+    }
+
+    fn confidence(&self, at: Captured) -> f32 {
+        let freshness = 1.0 - seconds(at - self.seen) * (1.0 / GONE);
+        let often = f32::from(self.images.min(IMAGES_FULL)) * (1.0 / IMAGES_FULL as f32);
+        (freshness * often * self.quality).clamp(0.0, 1.0)
+    }
+}
+
+impl Robots {
+    /// Takes an image's robots in.
+    pub(super) fn see(&mut self, robots: &[RobotSeen], at: Captured, noise: RobotNoise) {
+        for track in self
+            .believed
+            .iter_mut()
+            .flatten()
+            .filter(|track| track.is_some_and(|t| at - t.seen > micros(GONE)))
+        {
+            *track = None;
+        }
+        for seen in robots {
+            self.see_one(seen, at, noise);
+        }
+    }
+
+    fn see_one(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
+        let (team, id) = (index(seen.who.colour), seen.who.id.index());
+        let elsewhere = self.believed[team][id].is_some_and(|track| at - track.seen <= micros(ELSEWHERE));
+        if !elsewhere && self.stands_another(seen.who, seen.position, at) {
+            // A name that is read there now and then only: whoever was believed under it was that misreading.
+            self.counts.wrong_name += 1;
+            return;
+        }
+        if let Some(track) = &mut self.believed[team][id]
+            && track.misses_by(seen.position, at) <= 0.0
+        {
+            track.see(seen, at, noise);
+            self.counts.taken += 1;
+            return;
+        }
+        let candidate = &mut self.candidates[team][id];
+        match candidate {
+            Some(track) if at - track.seen > micros(ELSEWHERE) => *track = Track::new(seen, at, noise),
+            Some(track) if track.misses_by(seen.position, at) <= 0.0 => track.see(seen, at, noise),
+            Some(_) if elsewhere => {}
+            _ => *candidate = Some(Track::new(seen, at, noise)),
+        }
+        let believable = candidate.filter(|track| track.images >= IMAGES_TO_BELIEVE && !elsewhere);
+        if let Some(track) = believable {
+            self.believed[team][id] = Some(track);
+            self.candidates[team][id] = None;
+            self.counts.taken += 1;
+        } else if elsewhere {
+            self.counts.jumped += 1;
+        } else {
+            self.counts.new += 1;
+        }
+    }
+
+    /// Whether a believed robot of another name was seen at that place just now.
+    fn stands_another(&self, who: Who, position: Point<Field>, at: Captured) -> bool {
+        self.each().any(|(other, track)| {
+            other != who
+                && at - track.seen <= micros(ELSEWHERE)
+                && track.moved(at).pose.position.distance(position) < SAME_PLACE
+        })
+    }
+
+    fn each(&self) -> impl Iterator<Item = (Who, &Track)> {
+        let teams = self.believed.iter().zip([Colour::Yellow, Colour::Blue]);
+        teams.flat_map(|(team, colour)| {
+            let named = team.iter().zip(RobotId::all());
+            named.filter_map(move |(track, id)| track.as_ref().map(|track| (Who { colour, id }, track)))
+        })
+    }
+
+    /// That robot at that moment, if it is believed.
+    pub(super) fn robot(&self, who: Who, at: Captured) -> Option<Moved> {
+        self.believed[index(who.colour)][who.id.index()].as_ref().map(|track| track.moved(at))
+    }
+
+    /// The believed robot nearest to a point, and its distance, m.
+    pub(super) fn nearest(&self, point: Point<Field>, at: Captured) -> Option<(Who, Moved, f32)> {
+        let each = self.each().map(|(who, track)| {
+            let moved = track.moved(at);
+            (who, moved, moved.pose.position.distance(point))
+        });
+        each.reduce(|best, next| if next.2 < best.2 { next } else { best })
+    }
+
+    /// Everybody at that moment; `ours` tells moments on our clock.
+    pub(super) fn picture(
+        &self,
+        at: Captured,
+        ours: impl Fn(Captured) -> Instant,
+    ) -> impl Iterator<Item = Robot> {
+        self.each().map(move |(who, track)| {
+            let Moved { pose, velocity, angular } = track.moved(at);
+            Robot { who, pose, velocity, angular, confidence: track.confidence(at), seen: ours(track.seen) }
+        })
+    }
+}
+
+/// From µs to s.
+pub(super) fn seconds(micros: Captured) -> f32 {
+    micros as f32 * 1e-6
+}
+
+/// From s to µs.
+pub(super) const fn micros(seconds: f32) -> Captured {
+    (seconds * 1e6) as Captured
+}
+
+/// Images that make a robot believable: 50 ms of one camera; misread patterns of one or two images stay out.
+const IMAGES_TO_BELIEVE: u16 = 3;
+/// Images after which confidence is full.
+const IMAGES_FULL: u16 = 10;
+/// Glimpses nearer to each other than this are of one tick (two cameras see the robot), µs.
+const IMAGE_APART: Captured = 5_000;
+/// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's "object
+/// position offset"), the rest is margin below a robot's radius.
+const GATE: f32 = 0.08;
+/// ... and farther for every second unseen, m/s: the fastest robots' speed.
+const GATE_SPEED: f32 = 4.0;
+/// ... for no longer than this, s.
+const GATE_TIME_MAX: f32 = 0.25;
+/// Within this time a robot was seen "just now", s: six images of 60 Hz, three of a camera with dropouts.
+const ELSEWHERE: f32 = 0.1;
+/// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is misread for sure.
+const SAME_PLACE: f32 = 0.09;
+/// An unseen robot goes straight on for so long, s, then is taken to stand.
+const COAST: f32 = 0.25;
+/// It is forgotten after that time, s.
+const GONE: f32 = 1.0;
+/// How unsure the heading is after coasting, rad.
+const LOST_HEADING: f32 = 1.0;
+/// A new robot's speed, m/s, and rate, rad/s, may be anything of that size.
+const SPEED_SIGMA: f32 = 2.0;
+const RATE_SIGMA: f32 = 5.0;
+/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held for 0.2 s.
+const PLACE_FREEDOM: Freedom = Freedom { calm: 0.15, changing: 10.0 };
+/// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
+const HEADING_FREEDOM: Freedom = Freedom { calm: 2.0, changing: 250.0 };
+/// Weight of the newest glimpse in the quality.
+const QUALITY_SHARE: f32 = 0.1;

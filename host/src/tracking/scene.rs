@@ -1,0 +1,115 @@
+//! What of vision's geometry does a tracker need at every image? Where cameras hang, how large the surface is and how balls
+//! move on it, ready at hand. m.
+
+use geometry::{Field, Point};
+use ssl::vision::GeometryData;
+
+use super::seen::CAMERAS_MAX;
+use crate::geometry::{GeometryFault, News, VisionGeometry};
+use crate::world::BallModels;
+
+/// Where a camera hangs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Camera {
+    pub(super) above: Point<Field>,
+    pub(super) height: f32,
+}
+
+/// What is known of the place.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scene {
+    pub(super) geometry: VisionGeometry,
+    cameras: [Option<Camera>; CAMERAS_MAX],
+    pub(super) models: BallModels,
+}
+
+impl Scene {
+    /// Nothing told yet; balls move like that until something is.
+    pub(super) fn new(models: BallModels) -> Self {
+        Self { models, ..Self::default() }
+    }
+
+    /// Learns from a packet; what it refuses stays as it was.
+    pub(super) fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
+        let news = self.geometry.hear(data)?;
+        for (number, camera) in self.geometry.cameras() {
+            let [x, y, height] = camera.position;
+            if let Some(place) = self.cameras.get_mut(*number as usize) {
+                // One that hangs lower tells no heights.
+                *place = (height >= HEIGHT_MIN).then_some(Camera { above: Point::new(x, y), height });
+            }
+        }
+        self.models.ground = self.geometry.ground().unwrap_or(self.models.ground);
+        self.models.chip = self.geometry.chip().unwrap_or(self.models.chip);
+        Ok(news)
+    }
+
+    /// Where that camera hangs, if it was told.
+    pub(super) fn camera(&self, number: u32) -> Option<Camera> {
+        self.cameras.get(number as usize).copied().flatten()
+    }
+
+    /// Whether a ball there can be in play: on the surface between the walls. Everywhere, while the field is unknown.
+    pub(super) fn is_playable(&self, point: Point<Field>) -> bool {
+        self.geometry.field().is_none_or(|field| {
+            let margin = field.margin.max(field.goal_line_margin).max(field.goal_depth);
+            field.clamp(point, -margin) == point
+        })
+    }
+}
+
+/// Lower than a chipped ball flies nobody hangs a camera, m.
+const HEIGHT_MIN: f32 = 1.5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ssl::vision::{GeometryCameraCalibration, GeometryFieldSize};
+
+    fn packet(camera_id: u32, z: f32) -> GeometryData {
+        let calibration = GeometryCameraCalibration {
+            camera_id,
+            derived_camera_world_tx: Some(-2_000.0),
+            derived_camera_world_ty: Some(1_500.0),
+            derived_camera_world_tz: Some(z),
+            ..GeometryCameraCalibration::default()
+        };
+        let field = GeometryFieldSize {
+            field_length: 9_000,
+            field_width: 6_000,
+            goal_width: 1_000,
+            goal_depth: 180,
+            boundary_width: 300,
+            ..GeometryFieldSize::default()
+        };
+        GeometryData { field, calib: vec![calibration], models: None }
+    }
+
+    #[test]
+    fn trap_02_cameras_told_one_a_packet_are_all_at_hand() {
+        let mut scene = Scene::default();
+        for id in 0..4 {
+            scene.hear(&packet(id, 4_000.0)).unwrap();
+        }
+        for id in 0..4 {
+            let camera = scene.camera(id).unwrap();
+            assert!(
+                camera.above.distance(Point::new(-2.0, 1.5)) < 1e-5 && (camera.height - 4.0).abs() < 1e-5
+            );
+        }
+        assert_eq!((scene.camera(4), scene.camera(u32::MAX)), (None, None));
+        scene.hear(&packet(2, 300.0)).unwrap();
+        assert_eq!(scene.camera(2), None, "on a tripod");
+    }
+
+    #[test]
+    fn a_ball_between_the_walls_can_be_played_and_one_beyond_them_cannot() {
+        let mut scene = Scene::default();
+        assert!(scene.is_playable(Point::new(9.0, 0.0)), "the field is unknown");
+        scene.hear(&packet(0, 4_000.0)).unwrap();
+        assert!(scene.is_playable(Point::new(-4.75, 3.25)) && !scene.is_playable(Point::new(9.0, 0.0)));
+        let nonsense = GeometryData { field: GeometryFieldSize::default(), ..packet(0, 4_000.0) };
+        assert!(scene.hear(&nonsense).is_err());
+        assert!(!scene.is_playable(Point::new(9.0, 0.0)), "what was known stands");
+    }
+}
