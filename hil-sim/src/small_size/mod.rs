@@ -19,6 +19,7 @@ pub mod quirks;
 pub mod referee;
 mod robot;
 mod senses;
+pub mod server;
 mod surface;
 mod trace;
 mod wheels;
@@ -145,6 +146,11 @@ impl World {
             self.pairs_until = 0;
             self.highest_robot = self.robots.iter().map(|robot| robot.body.height).fold(0.0, f32::max);
         }
+    }
+
+    /// Another ball or carpet from the next step on; to be checked before.
+    pub(crate) fn set_ball_parameters(&mut self, ball: BallParameters) {
+        self.parameters.ball = ball;
     }
 
     /// Puts the ball somewhere, moving or not; nobody pulls it any longer.

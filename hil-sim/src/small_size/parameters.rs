@@ -19,7 +19,8 @@ macro_rules! numbers {
         pub struct $name { $($(#[$doc])* pub $field: f32,)* }
 
         impl $name {
-            fn check(&self) -> Result<(), ParameterError> {
+            /// Every number within what the physics can bear.
+            pub fn check(&self) -> Result<(), ParameterError> {
                 $(within(concat!($file, ".", stringify!($field)), self.$field, $low, $high)?;)*
                 Ok(())
             }

@@ -224,6 +224,11 @@ impl Robot {
         self.ordered_at.is_some_and(|at| now - at < lasts)
     }
 
+    /// What it was told last.
+    pub fn order(&self) -> &Order {
+        &self.order
+    }
+
     /// Battery, V.
     pub fn volts(&self, of: &BatteryParameters) -> f32 {
         of.full - (of.full - of.empty) * (self.used / of.energy).min(1.0)

@@ -1,0 +1,128 @@
+//! What shall robots do, and what do they answer? Ports 10301 and 10302; m/s, rad/s, kick angles in degrees, dribbler in rpm.
+
+use geometry::{Twist, Vector, math};
+use protocol::RobotId;
+use rules::Colour;
+use ssl::simulation::{MoveCommand, RobotCommand, RobotControl, RobotControlResponse, RobotFeedback};
+
+use super::{Refusal, Server};
+use crate::small_size::{Drive, Kick, Order, Who};
+
+impl Server {
+    /// Robots of a team are commanded; gives what comes back.
+    pub(super) fn lead(&mut self, colour: Colour, control: &RobotControl) -> RobotControlResponse {
+        let mut refused = Vec::new();
+        let mut commanded = [false; RobotId::COUNT];
+        for command in &control.robot_commands {
+            let id = u8::try_from(command.id).ok().and_then(RobotId::new);
+            let Some(id) = id else {
+                refused.push(Refusal::NoSuchId(Some(command.id)));
+                continue;
+            };
+            if std::mem::replace(&mut commanded[id.index()], true) {
+                refused.push(Refusal::Twice(command.id));
+            }
+            self.command(Who { colour, id }, command, &mut refused);
+        }
+        RobotControlResponse { errors: self.told(&refused), feedback: self.feedback(colour) }
+    }
+
+    fn command(&mut self, who: Who, command: &RobotCommand, refused: &mut Vec<Refusal>) {
+        let Some(robot) = self.world.robot(who).filter(|robot| robot.present) else {
+            refused.push(Refusal::UnknownRobot(command.id));
+            return;
+        };
+        let before = robot.order().dribbler;
+        let kick = kick(command, robot.kick_limits, refused);
+        let dribbler = match command.dribbler_speed {
+            None if self.cameras.settings().quirks.dribbler_resets => 0.0,
+            None => before,
+            Some(rpm) if !rpm.is_finite() => {
+                refused.push(Refusal::NotANumber("dribbler_speed"));
+                0.0
+            }
+            Some(rpm) if rpm < 0.0 => {
+                refused.push(Refusal::DribblerBackwards(command.id));
+                0.0
+            }
+            Some(rpm) => (rpm / self.world.parameters().dribbler.full_rpm).min(1.0),
+        };
+        let order = Order { drive: drive(command, refused), kick, dribbler, discharge: false };
+        if self.chance.chance(self.radio.command_loss) {
+            self.counts.lost += 1;
+        } else {
+            self.coming.push_back((self.world.now() + self.radio.delay, who, order));
+        }
+    }
+
+    /// What the team's robots tell of themselves.
+    pub(super) fn feedback(&mut self, colour: Colour) -> Vec<RobotFeedback> {
+        let all = self.cameras.settings().quirks.answers_for_all;
+        let loss = self.radio.answer_loss;
+        let mut feedback = Vec::new();
+        for robot in self.world.robots() {
+            if robot.who.colour != colour || !(robot.present || all) || self.chance.chance(loss) {
+                continue;
+            }
+            feedback.push(RobotFeedback {
+                id: u32::from(robot.who.id.number()),
+                dribbler_ball_contact: Some(robot.ball_contact),
+                custom: None,
+            });
+        }
+        feedback
+    }
+}
+
+fn drive(command: &RobotCommand, refused: &mut Vec<Refusal>) -> Drive {
+    let Some(wanted) = command.move_command.and_then(|wanted| wanted.command) else {
+        refused.push(Refusal::MissingMove(command.id));
+        return Drive::Brake;
+    };
+    let (drive, numbers, what) = match wanted {
+        MoveCommand::WheelVelocity(v) => {
+            let rims = [v.front_right, v.back_right, v.back_left, v.front_left];
+            (Drive::Rims(rims), rims, "wheel_velocity")
+        }
+        MoveCommand::LocalVelocity(v) => (
+            Drive::Local(Twist { linear: Vector::new(v.forward, v.left), angular: v.angular }),
+            [v.forward, v.left, v.angular, 0.0],
+            "local_velocity",
+        ),
+        MoveCommand::GlobalVelocity(v) => (
+            Drive::Global(Twist { linear: Vector::new(v.x, v.y), angular: v.angular }),
+            [v.x, v.y, v.angular, 0.0],
+            "global_velocity",
+        ),
+    };
+    if numbers.iter().all(|number| number.is_finite()) {
+        drive
+    } else {
+        refused.push(Refusal::NotANumber(what));
+        Drive::Brake
+    }
+}
+
+fn kick(command: &RobotCommand, limits: [f32; 2], refused: &mut Vec<Refusal>) -> Option<Kick> {
+    let (speed, degrees) = (command.kick_speed.unwrap_or(0.0), command.kick_angle.unwrap_or(0.0));
+    if !speed.is_finite() || !degrees.is_finite() {
+        refused.push(Refusal::NotANumber(if speed.is_finite() { "kick_angle" } else { "kick_speed" }));
+        return None;
+    }
+    if speed < 0.0 {
+        refused.push(Refusal::KickBackwards(command.id));
+        return None;
+    }
+    if speed == 0.0 {
+        return None;
+    }
+    if !(0.0..=90.0).contains(&degrees) {
+        refused.push(Refusal::KickAngle { id: command.id, asked: degrees });
+        return None;
+    }
+    let most = limits[usize::from(degrees > 0.0)];
+    if speed > most {
+        refused.push(Refusal::KickTooFast { id: command.id, asked: speed, most });
+    }
+    Some(Kick { speed: speed.min(most), angle: degrees * (math::PI / 180.0) })
+}

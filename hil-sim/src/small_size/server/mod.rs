@@ -1,0 +1,328 @@
+//! How do other programs use the simulator? The league's simulation protocol, bytes in and bytes out (DESIGN §7).
+//!
+//! | port | takes | answers |
+//! |---|---|---|
+//! | 10300 | `SimulatorCommand` | `SimulatorResponse` with what could not be done |
+//! | 10301 blue, 10302 yellow | `RobotControl` | `RobotControlResponse`: the same, and each robot's light barrier |
+//! | vision, multicast | – | `SSL_WrapperPacket` |
+//!
+//! No socket and no clock here: whoever has them calls [`Server::handle`] with what came, [`Server::advance`] with the time,
+//! and sends what [`Server::poll_transmit`] gives. Commands take effect in the step after they came.
+
+mod command;
+mod config;
+mod control;
+mod refusal;
+
+use std::collections::VecDeque;
+use std::net::SocketAddr;
+
+use geometry::Pose;
+use protocol::{Instant, RobotId};
+use rules::{Colour, League};
+use ssl::Message;
+use ssl::simulation::{
+    RobotControl, RobotControlResponse, SimulationSyncRequest, SimulationSyncResponse, SimulatorCommand,
+    SimulatorResponse,
+};
+
+use super::camera::Cameras;
+use super::quirks::Profile;
+use super::{Order, Parameters, Who, World};
+use crate::rng::Stream;
+
+pub use refusal::Refusal;
+
+/// How a server starts.
+#[derive(Clone, Debug)]
+pub struct ServerSettings {
+    /// Which field.
+    pub league: League,
+    /// How everything behaves.
+    pub parameters: Parameters,
+    /// Whose manners it has.
+    pub profile: Profile,
+    /// Robots of each team at the start.
+    pub robots: u8,
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// Unix time now, s; for manners that tell it.
+    pub unix_now: f64,
+    /// Where vision goes.
+    pub vision_port: u16,
+}
+
+impl ServerSettings {
+    /// A league as its file has it; `None` where no robots on wheels play.
+    pub fn of(league: League, profile: Profile, seed: u64, unix_now: f64) -> Option<Self> {
+        let parameters = Parameters::of(league)?.clone();
+        let robots = parameters.robots;
+        Some(Self { league, parameters, profile, robots, seed, unix_now, vision_port: VISION_PORT })
+    }
+}
+
+/// A port of the protocol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port {
+    /// 10300.
+    Simulator,
+    /// 10301 for blue, 10302 for yellow.
+    Team(Colour),
+}
+
+impl Port {
+    /// Its number.
+    pub const fn number(self) -> u16 {
+        match self {
+            Self::Simulator => 10300,
+            Self::Team(Colour::Blue) => 10301,
+            Self::Team(Colour::Yellow) => 10302,
+        }
+    }
+}
+
+/// A datagram to be sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Transmit {
+    /// Where to.
+    pub to: Destination,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// Where a datagram goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// The vision group, at this port.
+    Vision(u16),
+    /// Back to who asked, from the port it was asked at.
+    Reply {
+        /// From here.
+        from: Port,
+        /// To there.
+        to: SocketAddr,
+    },
+}
+
+/// What came and what became of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages understood at 10300.
+    pub simulator: u64,
+    /// Messages understood at 10301 and 10302.
+    pub control: u64,
+    /// Datagrams that were none of their port's messages.
+    pub undecodable: u64,
+    /// Refusals told.
+    pub refused: u64,
+    /// Robots' commands lost on purpose (realism).
+    pub lost: u64,
+    /// Milliseconds not simulated because the caller came too late.
+    pub skipped: u64,
+}
+
+/// A simulator that speaks the league's protocol.
+#[derive(Clone, Debug)]
+pub struct Server {
+    world: World,
+    cameras: Cameras,
+    profile: Profile,
+    radio: RadioRealism,
+    chance: Stream,
+    pace: f32,
+    vision_port: u16,
+    last: Option<Instant>,
+    /// Simulated µs not yet stepped.
+    owed: f32,
+    /// Orders on their way, by the step they take effect in.
+    coming: VecDeque<(u64, Who, Order)>,
+    out: VecDeque<Transmit>,
+    counts: Counts,
+}
+
+/// What happens to robots' commands and answers on the way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct RadioRealism {
+    command_loss: f32,
+    answer_loss: f32,
+    /// Steps.
+    delay: u64,
+}
+
+impl Server {
+    /// A field with both teams lined up in their halves, blue at −x, and the ball in the middle.
+    pub fn new(settings: &ServerSettings) -> Self {
+        let mut world = World::new(settings.league, &settings.parameters, settings.seed);
+        let field = settings.league.field();
+        for n in 0..settings.robots.min(RobotId::COUNT as u8) {
+            let Some(id) = RobotId::new(n) else { continue };
+            // Columns of four, 0.4 m apart, beginning a metre from the halfway line (or half way into a small field).
+            let depth = (field.length * 0.25).min(1.0) + f32::from(n / 4) * SPACING;
+            let aside = (f32::from(n % 4) - 1.5) * SPACING;
+            world.put(Who::blue(id), Pose::from_mm_deg(-depth * 1000.0, aside * 1000.0, 0.0));
+            world.put(Who::yellow(id), Pose::from_mm_deg(depth * 1000.0, aside * 1000.0, 180.0));
+        }
+        let cameras = Cameras::of(settings.profile, settings.unix_now, &world, settings.seed);
+        let answer_loss = cameras.settings().quirks.answer_loss;
+        Self {
+            world,
+            cameras,
+            profile: settings.profile,
+            radio: RadioRealism { answer_loss, ..RadioRealism::default() },
+            chance: Stream::new(settings.seed, "simulation server"),
+            pace: 1.0,
+            vision_port: settings.vision_port,
+            last: None,
+            owed: 0.0,
+            coming: VecDeque::new(),
+            out: VecDeque::new(),
+            counts: Counts::default(),
+        }
+    }
+
+    /// The truth.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The truth, for a referee's hand.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// What came and what became of it.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Simulated seconds a second; 0 stands still.
+    pub fn pace(&self) -> f32 {
+        self.pace
+    }
+
+    /// Whose manners it has.
+    pub fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    /// A datagram came to `port`.
+    pub fn handle(&mut self, port: Port, from: SocketAddr, bytes: &[u8]) {
+        let reply = match port {
+            Port::Simulator => {
+                let errors = match SimulatorCommand::decode(bytes) {
+                    Ok(command) => {
+                        self.counts.simulator += 1;
+                        self.steer(&command)
+                    }
+                    Err(_) => self.undecodable(),
+                };
+                SimulatorResponse { errors: self.told(&errors) }.encode_to_vec()
+            }
+            Port::Team(colour) => {
+                let answer = if let Ok(control) = RobotControl::decode(bytes) {
+                    self.counts.control += 1;
+                    self.lead(colour, &control)
+                } else {
+                    let errors = self.undecodable();
+                    RobotControlResponse { errors: self.told(&errors), feedback: Vec::new() }
+                };
+                answer.encode_to_vec()
+            }
+        };
+        self.out.push_back(Transmit { to: Destination::Reply { from: port, to: from }, bytes: reply });
+    }
+
+    /// Time has come to `now`: the world follows at its pace, and vision packets fall due.
+    pub fn advance(&mut self, now: Instant) {
+        let before = *self.last.get_or_insert(now);
+        self.last = Some(now);
+        self.owed += now.since(before).0 as f32 * self.pace;
+        let late = ((self.owed - CATCH_UP) / STEP_US).max(0.0) as u64;
+        self.counts.skipped += late;
+        self.owed -= late as f32 * STEP_US;
+        while self.owed >= STEP_US {
+            self.owed -= STEP_US;
+            self.step();
+        }
+    }
+
+    /// One step of physics and what follows from it, whatever time it is.
+    pub fn step(&mut self) {
+        let now = self.world.now();
+        while let Some((_, who, order)) = self.coming.pop_front_if(|(due, ..)| *due <= now) {
+            self.world.order(who, order);
+        }
+        self.world.step();
+        self.cameras.watch(&self.world);
+        while let Some(packet) = self.cameras.poll(self.world.now()) {
+            let to = Destination::Vision(self.vision_port);
+            self.out.push_back(Transmit { to, bytes: packet.encode_to_vec() });
+        }
+    }
+
+    /// When [`Server::advance`] has something to do next; `None` while the world stands still.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        let last = self.last.unwrap_or_default();
+        (self.pace > 0.0).then(|| Instant(last.0 + ((STEP_US - self.owed) / self.pace).max(0.0) as u64 + 1))
+    }
+
+    /// The next datagram to send.
+    pub fn poll_transmit(&mut self) -> Option<Transmit> {
+        self.out.pop_front()
+    }
+
+    /// The protocol's synchronous mode: does what is asked, simulates `sim_step` seconds, gives what cameras then see.
+    pub fn synchronous(&mut self, colour: Colour, request: &SimulationSyncRequest) -> SimulationSyncResponse {
+        let mut refused = match &request.simulator_command {
+            Some(command) => self.steer(command),
+            None => Vec::new(),
+        };
+        let mut response = match &request.robot_control {
+            Some(control) => self.lead(colour, control),
+            None => RobotControlResponse::default(),
+        };
+        let step = request.sim_step.unwrap_or(0.0);
+        if step > 0.0 && step <= SYNC_MAX {
+            for _ in 0..(step * 1000.0 + 0.5) as u32 {
+                self.step();
+            }
+            // Vision goes into the answer instead.
+            self.out.retain(|transmit| !matches!(transmit.to, Destination::Vision(_)));
+        } else {
+            refused.push(Refusal::SyncStep(step));
+        }
+        response.errors.extend(self.told(&refused));
+        response.feedback = self.feedback(colour);
+        SimulationSyncResponse {
+            detection: self.cameras.snapshot(&self.world),
+            robot_control_response: Some(response),
+        }
+    }
+
+    fn undecodable(&mut self) -> Vec<Refusal> {
+        self.counts.undecodable += 1;
+        vec![Refusal::Undecodable]
+    }
+
+    fn told(&mut self, refusals: &[Refusal]) -> Vec<ssl::simulation::SimulatorError> {
+        self.counts.refused += refusals.len() as u64;
+        let prefix = self.cameras.settings().quirks.prefix;
+        refusals.iter().map(|refusal| refusal.told(prefix)).collect()
+    }
+}
+
+/// The fastest simulation speed: beyond, no machine follows.
+pub const SPEED_MAX: f32 = 1000.0;
+/// s: the longest synchronous step.
+pub const SYNC_MAX: f32 = 10.0;
+/// Where simulators send vision by default, so as not to disturb a tournament's 10006.
+pub const VISION_PORT: u16 = 10020;
+/// µs in a step.
+const STEP_US: f32 = 1000.0;
+/// Simulated µs that are caught up at once after a pause of the caller; what is beyond is skipped.
+const CATCH_UP: f32 = 250_000.0;
+/// m between robots at the start.
+const SPACING: f32 = 0.4;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,170 @@
+//! What could the simulator not do, and how is that mended? Every error code of this simulator, one variant each.
+//!
+//! The protocol leaves codes to each simulator: ours are `ONETWO_…`. Under another's manners the prefix is theirs, and for what
+//! grSim refuses as a whole the code is its `GRSIM_UNSUPPORTED_CONFIG`; its other codes' names are ours.
+
+use std::fmt;
+
+use ssl::simulation::SimulatorError;
+
+use crate::parameters::ParameterError;
+
+/// Why something was not done. Whatever else the message asked for was.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Refusal {
+    /// The datagram is no message of this port.
+    Undecodable,
+    /// A robot's number is missing or above 15.
+    NoSuchId(Option<u32>),
+    /// A robot's team is missing or neither yellow nor blue.
+    NoTeam,
+    /// Nobody of that number stands on the field.
+    UnknownRobot(u32),
+    /// Two commands for one robot in one message; the later one holds.
+    Twice(u32),
+    /// A command that does not say how to move; the robot brakes.
+    MissingMove(u32),
+    /// A number that is none; what it belongs to was left out.
+    NotANumber(&'static str),
+    /// A kick beyond the robot's strength; it will kick as hard as it can.
+    KickTooFast {
+        /// Who.
+        id: u32,
+        /// m/s, asked for.
+        asked: f32,
+        /// m/s, possible.
+        most: f32,
+    },
+    /// A kick's speed below zero; no kick.
+    KickBackwards(u32),
+    /// A kick's angle outside 0–90°; no kick.
+    KickAngle {
+        /// Who.
+        id: u32,
+        /// Degrees.
+        asked: f32,
+    },
+    /// A dribbler's speed below zero; it stands.
+    DribblerBackwards(u32),
+    /// A place beyond the hall's walls.
+    OutsideHall(&'static str),
+    /// A simulation speed that is negative or beyond [`super::SPEED_MAX`].
+    Pace(f32),
+    /// A robot's specification that no robot can have.
+    Specs(ParameterError),
+    /// A field that no field can be.
+    Geometry(rules::FieldFault),
+    /// A ball that no ball can be, or one that is not solid.
+    BallModel(String),
+    /// Noise, delays or losses out of their range.
+    Realism(ParameterError),
+    /// A custom setting of a type that is not known here.
+    UnknownCustom(String),
+    /// A custom setting of a known type with bytes that are not of it.
+    BrokenCustom(String),
+    /// A setting that exists in the protocol but not here; it was left out.
+    Unsupported(&'static str),
+    /// Not a port.
+    VisionPort(u32),
+    /// A step that is no time, or longer than [`super::SYNC_MAX`].
+    SyncStep(f32),
+    /// The manners in force know no such setting.
+    MannersConfig(&'static str),
+    /// The manners in force know no such teleport.
+    MannersTeleport(&'static str),
+}
+
+impl Refusal {
+    /// The code for programs, without the simulator's prefix.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Undecodable => "UNDECODABLE",
+            Self::NoSuchId(_) => "NO_SUCH_ID",
+            Self::NoTeam => "NO_TEAM",
+            Self::UnknownRobot(_) => "UNKNOWN_ROBOT",
+            Self::Twice(_) => "COMMANDED_TWICE",
+            Self::MissingMove(_) => "MISSING_MOVE_COMMAND",
+            Self::NotANumber(_) => "NOT_A_NUMBER",
+            Self::KickTooFast { .. } => "KICK_TOO_FAST",
+            Self::KickBackwards(_) => "KICK_BACKWARDS",
+            Self::KickAngle { .. } => "KICK_ANGLE",
+            Self::DribblerBackwards(_) => "DRIBBLER_BACKWARDS",
+            Self::OutsideHall(_) => "OUTSIDE_HALL",
+            Self::Pace(_) => "SIMULATION_SPEED",
+            Self::Specs(_) => "ROBOT_SPECS",
+            Self::Geometry(_) => "GEOMETRY",
+            Self::BallModel(_) => "BALL_MODEL",
+            Self::Realism(_) => "REALISM",
+            Self::UnknownCustom(_) => "UNKNOWN_CUSTOM",
+            Self::BrokenCustom(_) => "BROKEN_CUSTOM",
+            Self::Unsupported(_) => "UNSUPPORTED",
+            Self::VisionPort(_) => "VISION_PORT",
+            Self::SyncStep(_) => "SYNC_STEP",
+            Self::MannersConfig(_) => "UNSUPPORTED_CONFIG",
+            Self::MannersTeleport(_) => "UNSUPPORTED_TELEPORT",
+        }
+    }
+
+    /// As the protocol sends it.
+    pub fn told(&self, prefix: &str) -> SimulatorError {
+        SimulatorError { code: Some(format!("{prefix}_{}", self.code())), message: Some(self.to_string()) }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Undecodable => f.write_str(
+                "this datagram is no message of this port; 10300 takes SimulatorCommand, 10301 (blue) and 10302 (yellow) take \
+                 RobotControl",
+            ),
+            Self::NoSuchId(Some(id)) => write!(f, "robot {id}: numbers are 0 to 15"),
+            Self::NoSuchId(None) => f.write_str("a robot without a number; set id.id, 0 to 15"),
+            Self::NoTeam => f.write_str("a robot without a team; set id.team to YELLOW or BLUE"),
+            Self::UnknownRobot(id) => write!(
+                f,
+                "robot {id} of this team is not on the field; put it there with a TeleportRobot with present = true"
+            ),
+            Self::Twice(id) => write!(f, "robot {id} is commanded twice in one message; the later command holds"),
+            Self::MissingMove(id) => {
+                write!(f, "robot {id}: no move_command, so it brakes; set wheel, local or global velocity")
+            }
+            Self::NotANumber(what) => write!(f, "{what} is not a finite number; this part was left out"),
+            Self::KickTooFast { id, asked, most } => {
+                write!(f, "robot {id}: kick_speed {asked} m/s; it can do {most} m/s and will (robot_specs change that)")
+            }
+            Self::KickBackwards(id) => write!(f, "robot {id}: kick_speed is negative; kick with 0 m/s or more"),
+            Self::KickAngle { id, asked } => {
+                write!(f, "robot {id}: kick_angle {asked}; it is in degrees, 0 to 90")
+            }
+            Self::DribblerBackwards(id) => {
+                write!(f, "robot {id}: dribbler_speed is negative; this dribbler turns one way, in rpm from 0")
+            }
+            Self::OutsideHall(what) => {
+                write!(f, "{what} lies outside the hall; places are in metres, not millimetres")
+            }
+            Self::Pace(asked) => {
+                write!(f, "simulation_speed {asked}: 0 stands still, 1 is real time, {} is most", super::SPEED_MAX)
+            }
+            Self::Specs(error) => write!(f, "robot_specs: {error}; this robot stays as it was"),
+            Self::Geometry(error) => write!(f, "geometry: {error}; the field stays as it was (lengths are in mm)"),
+            Self::BallModel(why) => write!(f, "geometry.models: {why}; the ball stays as it was"),
+            Self::Realism(error) => write!(f, "realism_config: {error}; noise and delays stay as they were"),
+            Self::UnknownCustom(url) => {
+                write!(f, "custom of type `{url}` is not known; RealismConfigErForce and RobotSpecErForce are")
+            }
+            Self::BrokenCustom(url) => write!(f, "custom of type `{url}` cannot be read as that"),
+            Self::Unsupported(what) => write!(f, "{what} is not simulated here; it was left out"),
+            Self::VisionPort(port) => write!(f, "vision_port {port}: ports are 1 to 65535"),
+            Self::SyncStep(asked) => {
+                write!(f, "sim_step {asked} s: more than 0 and at most {} s", super::SYNC_MAX)
+            }
+            Self::MannersConfig(what) => write!(f, "{what} cannot be set in this simulator; start it otherwise"),
+            Self::MannersTeleport(what) => {
+                write!(f, "{what} is not known to this simulator; the rest of the teleport was done")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}

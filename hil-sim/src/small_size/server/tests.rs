@@ -1,0 +1,371 @@
+//! Does the server do what the league's simulation protocol says, and answer what it cannot? Bytes in, bytes out.
+
+mod codes;
+mod manners;
+
+use ssl::common::{Any, RobotId as WireId, Team};
+use ssl::simulation::{
+    MoveCommand, MoveLocalVelocity, RealismConfig, RealismConfigErForce, RobotCommand, RobotLimits,
+    RobotMoveCommand, RobotSpecs, SimulatorConfig, SimulatorControl, TeleportBall, TeleportRobot,
+};
+use ssl::vision::WrapperPacket;
+
+use super::*;
+use crate::small_size::NoiseParameters;
+
+fn from() -> SocketAddr {
+    SocketAddr::from(([127, 0, 0, 1], 40_000))
+}
+
+fn server_like(profile: Profile) -> Server {
+    let mut settings = ServerSettings::of(League::DivisionB, profile, 1, 1_795_220_511.0).unwrap();
+    settings.parameters.noise = NoiseParameters::NONE;
+    Server::new(&settings)
+}
+
+fn server() -> Server {
+    server_like(Profile::Ours)
+}
+
+/// What is sent, vision apart from the answers.
+fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
+    let (mut vision, mut answers) = (Vec::new(), Vec::new());
+    while let Some(Transmit { to, bytes }) = server.poll_transmit() {
+        match to {
+            Destination::Vision(_) => vision.push(WrapperPacket::decode(&bytes[..]).unwrap()),
+            Destination::Reply { .. } => answers.push(bytes),
+        }
+    }
+    (vision, answers)
+}
+
+/// The codes that a message to 10300 is answered with.
+fn steer(server: &mut Server, command: &SimulatorCommand) -> Vec<String> {
+    sent(server);
+    server.handle(Port::Simulator, from(), &command.encode_to_vec());
+    let answer = sent(server).1.remove(0);
+    let answer = SimulatorResponse::decode(&answer[..]).unwrap();
+    answer.errors.iter().map(|error| error.code.clone().unwrap()).collect()
+}
+
+fn control(server: &mut Server, control: SimulatorControl) -> Vec<String> {
+    steer(server, &SimulatorCommand { control: Some(control), config: None })
+}
+
+fn config(server: &mut Server, config: SimulatorConfig) -> Vec<String> {
+    steer(server, &SimulatorCommand { control: None, config: Some(config) })
+}
+
+fn lead(server: &mut Server, colour: Colour, commands: &[RobotCommand]) -> RobotControlResponse {
+    sent(server);
+    let control = RobotControl { robot_commands: commands.to_vec() };
+    server.handle(Port::Team(colour), from(), &control.encode_to_vec());
+    let answer = sent(server).1.remove(0);
+    RobotControlResponse::decode(&answer[..]).unwrap()
+}
+
+fn ahead(id: u32, speed: f32) -> RobotCommand {
+    let local = MoveLocalVelocity { forward: speed, left: 0.0, angular: 0.0 };
+    let command = Some(MoveCommand::LocalVelocity(local));
+    RobotCommand { id, move_command: Some(RobotMoveCommand { command }), ..RobotCommand::default() }
+}
+
+fn blue(id: u32) -> WireId {
+    WireId { id: Some(id), team: Some(Team::Blue as i32) }
+}
+
+fn own(id: u8) -> Who {
+    Who::blue(RobotId::new(id).unwrap())
+}
+
+fn steps(server: &mut Server, count: u32) {
+    for _ in 0..count {
+        server.step();
+    }
+}
+
+#[test]
+fn a_commanded_robot_drives_and_the_answer_names_who_is_there() {
+    let mut server = server();
+    let before = server.world().robot(own(2)).unwrap().pose.position;
+    for _ in 0..50 {
+        let answer = lead(&mut server, Colour::Blue, &[ahead(2, 1.0)]);
+        assert!(answer.errors.is_empty());
+        let ids: Vec<_> = answer.feedback.iter().map(|feedback| feedback.id).collect();
+        assert_eq!(ids, [0, 1, 2, 3, 4, 5]);
+        steps(&mut server, 10);
+    }
+    let after = server.world().robot(own(2)).unwrap().pose.position;
+    // ½·1²/4.5 m are lost in speeding up to 1 m/s for half a second.
+    assert!((after.x() - before.x() - 0.389).abs() < 0.01, "{before:?} {after:?}");
+    assert_eq!(server.counts().control, 50);
+}
+
+#[test]
+fn the_light_barrier_is_told() {
+    let mut server = server();
+    let robot = server.world().robot(own(1)).unwrap();
+    let (p, reach) = (robot.pose.position, robot.body.front + 0.0215);
+    let ball = TeleportBall { x: Some(p.x() + reach + 0.001), y: Some(p.y()), ..TeleportBall::default() };
+    assert!(
+        control(&mut server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() }).is_empty()
+    );
+    server.step();
+    let contacts: Vec<_> = (lead(&mut server, Colour::Blue, &[]).feedback.iter())
+        .map(|feedback| feedback.dribbler_ball_contact.unwrap())
+        .collect();
+    assert_eq!(contacts, [false, true, false, false, false, false]);
+}
+
+#[test]
+fn time_runs_at_its_pace_stands_still_and_skips_what_nobody_waited_for() {
+    let mut server = server();
+    let (sec, mut now) = (1_000_000, Instant(5_000_000));
+    let run = |server: &mut Server, now: &mut Instant, us: u64| {
+        let before = server.world().now();
+        for _ in 0..us / 5_000 {
+            now.0 += 5_000;
+            server.advance(*now);
+        }
+        server.world().now() - before
+    };
+    server.advance(now);
+    assert_eq!(run(&mut server, &mut now, sec), 1_000);
+    let pace = |server: &mut Server, speed| {
+        control(server, SimulatorControl { simulation_speed: Some(speed), ..Default::default() })
+    };
+    assert!(pace(&mut server, 0.0).is_empty());
+    assert_eq!((run(&mut server, &mut now, sec), server.poll_timeout()), (0, None));
+    assert!(pace(&mut server, 2.5).is_empty());
+    assert_eq!(run(&mut server, &mut now, sec), 2_500);
+    assert!(pace(&mut server, 1.0).is_empty());
+    let before = server.world().now();
+    now.0 += 10 * sec;
+    server.advance(now);
+    assert_eq!(server.world().now() - before, 250);
+    assert_eq!(server.counts().skipped, 9_750);
+    let next = server.poll_timeout().unwrap();
+    assert!(next > now && next.0 - now.0 <= 1_001);
+}
+
+#[test]
+fn vision_goes_to_the_port_that_was_set() {
+    let mut server = server();
+    assert!(
+        config(&mut server, SimulatorConfig { vision_port: Some(10_006), ..Default::default() }).is_empty()
+    );
+    steps(&mut server, 100);
+    let mut packets = 0;
+    while let Some(transmit) = server.poll_transmit() {
+        assert_eq!(transmit.to, Destination::Vision(10_006));
+        packets += 1;
+    }
+    // 65 ms of two cameras at 75 Hz, and the field once.
+    assert!((9..=12).contains(&packets), "{packets}");
+}
+
+#[test]
+fn what_a_teleport_leaves_out_stays_as_it_is() {
+    let mut server = server();
+    let ball =
+        TeleportBall { x: Some(1.0), y: Some(0.5), vx: Some(2.0), vy: Some(-1.0), ..Default::default() };
+    control(&mut server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() });
+    let up = TeleportBall { z: Some(0.5), roll: Some(true), ..Default::default() };
+    control(&mut server, SimulatorControl { teleport_ball: Some(up), ..Default::default() });
+    let ball = server.world().ball;
+    assert_eq!((ball.position.x(), ball.position.y(), ball.height), (1.0, 0.5, 0.5));
+    assert_eq!((ball.velocity.x(), ball.velocity.y()), (2.0, -1.0));
+    assert_eq!(ball.spin, ball.velocity, "told to roll");
+
+    let turn = TeleportRobot { id: blue(3), orientation: Some(1.0), ..Default::default() };
+    let before = server.world().robot(own(3)).unwrap().pose;
+    control(&mut server, SimulatorControl { teleport_robot: vec![turn], ..Default::default() });
+    let after = server.world().robot(own(3)).unwrap().pose;
+    assert_eq!(after.position, before.position);
+    assert_eq!(after.heading.radians(), 1.0);
+}
+
+#[test]
+fn robots_leave_come_and_are_pulled() {
+    let mut server = server();
+    let teleport = |server: &mut Server, robot: TeleportRobot| {
+        control(server, SimulatorControl { teleport_robot: vec![robot], ..Default::default() })
+    };
+    let gone = TeleportRobot { id: blue(0), present: Some(false), ..Default::default() };
+    assert!(teleport(&mut server, gone).is_empty());
+    let answer = lead(&mut server, Colour::Blue, &[ahead(0, 1.0)]);
+    assert_eq!(answer.errors[0].code.as_deref(), Some("ONETWO_UNKNOWN_ROBOT"));
+    assert_eq!(answer.feedback.len(), 5, "who is not there answers nothing");
+    let back = TeleportRobot { present: Some(true), x: Some(0.3), y: Some(0.2), v_x: Some(1.0), ..gone };
+    assert!(teleport(&mut server, back).is_empty());
+    assert_eq!(server.world().robot(own(0)).unwrap().velocity.x(), 1.0);
+    let new = TeleportRobot {
+        id: blue(15),
+        present: Some(true),
+        x: Some(-4.0),
+        y: Some(2.0),
+        ..Default::default()
+    };
+    assert!(teleport(&mut server, new).is_empty());
+    let pulled = TeleportRobot {
+        id: blue(15),
+        by_force: Some(true),
+        x: Some(-3.0),
+        y: Some(2.0),
+        ..Default::default()
+    };
+    for _ in 0..4 {
+        assert!(teleport(&mut server, pulled).is_empty());
+        steps(&mut server, 400);
+    }
+    let p = server.world().robot(own(15)).unwrap().pose.position;
+    assert!((p.x() + 3.0).abs() < 0.02, "{p:?}");
+}
+
+#[test]
+fn a_ball_put_down_safely_pushes_robots_aside() {
+    let mut server = server();
+    let p = server.world().robot(own(4)).unwrap().pose.position;
+    let safely = |on| TeleportBall {
+        x: Some(p.x() + 0.01),
+        y: Some(p.y()),
+        teleport_safely: Some(on),
+        ..Default::default()
+    };
+    control(&mut server, SimulatorControl { teleport_ball: Some(safely(true)), ..Default::default() });
+    let robot = server.world().robot(own(4)).unwrap().pose.position;
+    assert!(robot.distance(server.world().ball.position) > 0.111, "{robot:?}");
+}
+
+#[test]
+fn specifications_change_a_robot_and_only_it() {
+    let mut server = server();
+    let limits = RobotLimits { vel_absolute_max: Some(0.5), ..Default::default() };
+    let specs = RobotSpecs {
+        id: blue(1),
+        mass: Some(3.0),
+        max_linear_kick_speed: Some(4.0),
+        limits: Some(limits),
+        ..Default::default()
+    };
+    assert!(
+        config(&mut server, SimulatorConfig { robot_specs: vec![specs], ..Default::default() }).is_empty()
+    );
+    let [one, other] = [1, 2].map(|id| server.world().robot(own(id)).unwrap().clone());
+    assert_eq!((one.body.mass, one.limits.speed, one.kick_limits[0]), (3.0, 0.5, 4.0));
+    assert_eq!((other.body.mass, other.limits.speed, other.kick_limits[0]), (2.5, 3.5, 8.0));
+}
+
+#[test]
+fn another_field_is_told_by_vision_and_holds_robots() {
+    let mut server = server();
+    let a = World::new(League::DivisionA, Parameters::of(League::DivisionA).unwrap(), 0);
+    let told = Cameras::of(Profile::Ours, 0.0, &a, 0).geometry(&a, None);
+    let codes = config(&mut server, SimulatorConfig { geometry: Some(told.clone()), ..Default::default() });
+    assert_eq!(codes, ["ONETWO_UNSUPPORTED"], "where cameras hang is the simulator's business");
+    assert_eq!(server.world().pitch().field, League::DivisionA.field());
+    steps(&mut server, 30);
+    let vision = sent(&mut server).0;
+    let heard = vision.into_iter().find_map(|packet| packet.geometry).unwrap();
+    assert_eq!(heard.field, told.field);
+}
+
+#[test]
+fn realism_as_er_force_names_it_changes_noise_delay_and_losses() {
+    let mut server = server();
+    let asked = RealismConfigErForce {
+        stddev_ball_p: Some(0.01),
+        vision_delay: Some(20_000_000),
+        robot_command_loss: Some(1.0),
+        ..Default::default()
+    };
+    let custom = Any {
+        type_url: Some("type.googleapis.com/RealismConfigErForce".into()),
+        value: Some(asked.encode_to_vec()),
+    };
+    let realism_config = Some(RealismConfig { custom: vec![custom] });
+    assert!(config(&mut server, SimulatorConfig { realism_config, ..Default::default() }).is_empty());
+    let settings = *server.cameras.settings();
+    assert_eq!((settings.noise.ball, settings.noise.robot), (0.01, 0.0));
+    assert!((settings.camera.delay - 0.02).abs() < 1e-6);
+    let before = server.world().robot(own(2)).unwrap().pose;
+    for _ in 0..20 {
+        lead(&mut server, Colour::Blue, &[ahead(2, 1.0)]);
+        steps(&mut server, 10);
+    }
+    assert_eq!(server.world().robot(own(2)).unwrap().pose, before, "every command was lost");
+    assert_eq!(server.counts().lost, 20);
+}
+
+#[test]
+fn in_synchronous_mode_time_is_what_was_asked_for() {
+    let mut server = server();
+    let request = SimulationSyncRequest {
+        sim_step: Some(0.02),
+        simulator_command: None,
+        robot_control: Some(RobotControl { robot_commands: vec![ahead(0, 1.0)] }),
+    };
+    let answer = server.synchronous(Colour::Blue, &request);
+    assert_eq!(server.world().now(), 20);
+    assert_eq!(answer.detection.len(), 2);
+    assert!((answer.detection[0].t_capture - 1_795_220_511.02).abs() < 1e-6);
+    assert_eq!(answer.robot_control_response.unwrap().feedback.len(), 6);
+}
+
+#[test]
+fn the_same_messages_give_the_same_bytes() {
+    let play = || {
+        let settings = ServerSettings::of(League::DivisionA, Profile::Ours, 9, 0.0).unwrap();
+        let mut server = Server::new(&settings);
+        let mut bytes = Vec::new();
+        for step in 0..500_u16 {
+            if step % 10 == 0 {
+                let commands: Vec<_> = (0..11).map(|id| ahead(id, f32::from(step % 70) * 0.05)).collect();
+                let control = RobotControl { robot_commands: commands };
+                server.handle(Port::Team(Colour::Yellow), from(), &control.encode_to_vec());
+            }
+            server.step();
+            while let Some(transmit) = server.poll_transmit() {
+                bytes.extend(transmit.bytes);
+            }
+        }
+        bytes
+    };
+    assert_eq!(play(), play());
+}
+
+#[test]
+fn whatever_bytes_come_it_answers_and_goes_on() {
+    let mut server = server();
+    let mut chance = Stream::new(4, "test");
+    let seeds = [
+        RobotControl { robot_commands: vec![ahead(1, 1.0), ahead(9, f32::NAN)] }.encode_to_vec(),
+        SimulatorCommand {
+            control: Some(SimulatorControl {
+                teleport_ball: Some(TeleportBall { x: Some(1.0), vx: Some(3.0), ..Default::default() }),
+                teleport_robot: vec![TeleportRobot { id: blue(1), x: Some(0.1), ..Default::default() }],
+                simulation_speed: Some(1.0),
+            }),
+            config: Some(SimulatorConfig { vision_port: Some(1), ..Default::default() }),
+        }
+        .encode_to_vec(),
+    ];
+    for round in 0..20_000_usize {
+        let mut bytes = seeds[round % 2].clone();
+        for _ in 0..chance.whole(1, 6) {
+            let at = chance.whole(0, bytes.len() as u32 - 1) as usize;
+            bytes[at] = chance.whole(0, 255) as u8;
+        }
+        bytes.truncate(chance.whole(1, 2 * bytes.len() as u32) as usize);
+        let port = [Port::Simulator, Port::Team(Colour::Blue), Port::Team(Colour::Yellow)][round % 3];
+        server.handle(port, from(), &bytes);
+        if round % 20 == 0 {
+            server.step();
+        }
+        assert_eq!(sent(&mut server).1.len(), 1, "one answer to each");
+    }
+    let ball = server.world().ball;
+    assert!(ball.position.is_finite() && ball.velocity.is_finite());
+    assert!(server.world().robots().iter().all(|robot| robot.pose.position.is_finite()));
+    assert!(server.counts().undecodable > 1_000);
+}
