@@ -7,6 +7,7 @@
 
 pub mod config;
 pub mod geometry;
+mod host;
 pub mod radio;
 pub mod recording;
 pub mod referee;
@@ -15,3 +16,5 @@ pub mod strategy;
 pub mod trace;
 pub mod tracking;
 pub mod world;
+
+pub use host::{Host, HostSettings, Input, Undecodable, Verdict, team_of};

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct RobotId(u8);
 
 impl RobotId {
+    /// The lowest.
+    pub const ZERO: Self = Self(0);
     /// Number of ids there are.
     pub const COUNT: usize = 16;
 

@@ -9,6 +9,7 @@ use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side};
 
 use super::order::{Order, Role, Task, Why};
+use super::support::Target;
 use super::view::{ROBOTS_MAX, View, nearest};
 use super::{defence, restart, roles, support};
 
@@ -25,6 +26,8 @@ pub struct Coach {
     first: Option<RobotId>,
     defenders: [Option<RobotId>; 2],
     others: [Option<RobotId>; OTHERS],
+    /// What our restart is aimed at, since when.
+    aim: Option<(Instant, Target)>,
     /// Took our restart; nobody else has touched the ball since.
     barred: Option<RobotId>,
 }
@@ -34,6 +37,9 @@ impl Coach {
     pub fn decide(&mut self, view: &View) -> Orders {
         self.remember(view);
         let mut plan = Plan { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() };
+        if !matches!(view.phase, Phase::Halt | Phase::Timeout(_)) {
+            plan.send_off_surplus();
+        }
         match view.phase {
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
             Phase::Run => self.open_play(&mut plan),
@@ -62,6 +68,7 @@ impl Coach {
             );
             self.barred = if view.phase == Phase::Run && taken { self.first } else { None };
             self.phase = Some(view.phase);
+            self.aim = None;
             self.since = view.now;
         }
         if let (Some(barred), Some(ball)) = (self.barred, view.ball) {
@@ -210,11 +217,18 @@ impl Coach {
             let at = restart::taker_waits(view, &ball);
             return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
         }
-        let (task, why) = if penalty {
-            restart::take_penalty(view, &ball)
-        } else {
-            restart::take(view, id, &ball, self.age(view) > MATES_GET_READY)
-        };
+        let wait = if penalty { Duration(0) } else { MATES_GET_READY };
+        let stands = self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
+        if self.age(view) >= wait && !stands {
+            let target = if penalty {
+                let (at, room) = support::best_shot(view, ball.position);
+                Target::Shot { at, room }
+            } else {
+                support::target(view, id, ball.position)
+            };
+            self.aim = Some((view.now, target));
+        }
+        let (task, why) = restart::take(view, &ball, self.aim.map(|(_, target)| target));
         plan.order(id, Role::Taker, task, why);
     }
 
@@ -280,6 +294,25 @@ impl Plan<'_> {
         self.free.len() < before
     }
 
+    /// Those with the highest numbers leave while we are too many; the keeper stays.
+    fn send_off_surplus(&mut self) {
+        let view = self.view;
+        let surplus = self.free.len().saturating_sub(view.allowed);
+        let leaving: Free = view
+            .ours
+            .iter()
+            .rev()
+            .map(|robot| robot.id)
+            .filter(|id| *id != view.keeper)
+            .take(surplus)
+            .collect();
+        for (i, id) in leaving.into_iter().enumerate() {
+            self.take(id);
+            let at = Point::new(0.25 * i as f32, -view.field.width * 0.5 - LEAVE_BEYOND);
+            self.order(id, Role::Leaving, self.facing_ball(at), Why::TooMany { allowed: view.allowed });
+        }
+    }
+
     fn keeper(&mut self) {
         if self.take(self.view.keeper) {
             let (task, why) = defence::keeper(self.view);
@@ -314,6 +347,8 @@ fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
 
+/// Robots that leave stand this far beyond the touch line, m: off the playing area, on the carpet.
+const LEAVE_BEYOND: f32 = 0.15;
 /// Field players besides keeper, first and defenders.
 const OTHERS: usize = 8;
 /// A robot that plays a case counts as this much nearer to the ball, s: changing hands would end the case.
@@ -324,6 +359,8 @@ const TAKER_WORTH: f32 = 1.0;
 const TOUCHING: f32 = 0.126;
 /// Mates are given this long to take their places before a restart is played, of the 5 s (A) that the rules give.
 const MATES_GET_READY: Duration = Duration::millis(1500);
+/// A target once chosen stands for this long: to walk around the ball, aim and kick.
+const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
 const WALL_BEYOND: f32 = 2.2;
 
@@ -391,6 +428,18 @@ mod tests {
         assert_eq!(of(|order| order.role == Role::Keeper), 1);
         assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
         assert_eq!(of(|order| order.task == Task::Gameplay), 3);
+    }
+
+    #[test]
+    fn one_too_many_goes_to_the_touch_line_and_it_is_not_the_keeper() {
+        let view = view((0.0, 0.0), &OURS, &THEIRS).allowing(4);
+        let orders = Coach::default().decide(&view);
+        let leaving: Vec<_> = orders
+            .iter()
+            .filter(|order| order.role == Role::Leaving)
+            .map(|order| order.robot.number())
+            .collect();
+        assert_eq!(leaving, [4, 5]);
     }
 
     #[test]

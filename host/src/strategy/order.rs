@@ -38,6 +38,8 @@ pub enum Role {
     Marker(u8),
     /// Stands in the way of their restart.
     Wall,
+    /// One too many on the field: goes to the touch line to be taken off.
+    Leaving,
 }
 
 /// What decided an order, with its numbers; SI units, attack frame.
@@ -81,6 +83,11 @@ pub enum Why {
     DoubleTouch,
     /// No ball is seen.
     NoBall,
+    /// The referee lets us have so many.
+    TooMany {
+        /// How many.
+        allowed: usize,
+    },
 }
 
 /// A task in the attack frame; [`Task::directive`] is its form for the wire.

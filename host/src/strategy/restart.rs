@@ -7,7 +7,6 @@ use geometry::{Angle, Attack, Point, Segment, Vector};
 use super::order::{Task, Why};
 use super::support::{self, Target};
 use super::view::{Ball, View};
-use protocol::RobotId;
 
 /// How far everybody stays from a ball that is not in play, m: the rules' 0.5 m, a body, and what robots overshoot by.
 pub const OFF_BALL: f32 = 0.7;
@@ -17,8 +16,8 @@ const TAKER_WAITS: f32 = 0.7;
 const BEHIND_PENALTY: f32 = 1.3;
 /// Steps by which the way out is turned, degrees: 24 of them are once around.
 const TURN_STEP_DEG: f32 = 15.0;
-/// How far from the halfway line field players stand at kick-off, m: a body and a margin on their own half.
-const OWN_HALF: f32 = 0.25;
+/// How far from the halfway line field players stand at kick-off, m: as far from an opponent as lets them take a pass.
+const KICKOFF_BACK: f32 = 0.9;
 
 /// Where our taker waits for its restart: behind the ball, as seen from their goal.
 pub fn taker_waits(view: &View, ball: &Ball) -> Point<Attack> {
@@ -26,47 +25,34 @@ pub fn taker_waits(view: &View, ball: &Ball) -> Point<Attack> {
     view.clamp(ball.position + back * TAKER_WAITS, -0.1)
 }
 
-/// What our taker does when it may kick; `ready`: mates have had the time to take their places, or it runs out.
-pub fn take(view: &View, taker: RobotId, ball: &Ball, ready: bool) -> (Task, Why) {
-    match support::target(view, taker, ball.position) {
-        Target::Shot { at, room } if ready => {
-            (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room })
+/// What our taker does with the target it has; nothing yet: it waits behind the ball for its mates to take their places.
+pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
+    let kick_to = |at: Point<Attack>| support::pass_kick(at.distance(ball.position));
+    match target {
+        None => {
+            let at = taker_waits(view, ball);
+            (Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Referee)
         }
-        Target::Shot { at, room } => (
-            Task::GoTo { at: taker_waits(view, ball), face: ball.position.direction_to(at) },
-            Why::BestTarget { room },
-        ),
-        Target::Mate { id, at, room } => {
-            let kick = support::pass_kick(at.distance(ball.position));
-            (Task::Pass { at, receiver: id, kick, ready }, Why::BestTarget { room })
+        Some(Target::Shot { at, room }) => (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room }),
+        Some(Target::Ahead { at, room }) => (Task::Kick { at, kick: kick_to(at) }, Why::BestTarget { room }),
+        Some(Target::Mate { id, at, room }) => {
+            // It may have moved a little since it was chosen.
+            let at = view.our(id).map_or(at, |mate| mate.position);
+            (Task::Pass { at, receiver: id, kick: kick_to(at), ready: true }, Why::BestTarget { room })
         }
-        Target::Ahead { at, room } if ready => (
-            Task::Kick { at, kick: support::pass_kick(at.distance(ball.position)) },
-            Why::BestTarget { room },
-        ),
-        Target::Ahead { at, room } => (
-            Task::GoTo { at: taker_waits(view, ball), face: ball.position.direction_to(at) },
-            Why::BestTarget { room },
-        ),
     }
-}
-
-/// Our penalty: at the freer side of the goal.
-pub fn take_penalty(view: &View, ball: &Ball) -> (Task, Why) {
-    let (at, room) = support::best_shot(view, ball.position);
-    (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room })
 }
 
 /// Places of field players at our kick-off: on our half, where the taker can pass to.
 pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
-    let (x, wing) = (-OWN_HALF, view.field.width * 0.5);
+    let (x, wing) = (-KICKOFF_BACK, view.field.width * 0.5);
     [
-        Point::new(x, wing * 0.45),
-        Point::new(x, -wing * 0.45),
-        Point::new(x - 1.2, 0.0),
-        Point::new(x - 0.2, wing * 0.75),
-        Point::new(x - 0.2, -wing * 0.75),
-        Point::new(x - 1.8, wing * 0.4),
+        Point::new(x, wing * 0.55),
+        Point::new(x, -wing * 0.55),
+        Point::new(x - 0.8, 0.0),
+        Point::new(x - 0.3, wing * 0.8),
+        Point::new(x - 0.3, -wing * 0.8),
+        Point::new(x - 1.4, wing * 0.4),
     ]
 }
 

@@ -96,7 +96,7 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
     let receivable = |mate: &&Robot| {
         mate.id != taker && mate.id != view.keeper && {
             let distance = mate.position.distance(ball);
-            (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
+            mate.position.x() > ball.x() - BACKWARDS && (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
         }
     };
     let best = view

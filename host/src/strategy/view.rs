@@ -3,7 +3,9 @@
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::{Instant, RobotId};
-use rules::{FieldSpec, Phase, Side};
+use rules::{Colour, FieldSpec, Phase, Side};
+
+use crate::world::World;
 
 /// Robots of a team that strategy can see: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
@@ -77,6 +79,23 @@ pub struct Robot {
     pub velocity: Vector<Attack>,
 }
 
+/// What the referee says, in our words.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Game {
+    /// The phase of the game.
+    pub phase: Phase<Side>,
+    /// What will be started next, if the referee says.
+    pub next: Option<Phase<Side>>,
+    /// Where the ball is to be placed, while it is.
+    pub placement: Option<Point<Field>>,
+    /// The goal we defend.
+    pub defending: GoalEnd,
+    /// Our keeper's number.
+    pub keeper: RobotId,
+    /// Theirs.
+    pub their_keeper: RobotId,
+}
+
 /// Everything strategy decides by.
 #[derive(Clone, Debug)]
 pub struct View {
@@ -98,6 +117,8 @@ pub struct View {
     pub keeper: RobotId,
     /// Their keeper's number.
     pub their_keeper: RobotId,
+    /// How many robots the referee lets us have on the field.
+    pub allowed: usize,
     /// Our robots that play a case right now, by what they say.
     pub in_play: RobotSet,
     /// The field's lines.
@@ -105,6 +126,48 @@ pub struct View {
 }
 
 impl View {
+    /// The field as we, who play in `us`, see it; `fit` says which of our robots can be commanded.
+    pub fn of(
+        world: &World,
+        us: Colour,
+        game: &Game,
+        field: FieldSpec,
+        fit: RobotSet,
+        in_play: RobotSet,
+    ) -> Self {
+        let flip = Flip::defending(game.defending);
+        let robot = |robot: &crate::world::Robot| Robot {
+            id: robot.who.id,
+            position: flip.point(robot.pose.position),
+            heading: flip.angle(robot.pose.heading),
+            velocity: flip.vector(robot.velocity),
+        };
+        Self {
+            now: world.time,
+            phase: game.phase,
+            next: game.next,
+            placement: game.placement.map(|at| flip.point(at)),
+            ball: world.ball.map(|ball| Ball {
+                position: flip.point(ball.position),
+                velocity: flip.vector(ball.velocity),
+                rest: flip.point(ball.rest(&world.models)),
+                height: ball.height,
+            }),
+            ours: world.ours(us).filter(|robot| fit.has(robot.who.id)).map(robot).collect(),
+            theirs: world.theirs(us).map(robot).collect(),
+            keeper: game.keeper,
+            their_keeper: game.their_keeper,
+            allowed: ROBOTS_MAX,
+            in_play,
+            field,
+        }
+    }
+
+    /// The same, with a limit on how many of us may be on the field.
+    pub fn allowing(self, robots: usize) -> Self {
+        Self { allowed: robots, ..self }
+    }
+
     /// Our robot of that number.
     pub fn our(&self, id: RobotId) -> Option<&Robot> {
         self.ours.iter().find(|robot| robot.id == id)
@@ -210,6 +273,7 @@ pub(crate) mod tests {
             theirs: robots(theirs),
             keeper: RobotId::new(0).unwrap(),
             their_keeper: RobotId::new(0).unwrap(),
+            allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),
             field: League::DivisionB.field(),
         }

@@ -1,0 +1,361 @@
+//! How do vision, referee and robots' words become commands? The host as a value: datagrams and times in, packets out
+//! (DESIGN §3).
+//!
+//! One mutation, then drain: after every [`Host::handle`] call [`Host::poll_packet`] until `None`, then ask [`Host::poll_timeout`] when
+//! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
+//! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
+
+use geometry::GoalEnd;
+use protocol::frame::{Refusal, TeamKey};
+use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
+use protocol::link::Packet;
+use protocol::team::{Beacon, Progress};
+use protocol::{Duration, Instant, RobotId, TeamId};
+use rules::{Colour, FieldSpec, League, Limits};
+use ssl::Message;
+
+use crate::geometry::VisionGeometry;
+use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
+use crate::referee::{self, Listener};
+use crate::strategy::view::{Game, RobotSet};
+use crate::strategy::{Coach, Flip, Orders, View};
+use crate::tracking::{self, Tracker};
+use crate::world::World;
+
+/// What is fixed for a host's life.
+#[derive(Clone, Debug)]
+pub struct HostSettings {
+    /// Our colour.
+    pub us: Colour,
+    /// The league: its field until vision tells of another, and its limits.
+    pub league: League,
+    /// Our keeper, until the referee names one.
+    pub keeper: RobotId,
+    /// The goal we defend, until the referee says.
+    pub defending: GoalEnd,
+    /// Ball speed over speed ordered, by robot.
+    pub kick: [f32; RobotId::COUNT],
+    /// The radio's.
+    pub radio: RadioSettings,
+}
+
+impl HostSettings {
+    /// A team on a league's own field with robots that do as they are told; `epoch` must rise with every start.
+    pub fn new(us: Colour, league: League, epoch: u32) -> Self {
+        Self {
+            us,
+            league,
+            keeper: RobotId::ZERO,
+            defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
+            kick: [1.0; RobotId::COUNT],
+            radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(team_of(us), epoch) },
+        }
+    }
+}
+
+/// The radio's number of a colour: two teams in one hall must not hear each other.
+pub fn team_of(colour: Colour) -> TeamId {
+    TeamId(match colour {
+        Colour::Yellow => 1,
+        Colour::Blue => 2,
+    })
+}
+
+/// What came to the host.
+#[derive(Clone, Copy, Debug)]
+pub enum Input<'a> {
+    /// A datagram of the vision.
+    Vision(&'a [u8]),
+    /// A datagram of the referee.
+    Referee(&'a [u8]),
+    /// A frame of a robot.
+    Robot(&'a [u8]),
+    /// A deadline that [`Host::poll_timeout`] announced.
+    Timeout,
+}
+
+/// What became of an input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// An image, or geometry.
+    Vision(tracking::Heard),
+    /// A packet of the referee.
+    Referee(Box<referee::Verdict>),
+    /// A robot spoke.
+    Robot(RobotId),
+    /// A frame that is not believed.
+    Refused(Refusal),
+    /// A datagram that is no message.
+    Undecodable,
+    /// A deadline.
+    Timeout,
+}
+
+/// Datagrams that were no messages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Undecodable {
+    /// On vision's port.
+    pub vision: u64,
+    /// On the referee's port.
+    pub referee: u64,
+}
+
+/// A team's host.
+#[derive(Clone, Debug)]
+pub struct Host {
+    settings: HostSettings,
+    tracker: Tracker,
+    geometry: VisionGeometry,
+    listener: Listener,
+    radio: Radio,
+    coach: Coach,
+    robots: [Known; RobotId::COUNT],
+    world: World,
+    orders: Orders,
+    planned: Option<Instant>,
+    undecodable: Undecodable,
+}
+
+/// What a robot of ours last said of itself.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    beacon: Option<(Instant, Beacon)>,
+    telemetry: Option<(Instant, Telemetry)>,
+}
+
+impl Host {
+    /// A host that starts at `now`.
+    pub fn new(settings: HostSettings, now: Instant) -> Self {
+        Self {
+            listener: Listener::new(settings.league.limits().unwrap_or(LIMITS), now),
+            radio: Radio::new(settings.radio),
+            tracker: Tracker::default(),
+            geometry: VisionGeometry::default(),
+            coach: Coach::default(),
+            robots: Default::default(),
+            world: World::default(),
+            orders: Orders::new(),
+            planned: None,
+            undecodable: Undecodable::default(),
+            settings,
+        }
+    }
+
+    /// Something came, or a deadline has.
+    pub fn handle(&mut self, now: Instant, input: Input<'_>) -> Verdict {
+        match input {
+            Input::Vision(bytes) => self.see(now, bytes),
+            Input::Referee(bytes) => self.obey(now, bytes),
+            Input::Robot(bytes) => self.listen(now, bytes),
+            Input::Timeout => {
+                self.radio.handle_timeout(now);
+                Verdict::Timeout
+            }
+        }
+    }
+
+    /// The next packet for the robots.
+    pub fn poll_packet(&mut self) -> Option<(To, Packet)> {
+        self.radio.poll_packet()
+    }
+
+    /// When [`Input::Timeout`] is wanted, if nothing comes before.
+    pub fn poll_timeout(&self) -> Option<Instant> {
+        self.radio.poll_timeout()
+    }
+
+    /// The field as it was when it was last planned for.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// What everybody was told last, and why.
+    pub fn orders(&self) -> &Orders {
+        &self.orders
+    }
+
+    /// The game as the referee has it.
+    pub fn game(&self) -> &referee::Game {
+        self.listener.game()
+    }
+
+    /// The referee's listener, to look at.
+    pub fn listener(&self) -> &Listener {
+        &self.listener
+    }
+
+    /// The tracker, to look at and to publish.
+    pub fn tracker(&self) -> &Tracker {
+        &self.tracker
+    }
+
+    /// The field: vision's, or the league's until vision has told.
+    pub fn field(&self) -> FieldSpec {
+        self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
+    }
+
+    /// The radio, to look at.
+    pub fn radio(&self) -> &Radio {
+        &self.radio
+    }
+
+    /// The link to a robot of ours.
+    pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
+        self.radio.quality(robot)
+    }
+
+    /// What a robot of ours last told of itself.
+    pub fn telemetry(&self, robot: RobotId) -> Option<Telemetry> {
+        self.robots[robot.index()].telemetry.map(|(_, telemetry)| telemetry)
+    }
+
+    /// What a robot of ours last told its mates.
+    pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
+        self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
+    }
+
+    /// Datagrams that were no messages.
+    pub fn undecodable(&self) -> Undecodable {
+        self.undecodable
+    }
+
+    /// What is fixed for its life.
+    pub fn settings(&self) -> &HostSettings {
+        &self.settings
+    }
+
+    fn see(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+        let Ok(packet) = ssl::vision::WrapperPacket::decode(bytes) else {
+            self.undecodable.vision += 1;
+            return Verdict::Undecodable;
+        };
+        if let Some(data) = &packet.geometry {
+            // What cannot be a field is told by the geometry's own counts; the field before stands.
+            let _told = self.geometry.hear(data);
+        }
+        let heard = self.tracker.handle(&packet, now);
+        let news = !matches!(heard, tracking::Heard::NoImage | tracking::Heard::Repeated);
+        if news && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
+            self.plan(now);
+        }
+        Verdict::Vision(heard)
+    }
+
+    fn obey(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+        let Ok(packet) = ssl::referee::Referee::decode(bytes) else {
+            self.undecodable.referee += 1;
+            return Verdict::Undecodable;
+        };
+        let before = self.listener.game().phase;
+        let ball = self.tracker.world(now).ball.map(|ball| ball.position);
+        let verdict = self.listener.hear(&packet, now, ball);
+        if self.listener.game().phase != before {
+            // A HALT does not wait for the next image.
+            self.plan(now);
+        }
+        Verdict::Referee(Box::new(verdict))
+    }
+
+    fn listen(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+        match self.radio.handle_packet(now, bytes) {
+            Ok(radio::Heard::Beacon(robot, beacon)) => {
+                self.robots[robot.index()].beacon = Some((now, beacon));
+                Verdict::Robot(robot)
+            }
+            Ok(radio::Heard::Telemetry(robot, telemetry)) => {
+                self.robots[robot.index()].telemetry = Some((now, telemetry));
+                Verdict::Robot(robot)
+            }
+            Err(refusal) => Verdict::Refused(refusal),
+        }
+    }
+
+    /// Orders for the field as it is now, and out with them.
+    fn plan(&mut self, now: Instant) {
+        self.planned = Some(now);
+        self.world = self.tracker.world(now);
+        self.listener.tick(now, self.world.ball.map(|ball| ball.position));
+        let us = self.settings.us;
+        let game = self.our_game();
+        let view = View::of(&self.world, us, &game, self.field(), self.fit(now), self.in_play(now))
+            .allowing(self.allowed());
+        self.orders = self.coach.decide(&view);
+        let flip = Flip::defending(game.defending);
+        let command = |order: &crate::strategy::Order| Command {
+            to: order.robot,
+            defending: game.defending,
+            phase: game.phase,
+            duty: order.role.duty(),
+            directive: self.calibrated(order.robot, order.task.directive(flip)),
+        };
+        let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
+        let situation = Situation { us, phase: game.phase, placement: game.placement };
+        self.radio.offer(now, &self.world, situation, &commands);
+    }
+
+    fn our_game(&self) -> Game {
+        let (us, game) = (self.settings.us, self.listener.game());
+        Game {
+            phase: game.phase.seen_by(us),
+            next: game.next.map(|phase| phase.seen_by(us)),
+            placement: game.placement,
+            defending: game.own_goal(us).unwrap_or(self.settings.defending),
+            keeper: game.team(us).keeper.unwrap_or(self.settings.keeper),
+            their_keeper: game.team(us.other()).keeper.unwrap_or(self.settings.keeper),
+        }
+    }
+
+    /// How many robots the referee lets us have.
+    fn allowed(&self) -> usize {
+        self.listener.game().team(self.settings.us).robots_allowed.map_or(RobotId::COUNT, |n| n as usize)
+    }
+
+    /// Robots that hear us and stand.
+    fn fit(&self, now: Instant) -> RobotSet {
+        let mut fit = RobotSet::default();
+        for robot in self.radio.present(now) {
+            let lies = self.telemetry(robot).is_some_and(|told| told.condition.has(Condition::TIPPED));
+            if !lies {
+                fit.insert(robot);
+            }
+        }
+        fit
+    }
+
+    /// Robots that play a case now, by their own words.
+    fn in_play(&self, now: Instant) -> RobotSet {
+        let mut playing = RobotSet::default();
+        for robot in RobotId::all() {
+            let Some((heard, beacon)) = &self.robots[robot.index()].beacon else { continue };
+            let part =
+                beacon.cycle.as_ref().and_then(|cycle| cycle.play()).and_then(|play| play.part_of(robot));
+            let busy = !matches!(beacon.progress, Progress::WaitEnd { .. } | Progress::Idle);
+            if now.since(*heard) < BEACON_LEASE && part.is_some() && busy {
+                playing.insert(robot);
+            }
+        }
+        playing
+    }
+
+    /// The same directive for a kicker that kicks harder or softer than it is told.
+    fn calibrated(&self, robot: RobotId, mut directive: Directive) -> Directive {
+        let factor = self.settings.kick[robot.index()];
+        if factor != 1.0
+            && let Directive::Kick { kick, .. } | Directive::Pass { kick, .. } = &mut directive
+        {
+            let (KickOrder::Flat(speed) | KickOrder::Chip(speed)) = kick;
+            *speed = (f32::from(*speed) / factor) as u16;
+        }
+        directive
+    }
+}
+
+/// The limits of a league that has none of its own.
+const LIMITS: Limits = match League::DivisionB.limits() {
+    Some(limits) => limits,
+    None => panic!("division B has limits"),
+};
+/// Not oftener than this it is planned: four cameras that look at once give one plan, not four; half a period of 100 Hz.
+const PLAN_EVERY: Duration = Duration::millis(5);
+/// As long as robots hold each other for present.
+const BEACON_LEASE: Duration = Duration::millis(400);
