@@ -223,7 +223,7 @@ impl World {
         for &i in near {
             let nearest = self.nearest(Obstacle::Robot(i), self.ball.position);
             let depth = radius - nearest.distance;
-            if depth > 0.0 && self.ball.height < self.robots[i].body.height {
+            if depth > WEDGED && self.ball.height < self.robots[i].body.height {
                 let normal = Vector::new(nearest.normal[0], nearest.normal[1]);
                 let robot = &mut self.robots[i];
                 robot.pose.position += normal * -depth;
@@ -338,6 +338,8 @@ const BOUNCES_PER_STEP: usize = 4;
 const SWEEP_STEPS: usize = 24;
 /// How often what overlaps the ball is pushed apart.
 const PUSHES: usize = 3;
+/// A ball deeper in a robot than this, m, could not give way, so the robot does; less is what a push's rounding leaves.
+const WEDGED: f32 = 1e-5;
 /// m: nearer is touching.
 pub(super) const TOUCH: f32 = 2e-5;
 /// m that a robot goes in a step, at most, with a reserve.
