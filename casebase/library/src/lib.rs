@@ -18,6 +18,11 @@ pub fn four_legged() -> CaseBase<'static> {
     CaseBase::from_bytes(&FOUR_LEGGED_TABLE.0).unwrap_or_default()
 }
 
+/// The cases of division B of the Small Size League; as [`four_legged`].
+pub fn division_b() -> CaseBase<'static> {
+    CaseBase::from_bytes(&DIVISION_B_TABLE.0).unwrap_or_default()
+}
+
 /// A built-in league. Lists go by authored case, in the order of ids.
 #[derive(Clone, Copy, Debug)]
 pub struct League {

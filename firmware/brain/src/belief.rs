@@ -1,14 +1,19 @@
 //! What does a robot hold true about the world? From its own senses and its mates' beacons, never from anybody's truth.
 //!
 //! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the mate nearest
-//! the ball stands in (its information is the most accurate, paper §4.1).
+//! the ball stands in (its information is the most accurate, paper §4.1). A fresh picture of the host overrides both
+//! ([`shown`]).
 
-use geometry::{Field, Point, Pose, Vector};
+pub mod shown;
+
+use geometry::{Field, GoalEnd, Point, Pose, Vector};
 use motion::rolling::RollingBall;
+use protocol::host::Duty;
 use protocol::robot_io::{OPPONENTS_MAX, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
-use rules::League;
+use rules::{League, Phase, Side};
 
+use crate::belief::shown::Handling;
 use crate::body::{self, BodySpec};
 use crate::mates::Mates;
 
@@ -51,6 +56,50 @@ impl Ball {
     }
 }
 
+/// Robots besides oneself: two teams of the largest league.
+pub const OTHERS_MAX: usize = 2 * OPPONENTS_MAX - 1;
+
+/// Another robot as the host shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Other {
+    /// Whose.
+    pub side: Side,
+    /// Which of that side.
+    pub id: RobotId,
+    /// Where it is and faces.
+    pub pose: Pose<Field>,
+    /// How it moves, m/s.
+    pub velocity: Vector<Field>,
+}
+
+/// What may be done now, and what this robot is for its team.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Game {
+    /// The phase of the game.
+    pub phase: Phase<Side>,
+    /// Where the ball is to be placed, while that matters.
+    pub placement: Option<Point<Field>>,
+    /// What the rules allow this robot beyond others.
+    pub duty: Duty,
+    /// The goal its team defends.
+    pub defending: GoalEnd,
+    /// It has touched the ball in a restart, and nobody else has since: it must not again.
+    pub barred: bool,
+}
+
+impl Default for Game {
+    /// Play, as where nobody says otherwise.
+    fn default() -> Self {
+        Self {
+            phase: Phase::Run,
+            placement: None,
+            duty: Duty::Player,
+            defending: GoalEnd::Negative,
+            barred: false,
+        }
+    }
+}
+
 /// The robot's picture of the world.
 #[derive(Clone, Debug)]
 pub struct Belief {
@@ -64,6 +113,17 @@ pub struct Belief {
     pub holds_ball: bool,
     /// Its body is in the middle of a grab or kick.
     pub busy: bool,
+    /// How it moves itself, m/s.
+    pub velocity: Vector<Field>,
+    /// How it turns, rad/s.
+    pub angular: f32,
+    /// The kicker is charged.
+    pub kicker_ready: bool,
+    /// Everybody else whose motion the host shows.
+    pub others: heapless::Vec<Other, OTHERS_MAX>,
+    /// What may be done now, and what it is for its team.
+    pub game: Game,
+    handling: Handling,
     sight: Option<Sight>,
     /// Sights in a row of a loose ball slow enough to grab.
     slow_sights: u8,
@@ -87,11 +147,22 @@ impl Belief {
             opponents: heapless::Vec::new(),
             holds_ball: false,
             busy: false,
+            velocity: Vector::default(),
+            angular: 0.0,
+            kicker_ready: false,
+            others: heapless::Vec::new(),
+            game: Game::default(),
+            handling: Handling::default(),
             sight: None,
             slow_sights: 0,
             league,
             spec: body::of(league).spec(),
         }
+    }
+
+    /// Knows nothing yet but the goal its team defends.
+    pub fn defending(league: League, defending: GoalEnd) -> Self {
+        Self { game: Game { defending, ..Game::default() }, ..Self::new(league) }
     }
 
     /// Takes in what the body perceives and what mates report.

@@ -26,6 +26,8 @@ pub struct BrainConfig {
     pub approach: Approach,
     /// How it retrieves.
     pub settings: Settings,
+    /// Whether a host leads it: without one heard it does nothing (DESIGN §6).
+    pub hosted: bool,
     /// How long robots stand still after every cycle (5 s in the paper's experiments with real robots; else 0).
     pub pause_after_cycle: Duration,
 }
@@ -65,7 +67,13 @@ impl BrainConfig {
             positioning: Positioning::default(),
             approach: Approach::default(),
             settings: Settings::default(),
+            hosted: false,
             pause_after_cycle: Duration(0),
         }
+    }
+
+    /// A robot on wheels of that league, led by a host.
+    pub fn hosted(robot: RobotId, team: TeamId, league: League) -> Self {
+        Self { league, hosted: true, ..Self::new(robot, team) }
     }
 }

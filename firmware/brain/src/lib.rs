@@ -6,11 +6,11 @@
 //! (what it holds true), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by itself), [`execution`]
 //! (its part of a case), [`team`] (the cycle), [`Brain`] (the order of thought), [`Station`] (brain with radio).
 //!
-//! Not here yet: `handle_host_frame` and its directives, the skills and the body of wheeled robots, and the safety governor;
-//! they come with the host of the Small Size League.
+//! Where a host leads (wheels): [`picture`] and [`hosted`] (what it shows and says), [`directive`] (which skill does it),
+//! [`governor`] (what of it reaches the motors).
 //!
 //! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it knows the world only
-//! by [`SensorFrame`](protocol::robot_io::SensorFrame) and its teammates' beacons; it takes a
+//! by [`SensorFrame`](protocol::robot_io::SensorFrame), its teammates' beacons and its host; it takes a
 //! [`CaseBase`](casebase::CaseBase) and never links a library.
 #![no_std]
 
@@ -18,9 +18,13 @@ pub mod belief;
 pub mod body;
 mod brain;
 mod config;
+pub mod directive;
 mod estimate;
 pub mod execution;
+pub mod governor;
+pub mod hosted;
 pub mod mates;
+pub mod picture;
 pub mod reactive;
 pub mod skills;
 mod station;

@@ -7,6 +7,7 @@ use protocol::Instant;
 use protocol::frame::TeamKey;
 use protocol::link::{Heard, Link, Packet};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use protocol::team::TeamMessage;
 
 use crate::{Brain, BrainConfig};
 
@@ -32,8 +33,10 @@ impl<'a> Station<'a> {
 
     /// A packet came; whatever is not a genuine, new message of this team is counted and dropped.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
-        if let Ok(Heard::Mate(from, message)) = self.link.open(packet) {
-            self.brain.handle_team_message(now, from, &message);
+        match self.link.open(packet) {
+            Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
+            Ok(Heard::Host(message)) => self.brain.handle_host_message(now, &message),
+            Err(_) => {}
         }
     }
 
@@ -49,7 +52,11 @@ impl<'a> Station<'a> {
 
     /// The next packet to send. Call after every `handle_…` until `None`.
     pub fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
-        self.brain.poll_message(now).map(|message| self.link.seal(&message))
+        let mut message = self.brain.poll_message(now)?;
+        if let TeamMessage::Telemetry(telemetry) = &mut message {
+            self.link.tell(telemetry);
+        }
+        Some(self.link.seal(&message))
     }
 
     /// What the body shall do, if something new was decided.

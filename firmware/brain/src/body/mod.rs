@@ -2,15 +2,18 @@
 //! the skills of the case language behind one face ([`Body`]); a module per body turns intents into actuators.
 
 pub mod legged;
+mod limbs;
+pub mod omni;
 
 use casebase::Kick;
 use geometry::{Angle, Field, GoalEnd, Point};
 use protocol::Duration;
-use protocol::robot_io::LeggedKick;
+use protocol::robot_io::{LeggedKick, OmniKick};
 use rules::League;
 
 use crate::belief::Belief;
 use crate::skills::{Reception, Step};
+pub use limbs::Limbs;
 
 /// What the robot wants of its body for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +46,20 @@ pub enum Intent {
     Grab,
     /// On legs: kick the ball held.
     Kick(LeggedKick),
+    /// On wheels: a way to go, with dribbler and kicker.
+    Drive(omni::Drive),
 }
 
 impl Intent {
     /// Whether the ball leaves by this.
     pub fn lets_go(&self) -> bool {
-        matches!(self, Self::Kick(_))
+        match self {
+            Self::Kick(_) => true,
+            Self::Drive(drive) => matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
+            Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {
+                false
+            }
+        }
     }
 }
 
@@ -118,6 +129,7 @@ pub trait Body: Sync {
 /// The body of that league's robots.
 pub fn of(league: League) -> &'static dyn Body {
     match league {
-        League::FourLegged | League::Ssl2013 | League::DivisionB | League::DivisionA => &legged::Legged,
+        League::FourLegged => &legged::Legged,
+        League::Ssl2013 | League::DivisionB | League::DivisionA => &omni::Wheeled,
     }
 }

@@ -4,6 +4,7 @@
 //! held) is the [execution's](crate::execution) or the reactive behaviour's.
 
 pub mod legged;
+pub mod wheels;
 
 use crate::body::Intent;
 

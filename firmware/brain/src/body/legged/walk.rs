@@ -37,6 +37,8 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
         }
         Intent::Grab => primitive(LeggedPrimitive::Grab),
         Intent::Kick(kick) => primitive(LeggedPrimitive::Kick(kick)),
+        // Legs have no wheels.
+        Intent::Drive(_) => walk(Twist::default()),
     }
 }
 

@@ -1,0 +1,122 @@
+//! Who turns an intent into an order for the body? Legs as they are, wheels through drivetrain, governor and kinematics.
+
+use motion::omni::Omni;
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use protocol::{Duration, Instant};
+use rules::League;
+
+use crate::belief::Belief;
+use crate::body::omni::Drivetrain;
+use crate::body::{Intent, legged};
+use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
+use crate::hosted::Hosted;
+use crate::mates::Mates;
+
+/// A body's limbs and what they remember.
+#[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
+#[derive(Clone, Debug)]
+pub enum Limbs {
+    /// Four legs.
+    Legs,
+    /// Four wheels.
+    Wheels(Wheels),
+}
+
+/// Wheels and who watches over them.
+#[derive(Clone, Debug)]
+pub struct Wheels {
+    drivetrain: Drivetrain,
+    governor: Governor,
+    kinematics: Omni,
+    ruling: Ruling,
+}
+
+impl Limbs {
+    /// Of that league's robots.
+    pub fn of(league: League) -> Self {
+        match league {
+            League::FourLegged => Self::Legs,
+            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Wheels(Wheels {
+                drivetrain: Drivetrain::default(),
+                governor: Governor::new(league),
+                kinematics: Omni::default(),
+                ruling: Ruling::Allowed,
+            }),
+        }
+    }
+
+    /// A frame of the host came.
+    pub fn hear_host(&mut self, now: Instant) {
+        if let Self::Wheels(wheels) = self {
+            wheels.governor.hear_host(now);
+        }
+    }
+
+    /// How often this body's robots tell their mates of themselves; `None`: every step (DESIGN §5).
+    pub fn beacon_period(&self) -> Option<Duration> {
+        match self {
+            Self::Legs => None,
+            Self::Wheels(_) => Some(BEACON_PERIOD),
+        }
+    }
+
+    /// What the governor made of the last step's wish.
+    pub fn ruling(&self) -> Ruling {
+        match self {
+            Self::Legs => Ruling::Allowed,
+            Self::Wheels(wheels) => wheels.ruling,
+        }
+    }
+
+    /// Why it brakes or is limited.
+    pub fn reasons(&self) -> Reasons {
+        match self.ruling() {
+            Ruling::Allowed => Reasons::default(),
+            Ruling::Limited(reasons) | Ruling::Braking(reasons) => reasons,
+        }
+    }
+
+    /// Whether the battery keeps it from playing.
+    pub fn is_battery_low(&self) -> bool {
+        self.reasons().has(Why::Battery)
+    }
+
+    /// The order that makes the body do `intent`, as far as it may.
+    pub fn act(
+        &mut self,
+        now: Instant,
+        belief: &Belief,
+        mates: &Mates,
+        host: Option<&Hosted>,
+        sensors: &SensorFrame,
+        intent: Intent,
+    ) -> ActuatorFrame {
+        let wheels = match self {
+            Self::Legs => return legged::actuate(now, belief, mates, intent),
+            Self::Wheels(wheels) => wheels,
+        };
+        let wanted = wheels.drivetrain.actuate(now, belief, intent);
+        let circumstances = Circumstances {
+            now,
+            host: host.map(Hosted::hearing),
+            phase: host.and_then(Hosted::phase),
+            placed: host.map_or(sensors.pose.is_some(), |host| host.shows_me(now)),
+            health: &sensors.health,
+            odometry: sensors.odometry,
+        };
+        let (mut given, ruling) = wheels.governor.rule(&circumstances, &wanted);
+        wheels.ruling = ruling;
+        given.twist = wheels.kinematics.saturated(given.twist, RIM_MAX).0;
+        wheels.drivetrain.told(belief, given.twist);
+        ActuatorFrame::Omni {
+            wheels: wheels.kinematics.rims(given.twist),
+            dribbler: given.dribbler,
+            kick: given.kick,
+        }
+    }
+}
+
+/// 20 beacons a second (DESIGN §5).
+const BEACON_PERIOD: Duration = Duration::millis(50);
+/// No rim is asked to run faster, m/s: below what wheels run free (the simulator's 6).
+const RIM_MAX: f32 = 5.0;

@@ -1,0 +1,145 @@
+//! How fast must the body move in the next step? Intents to a way around everything, and from there to a twist.
+//!
+//! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
+//! they do not, from the measured one). SI, body frame out.
+
+use geometry::{Angle, Body, Field, Twist, Vector};
+use motion::avoid::{self, Course};
+use motion::trajectory::{FreeLimits, TurnLimits};
+use protocol::robot_io::OmniKick;
+use protocol::{Duration, Instant};
+use rules::Phase;
+
+use super::surroundings::Surroundings;
+use super::{Drive, Manner};
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::governor::{STOP_SPEED, Wanted};
+
+/// Wheels that follow a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Drivetrain {
+    /// What they were told last.
+    velocity: Vector<Field>,
+    angular: f32,
+    stepped: Option<Instant>,
+}
+
+impl Drivetrain {
+    /// What the body shall do for `intent`.
+    pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
+        let since = self.stepped.map_or(STEP, |last| now.since(last));
+        let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
+        self.stepped = Some(now);
+        if (self.velocity - belief.velocity).norm() > ASTRAY {
+            self.velocity = belief.velocity;
+        }
+        if (self.angular - belief.angular).abs() > ASTRAY_TURN {
+            self.angular = belief.angular;
+        }
+        match intent {
+            Intent::Stand { face } => {
+                let speed = (self.velocity.norm() - LIMITS.braking * step).max(0.0);
+                self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
+            }
+            Intent::Turn { heading } => {
+                let here = belief.pose.position;
+                let drive =
+                    if belief.holds_ball { Drive::holding(here, heading) } else { Drive::shy(here, heading) };
+                self.follow(belief, step, &drive)
+            }
+            Intent::Walk { to, face, shy_of_ball } => {
+                let drive = if shy_of_ball { Drive::shy(to, face) } else { Drive::bold(to, face) };
+                self.follow(belief, step, &drive)
+            }
+            Intent::Drive(drive) => self.follow(belief, step, &drive),
+            // Wheels have no legs.
+            Intent::Carry { .. } | Intent::Grab | Intent::Kick(_) => Wanted::STAND,
+        }
+    }
+
+    /// What was let through in the end: the next plan starts from it.
+    pub fn told(&mut self, belief: &Belief, twist: Twist<Body>) {
+        self.velocity = belief.pose.vector_to_field(twist.linear);
+        self.angular = twist.angular;
+    }
+
+    fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
+        let from = belief.pose.position;
+        let around = Surroundings::of(belief, drive.to, drive.manner);
+        let way = avoid::plan(&Course {
+            from,
+            velocity: self.velocity,
+            to: drive.to,
+            limits: limits(belief, drive),
+            obstacles: &around.obstacles,
+            within: Some(around.within),
+            step,
+        });
+        let there = from.distance(way.goal) < THERE && self.velocity.norm() < THERE_SPEED;
+        let velocity = if there { Vector::default() } else { way.next.velocity };
+        self.wanted(belief, step, velocity, Some(drive.face), drive)
+    }
+
+    fn wanted(
+        &mut self,
+        belief: &Belief,
+        step: f32,
+        velocity: Vector<Field>,
+        face: Option<Angle>,
+        drive: &Drive,
+    ) -> Wanted {
+        let pose = belief.pose;
+        let turning = if drive.manner == Manner::Holding { HOLDING_TURN } else { TURN };
+        let angular = match face {
+            Some(face) if (face - pose.heading).abs() > FACED || self.angular.abs() > FACED_RATE => {
+                turning.plan(pose.heading, self.angular, face).at(step).1
+            }
+            Some(_) => 0.0,
+            None => {
+                let loss = turning.acceleration * step;
+                self.angular - self.angular.clamp(-loss, loss)
+            }
+        };
+        // The body turns while it moves: the velocity as seen from the heading half a step on.
+        let half = Angle::new(0.5 * (angular * step));
+        let linear = pose.vector_to_body(velocity).rotated(-half);
+        Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick: drive.kick }
+    }
+}
+
+/// Standing with the ball keeps it.
+fn held_or_free(belief: &Belief) -> Drive {
+    let drive = if belief.holds_ball { Drive::holding } else { Drive::shy };
+    Drive { kick: OmniKick::None, ..drive(belief.pose.position, belief.pose.heading) }
+}
+
+fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
+    let limits = if drive.manner == Manner::Holding { HOLDING } else { LIMITS };
+    let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - SLACK } else { f32::INFINITY };
+    limits.slowed_to(drive.speed.min(stop))
+}
+
+/// What is planned with, free: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan can be kept.
+pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
+/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4.
+const HOLDING: FreeLimits = FreeLimits { speed: 1.2, acceleration: 1.5, braking: 1.5 };
+const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
+/// ω² · 95 mm stays below 1.2 m/s².
+const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
+/// Below the governor's limit in STOP, m/s: it shall not need to say anything.
+const SLACK: f32 = 0.1;
+/// A robot this near its place, and this slow, stands, m and m/s: the vision's noise.
+const THERE: f32 = 0.004;
+const THERE_SPEED: f32 = 0.05;
+/// It looks the right way, rad; and hardly turns, rad/s.
+const FACED: f32 = 0.01;
+const FACED_RATE: f32 = 0.2;
+/// Wheels that are told one thing and measure another by this much are blocked, or slip, m/s.
+const ASTRAY: f32 = 0.6;
+/// The same for turning, rad/s.
+const ASTRAY_TURN: f32 = 3.0;
+/// A wheeled robot's step, s (DESIGN §2), and what is taken for one.
+const STEP: Duration = Duration::millis(10);
+const STEP_LEAST: f32 = 0.001;
+const STEP_MOST: f32 = 0.03;

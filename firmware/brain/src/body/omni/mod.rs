@@ -1,0 +1,156 @@
+//! What is a robot on wheels like, and how does it do what the case language asks for? SI.
+//!
+//! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] says what it keeps out of, the skills are in
+//! [`skills::wheels`](crate::skills::wheels).
+
+mod drivetrain;
+pub mod surroundings;
+
+use casebase::{Kick, KickAim};
+use geometry::{Angle, Field, GoalEnd, Point};
+use motion::ball::BallModel;
+use motion::trajectory::Motion;
+use protocol::Duration;
+use protocol::quantized::from_mm;
+use protocol::robot_io::OmniKick;
+use rules::League;
+
+use crate::belief::Belief;
+use crate::body::{Body, BodySpec, Intent};
+use crate::skills::wheels as skills;
+use crate::skills::{Reception, Step};
+
+pub use drivetrain::{Drivetrain, LIMITS};
+
+/// From the robot's centre to its flat front, m: usual for robots of 180 mm.
+pub const FRONT: f32 = 0.073;
+/// From the robot's centre to a ball at its front, m.
+pub const BALL_AT: f32 = FRONT + rules::limits::BALL_RADIUS;
+
+/// A way to go, and what dribbler and kicker do on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Where to, and to rest there.
+    pub to: Point<Field>,
+    /// Where to look.
+    pub face: Angle,
+    /// No faster than this, m/s.
+    pub speed: f32,
+    /// What the ball is on the way.
+    pub manner: Manner,
+    /// Share of the dribbler's full speed, 0–1.
+    pub dribbler: f32,
+    /// What the kicker does as soon as the ball touches it.
+    pub kick: OmniKick,
+}
+
+/// What the ball is to a robot on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manner {
+    /// Something to go around.
+    Shy,
+    /// Nothing in the way: it may be touched.
+    Bold,
+    /// In the grip, and to stay there: gently.
+    Holding,
+}
+
+impl Drive {
+    /// To a place, around the ball, as fast as may be.
+    pub fn shy(to: Point<Field>, face: Angle) -> Self {
+        Self { to, face, speed: f32::INFINITY, manner: Manner::Shy, dribbler: 0.0, kick: OmniKick::None }
+    }
+
+    /// To a place on which the ball may be.
+    pub fn bold(to: Point<Field>, face: Angle) -> Self {
+        Self { manner: Manner::Bold, ..Self::shy(to, face) }
+    }
+
+    /// To a place with the ball.
+    pub fn holding(to: Point<Field>, face: Angle) -> Self {
+        Self { manner: Manner::Holding, dribbler: 1.0, ..Self::shy(to, face) }
+    }
+}
+
+impl From<Drive> for Intent {
+    fn from(drive: Drive) -> Self {
+        Self::Drive(drive)
+    }
+}
+
+/// Robots on omnidirectional wheels.
+#[derive(Clone, Copy, Debug)]
+pub struct Wheeled;
+
+impl Body for Wheeled {
+    fn spec(&self) -> &'static BodySpec {
+        &SPEC
+    }
+
+    fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step {
+        skills::get_ball(belief, onwards)
+    }
+
+    fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception {
+        skills::take_pass(belief, onwards)
+    }
+
+    fn carry_to(&self, belief: &Belief, to: Point<Field>) -> Step {
+        skills::carry_to(belief, to, SPEC.arrived_within)
+    }
+
+    fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent {
+        let speed = skills::pass_speed(belief.mouth().distance(place));
+        skills::kick_held(belief, place, OmniKick::Flat(speed))
+    }
+
+    fn kick(&self, belief: &Belief, kind: &Kick, _along: Angle, end: Point<Field>) -> Intent {
+        let speed = match kind.aim {
+            KickAim::Heading { length_mm, .. } => {
+                BallModel::default().kick_speed(from_mm(length_mm), ROLLS_ON).min(SHOT)
+            }
+            KickAim::Goal { .. } => SHOT,
+        };
+        skills::kick_held(belief, end, OmniKick::Flat(speed))
+    }
+
+    fn shoot(&self, belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
+        skills::shoot(belief, attacked, patient)
+    }
+
+    fn heading_for(&self, _kind: &Kick, along: Angle) -> Angle {
+        along
+    }
+
+    fn roll(&self, _league: League, distance: f32) -> f32 {
+        let speed = skills::pass_speed(distance);
+        let path =
+            BallModel::default().kicked(Point::<Field>::new(0.0, 0.0), geometry::Vector::new(speed, 0.0));
+        path.time_to(distance).unwrap_or_else(|| path.duration())
+    }
+}
+
+/// The fastest kick wanted, m/s; the governor has the last word.
+pub const SHOT: f32 = 6.3;
+/// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
+const ROLLS_ON: f32 = 0.3;
+
+const SPEC: BodySpec = BodySpec {
+    // Two metres from rest to rest take 1.5 s with 3.5 m/s².
+    speed: 1.3,
+    carry_speed: 0.7,
+    // A quarter turn at 3 rad/s and getting there.
+    turn: 0.8,
+    grab: 0.7,
+    kick: 0.2,
+    longest_fetch: 2.5,
+    arrived_within: 0.05,
+    next_to_ball: 0.25,
+    receiver_haste: 0.7,
+    receiver_near: 0.15,
+    shot_patience: Duration::millis(1000),
+    // Radii of body (0.09) and ball (0.0215) and a centimetre.
+    opponent_holds_within: 0.1215,
+    disputed_within: 0.15,
+    doubt_steps: 20,
+};

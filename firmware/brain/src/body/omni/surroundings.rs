@@ -1,0 +1,103 @@
+//! What must a robot on wheels keep out of? Everybody else, the rules' shapes, goal walls, the ball where it is shy of it.
+//!
+//! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
+
+use geometry::{Field, GoalEnd, Point, Shape};
+use motion::avoid::{OBSTACLES_MAX, Obstacle};
+use rules::keep_out::{KeepOut, Situation, keep_out};
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+use rules::{FieldSpec, Phase};
+
+use super::Manner;
+use crate::belief::Belief;
+
+/// What stands around, and where the body may be.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// To be kept out of.
+    pub obstacles: heapless::Vec<Obstacle<Field>, OBSTACLES_MAX>,
+    /// To stay in.
+    pub within: Shape<Field>,
+}
+
+impl Surroundings {
+    /// Of this robot on its way to `to`.
+    pub fn of(belief: &Belief, to: Point<Field>, manner: Manner) -> Self {
+        let field = belief.league().field();
+        let KeepOut { forbidden, within } = keep_out(&situation(belief, &field));
+        let mut around = Self { obstacles: heapless::Vec::new(), within: within.grown(-BODY - BORDER) };
+        for region in &forbidden {
+            around.add(Obstacle::standing(region.shape.grown(BODY + LAW)));
+        }
+        if manner == Manner::Shy
+            && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
+        {
+            let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + SHY };
+            around.add(Obstacle { shape, velocity: ball.velocity });
+        }
+        let me = belief.pose.position;
+        for goal in [GoalEnd::Negative, GoalEnd::Positive] {
+            let near =
+                |p: Point<Field>| p.distance(field.goal_center(goal)) < field.goal_width * 0.5 + NEAR_GOAL;
+            if near(me) || near(to) {
+                around.add_goal(&field, goal);
+            }
+        }
+        // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
+        let margin = if manner == Manner::Shy { ROBOTS } else { ROBOTS_AT_BALL };
+        for other in &belief.others {
+            around.add(Obstacle::robot(other.pose.position, other.velocity, 2.0 * BODY + margin));
+        }
+        around
+    }
+
+    /// Where there is no room for another one the farthest robots are left out: rules and goals come first.
+    fn add(&mut self, obstacle: Obstacle<Field>) {
+        let _ = self.obstacles.push(obstacle);
+    }
+
+    fn add_goal(&mut self, field: &FieldSpec, goal: GoalEnd) {
+        let (line, sign) = (field.goal_line(goal), goal.sign() as f32);
+        let (back, half) = (line + sign * (field.goal_depth + field.goal_wall), 0.5 * field.goal_width);
+        let outer = half + field.goal_wall;
+        let slab = |x: [f32; 2], y: [f32; 2]| {
+            let low = Point::new(x[0].min(x[1]), y[0].min(y[1]));
+            let high = Point::new(x[0].max(x[1]), y[0].max(y[1]));
+            Obstacle::standing(Shape::Box { low, high }.grown(BODY + WALL))
+        };
+        self.add(slab([line, back], [half, outer]));
+        self.add(slab([line, back], [-half, -outer]));
+        self.add(slab([line + sign * field.goal_depth, back], [-outer, outer]));
+    }
+}
+
+/// The rules' question, as this robot sees it.
+pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
+    let game = &belief.game;
+    Situation {
+        field,
+        own: game.defending,
+        phase: game.phase,
+        duty: game.duty,
+        ball: belief.ball.map(|ball| ball.position),
+        placement: game.placement,
+        ball_in_play: matches!(game.phase, Phase::Run),
+    }
+}
+
+/// The robot's own radius, m.
+const BODY: f32 = ROBOT_RADIUS;
+/// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
+const LAW: f32 = 0.04;
+/// From the carpet's edge, m.
+const BORDER: f32 = 0.02;
+/// From goal walls, m.
+const WALL: f32 = 0.01;
+/// From a ball that is not to be touched, m.
+const SHY: f32 = 0.03;
+/// From other robots, m.
+const ROBOTS: f32 = 0.03;
+/// From other robots beside the ball, m.
+const ROBOTS_AT_BALL: f32 = 0.0;
+/// Goal walls matter within this distance of the posts, m.
+const NEAR_GOAL: f32 = 0.7;

@@ -1,0 +1,119 @@
+//! What the body shall do: the host's directive, this robot's part in a case, or what it does by itself.
+
+use protocol::Instant;
+use protocol::team::{AbortReason, Closure, Decision, Progress, Status};
+
+use super::Brain;
+use crate::body::Intent;
+use crate::config::Approach;
+use crate::execution::Scene;
+use crate::reactive::Freedom;
+use crate::skills::wheels;
+use crate::team::reuse::{self, Wish};
+use crate::timer::Timer;
+
+impl Brain<'_> {
+    /// What the body shall do in this step.
+    pub(super) fn act(&mut self, now: Instant) -> Intent {
+        if let Some(host) = &self.host {
+            let Some(directive) = host.directive(now) else { return Intent::Stand { face: None } };
+            if let Some(intent) = self.errand.step(now, &self.belief, directive) {
+                self.reactive.rest();
+                return intent;
+            }
+            if !self.was_available {
+                // Between gameplays it stays where it is, out of where it must not be.
+                return wheels::go_to(self.belief.pose);
+            }
+        }
+        let intent = self.play(now);
+        if self.host.is_some() { wheels::let_go_in_time(&self.belief, intent) } else { intent }
+    }
+
+    /// Cases, or what it does by itself.
+    fn play(&mut self, now: Instant) -> Intent {
+        if !self.awake {
+            return Intent::Stand { face: None };
+        }
+        if self.config.approach == Approach::Reactive {
+            return self.default_behaviour(now, Freedom::Full);
+        }
+        match self.reuse(now) {
+            Wish::Body(intent) => {
+                self.reactive.rest();
+                return intent;
+            }
+            Wish::Abort(reason) => {
+                if let Some(state) = self.cycle.aborted(reason) {
+                    self.adopt(now, &state);
+                }
+            }
+            Wish::Nothing => {}
+        }
+        if !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause) {
+            return Intent::Stand { face: None };
+        }
+        let freedom = match self.cycle.state().map(|s| &s.decision) {
+            Some(Decision::NoCase | Decision::Closed(Closure::NoCase)) => Freedom::Full,
+            Some(Decision::Play(_)) => Freedom::KeepNear,
+            None | Some(Decision::Undecided | Decision::Closed(_)) => Freedom::Approach,
+        };
+        self.default_behaviour(now, freedom)
+    }
+
+    /// This robot's part in the running case, if it has one.
+    fn reuse(&mut self, now: Instant) -> Wish {
+        let Some(mut execution) = self.execution.take() else { return Wish::Nothing };
+        let mut progress = self.cycle.progress;
+        let mut touched = self.cycle.touched;
+        let mut timers = core::mem::take(&mut self.timers);
+        let mut monitor = core::mem::take(&mut self.monitor);
+        let wish = match self.scene(now) {
+            None => Wish::Abort(AbortReason::UnknownCase),
+            Some(scene) => {
+                touched |= scene.belief.holds_ball
+                    || scene.play.robots.iter().any(|&id| {
+                        self.mates
+                            .get(now, id)
+                            .filter(|mate| mate.progress_in(scene.cycle).is_some())
+                            .is_some_and(|mate| mate.beacon.status.has(Status::HOLDS_BALL))
+                    });
+                let playing = !matches!(progress, Progress::WaitEnd { .. });
+                let doubt = monitor.step(&scene, touched, &self.config.settings).filter(|_| playing);
+                if let Some(reason) = doubt {
+                    Wish::Abort(reason)
+                } else {
+                    let how = self.config.positioning;
+                    reuse::step(&scene, how, &mut execution, &mut progress, &mut timers)
+                }
+            }
+        };
+        self.timers = timers;
+        self.monitor = monitor;
+        self.cycle.touched = touched;
+        self.cycle.progress = progress;
+        self.execution = Some(execution);
+        wish
+    }
+
+    fn default_behaviour(&mut self, now: Instant, freedom: Freedom) -> Intent {
+        let attacked = self.belief.game.defending.opposite();
+        self.reactive.step(now, self.config.robot, &self.belief, &self.mates, attacked, freedom)
+    }
+
+    pub(super) fn scene(&self, now: Instant) -> Option<Scene<'_>> {
+        let state = self.cycle.state()?;
+        let play = state.play()?;
+        let case = self.base.case(play.case)?;
+        Some(Scene {
+            now,
+            belief: &self.belief,
+            mates: &self.mates,
+            cycle: state.id,
+            play,
+            case,
+            base: &self.base,
+            body: self.body,
+        })
+    }
+}

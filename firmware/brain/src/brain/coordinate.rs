@@ -1,0 +1,225 @@
+//! What concerns the team: being present, proposing, deciding, closing and aborting cycles (paper §4; DESIGN §5).
+
+use casebase::CaseRobot;
+use protocol::team::{AbortReason, Beacon, Closure, CycleState, Decision, Play, Progress, Status};
+use protocol::{Duration, Instant, RobotId};
+
+use super::Brain;
+use crate::config::Approach;
+use crate::estimate;
+use crate::execution::{Execution, Scene};
+use crate::mates::PRESENCE_LEASE;
+use crate::team::cycle::News;
+use crate::team::{election, hybrid, retrieval};
+use crate::timer::Timer;
+use protocol::host::Directive;
+use rules::Phase;
+
+impl Brain<'_> {
+    /// Takes over what is newer, and sets this robot's own part accordingly.
+    pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
+        let news = self.cycle.adopt(state, self.awake);
+        if news == News::Known {
+            return;
+        }
+        self.beacon_due = true;
+        for timer in [Timer::NoDecision, Timer::Retry, Timer::Pause] {
+            self.timers.clear(timer);
+        }
+        match &state.decision {
+            Decision::Undecided => self.timers.set(Timer::NoDecision, now + DECISION_PATIENCE),
+            Decision::NoCase => self.timers.set(Timer::Retry, now + RETRY_AFTER),
+            // Where no case was found nothing was played that there is to stop after.
+            Decision::Closed(closure)
+                if *closure != Closure::NoCase && self.config.pause_after_cycle > Duration(0) =>
+            {
+                self.timers.set(Timer::Pause, now + self.config.pause_after_cycle);
+            }
+            Decision::Play(_) | Decision::Closed(_) => {}
+        }
+        if news == News::Gameplay {
+            self.begin_part(now);
+        }
+    }
+
+    /// A gameplay has begun or ended: forget the old part, prepare the new one.
+    fn begin_part(&mut self, now: Instant) {
+        self.execution = None;
+        self.monitor.reset();
+        for timer in [Timer::Reuse, Timer::Action, Timer::PassPatience, Timer::OpponentHolds] {
+            self.timers.clear(timer);
+        }
+        let Some(play) = self.cycle.play() else { return };
+        let part = play.part_of(self.config.robot).and_then(CaseRobot::new);
+        self.execution = part.map(Execution::new);
+        let expected = self.scene(now).map_or(0.0, |scene| estimate::gameplay(&scene));
+        self.timers.set(Timer::Reuse, now + estimate::limit(expected));
+    }
+
+    /// Everything that concerns the team: being present, proposing, deciding, closing, aborting.
+    pub(super) fn coordinate(&mut self, now: Instant) {
+        if !self.awake {
+            if !self.timers.has_fired(Timer::Boot) {
+                return;
+            }
+            self.awake = true;
+            self.beacon_due = true;
+            self.timers.set(Timer::Settle, now + SETTLE_FOR);
+        }
+        let available = self.is_available(now);
+        if self.was_available && !available && self.takes_part() {
+            // Led elsewhere: mates must not wait for it.
+            if let Some(state) = self.cycle.aborted(AbortReason::RobotLost) {
+                self.adopt(now, &state);
+            }
+        }
+        self.beacon_due |= self.was_available != available;
+        self.was_available = available;
+        if self.config.approach == Approach::Reactive || !available {
+            return;
+        }
+        if let Some(reason) = self.reason_to_stop(now) {
+            // Whoever takes part aborts; an elector that does not, supersedes.
+            let next = if self.takes_part() { self.cycle.aborted(reason) } else { self.propose(now) };
+            if let Some(state) = next {
+                self.adopt(now, &state);
+            }
+        }
+        if let Some(state) = self.next_state(now) {
+            self.adopt(now, &state);
+            // A cycle of one's own is decided at once.
+            if let Some(state) = self.next_state(now) {
+                self.adopt(now, &state);
+            }
+        }
+    }
+
+    /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in play.
+    fn is_available(&self, now: Instant) -> bool {
+        self.host.as_ref().is_none_or(|host| {
+            let plays = matches!(host.directive(now), Some(Directive::Gameplay { .. }));
+            plays && host.phase() == Some(Phase::Run) && !self.belief.game.barred
+        })
+    }
+
+    /// Proposal, decision or end of the cycle, where it is this robot's to say.
+    fn next_state(&mut self, now: Instant) -> Option<CycleState> {
+        let me = self.config.robot;
+        let elects = election::elector(now, me, &self.mates) == me;
+        match self.cycle.state().map(|s| &s.decision) {
+            None | Some(Decision::Closed(_)) => {
+                let paused = !self.timers.is_idle(Timer::Pause) && !self.timers.has_fired(Timer::Pause);
+                let settled = self.timers.has_fired(Timer::Settle);
+                let told = self.cycle.closure().is_none() || self.told_end_of == self.cycle.id();
+                if elects && settled && told && !paused { self.propose(now) } else { None }
+            }
+            Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
+                let holder = self.holder(now);
+                let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
+                    retrieval::decide(&self.base, &problem, &self.config.settings, holder)
+                });
+                let decision = match decision {
+                    Decision::Play(play) if self.shoots_sooner_without(now, &play) => Decision::NoCase,
+                    other => other,
+                };
+                self.cycle.decided(decision)
+            }
+            Some(Decision::Undecided) => None,
+            Some(Decision::NoCase) => {
+                let over = self.cycle.is_mine_to_decide() && self.timers.has_fired(Timer::Retry);
+                if over { self.cycle.closed(Closure::NoCase) } else { None }
+            }
+            Some(Decision::Play(_)) => {
+                let over = self.cycle.is_mine_to_decide() && self.all_have_finished(now);
+                if over { self.cycle.closed(Closure::Finished) } else { None }
+            }
+        }
+    }
+
+    /// Led by both, and the reactive behaviour is expected to shoot sooner than this gameplay.
+    fn shoots_sooner_without(&self, now: Instant, play: &Play) -> bool {
+        if self.config.approach != Approach::Hybrid {
+            return false;
+        }
+        let (Some(cycle), Some(case)) = (self.cycle.id(), self.base.case(play.case)) else { return false };
+        let (belief, mates, base) = (&self.belief, &self.mates, &self.base);
+        let scene = Scene { now, belief, mates, cycle, play, case, base, body: self.body };
+        hybrid::reactive_shoots_sooner(&scene)
+    }
+
+    /// The robot of ours that has the ball in its grip, as far as this one knows.
+    fn holder(&self, now: Instant) -> Option<RobotId> {
+        if self.belief.holds_ball {
+            return Some(self.config.robot);
+        }
+        let holds = |beacon: &Beacon| beacon.status.has(Status::HOLDS_BALL);
+        self.mates.present(now).find(|(_, mate)| holds(&mate.beacon)).map(|(id, _)| id)
+    }
+
+    fn propose(&mut self, now: Instant) -> Option<CycleState> {
+        let me = self.config.robot;
+        let coordinator = election::coordinator(now, me, &self.beacon(), &self.mates)?;
+        let skip = core::mem::take(&mut self.skip);
+        Some(election::proposal(self.cycle.id(), me, coordinator, skip))
+    }
+
+    /// Involved in the running case, or its coordinator.
+    fn takes_part(&self) -> bool {
+        let me = self.config.robot;
+        self.cycle.state().is_some_and(|state| {
+            state.coordinator == me || state.play().is_some_and(|play| play.part_of(me).is_some())
+        })
+    }
+
+    /// Why the open cycle cannot go on, as far as presence, time and the case base tell; asked by those who may stop it.
+    fn reason_to_stop(&self, now: Instant) -> Option<AbortReason> {
+        let me = self.config.robot;
+        let state = self.cycle.state().filter(|_| self.cycle.closure().is_none())?;
+        let elects = election::elector(now, me, &self.mates) == me;
+        let takes_part = self.takes_part();
+        if !(elects || takes_part) {
+            return None;
+        }
+        // Reborn since: this life does not know what the earlier one did.
+        let lost = |id: RobotId| {
+            if id == me { self.cycle.is_of_an_earlier_life() } else { self.mates.get(now, id).is_none() }
+        };
+        let players = state.play().map_or(&[][..], |play| &play.robots[..]);
+        if lost(state.coordinator) || players.iter().any(|&id| lost(id)) {
+            return Some(AbortReason::RobotLost);
+        }
+        if elects && self.timers.has_fired(Timer::NoDecision) {
+            return Some(AbortReason::NoDecision);
+        }
+        if takes_part && self.timers.has_fired(Timer::Reuse) {
+            return Some(AbortReason::Timeout);
+        }
+        let play = state.play().filter(|play| play.part_of(me).is_some())?;
+        let theirs = self.mates.get(now, state.coordinator).map_or(self.base.hash(), |m| m.beacon.case_base);
+        let unknown = theirs != self.base.hash() || self.base.case(play.case).is_none();
+        unknown.then_some(AbortReason::UnknownCase)
+    }
+
+    fn all_have_finished(&self, now: Instant) -> bool {
+        let Some(state) = self.cycle.state() else { return false };
+        let Some(play) = state.play() else { return false };
+        play.robots.iter().all(|&id| {
+            let progress = if id == self.config.robot {
+                Some(self.cycle.progress)
+            } else {
+                self.mates.get(now, id).and_then(|mate| mate.progress_in(state.id))
+            };
+            progress == Some(Progress::WaitEnd { finished: true })
+        })
+    }
+}
+
+/// Between being present and proposing: three steps of a walking robot, in which those who booted at the same moment
+/// hear of each other.
+const SETTLE_FOR: Duration = Duration::millis(120);
+/// How long the coordinator may keep its decision to itself: one lease.
+const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
+/// How soon the coordinator tries again after "no case": six steps of a walking robot.
+const RETRY_AFTER: Duration = Duration::millis(240);
+/// Lives of a robot jump ahead by their number modulo this.
+pub(super) const BOOT_SKIP: u32 = 64;

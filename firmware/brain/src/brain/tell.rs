@@ -1,0 +1,105 @@
+//! What does it tell mates and host of itself? Beacons (DESIGN §5) and, where a host leads, telemetry (DESIGN §6).
+
+use protocol::host::{Condition, Telemetry};
+use protocol::quantized::length_to_mm;
+use protocol::robot_io::SensorFrame;
+use protocol::team::{BallReport, Beacon, Role, Status};
+use protocol::{Duration, Instant};
+
+use super::Brain;
+use crate::governor::{Ruling, Why};
+
+/// When it said what last.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spoken {
+    beacon: Option<Instant>,
+    telemetry: Option<(Instant, Condition)>,
+    /// What the body said of itself last.
+    battery: Option<f32>,
+    contact: bool,
+    kicker_ready: bool,
+    tipped: bool,
+}
+
+impl Spoken {
+    pub(super) fn sense(&mut self, sensors: &SensorFrame) {
+        self.battery = sensors.health.battery;
+        self.contact = sensors.ball_contact;
+        self.kicker_ready = sensors.health.kicker_ready;
+        self.tipped = sensors.health.tipped;
+    }
+
+    pub(super) fn is_beacon_due(&self, now: Instant, period: Duration) -> bool {
+        self.beacon.is_none_or(|last| now.since(last) >= period)
+    }
+
+    pub(super) fn beacon(&mut self, now: Instant) {
+        self.beacon = Some(now);
+    }
+}
+
+impl Brain<'_> {
+    pub(super) fn beacon(&self) -> Beacon {
+        let mut status = Status::default();
+        if self.awake && self.was_available {
+            status = status.with(Status::AVAILABLE);
+        }
+        if self.config.retriever {
+            status = status.with(Status::RETRIEVER);
+        }
+        if self.belief.holds_ball {
+            status = status.with(Status::HOLDS_BALL);
+        }
+        Beacon {
+            pose: self.belief.pose.into(),
+            ball: self.belief.ball.map(|ball| BallReport {
+                at: ball.position.into(),
+                distance: length_to_mm(ball.position.distance(self.belief.pose.position)),
+            }),
+            status,
+            case_base: self.base.hash(),
+            cycle: self.cycle.state().cloned(),
+            progress: self.cycle.progress,
+            role: if self.execution.is_some() { Role::None } else { self.reactive.role() },
+        }
+    }
+
+    /// What the host shall know, if it is time to say it: ten times a second, and at once when something changes.
+    pub(super) fn telemetry(&mut self, now: Instant) -> Option<Telemetry> {
+        let hearing = self.host.as_ref()?.hearing();
+        let reasons = self.limbs.reasons();
+        let spoken = &self.spoken;
+        let condition = [
+            (spoken.contact, Condition::BALL_CONTACT),
+            (spoken.kicker_ready, Condition::KICKER_READY),
+            (spoken.tipped, Condition::TIPPED),
+            (self.limbs.is_battery_low(), Condition::BATTERY_LOW),
+            (self.limbs.ruling() != Ruling::Allowed, Condition::GOVERNED),
+            (reasons.has(Why::Silence), Condition::LINK_LOST),
+        ];
+        let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
+        let condition = condition.into_iter().fold(Condition::default(), set);
+        let due = spoken.telemetry.is_none_or(|(last, said)| {
+            let since = now.since(last);
+            since >= TELEMETRY_PERIOD || (said != condition && since >= TELEMETRY_LEAST)
+        });
+        if !due {
+            return None;
+        }
+        self.spoken.telemetry = Some((now, condition));
+        let silence = hearing.frame.map_or(u64::MAX, |last| now.since(last).0 / 1000);
+        let battery = self.spoken.battery.map_or(0.0, |volts| volts * 100.0);
+        Some(Telemetry {
+            condition,
+            battery: battery.clamp(0.0, f32::from(u16::MAX)) as u16,
+            silence: silence.min(u64::from(u16::MAX)) as u16,
+            // What the link knows, the link fills in.
+            ..Telemetry::default()
+        })
+    }
+}
+
+/// Ten times a second.
+const TELEMETRY_PERIOD: Duration = Duration::millis(100);
+/// But not in every step where something changes to and fro, as a light barrier does.
+const TELEMETRY_LEAST: Duration = Duration::millis(20);

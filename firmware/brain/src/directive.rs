@@ -1,0 +1,109 @@
+//! What does a robot do for the host's directive? Each to its skill, with the small memory that some need.
+
+use geometry::{Field, Point, Pose, Segment};
+use protocol::Instant;
+use protocol::host::{Directive, KickOrder};
+use protocol::robot_io::OmniKick;
+use rules::Phase;
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::skills::Step;
+use crate::skills::wheels::{self, Placing};
+
+/// The running directive's memory.
+#[derive(Clone, Debug, Default)]
+pub struct Errand {
+    placing: Placing,
+}
+
+impl Errand {
+    /// What is wanted of the body for `directive`; `None` where the robots choose for themselves.
+    pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
+        if !matches!(directive, Directive::PlaceBall { .. }) {
+            self.placing = Placing::default();
+        }
+        if belief.game.barred && touches(directive) {
+            return Some(wheels::keep_off(belief));
+        }
+        let intent = match *directive {
+            Directive::Stand => Intent::Stand { face: None },
+            Directive::GoTo { pose } => wheels::go_to(Pose::from(pose)),
+            Directive::GetBall { face } => get_ball(belief, face.map(Point::from)),
+            Directive::Kick { at, kick } => wheels::kick(belief, at.into(), order(kick)),
+            Directive::Pass { at, kick, ready, .. } => wheels::pass(belief, at.into(), order(kick), ready),
+            Directive::Receive { at, then } => wheels::receive(belief, at.into(), then.map(Point::from)),
+            Directive::Dribble { pose } => wheels::dribble(belief, Pose::from(pose)),
+            Directive::Block { from, to } => wheels::block(belief, Segment::new(from.into(), to.into())),
+            Directive::PlaceBall { at } => wheels::place_ball(now, &mut self.placing, belief, at.into()),
+            Directive::Gameplay { .. } => return None,
+        };
+        // Placing a ball is no play: it may be carried as far as it takes.
+        Some(if belief.game.phase == Phase::Run { wheels::let_go_in_time(belief, intent) } else { intent })
+    }
+}
+
+/// Takes the ball, and then faces `face`, or the attacked goal.
+fn get_ball(belief: &Belief, face: Option<Point<Field>>) -> Intent {
+    let face = face.unwrap_or_else(|| belief.league().field().goal_center(belief.game.defending.opposite()));
+    let from = belief.ball.map_or(belief.pose.position, |ball| ball.position);
+    match wheels::get_ball(belief, Some(from.direction_to(face))) {
+        Step::Running(intent) => intent,
+        Step::Done => wheels::kick_held(belief, face, OmniKick::None),
+    }
+}
+
+/// Whether it has to do with touching the ball.
+fn touches(directive: &Directive) -> bool {
+    matches!(
+        directive,
+        Directive::GetBall { .. }
+            | Directive::Kick { .. }
+            | Directive::Pass { .. }
+            | Directive::Receive { .. }
+            | Directive::Dribble { .. }
+    )
+}
+
+/// From the wire's cm/s.
+fn order(kick: KickOrder) -> OmniKick {
+    match kick {
+        KickOrder::Flat(speed) => OmniKick::Flat(f32::from(speed) * 0.01),
+        KickOrder::Chip(speed) => OmniKick::Chip(f32::from(speed) * 0.01),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::belief;
+    use protocol::quantized::WirePoint;
+
+    const AT: WirePoint = WirePoint { x: 1000, y: 0 };
+
+    #[test]
+    fn who_took_our_restart_keeps_off_the_ball_whatever_it_is_told_to_do_with_it() {
+        let mut b = belief((0.0, 0.0, 0.0), (0.12, 0.0));
+        b.game.barred = true;
+        let kick = KickOrder::Flat(400);
+        let directives = [
+            Directive::GetBall { face: None },
+            Directive::Kick { at: AT, kick },
+            Directive::Pass { at: AT, receiver: protocol::RobotId::new(1).unwrap(), kick, ready: true },
+            Directive::Receive { at: AT, then: None },
+        ];
+        for directive in directives {
+            let Some(Intent::Drive(drive)) = Errand::default().step(Instant(0), &b, &directive) else {
+                panic!()
+            };
+            assert!(drive.to.x() < -0.2, "{directive:?}: {drive:?}");
+        }
+    }
+
+    #[test]
+    fn gameplay_is_the_robots_own_choice() {
+        let b = belief((0.0, 0.0, 0.0), (1.0, 0.0));
+        assert_eq!(Errand::default().step(Instant(0), &b, &Directive::Gameplay { hint: None }), None);
+        assert_eq!(order(KickOrder::Chip(350)), OmniKick::Chip(3.5));
+    }
+}

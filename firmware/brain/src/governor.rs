@@ -1,0 +1,325 @@
+//! What must a robot on wheels never do, whatever its brain wants? The last word before the motors (DESIGN §6; rules 2026).
+//!
+//! | why | what is left |
+//! |---|---|
+//! | HALT or time-out; no host for 100 ms, or not for 0.5 s without a gap; no command for 100 ms; own place unknown; tipped; spinning; battery low; not a number | brakes at the limit, dribbler off, kicker discharged |
+//! | no host for 50 ms | the speed left shrinks to nothing at 100 ms |
+//! | STOP | 1.3 m/s, the rules' 1.5 less the noise of wheels |
+//! | a kick that is too fast, or that the phase does not allow | a kick of 6.3 m/s (7.8 in 2013), or none |
+//!
+//! Motors are never released: a robot that nobody commands holds its place at zero speed. A robot that expects no host
+//! (`BrainConfig::hosted`) is held to everything but the host's silence. Body frame, SI.
+
+use geometry::{Body, Twist, Vector};
+use protocol::robot_io::{Health, OmniKick};
+use protocol::{Duration, Instant};
+use rules::{League, Phase, Side};
+
+/// What the brain wants of wheels, dribbler and kicker for the coming step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// How the body shall move.
+    pub twist: Twist<Body>,
+    /// Share of the dribbler's full speed, 0–1.
+    pub dribbler: f32,
+    /// What the kicker shall do.
+    pub kick: OmniKick,
+}
+
+impl Wanted {
+    /// To stand.
+    pub const STAND: Self = Self {
+        twist: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
+        dribbler: 0.0,
+        kick: OmniKick::None,
+    };
+}
+
+/// What the governor knows of robot, host and game.
+#[derive(Clone, Copy, Debug)]
+pub struct Circumstances<'s> {
+    /// The time.
+    pub now: Instant,
+    /// Whether a host is expected, and how well it is heard.
+    pub host: Option<Hearing>,
+    /// The phase of the game, if anybody told.
+    pub phase: Option<Phase<Side>>,
+    /// It knows where it is.
+    pub placed: bool,
+    /// How the body is.
+    pub health: &'s Health,
+    /// How it moves by its own measure.
+    pub odometry: Twist<Body>,
+}
+
+/// How well the host is heard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hearing {
+    /// When its last frame came.
+    pub frame: Option<Instant>,
+    /// When its last command to this robot came.
+    pub command: Option<Instant>,
+}
+
+/// Why a robot is limited or brakes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Why {
+    /// HALT or a time-out.
+    Halt = 1,
+    /// The host is silent, or has not been heard again for long enough.
+    Silence = 1 << 1,
+    /// The host is heard, but has no command for this robot.
+    NoCommand = 1 << 2,
+    /// It does not know where it is.
+    Lost = 1 << 3,
+    /// It lies on its side.
+    Tipped = 1 << 4,
+    /// It turns faster than any robot should.
+    Spinning = 1 << 5,
+    /// The battery is too low to play.
+    Battery = 1 << 6,
+    /// A number that is none, wanted or measured.
+    NotANumber = 1 << 7,
+    /// STOP's speed.
+    StopSpeed = 1 << 8,
+    /// The host has missed a few frames.
+    Hesitant = 1 << 9,
+    /// The ball would be too fast.
+    BallSpeed = 1 << 10,
+    /// The ball may not be kicked now.
+    NoKick = 1 << 11,
+    /// The motion wanted is faster than any robot's.
+    Reach = 1 << 12,
+}
+
+/// A set of reasons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Reasons(u16);
+
+impl Reasons {
+    /// Whether `why` is one of them.
+    pub fn has(self, why: Why) -> bool {
+        self.0 & why as u16 != 0
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    fn add_if(&mut self, holds: bool, why: Why) {
+        if holds {
+            self.0 |= why as u16;
+        }
+    }
+}
+
+/// What the governor made of what was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ruling {
+    /// All of it.
+    Allowed,
+    /// Less of it.
+    Limited(Reasons),
+    /// Nothing of it: it brakes, or stands.
+    Braking(Reasons),
+}
+
+/// The governor of one robot.
+#[derive(Clone, Debug)]
+pub struct Governor {
+    league: League,
+    /// What it let through last.
+    last: Twist<Body>,
+    last_at: Option<Instant>,
+    /// Since when the host has been heard without a gap.
+    heard_since: Option<Instant>,
+    last_frame: Option<Instant>,
+    /// A silence (or a boot) that good hearing has not made up for yet.
+    disarmed: bool,
+    low_since: Option<Instant>,
+}
+
+impl Governor {
+    /// Of a robot of that league that has just booted.
+    pub fn new(league: League) -> Self {
+        Self {
+            league,
+            last: Twist::default(),
+            last_at: None,
+            heard_since: None,
+            last_frame: None,
+            disarmed: true,
+            low_since: None,
+        }
+    }
+
+    /// A frame of the host came: the link is good for as long as no gap is longer than 50 ms.
+    pub fn hear_host(&mut self, now: Instant) {
+        let gap = self.last_frame.is_none_or(|last| now.since(last) > RAMP_FROM);
+        if gap {
+            self.heard_since = Some(now);
+        }
+        self.last_frame = Some(now);
+    }
+
+    /// What may be done of what is wanted. Call it every step, with what was done of it going to the body.
+    pub fn rule(&mut self, at: &Circumstances<'_>, wanted: &Wanted) -> (Wanted, Ruling) {
+        let step = self.last_at.map_or(STEP_MAX, |last| at.now.since(last)).min(STEP_MAX).as_secs_f32();
+        self.last_at = Some(at.now);
+        let braking = self.reasons_to_brake(at, wanted);
+        let (given, ruling) = if braking.is_empty() {
+            self.limited(at, wanted, step)
+        } else {
+            (self.braked(at, step), Ruling::Braking(braking))
+        };
+        self.last = given.twist;
+        (given, ruling)
+    }
+
+    /// What it let through last.
+    pub fn last(&self) -> Twist<Body> {
+        self.last
+    }
+
+    fn reasons_to_brake(&mut self, at: &Circumstances<'_>, wanted: &Wanted) -> Reasons {
+        let mut why = Reasons::default();
+        if let Some(hearing) = at.host {
+            let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
+            self.disarmed |= silent(hearing.frame);
+            let good = self.heard_since.is_some_and(|since| at.now.since(since) >= ARM_AFTER)
+                && !silent(hearing.frame);
+            self.disarmed &= !good;
+            why.add_if(self.disarmed, Why::Silence);
+            why.add_if(!self.disarmed && silent(hearing.command), Why::NoCommand);
+        }
+        let low = at.health.battery.is_some_and(|volts| volts < BATTERY_LOW || volts.is_nan());
+        self.low_since = if low { Some(self.low_since.unwrap_or(at.now)) } else { None };
+        why.add_if(matches!(at.phase, Some(Phase::Halt | Phase::Timeout(_))), Why::Halt);
+        why.add_if(!at.placed, Why::Lost);
+        why.add_if(at.health.tipped, Why::Tipped);
+        why.add_if(at.odometry.angular.abs() > SPINNING, Why::Spinning);
+        why.add_if(self.low_since.is_some_and(|since| at.now.since(since) >= LOW_FOR), Why::Battery);
+        why.add_if(!is_finite(wanted.twist) || !is_finite(at.odometry), Why::NotANumber);
+        why.add_if(!wanted.dribbler.is_finite() || !is_kick(wanted.kick), Why::NotANumber);
+        why
+    }
+
+    /// Towards zero as fast as wheels hold the carpet; from what the body does, where that is slower than what it was told.
+    fn braked(&self, at: &Circumstances<'_>, step: f32) -> Wanted {
+        let measured = Some(at.odometry).filter(|twist| is_finite(*twist));
+        let linear = measured.map_or(self.last.linear, |twist| {
+            if twist.linear.norm() < self.last.linear.norm() { twist.linear } else { self.last.linear }
+        });
+        let angular = measured.map_or(self.last.angular, |twist| {
+            let limit = self.last.angular.abs();
+            twist.angular.clamp(-limit, limit)
+        });
+        let speed = (linear.norm() - BRAKE * step).max(0.0);
+        let turn = BRAKE_TURN * step;
+        let angular = if angular.abs() > turn { angular - turn * angular.signum() } else { 0.0 };
+        let twist = Twist { linear: linear.clamped(speed), angular };
+        Wanted { twist, dribbler: 0.0, kick: OmniKick::Discharge }
+    }
+
+    fn limited(&self, at: &Circumstances<'_>, wanted: &Wanted, step: f32) -> (Wanted, Ruling) {
+        let mut why = Reasons::default();
+        let silence =
+            at.host.and_then(|hearing| hearing.frame).map_or(Duration(0), |last| at.now.since(last));
+        let mut limit = SPEED_MAX;
+        if at.phase == Some(Phase::Stop) {
+            limit = STOP_SPEED;
+        }
+        if silence > RAMP_FROM {
+            let left = SILENCE.0.saturating_sub(silence.0) as f32 / (SILENCE.0 - RAMP_FROM.0) as f32;
+            limit = limit.min(left * SPEED_MAX);
+        }
+        // No limit asks for more than the carpet gives.
+        let allowed = limit.max(self.last.linear.norm() - BRAKE * step);
+        let speed = wanted.twist.linear.norm();
+        if speed > allowed {
+            why.add_if(at.phase == Some(Phase::Stop) && limit <= STOP_SPEED, Why::StopSpeed);
+            why.add_if(silence > RAMP_FROM, Why::Hesitant);
+            why.add_if(limit >= SPEED_MAX, Why::Reach);
+        }
+        why.add_if(wanted.twist.angular.abs() > TURN_MAX, Why::Reach);
+        let twist = Twist {
+            linear: wanted.twist.linear.clamped(allowed),
+            angular: wanted.twist.angular.clamp(-TURN_MAX, TURN_MAX),
+        };
+        let kick = self.kick(at.phase, wanted.kick, &mut why);
+        let given = Wanted { twist, dribbler: wanted.dribbler.clamp(0.0, 1.0), kick };
+        (given, if why.is_empty() { Ruling::Allowed } else { Ruling::Limited(why) })
+    }
+
+    fn kick(&self, phase: Option<Phase<Side>>, kick: OmniKick, why: &mut Reasons) -> OmniKick {
+        let (OmniKick::Flat(speed) | OmniKick::Chip(speed)) = kick else { return kick };
+        if !phase.is_none_or(may_kick) {
+            why.add_if(true, Why::NoKick);
+            return OmniKick::None;
+        }
+        let most = ball_speed(self.league);
+        if speed <= most {
+            return kick;
+        }
+        why.add_if(true, Why::BallSpeed);
+        match kick {
+            OmniKick::Chip(_) => OmniKick::Chip(most),
+            _ => OmniKick::Flat(most),
+        }
+    }
+}
+
+/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less a kicker's scatter of
+/// about 3 %.
+pub fn ball_speed(league: League) -> f32 {
+    match league {
+        League::Ssl2013 => 7.8,
+        League::FourLegged | League::DivisionB | League::DivisionA => 6.3,
+    }
+}
+
+/// Whether we may kick a ball in that phase.
+pub fn may_kick(phase: Phase<Side>) -> bool {
+    matches!(phase, Phase::Run | Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(_))
+}
+
+fn is_finite(twist: Twist<Body>) -> bool {
+    twist.linear.is_finite() && twist.angular.is_finite()
+}
+
+fn is_kick(kick: OmniKick) -> bool {
+    match kick {
+        OmniKick::Flat(speed) | OmniKick::Chip(speed) => speed.is_finite(),
+        OmniKick::None | OmniKick::Discharge => true,
+    }
+}
+
+/// From this silence of the host on the speed left shrinks (DESIGN §6).
+const RAMP_FROM: Duration = Duration::millis(50);
+/// At this one the robot brakes (DESIGN §6); a command is stale after it too.
+pub const SILENCE: Duration = Duration::millis(100);
+/// Heard again for so long without a gap, it may move again (DESIGN §6).
+const ARM_AFTER: Duration = Duration::millis(500);
+/// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.
+pub const STOP_SPEED: f32 = 1.3;
+/// No robot is faster, m/s (an estimate; the fastest teams publish 4).
+const SPEED_MAX: f32 = 4.0;
+/// Nor turns faster, rad/s (an estimate).
+const TURN_MAX: f32 = 20.0;
+/// Deceleration on the carpet, m/s²: about what wheels hold (the simulator's 5.5, less a tenth).
+pub const BRAKE: f32 = 5.0;
+/// The same for turning, rad/s².
+const BRAKE_TURN: f32 = 40.0;
+/// A robot that turns this fast has gone mad, rad/s (TIGERs' robots use the same).
+const SPINNING: f32 = 30.0;
+/// The battery is too low to play, V: four lithium cells of 3.5 V, where teams change them.
+const BATTERY_LOW: f32 = 14.0;
+/// For so long: a voltage sinks for a moment when the motors pull.
+const LOW_FOR: Duration = Duration::millis(1000);
+/// No step is longer: after a gap a robot brakes as in one of these.
+const STEP_MAX: Duration = Duration::millis(50);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,218 @@
+//! What has the host said, how fresh is it, and what follows for this robot? Picture, command, phase, double touch.
+//!
+//! A directive is held until the next one, and stale after 100 ms without a command (the governor's
+//! [`SILENCE`]); the phase is the newest that any frame told.
+
+use protocol::host::{Command, Directive, Duty, HostMessage};
+use protocol::robot_io::SensorFrame;
+use protocol::{Instant, RobotId};
+use rules::{Phase, Side};
+
+use crate::belief::{Belief, Game};
+use crate::governor::{Hearing, SILENCE};
+use crate::picture::{Picture, Taken};
+
+/// A robot's host, as it hears it.
+#[derive(Clone, Debug)]
+pub struct Hosted {
+    me: RobotId,
+    picture: Picture,
+    command: Option<(Instant, Command)>,
+    frame: Option<Instant>,
+    phase: Option<Phase<Side>>,
+    restart: Restart,
+}
+
+/// Whose touch is it at our restart? (rules 2026: the taker touches the ball once, until another robot has)
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Restart {
+    /// Nothing of the kind.
+    #[default]
+    None,
+    /// This robot has touched the ball as its taker.
+    Touched,
+    /// And the ball has left it: not again before another robot.
+    Barred,
+}
+
+impl Hosted {
+    /// Nothing heard yet.
+    pub fn new(me: RobotId) -> Self {
+        Self {
+            me,
+            picture: Picture::new(me),
+            command: None,
+            frame: None,
+            phase: None,
+            restart: Restart::None,
+        }
+    }
+
+    /// A message of the host; whether it was for this robot, and new.
+    pub fn handle(&mut self, now: Instant, message: &HostMessage) -> bool {
+        match message {
+            HostMessage::World(part) => match self.picture.handle_part(now, part) {
+                Taken::Begun | Taken::More => self.phase = Some(part.phase),
+                Taken::Doubled | Taken::Late | Taken::Malformed => return false,
+            },
+            HostMessage::Command(command) => {
+                if command.to != self.me {
+                    return false;
+                }
+                self.phase = Some(command.phase);
+                self.command = Some((now, command.clone()));
+            }
+            HostMessage::Welcome(_) => {}
+        }
+        self.frame = Some(now);
+        true
+    }
+
+    /// What the wheels measured: carries the picture on, and shows `belief` all of it.
+    pub fn see(&mut self, now: Instant, sensors: &SensorFrame, belief: &mut Belief) {
+        self.picture.handle_odometry(now, sensors.odometry);
+        belief.show(now, &self.picture, sensors);
+        let duty = self.command.as_ref().map_or(Duty::Player, |(_, command)| command.duty);
+        let defending = self.command.as_ref().map_or(belief.game.defending, |(_, command)| command.defending);
+        // Who has not been told anything does nothing.
+        let phase = self.phase.unwrap_or(Phase::Halt);
+        self.watch_touches(phase, duty, belief);
+        belief.game = Game {
+            phase,
+            placement: self.picture.placement(),
+            duty,
+            defending,
+            barred: self.restart == Restart::Barred,
+        };
+    }
+
+    /// The directive, while it is fresh.
+    pub fn directive(&self, now: Instant) -> Option<&Directive> {
+        let (at, command) = self.command.as_ref()?;
+        (now.since(*at) < SILENCE).then_some(&command.directive)
+    }
+
+    /// The phase that the newest frame told.
+    pub fn phase(&self) -> Option<Phase<Side>> {
+        self.phase
+    }
+
+    /// When it was heard.
+    pub fn hearing(&self) -> Hearing {
+        Hearing { frame: self.frame, command: self.command.as_ref().map(|(at, _)| *at) }
+    }
+
+    /// Whether the host shows this robot where it is.
+    pub fn shows_me(&self, now: Instant) -> bool {
+        self.picture.own(now).is_some()
+    }
+
+    fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
+        let others_touch = belief.ball.is_some_and(|ball| {
+            belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
+        });
+        let ours =
+            matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours)) && duty == Duty::Taker;
+        self.restart = match (phase, self.restart) {
+            (Phase::Run, Restart::Touched) if belief.contact() => Restart::Touched,
+            (Phase::Run, Restart::Touched) => Restart::Barred,
+            (Phase::Run, Restart::Barred) if others_touch => Restart::None,
+            (Phase::Run, same) => same,
+            (_, Restart::None) if ours && belief.contact() => Restart::Touched,
+            (_, Restart::Touched) if ours && !belief.contact() && gone(belief) => Restart::Barred,
+            (_, Restart::Touched | Restart::Barred) if ours => self.restart,
+            _ => Restart::None,
+        };
+    }
+}
+
+/// The ball has left the mouth.
+fn gone(belief: &Belief) -> bool {
+    belief.ball.is_none_or(|ball| ball.position.distance(belief.mouth()) > LEFT)
+}
+
+/// A robot whose centre is this near the ball touches it, m: both radii and the vision's noise.
+const TOUCHES_WITHIN: f32 = 0.125;
+/// The ball has left, m: in play after 0.05 m by the rules.
+const LEFT: f32 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::{Ball, Other};
+    use geometry::{Point, Pose, Twist, Vector};
+    use protocol::robot_io::Health;
+    use rules::League;
+
+    fn id(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn command(to: u8, directive: Directive) -> HostMessage {
+        HostMessage::Command(Command {
+            to: id(to),
+            defending: geometry::GoalEnd::Negative,
+            phase: Phase::Run,
+            duty: Duty::Player,
+            directive,
+        })
+    }
+
+    #[test]
+    fn a_command_for_another_robot_is_ignored_and_ones_own_is_stale_after_100_ms() {
+        let mut hosted = Hosted::new(id(3));
+        assert!(!hosted.handle(Instant(0), &command(4, Directive::Stand)));
+        assert_eq!(
+            (hosted.directive(Instant(0)), hosted.phase(), hosted.hearing().frame),
+            (None, None, None)
+        );
+        assert!(hosted.handle(Instant(1_000), &command(3, Directive::GetBall { face: None })));
+        assert!(hosted.directive(Instant(100_999)).is_some());
+        assert_eq!(hosted.directive(Instant(101_000)), None);
+    }
+
+    fn with_ball(x: f32) -> Belief {
+        let mut belief = Belief::new(League::DivisionB);
+        let at = Point::new(x, 0.0);
+        belief.ball = Some(Ball { position: at, velocity: Vector::default(), rest: at });
+        belief
+    }
+
+    #[test]
+    fn the_taker_of_our_free_kick_is_barred_until_another_robot_has_touched_the_ball() {
+        let mut hosted = Hosted::new(id(3));
+        let mut held = with_ball(0.0);
+        let sensors = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: true,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health::default(),
+        };
+        held.show(Instant(0), &Picture::new(id(3)), &sensors);
+        let free_kick = Phase::FreeKick(Side::Ours);
+        hosted.watch_touches(free_kick, Duty::Player, &held);
+        assert_eq!(hosted.restart, Restart::None, "only the taker's touch counts");
+        hosted.watch_touches(free_kick, Duty::Taker, &held);
+        assert_eq!(hosted.restart, Restart::Touched);
+        hosted.watch_touches(free_kick, Duty::Taker, &with_ball(0.5));
+        assert_eq!(hosted.restart, Restart::Barred);
+        hosted.watch_touches(Phase::Run, Duty::Player, &with_ball(1.0));
+        assert_eq!(hosted.restart, Restart::Barred, "in play it may still not");
+        let mut mate_has_it = with_ball(1.0);
+        let pose = Pose { position: Point::new(1.1, 0.0), ..Pose::default() };
+        let other = Other { side: Side::Theirs, id: id(1), pose, velocity: Vector::default() };
+        let _ = mate_has_it.others.push(other);
+        hosted.watch_touches(Phase::Run, Duty::Player, &mate_has_it);
+        assert_eq!(hosted.restart, Restart::None);
+    }
+
+    #[test]
+    fn a_stop_ends_the_bar() {
+        let mut hosted = Hosted { restart: Restart::Barred, ..Hosted::new(id(3)) };
+        hosted.watch_touches(Phase::Stop, Duty::Taker, &with_ball(1.0));
+        assert_eq!(hosted.restart, Restart::None);
+    }
+}

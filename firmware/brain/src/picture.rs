@@ -1,0 +1,266 @@
+//! What does the host show a robot of the field? Pictures put together from their parts, and carried forward to now.
+//!
+//! Parts may be lost, doubled and reordered, and their numbers wrap: what came counts, what did not keeps its last place for a
+//! moment. Places hold at the moment of arrival (DESIGN §3); between pictures the own pose goes on by odometry, everybody
+//! else by their velocity, the ball as it rolls. Field frame, SI.
+
+use geometry::{Body, Field, Pose, Twist, Vector};
+use motion::ball::BallModel;
+use protocol::host::{PARTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
+use protocol::quantized::from_mm;
+use protocol::{Duration, Instant, RobotId};
+use rules::{Phase, Side};
+
+/// What became of a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// The first part heard of a newer picture.
+    Begun,
+    /// One more part of the picture at hand.
+    More,
+    /// One that was heard before.
+    Doubled,
+    /// Of an older picture: dropped.
+    Late,
+    /// A part beyond the last one, or of too many: dropped.
+    Malformed,
+}
+
+/// A robot of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    /// Whose, and which.
+    pub who: WireWho,
+    /// Where it is.
+    pub pose: Pose<Field>,
+    /// How it moves, m/s.
+    pub velocity: Vector<Field>,
+    at: Instant,
+    picture: u8,
+}
+
+/// The ball of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShownBall {
+    /// Where it is, above the ground or on it.
+    pub position: geometry::Point<Field>,
+    /// How it moves along the ground, m/s.
+    pub velocity: Vector<Field>,
+    /// How high it is, m.
+    pub height: f32,
+    at: Instant,
+}
+
+/// Everything the host shows, as far as it came.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    me: RobotId,
+    number: Option<u8>,
+    /// When the newest part came.
+    heard: Instant,
+    /// Parts of this picture that came, a bit each.
+    parts: u8,
+    /// The phase of the game.
+    phase: Option<Phase<Side>>,
+    /// Where the ball is to be placed.
+    placement: Option<geometry::Point<Field>>,
+    ball: Option<ShownBall>,
+    robots: [[Option<Shown>; RobotId::COUNT]; 2],
+    own: Option<Own>,
+    odometry: Twist<Body>,
+}
+
+/// The own pose: shown at one time, carried on since.
+#[derive(Clone, Copy, Debug)]
+struct Own {
+    pose: Pose<Field>,
+    shown: Instant,
+    carried_to: Instant,
+}
+
+impl Picture {
+    /// Nothing heard yet.
+    pub fn new(me: RobotId) -> Self {
+        Self {
+            me,
+            number: None,
+            heard: Instant(0),
+            parts: 0,
+            phase: None,
+            placement: None,
+            ball: None,
+            robots: [[None; RobotId::COUNT]; 2],
+            own: None,
+            odometry: Twist::default(),
+        }
+    }
+
+    /// A part has come.
+    pub fn handle_part(&mut self, now: Instant, part: &WorldPart) -> Taken {
+        if part.parts == 0 || usize::from(part.parts) > PARTS_MAX || part.part >= part.parts {
+            return Taken::Malformed;
+        }
+        let taken = self.place_of(now, part);
+        match taken {
+            Taken::Begun => (self.number, self.parts) = (Some(part.picture), 0),
+            Taken::More => {}
+            Taken::Doubled | Taken::Late | Taken::Malformed => return taken,
+        }
+        self.heard = now;
+        self.parts |= 1 << part.part;
+        self.phase = Some(part.phase);
+        self.placement = part.placement.map(Into::into);
+        if taken == Taken::Begun {
+            self.ball = part.ball.map(|ball| shown_ball(now, ball));
+        }
+        for robot in &part.robots {
+            self.show(now, part.picture, robot);
+        }
+        let whole = (1_u16 << part.parts) - 1;
+        if u16::from(self.parts) == whole {
+            // Who is in no part of a whole picture is not on the field.
+            for slot in self.robots.iter_mut().flatten() {
+                *slot = slot.filter(|robot| robot.picture == part.picture);
+            }
+        }
+        taken
+    }
+
+    /// The body's own measure of its motion; carries the pose on to `now`.
+    pub fn handle_odometry(&mut self, now: Instant, odometry: Twist<Body>) {
+        let finite = odometry.linear.is_finite() && odometry.angular.is_finite();
+        self.odometry = if finite { odometry } else { Twist::default() };
+        self.carry_own_to(now);
+    }
+
+    /// When the newest part came; `None` before the first.
+    pub fn heard(&self) -> Option<Instant> {
+        self.number.map(|_| self.heard)
+    }
+
+    /// The phase that the newest part told.
+    pub fn phase(&self) -> Option<Phase<Side>> {
+        self.phase
+    }
+
+    /// Where the ball is to be placed, while that matters.
+    pub fn placement(&self) -> Option<geometry::Point<Field>> {
+        self.placement
+    }
+
+    /// The own pose; `None` where the host has not shown it for too long.
+    pub fn own(&self, now: Instant) -> Option<Pose<Field>> {
+        self.own.filter(|own| now.since(own.shown) <= OWN_LEASE).map(|own| own.pose)
+    }
+
+    /// The ball, where it will be `now`; `None` where the host shows none.
+    pub fn ball(&self, now: Instant) -> Option<ShownBall> {
+        let ball = self.ball.filter(|ball| now.since(ball.at) <= BALL_LEASE)?;
+        let time = now.since(ball.at).as_secs_f32();
+        if ball.height > IN_THE_AIR {
+            return Some(ShownBall { position: ball.position + ball.velocity * time, ..ball });
+        }
+        let path = BallModel::default().rolling(ball.position, ball.velocity);
+        let (way, speed) = path.progress(time);
+        Some(ShownBall { position: path.from() + path.along() * way, velocity: path.along() * speed, ..ball })
+    }
+
+    /// Every robot shown but this one, where it will be `now`: ours first, lowest id first.
+    pub fn others(&self, now: Instant) -> impl Iterator<Item = Shown> {
+        let fresh = move |robot: &&Shown| now.since(robot.at) <= ROBOT_LEASE;
+        self.robots.iter().flatten().flatten().filter(fresh).filter(|robot| !self.is_me(robot.who)).map(
+            move |robot| {
+                let time = now.since(robot.at).as_secs_f32();
+                let position = robot.pose.position + robot.velocity * time;
+                Shown { pose: Pose { position, ..robot.pose }, ..*robot }
+            },
+        )
+    }
+
+    fn is_me(&self, who: WireWho) -> bool {
+        who.side == Side::Ours && who.id == self.me
+    }
+
+    fn place_of(&self, now: Instant, part: &WorldPart) -> Taken {
+        let Some(number) = self.number else { return Taken::Begun };
+        match part.picture.wrapping_sub(number) {
+            0 if self.parts & (1 << part.part) != 0 => Taken::Doubled,
+            0 => Taken::More,
+            1..128 => Taken::Begun,
+            // A host that has started anew counts from anywhere.
+            _ if now.since(self.heard) > SILENCE => Taken::Begun,
+            _ => Taken::Late,
+        }
+    }
+
+    fn show(&mut self, now: Instant, picture: u8, robot: &WireRobot) {
+        let velocity = Vector::new(from_mm(i32::from(robot.vx)), from_mm(i32::from(robot.vy)));
+        let shown = Shown { who: robot.who, pose: robot.pose.into(), velocity, at: now, picture };
+        if self.is_me(robot.who) {
+            self.correct_own(now, shown.pose);
+        }
+        self.robots[(robot.who.side == Side::Theirs) as usize][robot.who.id.index()] = Some(shown);
+    }
+
+    /// The host's word and the odometry's, weighed: the host's noise is a millimetre, the odometry's drift grows.
+    fn correct_own(&mut self, now: Instant, shown: Pose<Field>) {
+        self.carry_own_to(now);
+        let near = |own: &Own| {
+            own.pose.position.distance(shown.position) < JUMP
+                && (own.pose.heading - shown.heading).abs() < JUMP_TURN
+                && now.since(own.shown) <= OWN_LEASE
+        };
+        let pose = match self.own.filter(near) {
+            Some(Own { pose, .. }) => Pose {
+                position: pose.position + (shown.position - pose.position) * SHARE,
+                heading: pose.heading
+                    + geometry::Angle::new((shown.heading - pose.heading).radians() * SHARE),
+            },
+            None => shown,
+        };
+        self.own = Some(Own { pose, shown: now, carried_to: now });
+    }
+
+    fn carry_own_to(&mut self, now: Instant) {
+        let Some(own) = &mut self.own else { return };
+        let time = now.since(own.carried_to).as_secs_f32();
+        if time <= 0.0 {
+            return;
+        }
+        let Twist { linear, angular } = self.odometry;
+        let turned = angular * time;
+        let midway = Pose { heading: own.pose.heading + geometry::Angle::new(0.5 * turned), ..own.pose };
+        own.pose.position += midway.vector_to_field(linear * time);
+        own.pose.heading = own.pose.heading + geometry::Angle::new(turned);
+        own.carried_to = now;
+    }
+}
+
+fn shown_ball(now: Instant, ball: WireBall) -> ShownBall {
+    ShownBall {
+        position: ball.at.into(),
+        velocity: Vector::new(from_mm(i32::from(ball.vx)), from_mm(i32::from(ball.vy))),
+        height: from_mm(i32::from(ball.height)),
+        at: now,
+    }
+}
+
+/// A robot that the newest parts left out keeps its place for so long: a few pictures at 60 Hz.
+const ROBOT_LEASE: Duration = Duration::millis(200);
+/// The ball too; longer, as it is hidden often.
+const BALL_LEASE: Duration = Duration::millis(500);
+/// How long odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an estimate).
+const OWN_LEASE: Duration = Duration::millis(500);
+/// After so much silence any picture is a new one.
+const SILENCE: Duration = Duration::millis(300);
+/// The share of the host's word in the own pose: at 60 Hz the odometry's word has gone after 0.1 s.
+const SHARE: f32 = 0.4;
+/// The host shows it this far from where it believes to be: the host is right, m. More than vision's noise, less than a push.
+const JUMP: f32 = 0.1;
+/// The same for the heading, rad.
+const JUMP_TURN: f32 = 0.2;
+/// A ball higher than this flies, m: more than vision's error of height for a ball on the ground.
+pub const IN_THE_AIR: f32 = 0.05;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,137 @@
+//! Block: stand on a stretch where the ball would cross it, and stop a ball that comes.
+//!
+//! A ball that comes: where `motion::intercept` finds the most slack on its way, but never behind the stretch. A ball that
+//! does not: on the line from it to the own goal, or along where its holder looks. The keeper's stretch lies before its goal.
+
+use geometry::{Field, Point, Segment};
+use motion::ball::BallModel;
+use motion::intercept::{Interception, Verdict, Wish};
+
+use crate::belief::{Ball, Belief};
+use crate::body::Intent;
+use crate::body::omni::{BALL_AT, Drive, LIMITS};
+
+/// Blocks on `stretch`.
+pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
+    let me = belief.pose.position;
+    let Some(ball) = belief.ball else {
+        let middle = stretch.from + stretch.vector() * 0.5;
+        return Drive::shy(middle, belief.pose.heading).into();
+    };
+    let face = me.direction_to(ball.position);
+    if let Some(crossing) = coming(&ball, stretch) {
+        let place = stop(belief, &ball, crossing);
+        return Drive { dribbler: 1.0, ..Drive::bold(place, face) }.into();
+    }
+    Drive::shy(threatened(belief, &ball, stretch), face).into()
+}
+
+/// Where a ball that comes crosses the stretch.
+fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
+    if ball.velocity.norm() < COMING {
+        return None;
+    }
+    let way = Segment::new(ball.position, ball.rest);
+    crossing(way, stretch, BESIDE)
+}
+
+/// The place with the most time to spare on the ball's way to `crossing`.
+fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
+    let path = BallModel::default().rolling(ball.position, ball.velocity);
+    let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY);
+    let question = Interception {
+        robot: belief.pose.position,
+        velocity: belief.velocity,
+        ball: &path,
+        target: ball.position - path.along() * FAR_BACK,
+        reach: BALL_AT,
+        until,
+    };
+    match question.find(&LIMITS, Wish::Safest) {
+        Verdict::Meets(meeting) if meeting.slack() > 0.0 => meeting.place,
+        // Too late for rest there: go where it crosses, as fast as possible; a body in the way will do.
+        _ => crossing,
+    }
+}
+
+/// Where a ball that does not come would cross the stretch.
+fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
+    let goal = belief.league().field().goal_center(belief.game.defending);
+    let holder = belief
+        .others
+        .iter()
+        .filter(|other| other.side == rules::Side::Theirs)
+        .find(|other| other.pose.position.distance(ball.position) < HOLDS);
+    let shot = holder.and_then(|other| {
+        let along = geometry::Vector::polar(FAR_BACK, other.pose.heading);
+        crossing(Segment::new(ball.position, ball.position + along), stretch, 0.0)
+    });
+    let straight = crossing(Segment::new(ball.position, goal), stretch, 0.0);
+    shot.or(straight).unwrap_or_else(|| stretch.closest_to(ball.position))
+}
+
+/// Where two stretches cross; the second one is longer by `beyond` at either end, and what crosses there is moved onto it.
+fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option<Point<Field>> {
+    let (v, w) = (way.vector(), stretch.vector());
+    let across = v.cross(w);
+    if across.abs() < f32::MIN_POSITIVE {
+        return None;
+    }
+    let between = stretch.from - way.from;
+    let (along, share) = (between.cross(w) / across, between.cross(v) / across);
+    let slack = beyond / w.norm().max(f32::MIN_POSITIVE);
+    let crosses = (0.0..=1.0).contains(&along) && (-slack..=1.0 + slack).contains(&share);
+    crosses.then(|| stretch.from + w * share.clamp(0.0, 1.0))
+}
+
+/// A faster ball comes, m/s.
+const COMING: f32 = 0.3;
+/// A ball that passes the stretch's ends within this is blocked there, m: a robot's width.
+const BESIDE: f32 = 0.18;
+/// An opponent this near the ball has it, m.
+const HOLDS: f32 = 0.15;
+/// A point far along a line, m.
+const FAR_BACK: f32 = 20.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::{belief, rolling};
+    use geometry::GoalEnd;
+
+    fn goes_to(intent: Intent) -> Point<Field> {
+        match intent {
+            Intent::Drive(drive) => drive.to,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn line() -> Segment<Field> {
+        Segment::new(Point::new(-4.3, -0.5), Point::new(-4.3, 0.5))
+    }
+
+    #[test]
+    fn a_ball_that_lies_is_watched_from_its_line_to_the_goal() {
+        let mut b = belief((-4.3, 0.0, 0.0), (-2.5, 1.0));
+        b.game.defending = GoalEnd::Negative;
+        // From (−2.5, 1) to (−4.5, 0): at x = −4.3 it is 0.1.
+        assert!(goes_to(block(&b, line())).distance(Point::new(-4.3, 0.1)) < 1e-5);
+    }
+
+    #[test]
+    fn a_shot_is_met_where_there_is_most_time_and_not_behind_the_stretch() {
+        let b = rolling(belief((-4.3, 0.0, 0.0), (-1.3, 0.4)), (-3.0, 0.0));
+        let to = goes_to(block(&b, line()));
+        // On its line, but no nearer the ball than helps.
+        assert!((to.y() - 0.4).abs() < 1e-3 && to.x() >= -4.3 - BALL_AT - 1e-3, "{to:?}");
+        // One too fast to be met is still gone for, on the stretch.
+        let b = rolling(belief((-4.3, -0.5, 0.0), (-3.6, 0.45)), (-6.0, 0.0));
+        assert!(goes_to(block(&b, line())).distance(Point::new(-4.3, 0.45)) < 1e-3);
+    }
+
+    #[test]
+    fn a_ball_that_misses_the_stretch_is_not_chased() {
+        let b = rolling(belief((-4.3, 0.0, 0.0), (-2.0, 1.0)), (-3.0, 0.0));
+        assert!(goes_to(block(&b, line())).y() < 0.2);
+    }
+}

@@ -1,0 +1,222 @@
+//! Get the ball: meet a rolling one, come up behind a resting one, and have it at the dribbler.
+//!
+//! Rolling: `motion::intercept` says where the robot can stand beyond the ball in time, facing it; it stops itself against the
+//! roller. Resting: around the ball to a place behind it, as seen from where it will go, and slowly on from there.
+
+use geometry::{Angle, Field, Point, Segment, Vector, math};
+use motion::ball::BallModel;
+use motion::intercept::{Interception, Verdict, Wish};
+
+use crate::belief::{Ball, Belief};
+use crate::body::Intent;
+use crate::body::omni::{BALL_AT, Drive, LIMITS};
+use crate::skills::Step;
+
+/// Where a robot stands on its way to a ball that lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Approach {
+    /// On the way to the place behind the ball.
+    Around(Drive),
+    /// Behind the ball, looking over it the right way: going in.
+    In(Drive),
+}
+
+/// Takes the ball; facing `face` with it, or whatever is quickest.
+pub fn get_ball(belief: &Belief, face: Option<Angle>) -> Step {
+    if belief.holds_ball {
+        return Step::Done;
+    }
+    let Some(ball) = belief.ball else { return Step::Running(Intent::Stand { face: None }) };
+    let speed = ball.velocity.norm();
+    if speed > ROLLING {
+        return Step::Running(meet(belief, &ball).into());
+    }
+    let face = match face {
+        // With an opponent at it there is no time to go around.
+        Some(face) if !is_contested(belief, &ball) => face,
+        _ => belief.pose.position.direction_to(ball.position),
+    };
+    match approach(belief, &ball, face, GO_IN) {
+        Approach::Around(drive) => Step::Running(drive.into()),
+        Approach::In(drive) => Step::Running(Drive { dribbler: 1.0, ..drive }.into()),
+    }
+}
+
+/// Comes up to a resting ball so as to look along `face` over it, the last bit with `speed`.
+pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approach {
+    let ahead = Vector::polar(1.0, face);
+    let to_ball = ball.position - belief.pose.position;
+    let (along, beside) = (to_ball.dot(ahead), ahead.cross(to_ball));
+    let off = (face - belief.pose.heading).abs();
+    // The farther back, the wider the way in; at the ball itself a finger's breadth.
+    let room = along - BALL_AT;
+    let width = BESIDE + WIDENS * room.clamp(0.0, 0.3);
+    if along > 0.0 && room < GO_IN_FROM && beside.abs() < width && off < ALIGNED {
+        let to = ball.position - ahead * (BALL_AT - PRESS);
+        // A ball that still moves a little goes on while the robot comes.
+        let to = to + ball.velocity * LEAD;
+        return Approach::In(Drive { speed: speed + 2.0 * room.max(0.0), ..Drive::bold(to, face) });
+    }
+    let behind = ball.position - ahead * (BALL_AT + STAND_OFF) + ball.velocity * LEAD;
+    Approach::Around(Drive::shy(behind, face))
+}
+
+/// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
+pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
+    let to_ball = ball.position - belief.pose.position;
+    let (gap, speed) = (to_ball.norm() - BALL_AT, ball.velocity.norm());
+    let away = ball.velocity.dot(to_ball) > ROLLS_AWAY * speed * to_ball.norm();
+    if away && gap < CHASED {
+        let face = to_ball.angle();
+        // So much faster than the ball as it can still slow down before it touches.
+        let closing = CLOSES + math::sqrt(2.0 * CLOSING_BRAKE * gap.max(0.0));
+        let to = ball.position + to_ball * ((PRESS - BALL_AT) / to_ball.norm()) + ball.velocity * CHASE_LEAD;
+        let dribbler = if gap < DRIBBLES_FROM { 1.0 } else { 0.0 };
+        return Drive { speed: speed + closing, dribbler, ..Drive::bold(to, face) };
+    }
+    let path = BallModel::default().rolling(ball.position, ball.velocity);
+    let along = path.along();
+    let until = time_in_field(belief, ball);
+    let question = Interception {
+        robot: belief.pose.position,
+        velocity: belief.velocity,
+        ball: &path,
+        // It shall stand beyond the ball and look back along its way.
+        target: ball.position - along * FAR_BACK,
+        reach: BALL_AT,
+        until,
+    };
+    let place = match question.find(&LIMITS, Wish::Soonest) {
+        Verdict::Meets(meeting) => meeting.place,
+        Verdict::Chase { place, .. } => place,
+    };
+    receive_at(belief, ball, place)
+}
+
+/// Stands on the ball's line at `place`, facing it; gives way a little as it comes, with the dribbler turning.
+pub(super) fn receive_at(belief: &Belief, ball: &Ball, place: Point<Field>) -> Drive {
+    let me = belief.pose.position;
+    let speed = ball.velocity.norm();
+    let gap = me.distance(ball.position) - BALL_AT;
+    let near = gap < speed * CUSHION_TIME + 0.1;
+    let face = me.direction_to(ball.position);
+    let way = ball.velocity * (1.0 / speed.max(f32::MIN_POSITIVE));
+    let line = Segment::new(ball.position, ball.position + way * FAR_BACK);
+    if near && line.distance_to(me) < ON_LINE && (me - ball.position).dot(way) > 0.0 {
+        let back = (speed * YIELD * YIELD_TIME).min(YIELD_MOST);
+        let to = line.closest_to(me) + way * back;
+        return Drive { dribbler: 1.0, ..Drive::bold(to, face) };
+    }
+    Drive { dribbler: if near { 1.0 } else { 0.0 }, ..Drive::bold(place, face) }
+}
+
+/// How long the ball stays within the lines, s.
+fn time_in_field(belief: &Belief, ball: &Ball) -> f32 {
+    let field = belief.league().field();
+    let path = BallModel::default().rolling(ball.position, ball.velocity);
+    let rest = path.rest();
+    if field.contains(rest) {
+        return f32::INFINITY;
+    }
+    let (v, p) = (rest - ball.position, ball.position);
+    let share = |at: f32, by: f32, limit: f32| {
+        if by.abs() < f32::MIN_POSITIVE { 1.0 } else { ((limit * by.signum() - at) / by).clamp(0.0, 1.0) }
+    };
+    let out = share(p.x(), v.x(), 0.5 * field.length).min(share(p.y(), v.y(), 0.5 * field.width));
+    path.time_to(v.norm() * out).unwrap_or(f32::INFINITY)
+}
+
+fn is_contested(belief: &Belief, ball: &Ball) -> bool {
+    belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
+}
+
+/// Cosine between where a ball rolls and where it is seen, above which it rolls away: 60°.
+const ROLLS_AWAY: f32 = 0.5;
+/// This near it is chased, m; from farther its way is cut off.
+const CHASED: f32 = 0.5;
+/// How much faster than the ball a robot touches it, m/s.
+const CLOSES: f32 = 0.25;
+/// How fast it slows down to that, m/s².
+const CLOSING_BRAKE: f32 = 1.5;
+/// The place to be is that far ahead, s: a motion ends at rest, and this one shall not.
+const CHASE_LEAD: f32 = 0.4;
+/// So near the dribbler turns, m.
+const DRIBBLES_FROM: f32 = 0.1;
+/// A faster ball is met, a slower one approached, m/s.
+const ROLLING: f32 = 0.3;
+/// An opponent this near the ball is about to have it, m.
+const CONTESTED: f32 = 0.3;
+/// How fast a robot comes to a resting ball, m/s: slower than would push it out of the roller's reach.
+const GO_IN: f32 = 0.35;
+/// From so far before the ball it goes in, m.
+const GO_IN_FROM: f32 = 0.25;
+/// Between front and ball at the place behind it, m.
+const STAND_OFF: f32 = 0.07;
+/// How deep it presses into where the ball lies, m: until it touches for certain.
+const PRESS: f32 = 0.02;
+/// Beside the line over the ball: half of the mouth's half width, m.
+const BESIDE: f32 = 0.015;
+/// And so much wider a metre farther back.
+const WIDENS: f32 = 0.2;
+/// It looks the right way within this, rad.
+const ALIGNED: f32 = 0.15;
+/// What a robot is behind in time: picture, radio and a step, s.
+const LEAD: f32 = 0.05;
+/// A point far back on the ball's line, m.
+const FAR_BACK: f32 = 20.0;
+/// So long before the ball comes the dribbler turns and the robot gives way, s.
+const CUSHION_TIME: f32 = 0.2;
+/// Share of the ball's speed with which it gives way.
+const YIELD: f32 = 0.2;
+/// For so long, s; and no farther than this, m.
+const YIELD_TIME: f32 = 0.15;
+const YIELD_MOST: f32 = 0.06;
+/// On the ball's line within this, m.
+const ON_LINE: f32 = 0.06;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::{belief, rolling};
+
+    #[test]
+    fn a_resting_ball_is_passed_at_a_distance_and_taken_from_behind() {
+        // The robot stands before the ball and wants to face +x with it.
+        let b = belief((0.5, 0.0, 0.0), (0.0, 0.0));
+        let Approach::Around(drive) = approach(&b, &b.ball.unwrap(), Angle::ZERO, GO_IN) else { panic!() };
+        assert!((drive.to.x() + BALL_AT + STAND_OFF).abs() < 1e-6 && drive.to.y() == 0.0);
+        // From that place it goes in.
+        let b = belief((-BALL_AT - STAND_OFF, 0.005, 0.0), (0.0, 0.0));
+        let Approach::In(drive) = approach(&b, &b.ball.unwrap(), Angle::ZERO, GO_IN) else { panic!() };
+        assert!(drive.to.x() > -BALL_AT && drive.speed < 0.6);
+        // Beside it, it does not.
+        let b = belief((-BALL_AT - 0.02, 0.04, 0.0), (0.0, 0.0));
+        assert!(matches!(approach(&b, &b.ball.unwrap(), Angle::ZERO, GO_IN), Approach::Around(_)));
+    }
+
+    #[test]
+    fn a_ball_that_comes_is_met_beyond_it_on_its_line_facing_it() {
+        let b = rolling(belief((0.0, 0.3, 0.0), (2.0, 0.0)), (-2.0, 0.0));
+        let drive = meet(&b, &b.ball.unwrap());
+        assert!(drive.to.y().abs() < 1e-3 && drive.to.x() < 1.5, "{drive:?}");
+        assert!(drive.face.abs() < 0.3);
+    }
+
+    #[test]
+    fn a_ball_held_is_done() {
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        b.holds_ball = true;
+        assert_eq!(get_ball(&b, None), Step::Done);
+    }
+
+    #[test]
+    fn with_an_opponent_at_the_ball_the_straight_way_is_taken() {
+        let mut b = belief((-1.0, 0.0, 0.0), (0.0, 0.0));
+        let wanted = Some(Angle::HALF_TURN);
+        let Step::Running(Intent::Drive(free)) = get_ball(&b, wanted) else { panic!() };
+        assert!(free.to.x() > 0.1, "around: {free:?}");
+        let _ = b.opponents.push(Point::new(0.2, 0.0));
+        let Step::Running(Intent::Drive(hasty)) = get_ball(&b, wanted) else { panic!() };
+        assert!(hasty.to.x() < 0.0, "{hasty:?}");
+    }
+}

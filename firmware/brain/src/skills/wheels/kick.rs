@@ -1,0 +1,159 @@
+//! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked as it is touched.
+//!
+//! In a restart the taker may touch the ball once: it goes in only when everything points right, kicker armed and dribbler
+//! still, so that the first touch is the kick.
+
+use geometry::{Field, Point, Vector};
+use motion::ball::BallModel;
+use protocol::robot_io::OmniKick;
+use rules::Phase;
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::body::omni::{BALL_AT, Drive, SHOT};
+use crate::governor::may_kick;
+use crate::skills::Step;
+use crate::skills::wheels::get_ball::{Approach, approach, get_ball};
+
+/// Kicks the ball at a point.
+pub fn kick(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
+    pass(belief, at, kick, true)
+}
+
+/// The same, but waits behind the ball, or turned with it, until it is `ready`.
+pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> Intent {
+    let ready = ready && may_kick(belief.game.phase);
+    let once = belief.game.phase != Phase::Run;
+    if belief.holds_ball && !once {
+        let kick = if ready { kick } else { OmniKick::None };
+        return kick_held(belief, at, kick);
+    }
+    let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
+    let face = ball.position.direction_to(at);
+    if !once && ball.velocity.norm() > LIES {
+        return match get_ball(belief, Some(face)) {
+            Step::Running(intent) => intent,
+            Step::Done => kick_held(belief, at, OmniKick::None),
+        };
+    }
+    match approach(belief, &ball, face, GO_IN) {
+        Approach::In(drive) if ready => {
+            let aimed = (face - belief.pose.heading).abs() < tolerance(ball.position.distance(at));
+            if aimed || ball.position.distance(belief.pose.position) > BALL_AT + CLOSE {
+                Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
+            } else {
+                // Too near to touch it while it looks elsewhere: turn on the spot.
+                Drive::bold(belief.pose.position, face).into()
+            }
+        }
+        Approach::In(drive) => {
+            let behind = ball.position - Vector::polar(BALL_AT + WAIT_OFF, face);
+            Drive { to: behind, ..drive }.into()
+        }
+        Approach::Around(drive) => drive.into(),
+    }
+}
+
+/// With the ball held: turns with it until the kick goes to `at`, then kicks.
+pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
+    let me = belief.pose.position;
+    let face = me.direction_to(at);
+    let off = (face - belief.pose.heading).abs();
+    let still = belief.angular.abs() < STILL_TURNING && sideways(belief) < STILL_SIDEWAYS;
+    let aimed = off < tolerance(me.distance(at)) && still;
+    let drive = Drive::holding(me, face);
+    Drive { kick: if aimed && belief.contact() { kick } else { OmniKick::None }, ..drive }.into()
+}
+
+/// The speed of a pass over `distance` m, m/s: it arrives fast enough not to be caught up with, slow enough to be taken.
+pub fn pass_speed(distance: f32) -> f32 {
+    BallModel::default().kick_speed(distance, ARRIVES).clamp(SLOWEST, SHOT)
+}
+
+/// How exactly a kick over that distance must be aimed, rad: a robot's width at the end, never more than 3°.
+fn tolerance(distance: f32) -> f32 {
+    (AIM_WIDTH / distance.max(0.1)).clamp(AIM_BEST, AIM_WORST)
+}
+
+/// The ball takes the robot's sideways speed with it.
+fn sideways(belief: &Belief) -> f32 {
+    Vector::polar(1.0, belief.pose.heading).cross(belief.velocity).abs()
+}
+
+/// A slower ball lies, m/s.
+const LIES: f32 = 0.25;
+/// How fast a robot goes in for a kick, m/s.
+const GO_IN: f32 = 0.35;
+/// This near the ball it must look right before it goes on, m.
+const CLOSE: f32 = 0.02;
+/// Between front and ball while it waits to be told, m.
+const WAIT_OFF: f32 = 0.04;
+/// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below.
+const ARRIVES: f32 = 2.0;
+/// No pass is slower, m/s.
+const SLOWEST: f32 = 1.5;
+/// A kick should pass its target within this, m: less than half a robot.
+const AIM_WIDTH: f32 = 0.06;
+/// No better than the heading is known, rad.
+const AIM_BEST: f32 = 0.015;
+/// No worse than 3°, rad.
+const AIM_WORST: f32 = 0.05;
+/// A robot that turns no faster than this kicks where it looks, rad/s.
+const STILL_TURNING: f32 = 0.6;
+/// Nor moves aside faster than this, m/s.
+const STILL_SIDEWAYS: f32 = 0.15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::belief;
+    use rules::Side;
+
+    fn drive(intent: Intent) -> Drive {
+        match intent {
+            Intent::Drive(drive) => drive,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    const FLAT: OmniKick = OmniKick::Flat(4.0);
+
+    #[test]
+    fn behind_the_ball_and_aimed_it_goes_in_with_the_kicker_armed_and_no_dribbler() {
+        let mut b = belief((-0.15, 0.0, 0.0), (0.0, 0.0));
+        b.game.phase = Phase::FreeKick(Side::Ours);
+        let armed = drive(kick(&b, Point::new(3.0, 0.0), FLAT));
+        assert_eq!((armed.kick, armed.dribbler), (FLAT, 0.0));
+        // 10° off it must not touch the ball.
+        let mut b = belief((-0.11, 0.0, 8.0), (0.0, 0.0));
+        b.game.phase = Phase::FreeKick(Side::Ours);
+        let turning = drive(kick(&b, Point::new(3.0, 0.0), FLAT));
+        assert_eq!((turning.kick, turning.to), (OmniKick::None, b.pose.position));
+    }
+
+    #[test]
+    fn a_pass_that_is_not_ready_waits_behind_the_ball() {
+        let mut b = belief((-0.15, 0.0, 0.0), (0.0, 0.0));
+        b.game.phase = Phase::FreeKick(Side::Ours);
+        let waiting = drive(pass(&b, Point::new(3.0, 0.0), FLAT, false));
+        assert_eq!(waiting.kick, OmniKick::None);
+        assert!((waiting.to.x() + BALL_AT + WAIT_OFF).abs() < 1e-6);
+    }
+
+    #[test]
+    fn where_the_phase_does_not_allow_a_kick_there_is_none() {
+        for phase in [Phase::Stop, Phase::PrepareKickoff(Side::Ours), Phase::FreeKick(Side::Theirs)] {
+            let mut b = belief((-0.15, 0.0, 0.0), (0.0, 0.0));
+            b.game.phase = phase;
+            assert_eq!(drive(kick(&b, Point::new(3.0, 0.0), FLAT)).kick, OmniKick::None, "{phase:?}");
+        }
+    }
+
+    #[test]
+    fn two_metres_are_passed_with_what_arrives_at_2_m_per_s() {
+        // v0 = √((v² + 2·0.35·d)/(c² + (1 − c²)·0.35/3.9)) with d = 2, c = 5/7.
+        let (c2, share) = (25.0_f32 / 49.0, 0.35_f32 / 3.9);
+        let expected = ((4.0 + 1.4) / (c2 + (1.0 - c2) * share)).sqrt();
+        assert!((pass_speed(2.0) - expected).abs() < 1e-3, "{} {expected}", pass_speed(2.0));
+    }
+}

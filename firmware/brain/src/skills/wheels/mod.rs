@@ -1,0 +1,24 @@
+//! Which skills does a robot on wheels have, and how does each go? One file each; belief in, intent and verdict out.
+//!
+//! They remember nothing, but for what is written in their types ([`Placing`], [`Reception`]). Whatever they
+//! want passes the governor; what they must keep out of is the drivetrain's. Field frame, SI.
+
+mod block;
+mod dribble;
+mod get_ball;
+mod go_to;
+mod kick;
+mod place_ball;
+mod receive;
+mod shoot;
+#[cfg(test)]
+pub(crate) mod testing;
+
+pub use block::block;
+pub use dribble::{carry_to, dribble, let_go_in_time};
+pub use get_ball::{Approach, approach, get_ball};
+pub use go_to::{go_to, keep_off};
+pub use kick::{kick, kick_held, pass, pass_speed};
+pub use place_ball::{Placing, place_ball};
+pub use receive::{receive, take_pass};
+pub use shoot::{clear_or_shoot, shoot, target};

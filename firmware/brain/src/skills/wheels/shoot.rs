@@ -1,0 +1,114 @@
+//! Shoot: at the widest gap between the posts. Clear: away from the own goal, to the freer side.
+//!
+//! A gap's worth is how far every opponent stays from the ball's way, less how far it can move until the ball passes. SI, field frame.
+
+use geometry::{Field, GoalEnd, Point, Segment};
+use protocol::robot_io::OmniKick;
+
+use crate::belief::Belief;
+use crate::body::Intent;
+use crate::body::omni::SHOT;
+use crate::skills::wheels::kick::kick_held;
+
+/// With the ball held: shoots as soon as a gap is wide enough, or time is up.
+pub fn shoot(belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
+    let (at, room) = target(belief, belief.mouth(), attacked);
+    let open = room > GAP || !patient;
+    kick_held(belief, at, if open { OmniKick::Flat(SHOT) } else { OmniKick::None })
+}
+
+/// Where to shoot from `from`, and how much room the ball has there, m.
+pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<Field>, f32) {
+    let field = belief.league().field();
+    let center = field.goal_center(attacked);
+    let half = 0.5 * field.goal_width - INSIDE_POST;
+    let aims = (0..AIMS).map(|index| {
+        let y = half * (2.0 * index as f32 / (AIMS - 1) as f32 - 1.0);
+        let at = Point::new(center.x(), y);
+        (at, room(belief, from, at))
+    });
+    aims.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((center, 0.0))
+}
+
+/// The kick with the ball held when nothing better is at hand: at their goal from near, else up the freer wing.
+pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
+    let field = belief.league().field();
+    let me = belief.pose.position;
+    let goal = field.goal_center(attacked);
+    if me.distance(goal) < SHOOTS_FROM {
+        return shoot(belief, attacked, false);
+    }
+    let sign = attacked.sign() as f32;
+    let ahead = [1.0_f32, -1.0].map(|side| {
+        let x = (sign * me.x() + CLEARS_AHEAD).min(0.5 * field.length - INSIDE) * sign;
+        let at = Point::new(x, side * (0.5 * field.width - WING_INSIDE));
+        (at, room(belief, me, at))
+    });
+    let [left, right] = ahead;
+    let (at, _) = if left.1 >= right.1 { left } else { right };
+    kick_held(belief, at, OmniKick::Flat(super::pass_speed(me.distance(at)).min(CLEARS_WITH)))
+}
+
+/// What opponents leave free beside a ball's way, m; what no one can reach counts as [`ROOM_ENOUGH`].
+fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
+    let way = Segment::new(from, to);
+    let mut room = ROOM_ENOUGH;
+    for &opponent in &belief.opponents {
+        let share = way.share_of(opponent);
+        if share <= 0.0 {
+            continue;
+        }
+        let time = (way.closest_to(opponent).distance(from) / (FAIR_SPEED) - REACTION).max(0.0);
+        let reach = BODY + 0.5 * OPPONENT_ACCELERATION * time * time;
+        room = room.min(way.distance_to(opponent) - reach);
+    }
+    room
+}
+
+/// Places between the posts that are looked at.
+const AIMS: usize = 9;
+/// A shot keeps this far from a post, m: ball, half a line, and 1° from 3 m.
+const INSIDE_POST: f32 = 0.08;
+/// A gap this wide is shot through, m beside bodies' reach.
+const GAP: f32 = 0.02;
+/// From this far the goal is shot at, m.
+const SHOOTS_FROM: f32 = 4.0;
+/// A clearance goes so far ahead, m: no aimless kick over the half (division B).
+const CLEARS_AHEAD: f32 = 2.5;
+/// And with no more than this, m/s: it stays in the field.
+const CLEARS_WITH: f32 = 4.0;
+/// From the goal line, m.
+const INSIDE: f32 = 1.2;
+/// From the side line, m.
+const WING_INSIDE: f32 = 0.8;
+/// More room than this is no better, m.
+const ROOM_ENOUGH: f32 = 0.5;
+/// Radii of a robot and a ball, m.
+const BODY: f32 = 0.1115;
+/// How fast a shot is on average, m/s.
+const FAIR_SPEED: f32 = 5.0;
+/// What an opponent sees late, s.
+const REACTION: f32 = 0.15;
+/// How fast it speeds up, m/s².
+const OPPONENT_ACCELERATION: f32 = 3.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::belief;
+
+    #[test]
+    fn the_shot_goes_where_the_keeper_is_not() {
+        let mut b = belief((2.5, 0.0, 0.0), (2.6, 0.0));
+        let _ = b.opponents.push(Point::new(4.3, 0.2));
+        let (at, room) = target(&b, b.mouth(), GoalEnd::Positive);
+        assert!(at.y() < -0.2 && room > 0.1, "{at:?} {room}");
+    }
+
+    #[test]
+    fn who_stands_behind_the_ball_is_in_nobodys_way() {
+        let mut b = belief((2.5, 0.0, 0.0), (2.6, 0.0));
+        let _ = b.opponents.push(Point::new(2.3, 0.0));
+        assert_eq!(target(&b, b.mouth(), GoalEnd::Positive).1, ROOM_ENOUGH);
+    }
+}
