@@ -1,5 +1,6 @@
 //! What tests that cross crates share. Runs on the developer's machine only.
 
+pub mod carpet;
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;

@@ -1,0 +1,238 @@
+//! What do brains on wheels do in the simulator's Small Size world, told by a host that only repeats what a test says?
+//!
+//! Every brain is led by pictures made of the true state, rounded as the wire rounds, 75 a second, and by the command that
+//! the test set. SI units, field frame; a step is 10 ms. No camera, no noise of pictures, no radio: these have tests of their own.
+
+use std::collections::BTreeMap;
+
+use brain::{Brain, BrainConfig};
+use casebase::CaseBase;
+use geometry::{Field, GoalEnd, Point, Pose, Vector};
+use hil_sim::small_size::{Ball, Event, Parameters, Robot, Who, World};
+use protocol::host::{
+    Command, Directive, Duty, HostMessage, PART_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart,
+};
+use protocol::quantized::to_mm;
+use protocol::robot_io::{ActuatorFrame, OmniKick};
+use protocol::team::TeamMessage;
+use protocol::{Instant, RobotId, TeamId};
+use rules::{Colour, League, Phase, Side};
+
+/// A field with our robots under brains, theirs standing where the test puts them.
+pub struct Carpet<'a> {
+    /// The truth.
+    pub world: World,
+    /// The phase of the game, in our words.
+    pub phase: Phase<Side>,
+    /// Where the ball is to be placed.
+    pub placement: Option<Point<Field>>,
+    /// What each of ours is told.
+    pub commands: BTreeMap<RobotId, (Duty, Directive)>,
+    /// Our brains.
+    pub brains: BTreeMap<RobotId, Brain<'a>>,
+    /// What happened, with the time, s.
+    pub events: Vec<(f64, Event)>,
+    /// The newest order of each of ours.
+    pub orders: BTreeMap<RobotId, ActuatorFrame>,
+    /// The host says nothing.
+    pub silent: bool,
+    steps: u64,
+    picture: u8,
+    air: Vec<(RobotId, TeamMessage)>,
+}
+
+impl<'a> Carpet<'a> {
+    /// Ours (blue) at these poses (x, y in m, degrees), and a ball at rest.
+    pub fn new(league: League, base: CaseBase<'a>, ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Self {
+        let parameters = Parameters::of(league).expect("a Small Size league");
+        let mut world = World::new(league, parameters, 1);
+        world.put_ball(Ball::at(Point::new(ball.0, ball.1)));
+        let mut brains = BTreeMap::new();
+        for &(number, x, y, degrees) in ours {
+            let id = RobotId::new(number).expect("an id");
+            world.put(Who { colour: Colour::Blue, id }, pose(x, y, degrees));
+            let config = BrainConfig::hosted(id, TeamId(1), league);
+            brains.insert(id, Brain::new(Instant(0), &config, base));
+        }
+        Self {
+            world,
+            phase: Phase::Run,
+            placement: None,
+            commands: BTreeMap::new(),
+            brains,
+            events: Vec::new(),
+            orders: BTreeMap::new(),
+            silent: false,
+            steps: 0,
+            picture: 0,
+            air: Vec::new(),
+        }
+    }
+
+    /// One of theirs, standing.
+    pub fn opponent(&mut self, number: u8, x: f32, y: f32, degrees: f32) {
+        let id = RobotId::new(number).expect("an id");
+        self.world.put(Who { colour: Colour::Yellow, id }, pose(x, y, degrees));
+    }
+
+    /// The ball rolls.
+    pub fn roll(&mut self, at: (f32, f32), velocity: (f32, f32)) {
+        self.world.put_ball(Ball::rolling(Point::new(at.0, at.1), Vector::new(velocity.0, velocity.1)));
+    }
+
+    /// Robot `number` is told this.
+    pub fn tell(&mut self, number: u8, duty: Duty, directive: Directive) {
+        self.commands.insert(RobotId::new(number).expect("an id"), (duty, directive));
+    }
+
+    /// The time.
+    pub fn now(&self) -> Instant {
+        Instant(self.steps * 10_000)
+    }
+
+    /// One of ours, as it truly is.
+    pub fn ours(&self, number: u8) -> &Robot {
+        let id = RobotId::new(number).expect("an id");
+        self.world.robot(Who { colour: Colour::Blue, id }).expect("a robot of ours")
+    }
+
+    /// The ball, as it truly is.
+    pub fn ball(&self) -> Point<Field> {
+        self.world.ball.position
+    }
+
+    /// The brain of one of ours.
+    pub fn brain(&self, number: u8) -> &Brain<'a> {
+        &self.brains[&RobotId::new(number).expect("an id")]
+    }
+
+    /// Steps until `done`, at most for `seconds`; how long it took, s.
+    pub fn until(&mut self, seconds: f32, mut done: impl FnMut(&Self) -> bool) -> Option<f32> {
+        let start = self.steps;
+        while (self.steps - start) as f32 * 0.01 < seconds {
+            self.step();
+            if done(self) {
+                return Some((self.steps - start) as f32 * 0.01);
+            }
+        }
+        None
+    }
+
+    /// Steps for `seconds`, looking at every step.
+    pub fn during(&mut self, seconds: f32, mut look: impl FnMut(&Self)) {
+        self.until(seconds, |carpet| {
+            look(carpet);
+            false
+        });
+    }
+
+    /// Every kick of ours so far: who, and how fast the ball left, m/s.
+    pub fn kicks(&self) -> Vec<(RobotId, f32, Vector<Field>)> {
+        let kick = |(_, event): &(f64, Event)| match *event {
+            Event::Kicked { robot, speed, velocity, .. } if robot.colour == Colour::Blue => {
+                Some((robot.id, speed, velocity))
+            }
+            _ => None,
+        };
+        self.events.iter().filter_map(kick).collect()
+    }
+
+    /// 10 ms of everything.
+    pub fn step(&mut self) {
+        self.steps += 1;
+        let now = self.now();
+        if !self.silent && !self.steps.is_multiple_of(4) {
+            self.show(now);
+        }
+        let heard = std::mem::take(&mut self.air);
+        for (&id, brain) in &mut self.brains {
+            while let Some(due) = brain.poll_timeout().filter(|due| *due <= now) {
+                brain.handle_timeout(due);
+            }
+            for (from, message) in heard.iter().filter(|(from, _)| *from != id) {
+                brain.handle_team_message(now, *from, message);
+            }
+            let who = Who { colour: Colour::Blue, id };
+            let Some(sensors) = self.world.sensors(who) else { continue };
+            brain.handle_sensors(now, &sensors);
+            while let Some(message) = brain.poll_message(now) {
+                self.air.push((id, message));
+            }
+            if let Some(order) = brain.poll_actuators(now) {
+                self.world.command(who, &order);
+                self.orders.insert(id, order);
+            }
+        }
+        for _ in 0..10 {
+            self.world.step();
+        }
+        let mut events = Vec::new();
+        self.world.take_events(&mut events);
+        let time = self.world.time();
+        self.events.extend(events.into_iter().map(|event| (time, event)));
+    }
+
+    /// A picture to all, a command to each.
+    fn show(&mut self, now: Instant) {
+        self.picture = self.picture.wrapping_add(1);
+        let ball = &self.world.ball;
+        let ball = Some(WireBall {
+            at: ball.position.into(),
+            height: (ball.height * 1000.0) as u16,
+            vx: to_mm(ball.velocity.x()),
+            vy: to_mm(ball.velocity.y()),
+        });
+        let robots: Vec<WireRobot> = self.world.robots().iter().map(wire).collect();
+        let parts = robots.chunks(PART_ROBOTS_MAX);
+        let count = parts.len() as u8;
+        let messages: Vec<HostMessage> = (0..count)
+            .zip(parts)
+            .map(|(part, robots)| {
+                HostMessage::World(WorldPart {
+                    picture: self.picture,
+                    part,
+                    parts: count,
+                    phase: self.phase,
+                    placement: self.placement.map(Into::into),
+                    ball,
+                    robots: robots.iter().copied().collect(),
+                })
+            })
+            .collect();
+        for (&id, brain) in &mut self.brains {
+            for message in &messages {
+                brain.handle_host_message(now, message);
+            }
+            if let Some((duty, directive)) = self.commands.get(&id) {
+                let command = Command {
+                    to: id,
+                    defending: GoalEnd::Negative,
+                    phase: self.phase,
+                    duty: *duty,
+                    directive: directive.clone(),
+                };
+                brain.handle_host_message(now, &HostMessage::Command(command));
+            }
+        }
+    }
+}
+
+/// A pose of metres and degrees.
+pub fn pose(x: f32, y: f32, degrees: f32) -> Pose<Field> {
+    Pose::from_mm_deg(x * 1000.0, y * 1000.0, degrees)
+}
+
+/// Whether that order kicks.
+pub fn kicks(order: &ActuatorFrame) -> bool {
+    matches!(order, ActuatorFrame::Omni { kick: OmniKick::Flat(_) | OmniKick::Chip(_), .. })
+}
+
+fn wire(robot: &Robot) -> WireRobot {
+    let side = if robot.who.colour == Colour::Blue { Side::Ours } else { Side::Theirs };
+    WireRobot {
+        who: WireWho { side, id: robot.who.id },
+        pose: robot.pose.into(),
+        vx: to_mm(robot.velocity.x()),
+        vy: to_mm(robot.velocity.y()),
+    }
+}

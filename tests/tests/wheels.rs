@@ -1,0 +1,281 @@
+//! Do robots on wheels do what they are told, in the simulator's physics? Every skill from order to outcome, and the law.
+
+use brain::governor::Ruling;
+use casebase::CaseBase;
+use geometry::{Angle, Field, Point};
+use match_tests::carpet::{Carpet, kicks, pose};
+use protocol::host::{Directive, Duty, KickOrder};
+use protocol::quantized::{WirePoint, WirePose};
+use rules::{League, Phase, Side};
+
+fn base() -> CaseBase<'static> {
+    case_library::division_b()
+}
+
+fn carpet(ball: (f32, f32), ours: &[(u8, f32, f32, f32)]) -> Carpet<'static> {
+    let mut carpet = Carpet::new(League::DivisionB, base(), ball, ours);
+    for &(number, ..) in ours {
+        carpet.tell(number, Duty::Player, Directive::Stand);
+    }
+    // The link must have been good for half a second.
+    carpet.during(0.6, |_| {});
+    carpet
+}
+
+fn at(x: f32, y: f32) -> WirePoint {
+    Point::<Field>::new(x, y).into()
+}
+
+fn go_to(x: f32, y: f32, degrees: f32) -> Directive {
+    Directive::GoTo { pose: WirePose::from(pose(x, y, degrees)) }
+}
+
+#[test]
+fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetre_at_rest() {
+    let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+    carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
+    let goal = Point::new(1.0, 1.236);
+    let there = |carpet: &Carpet<'_>| {
+        let robot = carpet.ours(1);
+        robot.pose.position.distance(goal) < 0.01
+            && robot.velocity.norm() < 0.05
+            && (robot.pose.heading - Angle::degrees(135.0)).abs() < 0.05
+    };
+    // From rest to rest with 3 and 3.5 m/s²: √(2·3·(1/3 + 1/3.5)) = 1.93 s.
+    let took = carpet.until(4.0, there).expect("arrives");
+    assert!(took < 2.2, "{took}");
+    carpet.during(1.0, |carpet| assert!(there(carpet), "stays"));
+}
+
+#[test]
+fn a_robot_in_the_way_is_passed_without_touching_it() {
+    let mut carpet = carpet((0.0, 2.5), &[(1, -1.5, 0.0, 0.0)]);
+    carpet.opponent(1, 0.0, 0.02, 0.0);
+    carpet.opponent(2, 0.3, -0.3, 0.0);
+    carpet.tell(1, Duty::Player, go_to(1.5, 0.0, 0.0));
+    let took = carpet.until(4.0, |c| c.ours(1).pose.position.distance(Point::new(1.5, 0.0)) < 0.02);
+    assert!(took.is_some_and(|took| took < 3.2), "{took:?}");
+    assert!(carpet.events.is_empty(), "{:?}", carpet.events);
+}
+
+#[test]
+fn a_resting_ball_is_had_facing_the_way_asked() {
+    for (x, y) in [(0.8, 0.0), (-0.8, 0.3), (0.0, 1.0)] {
+        let mut carpet = carpet((0.0, 0.0), &[(1, x, y, 30.0)]);
+        carpet.tell(1, Duty::Player, Directive::GetBall { face: Some(at(4.5, 0.0)) });
+        let took = carpet.until(5.0, |c| {
+            c.ours(1).ball_contact && (c.ours(1).pose.turn_to(Point::new(4.5, 0.0))).abs() < 0.05
+        });
+        assert!(took.is_some_and(|took| took < 3.5), "from {x}, {y}: {took:?}");
+        carpet.during(1.0, |_| {});
+        assert!(carpet.ours(1).ball_contact, "kept, from {x}, {y}");
+    }
+}
+
+#[test]
+fn a_rolling_ball_is_met_and_had() {
+    for (from, velocity) in [((2.0, 0.4), (-2.0, 0.0)), ((-2.0, 1.5), (1.2, -0.8)), ((0.5, -1.0), (0.4, 0.9))]
+    {
+        let mut carpet = carpet((0.0, 2.9), &[(1, 0.0, 0.0, 0.0)]);
+        carpet.roll(from, velocity);
+        carpet.tell(1, Duty::Player, Directive::GetBall { face: None });
+        let took = carpet.until(6.0, |c| c.brain(1).belief().holds_ball);
+        assert!(took.is_some(), "{from:?} {velocity:?}: ball at {:?}", carpet.ball());
+        carpet.during(0.5, |_| {});
+        assert!(carpet.ours(1).ball_contact, "kept: {from:?} {velocity:?}");
+    }
+}
+
+#[test]
+fn a_kick_goes_where_it_was_aimed_with_the_speed_asked() {
+    for (target, speed) in [((4.5, 0.3), 600), ((0.0, -2.0), 300), ((-3.0, 2.0), 450)] {
+        let mut carpet = carpet((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+        carpet.tell(
+            1,
+            Duty::Player,
+            Directive::Kick { at: at(target.0, target.1), kick: KickOrder::Flat(speed) },
+        );
+        let took = carpet.until(6.0, |c| !c.kicks().is_empty());
+        assert!(took.is_some_and(|took| took < 5.0), "{target:?}: {took:?}");
+        let (_, left, velocity) = carpet.kicks()[0];
+        assert!((left - f32::from(speed) * 0.01).abs() < 0.25, "{left}");
+        let wanted = carpet.ball().direction_to(Point::new(target.0, target.1));
+        assert!((velocity.angle() - wanted).abs() < 0.08, "{:?} {wanted:?}", velocity.angle());
+    }
+}
+
+#[test]
+fn a_chip_flies() {
+    let mut carpet = carpet((0.5, 0.2), &[(1, -0.5, -0.4, 0.0)]);
+    carpet.tell(1, Duty::Player, Directive::Kick { at: at(3.5, 0.3), kick: KickOrder::Chip(400) });
+    assert!(carpet.until(6.0, |c| c.world.ball.height > 0.2).is_some());
+}
+
+#[test]
+fn a_free_kick_is_taken_with_one_touch_and_the_taker_leaves_the_ball_alone_afterwards() {
+    let mut carpet = carpet((-1.0, 1.0), &[(1, -1.5, 0.6, 0.0)]);
+    carpet.phase = Phase::FreeKick(Side::Ours);
+    carpet.tell(1, Duty::Taker, Directive::Kick { at: at(1.0, 1.0), kick: KickOrder::Flat(150) });
+    assert!(carpet.until(6.0, |c| !c.kicks().is_empty()).is_some());
+    let touches = |c: &Carpet<'_>| {
+        c.events.iter().filter(|(_, e)| matches!(e, hil_sim::small_size::Event::Touched { .. })).count()
+    };
+    let before = touches(&carpet);
+    carpet.phase = Phase::Run;
+    carpet.during(4.0, |_| {});
+    assert_eq!(touches(&carpet), before, "{:?}", carpet.events);
+    assert!(before <= 1);
+}
+
+#[test]
+fn a_pass_waits_behind_the_ball_until_it_is_ready() {
+    let mut carpet = carpet((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
+    carpet.phase = Phase::FreeKick(Side::Ours);
+    let receiver = protocol::RobotId::new(2).unwrap();
+    let order = |ready| Directive::Pass { at: at(2.0, 1.0), receiver, kick: KickOrder::Flat(350), ready };
+    carpet.tell(1, Duty::Taker, order(false));
+    carpet.during(3.0, |c| assert!(!c.ours(1).touching));
+    carpet.tell(1, Duty::Taker, order(true));
+    let took = carpet.until(2.0, |c| !c.kicks().is_empty()).expect("passes");
+    assert!(took < 1.0, "{took}");
+}
+
+#[test]
+fn a_pass_is_received() {
+    for speed in [2.0, 3.5, 4.5] {
+        let mut carpet = carpet((0.0, 0.0), &[(2, 2.3, 0.3, 0.0)]);
+        carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.0, 0.0), then: None });
+        carpet.during(1.0, |_| {});
+        carpet.roll((-1.0, 0.1), (speed, 0.0));
+        let took = carpet.until(4.0, |c| c.brain(2).belief().holds_ball);
+        assert!(took.is_some(), "{speed} m/s");
+        carpet.during(0.6, |_| {});
+        assert!(
+            carpet.ours(2).ball_contact,
+            "{speed} m/s: ball at {:?}, robot at {:?}",
+            carpet.ball(),
+            carpet.ours(2).pose
+        );
+    }
+}
+
+#[test]
+fn a_pass_is_shot_at_the_goal_at_first_touch() {
+    let mut carpet = carpet((0.0, 0.0), &[(2, 2.5, 0.0, 0.0)]);
+    carpet.tell(2, Duty::Player, Directive::Receive { at: at(2.5, 0.0), then: Some(at(4.5, 0.0)) });
+    carpet.during(1.0, |_| {});
+    // From the front left: the goal lies 45° to the right of where it comes from.
+    carpet.roll((4.0, 1.5), (-2.1, -2.1));
+    let took = carpet.until(3.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+    assert!(took.is_some(), "ball at {:?}, {:?}", carpet.ball(), carpet.kicks());
+}
+
+#[test]
+fn the_ball_is_dribbled_for_less_than_a_metre_at_a_time() {
+    let mut carpet = carpet((0.0, 0.0), &[(1, -0.4, 0.0, 0.0)]);
+    carpet.tell(1, Duty::Player, Directive::Dribble { pose: WirePose::from(pose(2.5, 0.0, 0.0)) });
+    let mut longest = 0.0_f32;
+    carpet.during(10.0, |c| {
+        if let Some(from) = c.ours(1).dribbling_from {
+            longest = longest.max(from.distance(c.ball()));
+        }
+    });
+    assert!(longest < 0.95, "{longest}");
+    assert!(carpet.ball().x() > 2.0, "and gets on: {:?}", carpet.ball());
+}
+
+#[test]
+fn a_keeper_on_its_stretch_stops_shots() {
+    let mut stopped = 0;
+    let shots = [(1.0, -0.35, 4.0), (0.5, 0.3, 5.0), (-0.8, 0.0, 5.5), (1.5, 0.25, 4.5), (-1.2, -0.3, 4.0)];
+    for (y, aim, speed) in shots {
+        let mut carpet = carpet((-2.0, y), &[(0, -4.3, 0.0, 0.0)]);
+        carpet.tell(0, Duty::Keeper, Directive::Block { from: at(-4.35, -0.5), to: at(-4.35, 0.5) });
+        carpet.during(1.5, |_| {});
+        let (from, to) = (Point::<Field>::new(-1.5, y), Point::new(-4.5, aim));
+        let v = (to - from).unit().unwrap() * speed;
+        carpet.roll((from.x(), from.y()), (v.x(), v.y()));
+        let goal = carpet.until(3.0, |c| c.ball().x() < -4.53);
+        stopped += usize::from(goal.is_none());
+    }
+    assert!(stopped >= 4, "{stopped} of {}", shots.len());
+}
+
+#[test]
+fn the_ball_is_placed_from_everywhere_and_left_alone() {
+    let spots = [(0.0, 0.0), (2.0, 3.25), (4.75, 3.25), (-4.6, 0.3), (-4.75, -1.0)];
+    for spot in spots {
+        let target = Point::new(1.0, -1.5);
+        let mut carpet = carpet(spot, &[(1, 0.5, 0.5, 0.0)]);
+        carpet.phase = Phase::BallPlacement(Side::Ours);
+        carpet.placement = Some(target);
+        carpet.tell(1, Duty::Taker, Directive::PlaceBall { at: target.into() });
+        let done = carpet.until(28.0, |c| {
+            c.ball().distance(target) < 0.15
+                && c.world.ball.velocity.norm() < 0.01
+                && c.ours(1).pose.position.distance(c.ball()) > 0.6
+        });
+        assert!(done.is_some(), "{spot:?}: ball at {:?}, robot at {:?}", carpet.ball(), carpet.ours(1).pose);
+        carpet.during(2.0, |_| {});
+        assert!(carpet.ball().distance(target) < 0.15, "{spot:?}");
+    }
+}
+
+#[test]
+fn on_halt_a_robot_at_full_speed_stands_within_a_second_and_stays() {
+    let mut carpet = carpet((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    carpet.tell(1, Duty::Player, go_to(3.0, -1.0, 0.0));
+    carpet.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    carpet.phase = Phase::Halt;
+    let took = carpet.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+    assert!(took < 1.0, "{took}");
+    carpet.during(2.0, |c| {
+        assert!(c.ours(1).velocity.norm() < 0.05);
+        assert!(c.orders.values().all(|order| !kicks(order)));
+        assert!(matches!(c.brain(1).ruling(), Ruling::Braking(_)));
+    });
+}
+
+#[test]
+fn in_stop_nobody_is_faster_than_1_5_m_per_s_nor_within_half_a_metre_of_the_ball() {
+    let mut carpet = carpet((0.0, 0.0), &[(1, -2.0, 0.0, 0.0), (2, -0.3, 0.2, 0.0)]);
+    carpet.phase = Phase::Stop;
+    carpet.tell(1, Duty::Player, go_to(2.0, 0.0, 0.0));
+    carpet.tell(2, Duty::Player, go_to(-0.2, 0.2, 0.0));
+    carpet.during(1.5, |_| {});
+    let mut fastest = 0.0_f32;
+    carpet.during(3.0, |c| {
+        fastest = fastest.max(c.ours(1).velocity.norm());
+        for robot in [c.ours(1), c.ours(2)] {
+            let gap = robot.pose.position.distance(c.ball()) - 0.09;
+            assert!(gap > 0.5, "{gap}");
+        }
+    });
+    assert!(fastest < 1.4, "{fastest}");
+    assert!(carpet.ours(1).pose.position.distance(Point::new(2.0, 0.0)) < 0.02, "and gets there around it");
+}
+
+#[test]
+fn when_the_host_falls_silent_a_robot_stands_within_a_second_and_moves_again_after_half_a_second_of_words() {
+    let mut carpet = carpet((0.0, 2.5), &[(1, -3.0, -1.0, 0.0)]);
+    carpet.tell(1, Duty::Player, go_to(3.0, -1.0, 0.0));
+    carpet.until(3.0, |c| c.ours(1).velocity.norm() > 2.8).expect("gets fast");
+    carpet.silent = true;
+    let took = carpet.until(2.0, |c| c.ours(1).velocity.norm() < 0.02).expect("stands");
+    assert!(took < 1.0, "{took}");
+    carpet.silent = false;
+    carpet.during(0.45, |c| assert!(c.ours(1).velocity.norm() < 0.05));
+    assert!(carpet.until(1.0, |c| c.ours(1).velocity.norm() > 0.5).is_some());
+}
+
+#[test]
+fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
+    let mut carpet = carpet((0.0, 2.5), &[(0, -3.0, 1.5, 0.0), (1, -3.0, -1.5, 0.0)]);
+    carpet.tell(0, Duty::Keeper, go_to(-4.2, 0.2, 0.0));
+    carpet.tell(1, Duty::Player, go_to(-4.2, -0.3, 0.0));
+    carpet.during(4.0, |c| {
+        let p = c.ours(1).pose.position;
+        assert!(p.x() > -3.41 || p.y().abs() > 1.09, "{p:?}");
+    });
+    assert!(carpet.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
+}
