@@ -123,7 +123,7 @@ impl InternalReferee {
         if placement_needless(&self.field, ball, speed, target) {
             return Placer::Nobody;
         }
-        if speed <= limits::BALL_STILL && !self.is_reachable(ball) {
+        if !self.is_reachable(ball) {
             return Placer::Person;
         }
         let failed: Vec<Colour> = self.failed_placements().collect();
@@ -192,8 +192,10 @@ impl InternalReferee {
             };
             return self.judge(&self.event(Some(team), what));
         }
+        // People help where robots cannot.
         let interfered = self.recent.iter().filter(|event| event.what.kind() == Kind::InterferedPlacement);
-        if interfered.count() > INTERFERENCES_MAX {
+        let stuck = !self.is_reachable(ball) && self.ball.speed() <= limits::BALL_STILL;
+        if stuck || interfered.count() > INTERFERENCES_MAX {
             return self.give(Command::Stop);
         }
         if self.action_left <= 0 {

@@ -6,6 +6,7 @@
 mod areas;
 mod calm;
 mod goals;
+mod metrics;
 mod penalties;
 mod play;
 mod robust;
@@ -28,6 +29,7 @@ struct Stage {
     robots: Vec<RobotSeen>,
     crashes: Vec<CrashSeen>,
     now: Instant,
+    step: Duration,
     /// Does somebody carry out what people are asked to do?
     obeyed: bool,
     orders: Vec<WorldOrder>,
@@ -68,6 +70,7 @@ fn stage_with(settings: RefereeSettings) -> Stage {
         robots: Vec::new(),
         crashes: Vec::new(),
         now: Instant(0),
+        step: STEP,
         obeyed: true,
         orders: Vec::new(),
         heard: GameState::new(),
@@ -154,9 +157,9 @@ impl Stage {
     }
 
     fn step(&mut self) {
-        self.now += STEP;
+        self.now += self.step;
         if let Some(ball) = &mut self.ball {
-            ball.position += ball.velocity * STEP.as_secs_f32();
+            ball.position += ball.velocity * self.step.as_secs_f32();
         }
         let seen = Observation {
             time: self.now,
@@ -218,14 +221,14 @@ impl Stage {
     }
 
     fn run(&mut self, seconds: f32) {
-        for _ in 0..(seconds * 100.0) as u32 {
+        for _ in 0..(seconds * 1e6) as u64 / self.step.0 {
             self.step();
         }
     }
 
     /// Steps until that phase.
     fn until(&mut self, phase: Phase<Colour>, seconds: f32) {
-        for _ in 0..(seconds * 100.0) as u32 {
+        for _ in 0..(seconds * 1e6) as u64 / self.step.0 {
             if self.phase() == phase {
                 return;
             }

@@ -352,3 +352,29 @@ fn a_ball_in_the_goal_is_fetched_by_a_person() {
     );
     stage.until(Phase::FreeKick(Colour::Blue), 3.0);
 }
+
+#[test]
+fn a_ball_that_is_pushed_into_the_goal_in_a_placement_is_fetched_by_a_person() {
+    let mut stage = placement();
+    stage.move_ball(at(4.6, 0.0));
+    stage.until(Phase::Stop, 0.1);
+    stage.until(Phase::FreeKick(Colour::Yellow), 6.0);
+    assert!(close(stage.place_of_ball(), at(1.0, 2.8)));
+}
+
+#[test]
+fn the_team_that_places_for_a_force_start_is_drawn() {
+    let mut drawn = [false; 2];
+    for seed in 0..16 {
+        let mut stage = in_play();
+        stage.referee.chance = crate::rng::Stream::new(seed, "small-size-referee");
+        // Half a metre from blue's area: too near for a free kick and to be left lying.
+        stage.move_ball(at(4.0, 1.5));
+        stage.until(Phase::Stop, 11.0);
+        assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
+        stage.run(0.1);
+        let Phase::BallPlacement(team) = stage.phase() else { panic!("{:?}", stage.phase()) };
+        drawn[usize::from(team == Colour::Blue)] = true;
+    }
+    assert_eq!(drawn, [true, true]);
+}

@@ -159,3 +159,41 @@ fn time_that_goes_back_is_ignored() {
     stage.referee.observe(&seen);
     assert_eq!((stage.referee.now, stage.referee.log.len()), (stage.now, before));
 }
+
+#[test]
+fn steps_of_1_and_of_20_ms_see_the_same_offences() {
+    let play = |step: Duration| {
+        let mut stage = in_play();
+        stage.step = step;
+        stage.move_ball(at(-3.0, 1.0));
+        stage.touch(yellow(1));
+        stage.kick(6.8, 0.0);
+        stage.run(0.3);
+        stage.kick(0.0, 0.0);
+        stage.until(Phase::Stop, 12.0);
+        stage.drive(blue(1), 0.0, 1.7);
+        stage.put(yellow(2), at(3.3, 0.0));
+        stage.put(yellow(1), stage.place_of_ball() + Vector::new(0.3, 0.0));
+        stage.run(2.5);
+        stage.referee.events().iter().map(|event| (event.what.kind(), event.robot)).collect::<Vec<_>>()
+    };
+    let events = play(Duration::millis(10));
+    assert_eq!(events.len(), 5, "{events:?}");
+    assert_eq!(play(Duration::millis(1)), events);
+    assert_eq!(play(Duration::millis(20)), events);
+}
+
+#[test]
+fn a_ball_that_nobody_fetches_from_the_goal_does_not_score_again() {
+    let mut stage = in_play();
+    stage.obeyed = false;
+    stage.put(blue(0), at(4.45, 0.8));
+    stage.move_ball(at(3.0, 0.0));
+    stage.touch(yellow(2));
+    stage.kick(5.0, 0.0);
+    stage.until(Phase::Halt, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.run(120.0);
+    assert_eq!((stage.count(Kind::Goal), stage.count(Kind::LeftGoalLine)), (1, 0));
+    assert!(stage.referee.metrics().running_s > 20.0);
+}

@@ -129,3 +129,135 @@ fn in_preparation_the_next_command_is_normal_start() {
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 20.0);
     assert_eq!(stage.referee.packet().next_command, Some(sent::Command::NormalStart as i32));
 }
+
+#[test]
+fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_two() {
+    let shot = Shot {
+        kicker: Some(yellow(3)),
+        from: at(1.0, 0.0),
+        max_height: 0.1,
+        last_touch: Some(Instant(7)),
+        robots: 6,
+    };
+    let ball = at(0.5, 0.25);
+    let (duration, distance, speed) = (5.5, 0.3, 1.7);
+    let crash = (1.8, 0.5, 0.25);
+    let cases = [
+        (What::LeftTouchLine, 6),
+        (What::LeftGoalLine, 7),
+        (What::AimlessKick { from: ball }, 11),
+        (What::PossibleGoal { shot }, 39),
+        (What::Goal { shot: Some(shot) }, 8),
+        (What::InvalidGoal { shot, reason: Invalid::TooHigh }, 42),
+        (What::NoProgress { duration }, 2),
+        (What::DoubleTouch, 14),
+        (What::KeeperHeldBall { duration }, 13),
+        (What::BoundaryCrossing, 41),
+        (What::BallTooFast { speed, chipped: true }, 18),
+        (What::DribbledTooFar { end: ball }, 17),
+        (What::AttackerTooClose { distance, ball }, 19),
+        (What::AttackerTouchedBall { depth: distance }, 15),
+        (What::DefenderInArea { depth: distance }, 31),
+        (What::DefenderTooClose { distance }, 29),
+        (What::TooFastInStop { speed }, 28),
+        (What::InterferedPlacement, 20),
+        (
+            What::CrashUnique {
+                victim: id(4),
+                crash_speed: crash.0,
+                speed_difference: crash.1,
+                angle: crash.2,
+            },
+            22,
+        ),
+        (
+            What::CrashDrawn {
+                yellow: id(3),
+                blue: id(4),
+                crash_speed: crash.0,
+                speed_difference: crash.1,
+                angle: crash.2,
+            },
+            21,
+        ),
+        (What::Pushed { victim: id(4), distance }, 24),
+        (What::HeldBall { duration }, 26),
+        (What::TooManyRobots { allowed: 5, on_field: 6, ball }, 38),
+        (What::PenaltyFailed { reason: PenaltyEnd::Saved }, 43),
+        (What::PlacementSucceeded { took: 3.0, precision: 0.1, distance }, 5),
+        (What::PlacementFailed { remaining: 1.0, nearest: -1.0 }, 3),
+        (What::MultipleFouls { caused_by: Vec::new() }, 34),
+        (What::MultipleCards, 32),
+        (What::MovedInHalt { speed }, 0),
+        (What::TooCloseInStop { distance }, 0),
+    ];
+    // The numbers are the reference's table of event types; 0 where the league has none.
+    assert_eq!(cases.len(), Kind::ALL.len());
+    for ((what, number), kind) in cases.into_iter().zip(Kind::ALL) {
+        assert_eq!(what.kind(), *kind);
+        let event =
+            Event { at: Instant(9), by: Some(Colour::Blue), robot: Some(id(2)), place: at(-1.0, 2.0), what };
+        let told = event.to_wire(1_000);
+        assert_eq!(told.as_ref().map_or(0, |told| told.r#type.unwrap()), number, "{kind:?}");
+        let Some(told) = told else { continue };
+        assert_eq!(told.created_timestamp, Some(1_009));
+        // The league's name of the type, in small letters, is ours.
+        let name = format!("{:?}", GameEventType::try_from(number).unwrap()).to_lowercase();
+        assert_eq!(name, kind.word().replace('_', ""), "{kind:?}");
+        // The event is the one that the type names: both are called alike.
+        let event = format!("{:?}", told.event.unwrap());
+        let event = event.split('(').next().unwrap().to_lowercase();
+        assert_eq!(event, name);
+    }
+}
+
+#[test]
+fn a_crash_and_a_goal_carry_what_was_measured() {
+    let event = |what| Event {
+        at: Instant(9),
+        by: Some(Colour::Blue),
+        robot: Some(id(2)),
+        place: at(-1.0, 2.0),
+        what,
+    };
+    let crash = What::CrashUnique { victim: id(4), crash_speed: 1.8, speed_difference: 0.5, angle: 0.25 };
+    let Some(ssl::event::Event::BotCrashUnique(crash)) = event(crash).to_wire(0).unwrap().event else {
+        panic!()
+    };
+    let vector = |x, y| Some(ssl::common::Vector2 { x, y });
+    assert_eq!(
+        crash,
+        ssl::event::BotCrashUnique {
+            by_team: 2,
+            violator: Some(2),
+            victim: Some(4),
+            location: vector(-1.0, 2.0),
+            crash_speed: Some(1.8),
+            speed_diff: Some(0.5),
+            crash_angle: Some(0.25),
+        }
+    );
+    let shot = Shot {
+        kicker: Some(yellow(3)),
+        from: at(1.0, 0.0),
+        max_height: 0.1,
+        last_touch: Some(Instant(7)),
+        robots: 6,
+    };
+    let goal = event(What::InvalidGoal { shot, reason: Invalid::RecentFoul(Kind::CrashDrawn) });
+    let Some(ssl::event::Event::InvalidGoal(goal)) = goal.to_wire(1_000).unwrap().event else { panic!() };
+    assert_eq!(
+        goal,
+        ssl::event::Goal {
+            by_team: 2,
+            kicking_bot: Some(3),
+            location: vector(-1.0, 2.0),
+            kick_location: vector(1.0, 0.0),
+            max_ball_height: Some(0.1),
+            kicking_team: Some(1),
+            num_robots_by_team: Some(6),
+            last_touch_by_team: Some(1_007),
+            message: Some("recent foul: bot_crash_drawn".into()),
+        }
+    );
+}

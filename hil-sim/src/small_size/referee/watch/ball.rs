@@ -81,7 +81,8 @@ impl BallWatch {
         match (self.taker, scene.game.phase) {
             (Taker::Awaited, Phase::FreeKick(team) | Phase::Kickoff(team)) => {
                 let first = touching.next()?;
-                self.taker = if first.colour == team { Taker::Is(first) } else { Taker::None };
+                let alone = first.colour == team && touching.next().is_none();
+                self.taker = if alone { Taker::Is(first) } else { Taker::None };
                 None
             }
             (Taker::Awaited, _) => {

@@ -29,6 +29,10 @@ impl Lines {
             return;
         }
         self.sent_out = None;
+        // One that was outside when play began, because nobody fetched it, has not left.
+        if legality::ball_is_out(scene.game.field, before) {
+            return;
+        }
         let Some(crossing) = legality::crossing(scene.game.field, before, now) else { return };
         let event = judge(scene, touches, crossing);
         if let (Some(touch), true) = (touches.last(), event.what.kind().is_ball_out()) {
