@@ -13,7 +13,8 @@
 //!
 //! **Invariants.** Nothing panics on what a packet holds; every image is accounted for in [`Counts`]. Images within 50 ms of
 //! the newest count in the order in which they were taken, so copies and shuffled packets change nothing. After
-//! [`Tracker::new`] and the first packets nothing is allocated. Same packets, same bits.
+//! [`Tracker::new`] and the first packets nothing is allocated. Same packets, same bits. A packet costs some 20,000
+//! instructions, the picture of now included (16,200 with grSim's recording, 23,200 with ER-Force's 11 robots; `track --times`).
 //!
 //! ```
 //! use host::tracking::Tracker;

@@ -3,5 +3,7 @@
 mod ball;
 mod clocks;
 mod order;
+mod publish;
+mod recordings;
 mod robots;
 mod stadium;
