@@ -30,7 +30,7 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         Ok(Request::TrialCost) => told(trial_cost::run_bench(&Context::new())),
-        Ok(Request::Bench(words)) => told(bench::retrieval(&Context::new(), &words)),
+        Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
         Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
         Ok(Request::Help) => {
@@ -75,8 +75,8 @@ enum Request {
     Evaluation,
     /// What a simulated second costs.
     TrialCost,
-    /// Retrieval, with these words for the bench.
-    Bench(Vec<String>),
+    /// Retrieval or motion, with these words for the bench.
+    Bench(&'static str, Vec<String>),
     Help,
 }
 
@@ -95,9 +95,10 @@ impl Request {
             }
             Some("bench") => {
                 return match words.next() {
-                    Some("retrieval") => Ok(Self::Bench(words.map(String::from).collect())),
+                    Some("retrieval") => Ok(Self::Bench("retrieval", words.map(String::from).collect())),
+                    Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
-                    _ => Err("bench needs a name: retrieval or trial".into()),
+                    _ => Err("bench needs a name: retrieval, motion or trial".into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -132,6 +133,9 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo
                  count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
                  --write puts the table into casebase/README.md, --guest leaves this machine out,
                  --verify holds 10^6 answers to a plain scan's instead
+  bench motion [--write | --guest | --verify]
+                 likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,
+                 --verify holds 10^6 times to the best of all shares between the axes instead
   bench trial    count the instructions of a simulated second and hold them to the budget";
 
 #[cfg(test)]
@@ -167,7 +171,10 @@ mod tests {
         assert!(ask("pictures now").is_err());
         assert!(matches!(ask("evaluation"), Ok(Request::Evaluation)));
         assert!(ask("evaluation soon").is_err());
-        assert!(matches!(ask("bench retrieval --guest"), Ok(Request::Bench(words)) if words == ["--guest"]));
+        assert!(
+            matches!(ask("bench retrieval --guest"), Ok(Request::Bench("retrieval", words)) if words == ["--guest"])
+        );
+        assert!(matches!(ask("bench motion"), Ok(Request::Bench("motion", words)) if words.is_empty()));
         assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
         assert!(ask("bench").unwrap_err().contains("retrieval"));
     }

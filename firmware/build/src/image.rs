@@ -47,6 +47,8 @@ pub enum Program {
     MathHash,
     /// Counts the instructions of retrievals.
     RetrievalBench,
+    /// Counts the instructions of motion.
+    MotionBench,
 }
 
 impl Program {
@@ -56,6 +58,7 @@ impl Program {
             Self::Robot => "onetwo-mps2",
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
+            Self::MotionBench => "motion-bench",
         }
     }
 }

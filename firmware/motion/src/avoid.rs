@@ -161,7 +161,7 @@ fn past<F: Copy>(from: Point<F>, via: Point<F>, behind: Point<F>, limits: &FreeL
 /// The first of the possible steps after which the robot can brake to rest without touching anything.
 fn safe_step<F: Copy>(
     course: &Course<'_, F>,
-    scene: &Scene<F>,
+    scene: &Scene<'_, F>,
     motion: &FreeMotion<F>,
     towards: Point<F>,
 ) -> (State<F>, Restraint) {
@@ -180,7 +180,7 @@ fn safe_step<F: Copy>(
 }
 
 /// From this state, braking straight ahead to rest touches nothing and stays within.
-fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<F>, state: &State<F>) -> bool {
+fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<'_, F>, state: &State<F>) -> bool {
     let speed = state.velocity.norm();
     let time = speed / course.limits.braking;
     let way = state.velocity * (0.5 * time);
@@ -223,7 +223,7 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
 /// Most obstacles that are regarded: 21 other robots, the rules' 12 shapes, and some to spare.
 pub const OBSTACLES_MAX: usize = 40;
 /// Most straight pieces that a search looks at.
-pub const CHECKS_MAX: u32 = 24;
+pub const CHECKS_MAX: u32 = 12;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.

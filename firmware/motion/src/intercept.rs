@@ -2,8 +2,8 @@
 //!
 //! For future places of the ball, [`STEP`] apart in time: when is the ball there, when can the robot be behind it, looking
 //! at the kick's target? Their difference is the slack; only a slack ≥ 0 meets the ball. Places that a bound of the robot's
-//! reach rules out are skipped, [`BLOCK`] at a time and then singly, without planning a motion to them; the answer is that
-//! of the search through all of them.
+//! reach rules out are skipped, eight at a time and then singly, without planning a motion to them; the answer is that of
+//! the search through all of them.
 
 use geometry::{Point, Vector};
 
@@ -86,69 +86,96 @@ pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Poin
 impl<F: Copy> Interception<'_, F> {
     /// Finds the place.
     pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
-        let horizon = self.horizon();
-        // The last place is the horizon's own, wherever the steps end.
-        let steps = (horizon * (1.0 / STEP)) as u32;
-        let mut best: Option<Meeting<F>> = None;
-        let mut block = 0;
-        let mut begins = 0.0;
-        while block <= steps {
-            let end = steps.min(block + BLOCK - 1);
-            let time = if end == steps { horizon } else { end as f32 * STEP };
-            let (ends, _) = self.ball.progress(time);
-            if !self.is_out_of_reach(limits, [begins, ends], time, best.as_ref()) {
-                for step in block..=end {
-                    self.look(limits, step as f32 * STEP, &mut best);
-                    if wish == Wish::Soonest && best.is_some() {
-                        break;
-                    }
-                }
-                if end == steps && (wish == Wish::Safest || best.is_none()) {
-                    self.look(limits, horizon, &mut best);
-                }
-            }
-            if wish == Wish::Soonest && best.is_some() {
-                break;
-            }
-            begins = ends;
-            block = end + 1;
-        }
-        best.map_or_else(|| self.chase(limits, horizon), Verdict::Meets)
+        let best = match wish {
+            Wish::Soonest => self.soonest(limits),
+            Wish::Safest => self.safest(limits),
+        };
+        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
     }
 
     fn horizon(&self) -> f32 {
         self.until.min(self.ball.duration()).clamp(0.0, HORIZON)
     }
 
-    /// No place with the ball's ways in between is reached by `time` and with more slack than the best.
-    fn is_out_of_reach<L: CalcMotion>(
-        &self,
-        limits: &L,
-        ways: [f32; 2],
-        time: f32,
-        best: Option<&Meeting<F>>,
-    ) -> bool {
+    /// Number of the last step; the horizon itself comes after it, wherever the steps end.
+    fn steps(&self) -> u32 {
+        (self.horizon() * (1.0 / STEP)) as u32
+    }
+
+    fn soonest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
+        let steps = self.steps();
+        let mut begins = 0.0;
+        for block in 0..=steps / BLOCK {
+            let (first, last) = (block * BLOCK, steps.min(block * BLOCK + BLOCK - 1));
+            let time = if last == steps { self.horizon() } else { last as f32 * STEP };
+            let (ends, _) = self.ball.progress(time);
+            if !self.is_out_of_reach(limits, [begins, ends], time) {
+                for step in first..=last {
+                    if let Some(meeting) = self.look(limits, step as f32 * STEP, 0.0) {
+                        return Some(meeting);
+                    }
+                }
+                if last == steps {
+                    return self.look(limits, time, 0.0);
+                }
+            }
+            begins = ends;
+        }
+        None
+    }
+
+    /// From the end backwards, as slack mostly grows to the end, after some probes for what is there to be had.
+    fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
+        let (steps, horizon) = (self.steps(), self.horizon());
+        let mut best = self.look(limits, horizon, 0.0);
+        let mut least = best.as_ref().map_or(0.0, Meeting::slack);
+        for probe in 1..PROBES {
+            let step = steps * probe / PROBES;
+            if let Some(meeting) = self.look(limits, step as f32 * STEP, least) {
+                least = meeting.slack();
+            }
+        }
+        let mut block = steps / BLOCK + 1;
+        while block > 0 {
+            block -= 1;
+            let (first, last) = (block * BLOCK, steps.min(block * BLOCK + BLOCK - 1));
+            let (begins, _) = self.ball.progress(first as f32 * STEP);
+            let time = last as f32 * STEP;
+            let (ends, _) = self.ball.progress(time);
+            if self.is_out_of_reach(limits, [begins, ends], time - least) {
+                continue;
+            }
+            for step in (first..=last).rev() {
+                // Of equal ones the first.
+                if let Some(meeting) = self.look(limits, step as f32 * STEP, least) {
+                    least = meeting.slack();
+                    best = Some(meeting);
+                }
+            }
+        }
+        best
+    }
+
+    /// No place with the ball's ways in between is reached within this time.
+    fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, ways: [f32; 2], within: f32) -> bool {
         let [begins, ends] = ways;
         let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
-        // One step more in front, as the steps of a block begin behind the end of the last.
         let radius = 0.5 * (ends - begins) + self.reach;
-        let within = time - best.map_or(0.0, Meeting::slack);
         limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
     }
 
-    fn look<L: CalcMotion>(&self, limits: &L, time: f32, best: &mut Option<Meeting<F>>) {
+    /// The meeting at a time, if its slack is `least` at least.
+    fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Option<Meeting<F>> {
         let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
         let place = kick_place(ball, self.target, self.reach);
-        let least = best.as_ref().map_or(0.0, Meeting::slack);
         if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
-            return;
+            return None;
         }
-        let robot_time = limits.time(self.robot, self.velocity, place);
+        // A little more than is asked, as both differences are rounded.
+        let within = time - least + ROUNDING;
+        let robot_time = limits.time_within(self.robot, self.velocity, place, within)?;
         let meeting = Meeting { ball, place, ball_time: time, robot_time };
-        let slack = meeting.slack();
-        if slack > least || (best.is_none() && slack >= 0.0) {
-            *best = Some(meeting);
-        }
+        (meeting.slack() >= least).then_some(meeting)
     }
 
     fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
@@ -161,7 +188,11 @@ impl<F: Copy> Interception<'_, F> {
 /// Between two future places of the ball, s.
 pub const STEP: f32 = 0.02;
 /// Places that are ruled out together.
-pub const BLOCK: u32 = 8;
+const BLOCK: u32 = 8;
+/// s.
+const ROUNDING: f32 = 1e-5;
+/// Shares of the horizon that are tried first for how much slack there is.
+const PROBES: u32 = 6;
 /// Nobody plans farther ahead, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
 /// m (paper 2's robots; papers-checklist D2).

@@ -24,7 +24,7 @@ pub use drag::{DragLimits, DragMotion};
 pub use free::{FreeLimits, FreeMotion};
 pub use turn::{Turn, TurnLimits};
 
-use geometry::{Point, Vector};
+use geometry::{Point, Vector, math};
 
 /// Largest coordinate (m) and speed (m/s) that is taken for a true one: 1 km, above any field and below where squares of
 /// `f32` lose their last use.
@@ -67,6 +67,15 @@ pub trait CalcMotion {
 
     /// `t*` alone, s: the duration of [`Self::plan`].
     fn time<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> f32;
+
+    /// [`Self::time`], if it is `within` seconds at most; finding out that it is not is cheaper.
+    fn time_within<F: Copy>(
+        &self,
+        from: Point<F>,
+        velocity: Vector<F>,
+        to: Point<F>,
+        within: f32,
+    ) -> Option<f32>;
 
     /// Is it certain, without planning, that [`Self::time`] to every place within `radius` m of `to` is over `within`
     /// seconds? A bound from the largest acceleration and speed; `false` says nothing.
@@ -115,8 +124,34 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     }
     let far = offset - velocity * (0.5 * time);
     let reach = (0.25 * utmost.acceleration * time * time + radius) * BOUND_SLACK;
-    let run = (utmost.speed * time + radius) * BOUND_SLACK;
-    far.dot(far) > reach * reach || offset.dot(offset) > run * run
+    if far.dot(far) > reach * reach {
+        return true;
+    }
+    // Straight there: what speeding up and braking take at least, and the speed.
+    let length = offset.norm();
+    let Utmost { acceleration, speed } = utmost;
+    let distance = length - radius;
+    if distance <= 0.0 {
+        return false;
+    }
+    let per_acceleration = 1.0 / acceleration;
+    let (mut ahead, mut distance, mut least) = (velocity.dot(offset) / length, distance, 0.0);
+    if ahead < 0.0 {
+        least = -ahead * per_acceleration;
+        distance -= 0.5 * ahead * least;
+        ahead = 0.0;
+    } else if 0.5 * ahead * ahead * per_acceleration > distance {
+        // It overshoots; farther is not longer then.
+        return false;
+    }
+    let squared = acceleration * distance + 0.5 * ahead * ahead;
+    least += if squared <= speed * speed {
+        (2.0 * math::sqrt(squared) - ahead) * per_acceleration
+    } else {
+        let ways = (speed * speed - 0.5 * ahead * ahead) * per_acceleration;
+        (2.0 * speed - ahead) * per_acceleration + (distance - ways) / speed
+    };
+    least > time * BOUND_SLACK
 }
 
 /// What rounding may take from a bound: 10⁻⁴, a thousand times what `f32` errs.

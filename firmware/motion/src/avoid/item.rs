@@ -4,57 +4,84 @@ use geometry::{Point, Segment, Shape, Vector, math};
 
 use super::{FORESIGHT, OBSTACLES_MAX, Obstacle};
 
-/// An obstacle with the distance that is kept from it.
+/// An obstacle with the distance that is kept from it, and a circle around it: most are told by that alone.
 #[derive(Clone, Copy)]
 pub(super) struct Item<F> {
-    pub(super) shape: Shape<F>,
-    pub(super) velocity: Vector<F>,
-    pub(super) moves: bool,
+    center: Point<F>,
+    /// Squares of the circle's radius, with the margins of routes and of braking.
+    route: f32,
+    brake: f32,
     /// What routes keep from the shape, m: [`SKIN`], or less where start or goal are nearer.
     pub(super) margin: f32,
+    /// The circle is the shape.
+    is_disc: bool,
+    pub(super) moves: bool,
 }
 
 /// All obstacles, and the region to stay in.
-pub(super) struct Scene<F> {
+pub(super) struct Scene<'o, F> {
+    obstacles: &'o [Obstacle<F>],
     items: [Item<F>; OBSTACLES_MAX],
-    count: usize,
+    moves: bool,
     within: Option<Shape<F>>,
 }
 
-impl<F: Copy> Scene<F> {
-    pub(super) fn new(obstacles: &[Obstacle<F>], within: Option<Shape<F>>) -> Self {
-        let nothing = Shape::Disc { center: Point::default(), radius: 0.0 };
-        let mut items = [Item { shape: nothing, velocity: Vector::default(), moves: false, margin: SKIN }; _];
-        let mut count = 0;
-        for (item, obstacle) in items.iter_mut().zip(obstacles) {
-            item.shape = obstacle.shape;
-            if obstacle.velocity.is_finite() {
-                item.velocity = obstacle.velocity;
-                item.moves = item.velocity.dot(item.velocity) > SPEED_MIN * SPEED_MIN;
-            }
-            count += 1;
+impl<'o, F: Copy> Scene<'o, F> {
+    pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>) -> Self {
+        let item = Item {
+            center: Point::default(),
+            route: 0.0,
+            brake: 0.0,
+            margin: SKIN,
+            is_disc: false,
+            moves: false,
+        };
+        let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
+        let mut scene = Self { obstacles, items: [item; _], moves: false, within };
+        for (item, obstacle) in scene.items.iter_mut().zip(obstacles) {
+            let velocity = obstacle.velocity;
+            item.moves = velocity.is_finite() && velocity.dot(velocity) > SPEED_MIN * SPEED_MIN;
+            scene.moves |= item.moves;
+            item.enclose(&obstacle.shape);
         }
-        Self { items, count, within }
+        scene
     }
 
-    pub(super) fn items(&self) -> &[Item<F>] {
-        self.items.get(..self.count).unwrap_or(&[])
+    /// Every obstacle with its item.
+    fn all(&self) -> impl Iterator<Item = (&Item<F>, &Obstacle<F>)> {
+        self.items.iter().zip(self.obstacles)
+    }
+
+    pub(super) fn get(&self, number: usize) -> Option<(&Item<F>, &Obstacle<F>)> {
+        self.items.get(number).zip(self.obstacles.get(number))
     }
 
     pub(super) fn moves(&self) -> bool {
-        self.items().iter().any(|item| item.moves)
+        self.moves
     }
 
     /// Routes keep [`SKIN`] from everything, but no more than start and goal do.
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>) {
-        for item in self.items.iter_mut().take(self.count) {
-            let nearest = gap(&item.shape, from).min(gap(&item.shape, goal));
-            item.margin = (nearest - TOUCH).clamp(0.0, SKIN);
+        for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
+            // Nearly all are far from both.
+            if item.may_hold(from) || item.may_hold(goal) {
+                let nearest = gap(&obstacle.shape, from).min(gap(&obstacle.shape, goal));
+                item.margin = (nearest - TOUCH).clamp(0.0, SKIN);
+                item.enclose(&obstacle.shape);
+            }
         }
     }
 
+    /// An obstacle nearer to the point than `least`, which is [`SKIN`] at most.
+    fn nearer(&self, point: Point<F>, least: f32) -> Option<&Obstacle<F>> {
+        let near = |item: &Item<F>, obstacle: &Obstacle<F>| {
+            item.may_hold(point) && obstacle.shape.distance_to(point) < least
+        };
+        self.all().find(|(item, obstacle)| near(item, obstacle)).map(|(_, obstacle)| obstacle)
+    }
+
     pub(super) fn is_inside(&self, point: Point<F>) -> bool {
-        self.items().iter().any(|item| item.shape.distance_to(point) < 0.0)
+        self.nearer(point, 0.0).is_some()
     }
 
     pub(super) fn stays_within(&self, point: Point<F>) -> bool {
@@ -70,11 +97,14 @@ impl<F: Copy> Scene<F> {
     pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
         let mut first = None;
         let mut least = f32::INFINITY;
-        for (i, item) in self.items().iter().enumerate() {
-            if let Some(share) = item.hit(from, way, at, time, item.margin)
+        let seen = Seen { from, way, before: at.min(FORESIGHT), later: (at + time).min(FORESIGHT) };
+        for (number, (item, obstacle)) in self.all().enumerate() {
+            let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
+            if let Some(share) = touches(from, way, item.center, item.route)
+                && let Some(share) = item.hit(&obstacle.shape, from, way, item.margin, share)
                 && share < least
             {
-                (first, least) = (Some(i), share);
+                (first, least) = (Some(number), share);
             }
         }
         first
@@ -82,7 +112,14 @@ impl<F: Copy> Scene<F> {
 
     /// Nothing is touched, with a smaller margin: what is left of braking.
     pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
-        self.items().iter().all(|item| item.hit(from, way, at, time, item.margin.min(BRAKE_SKIN)).is_none())
+        let seen = Seen { from, way, before: at.min(FORESIGHT), later: (at + time).min(FORESIGHT) };
+        self.all().all(|(item, obstacle)| {
+            let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
+            let margin = item.margin.min(BRAKE_SKIN);
+            touches(from, way, item.center, item.brake)
+                .and_then(|share| item.hit(&obstacle.shape, from, way, margin, share))
+                .is_none()
+        })
     }
 
     /// The point itself if it is free, else one nearby that is.
@@ -90,10 +127,8 @@ impl<F: Copy> Scene<F> {
         let start = self.within.map_or(point, |within| inside(&within, point));
         let mut at = start;
         for _ in 0..PUSHES_MAX {
-            let Some(item) = self.items().iter().find(|item| item.shape.distance_to(at) < FREE) else {
-                return at;
-            };
-            at = out_of(&item.shape, at, 2.0 * FREE);
+            let Some(obstacle) = self.nearer(at, FREE) else { return at };
+            at = out_of(&obstacle.shape, at, 2.0 * FREE);
             if let Some(within) = self.within {
                 at = inside(&within, at);
             }
@@ -102,8 +137,7 @@ impl<F: Copy> Scene<F> {
         for ring in 1..=RINGS {
             for [x, y] in COMPASS {
                 let at = start + Vector::new(x, y) * (ring as f32 * RING_STEP);
-                let free = self.items().iter().all(|item| item.shape.distance_to(at) >= FREE);
-                if free && self.stays_within(at) {
+                if self.stays_within(at) && self.nearer(at, FREE).is_none() {
                     return at;
                 }
             }
@@ -113,34 +147,75 @@ impl<F: Copy> Scene<F> {
 }
 
 impl<F: Copy> Item<F> {
-    /// The shape where it will be at a time.
-    pub(super) fn at(&self, time: f32) -> Shape<F> {
-        let by = self.velocity * time.clamp(0.0, FORESIGHT);
-        match self.shape {
-            Shape::Disc { center, radius } => Shape::Disc { center: center + by, radius },
+    /// Draws the circle around the shape, grown by the margins.
+    fn enclose(&mut self, shape: &Shape<F>) {
+        let (center, radius, corner) = match *shape {
+            Shape::Disc { center, radius } => (center, radius, 1.0),
             Shape::Capsule { spine, radius } => {
-                Shape::Capsule { spine: Segment::new(spine.from + by, spine.to + by), radius }
+                let half = spine.vector() * 0.5;
+                (spine.from + half, half.norm() + radius, 1.0)
             }
-            Shape::Box { low, high } => Shape::Box { low: low + by, high: high + by },
-        }
+            Shape::Box { low, high } => {
+                let half = (high - low) * 0.5;
+                (low + half, half.norm(), core::f32::consts::SQRT_2)
+            }
+        };
+        let square = |x: f32| x * x;
+        self.is_disc = matches!(shape, Shape::Disc { .. });
+        self.center = center;
+        self.route = square(radius + corner * self.margin);
+        self.brake = square(radius + corner * self.margin.min(BRAKE_SKIN));
     }
 
-    /// Whether a piece of way comes nearer than `margin`, and at which share of it about.
+    /// Whether the point is in the circle, or no number tells.
     #[inline]
-    fn hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32, margin: f32) -> Option<f32> {
-        let (mut from, mut way) = (from, way);
-        if self.moves {
-            // As the obstacle sees it.
-            let before = at.min(FORESIGHT);
-            from = from - self.velocity * before;
-            way += self.velocity * (before - (at + time).min(FORESIGHT));
-        }
-        match self.shape {
-            Shape::Disc { center, radius } => touches(from, way, center, radius + margin),
+    fn may_hold(&self, point: Point<F>) -> bool {
+        let off = point - self.center;
+        off.dot(off) <= self.route
+    }
+
+    /// Whether a piece of way that touches the circle at `share` comes nearer than `margin`, and at which share about.
+    #[inline]
+    fn hit(&self, shape: &Shape<F>, from: Point<F>, way: Vector<F>, margin: f32, share: f32) -> Option<f32> {
+        match *shape {
+            _ if self.is_disc => Some(share),
+            Shape::Disc { .. } => None,
             Shape::Capsule { spine, radius } => hits_capsule(from, way, &spine, radius + margin),
             Shape::Box { low, high } => hits_box(from, way, low, high, margin),
         }
     }
+}
+
+/// The obstacle's shape where it will be at a time.
+pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
+    let by = obstacle.velocity * time.clamp(0.0, FORESIGHT);
+    match obstacle.shape {
+        Shape::Disc { center, radius } => Shape::Disc { center: center + by, radius },
+        Shape::Capsule { spine, radius } => {
+            Shape::Capsule { spine: Segment::new(spine.from + by, spine.to + by), radius }
+        }
+        Shape::Box { low, high } => Shape::Box { low: low + by, high: high + by },
+    }
+}
+
+/// A piece of way and when it is gone, s.
+struct Seen<F> {
+    from: Point<F>,
+    way: Vector<F>,
+    before: f32,
+    later: f32,
+}
+
+impl<F: Copy> Seen<F> {
+    /// As an obstacle sees it that moves with `velocity`.
+    #[inline]
+    fn by(&self, velocity: Vector<F>) -> (Point<F>, Vector<F>) {
+        (self.from - velocity * self.before, self.way + velocity * (self.before - self.later))
+    }
+}
+
+fn square(x: f32) -> f32 {
+    x * x
 }
 
 /// By how much the shape may grow and not hold the point: corners of a box stay corners.
@@ -154,21 +229,21 @@ fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     }
 }
 
-/// The share of the way at which it is nearest to `center`, if that is nearer than `radius`.
+/// The share of the way at which it is nearest to `center`, if that is nearer than the root of `radius_squared`.
 #[inline]
-fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius: f32) -> Option<f32> {
+fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squared: f32) -> Option<f32> {
     let offset = center - from;
-    let (along, squared) = (offset.dot(way), way.dot(way));
+    let (along, length_squared) = (offset.dot(way), way.dot(way));
     // Behind, beyond, or beside.
-    let share = if along <= 0.0 {
-        0.0
-    } else if along >= squared {
-        1.0
-    } else {
-        along / squared
-    };
-    let off = offset - way * share;
-    (off.dot(off) < radius * radius).then_some(share)
+    if along <= 0.0 {
+        return (offset.dot(offset) < radius_squared).then_some(0.0);
+    }
+    if along >= length_squared {
+        let off = offset - way;
+        return (off.dot(off) < radius_squared).then_some(1.0);
+    }
+    let aside = offset.cross(way);
+    (aside * aside < radius_squared * length_squared).then(|| along / length_squared)
 }
 
 fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
@@ -177,15 +252,16 @@ fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, rad
     // Do they cross? from + s·way = spine.from + t·bone.
     let turn = way.cross(bone);
     if turn != 0.0 {
-        let (s, t) = (offset.cross(bone) / turn, offset.cross(way) / turn);
+        let per_turn = 1.0 / turn;
+        let (s, t) = (offset.cross(bone) * per_turn, offset.cross(way) * per_turn);
         if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
             return Some(s);
         }
     }
     let end = |at: Point<F>, share: f32| (spine.distance_to(at) < radius).then_some(share);
     end(from, 0.0)
-        .or_else(|| touches(from, way, spine.from, radius))
-        .or_else(|| touches(from, way, spine.to, radius))
+        .or_else(|| touches(from, way, spine.from, square(radius)))
+        .or_else(|| touches(from, way, spine.to, square(radius)))
         .or_else(|| end(from + way, 1.0))
 }
 

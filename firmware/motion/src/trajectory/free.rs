@@ -3,7 +3,7 @@
 use geometry::{Point, Vector, math};
 
 use super::axis::{AxisLimits, Phases};
-use super::balance::balance;
+use super::balance::{Balance, balance};
 use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
 /// Limits of a robot without drag.
@@ -50,7 +50,7 @@ impl CalcMotion for FreeLimits {
         }
         let limits = AxisLimits::new(self);
         let offset = to - from;
-        let shares = shares(&limits, offset, velocity);
+        let shares = shares(&limits, offset, velocity, f32::INFINITY);
         let x = limits.phases(offset.x(), velocity.x(), shares.x);
         let y = limits.phases(offset.y(), velocity.y(), shares.y);
         FreeMotion { from, to, x, y }
@@ -60,7 +60,22 @@ impl CalcMotion for FreeLimits {
         if !self.are_usable() || !usable(from, velocity, to) {
             return 0.0;
         }
-        shares(&AxisLimits::new(self), to - from, velocity).time
+        shares(&AxisLimits::new(self), to - from, velocity, f32::INFINITY).time
+    }
+
+    fn time_within<F: Copy>(
+        &self,
+        from: Point<F>,
+        velocity: Vector<F>,
+        to: Point<F>,
+        within: f32,
+    ) -> Option<f32> {
+        let time = if self.are_usable() && usable(from, velocity, to) {
+            shares(&AxisLimits::new(self), to - from, velocity, within).time
+        } else {
+            0.0
+        };
+        (time <= within).then_some(time)
     }
 
     fn is_surely_longer<F: Copy>(
@@ -77,12 +92,12 @@ impl CalcMotion for FreeLimits {
     }
 }
 
-fn shares<F>(limits: &AxisLimits, offset: Vector<F>, velocity: Vector<F>) -> super::balance::Balance {
+fn shares<F>(limits: &AxisLimits, offset: Vector<F>, velocity: Vector<F>, within: f32) -> Balance {
     let (dx, dy, vx, vy) = (offset.x(), offset.y(), velocity.x(), velocity.y());
     let (x, y) = (limits.effort(dx, vx), limits.effort(dy, vy));
     let sum = x + y;
     let first = if sum > 0.0 { y / sum } else { 0.5 };
-    balance(first, ROUNDS, TOLERANCE, |x, y| {
+    balance(first, ROUNDS, TOLERANCE, within, |x, y| {
         let (px, py) = (1.0 / x, 1.0 / y);
         (limits.time(dx * px, vx * px), limits.time(dy * py, vy * py))
     })
@@ -126,6 +141,6 @@ impl<F: Copy> Motion<F> for FreeMotion<F> {
 /// The smallest limit that is still one: below a micrometre a second nothing moves.
 const LIMIT_MIN: f32 = 1e-6;
 /// Times of the axes are evaluated at most so often; see firmware/motion/README.md for what more would win.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 5;
 /// Times that differ by less than 2 × this share are together.
 const TOLERANCE: f32 = 0.005;

@@ -215,6 +215,21 @@ fn what_is_surely_longer_is_longer_wherever_in_the_circle_it_goes() {
 }
 
 #[test]
+fn a_time_within_a_bound_is_the_time_and_none_is_over_it() {
+    let (free, drag) = (FreeLimits::default(), DragLimits::default());
+    for (i, (from, velocity, to)) in tasks(20_000).enumerate() {
+        let within = (i % 50) as f32 * 0.1;
+        let bounded =
+            [free.time_within(from, velocity, to, within), drag.time_within(from, velocity, to, within)];
+        for (bounded, time) in
+            bounded.into_iter().zip([free.time(from, velocity, to), drag.time(from, velocity, to)])
+        {
+            assert_eq!(bounded, (time <= within).then_some(time), "{from:?} {velocity:?} {to:?}");
+        }
+    }
+}
+
+#[test]
 fn odd_numbers_are_answered_and_no_numbers_rest() {
     let at = |x, y| Point::<Field>::new(x, y);
     let tiny = f32::from_bits(1);

@@ -1,0 +1,273 @@
+//! On which tasks is motion measured, and what is done with each? The same on a board and on the PC, to the last bit.
+//!
+//! Tasks are drawn from a seed, so nothing travels to the board; back come counts, and a hash of what was found. Runs in
+//! the bench's image (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`, which drives both. SI units.
+#![no_std]
+
+use core::fmt;
+
+use geometry::{Angle, Field, Point, Segment, Shape, Vector};
+use motion::avoid::{self, Course, Obstacle};
+use motion::ball::{BallModel, BallPath};
+use motion::intercept::{Interception, Wish, kick_reach};
+use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
+use rand_core::{RngCore, SeedableRng};
+use rand_xoshiro::Xoshiro128PlusPlus;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// `t*` without drag.
+    FreeTime,
+    /// The whole motion without drag.
+    FreePlan,
+    /// Its state at one time.
+    FreeState,
+    /// `t*` with drag.
+    DragTime,
+    /// The whole motion with drag.
+    DragPlan,
+    /// The soonest meeting with a ball.
+    Soonest,
+    /// The one with most slack.
+    Safest,
+    /// A step among 12 discs and 4 shapes that stand.
+    Avoid,
+    /// ... whose discs move.
+    AvoidMoving,
+}
+
+impl Work {
+    /// All, as they are told.
+    pub const ALL: [Self; 9] = [
+        Self::FreeTime,
+        Self::FreePlan,
+        Self::FreeState,
+        Self::DragTime,
+        Self::DragPlan,
+        Self::Soonest,
+        Self::Safest,
+        Self::Avoid,
+        Self::AvoidMoving,
+    ];
+
+    /// Its word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::FreeTime => "free-time",
+            Self::FreePlan => "free-plan",
+            Self::FreeState => "free-state",
+            Self::DragTime => "drag-time",
+            Self::DragPlan => "drag-plan",
+            Self::Soonest => "soonest",
+            Self::Safest => "safest",
+            Self::Avoid => "avoid",
+            Self::AvoidMoving => "avoid-moving",
+        }
+    }
+
+    /// Does it; the bits of what was found, folded into one word.
+    pub fn run(self, task: &Task) -> u32 {
+        let Task { from, velocity, to, .. } = *task;
+        let (free, drag) = (FreeLimits::default(), DragLimits::default());
+        match self {
+            Self::FreeTime => free.time(from, velocity, to).to_bits(),
+            Self::FreePlan => free.plan(from, velocity, to).duration().to_bits(),
+            Self::FreeState => folded(&task.motion.at(task.time)),
+            Self::DragTime => drag.time(from, velocity, to).to_bits(),
+            Self::DragPlan => drag.plan(from, velocity, to).duration().to_bits(),
+            Self::Soonest => task.meeting(Wish::Soonest),
+            Self::Safest => task.meeting(Wish::Safest),
+            Self::Avoid => task.step(&task.standing),
+            Self::AvoidMoving => task.step(&task.moving),
+        }
+    }
+}
+
+/// What is to be done.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// A start, a velocity and an end on a field of 12 × 9 m; every second way is short.
+    pub from: Point<Field>,
+    /// m/s.
+    pub velocity: Vector<Field>,
+    /// The end.
+    pub to: Point<Field>,
+    motion: <FreeLimits as CalcMotion>::Motion<Field>,
+    time: f32,
+    ball: BallPath<Field>,
+    start: Point<Field>,
+    target: Point<Field>,
+    standing: [Obstacle<Field>; OBSTACLES],
+    moving: [Obstacle<Field>; OBSTACLES],
+}
+
+impl Task {
+    fn meeting(&self, wish: Wish) -> u32 {
+        let asked = Interception {
+            robot: self.start,
+            velocity: self.velocity,
+            ball: &self.ball,
+            target: Point::new(4.5, 0.0),
+            reach: kick_reach(0.09, 0.0215),
+            until: 5.0,
+        };
+        match asked.find(&FreeLimits::default(), wish) {
+            motion::intercept::Verdict::Meets(meeting) => meeting.robot_time.to_bits(),
+            motion::intercept::Verdict::Chase { robot_time, .. } => robot_time.to_bits() ^ 1,
+        }
+    }
+
+    fn step(&self, obstacles: &[Obstacle<Field>]) -> u32 {
+        let course = Course {
+            from: self.start,
+            velocity: self.velocity * 0.3,
+            to: self.target,
+            limits: FreeLimits::default(),
+            obstacles,
+            within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
+            step: 0.01,
+        };
+        folded(&avoid::plan(&course).next)
+    }
+}
+
+fn folded(state: &State<Field>) -> u32 {
+    let State { position, velocity, acceleration } = *state;
+    let words = [position.x(), position.y(), velocity.x(), velocity.y(), acceleration.x(), acceleration.y()];
+    words.into_iter().fold(0, |all: u32, word| all.rotate_left(5) ^ word.to_bits())
+}
+
+/// As DESIGN's worst scene: 12 robots and 4 forbidden regions.
+const OBSTACLES: usize = 16;
+
+/// The tasks of a seed, for ever.
+#[derive(Clone, Debug)]
+pub struct Tasks(Xoshiro128PlusPlus);
+
+impl Tasks {
+    /// From their beginning.
+    pub fn new(seed: u64) -> Self {
+        Self(Xoshiro128PlusPlus::seed_from_u64(seed))
+    }
+
+    fn within(&mut self, range: f32) -> f32 {
+        ((self.0.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range
+    }
+
+    fn point(&mut self) -> Point<Field> {
+        Point::new(self.within(4.6), self.within(3.1))
+    }
+
+    fn free(&mut self, obstacles: &[Obstacle<Field>]) -> Point<Field> {
+        loop {
+            let point = self.point();
+            if obstacles.iter().all(|obstacle| obstacle.shape.distance_to(point) > 0.0) {
+                return point;
+            }
+        }
+    }
+
+    /// Twelve robots, both defence areas, a stadium and a box, all for a robot's centre.
+    fn scene(&mut self) -> [Obstacle<Field>; OBSTACLES] {
+        let mut number = 0;
+        [(); OBSTACLES].map(|()| {
+            number += 1;
+            let at = self.point();
+            Obstacle::standing(match number {
+                13 => Shape::Box { low: Point::new(-4.6, -1.1), high: Point::new(-3.4, 1.1) },
+                14 => Shape::Box { low: Point::new(3.4, -1.1), high: Point::new(4.6, 1.1) },
+                15 => {
+                    let along = Vector::polar(1.0, Angle::new(self.within(3.0)));
+                    Shape::Capsule { spine: Segment::new(at, at + along), radius: 0.5 }
+                }
+                16 => Shape::Box { low: at, high: at + Vector::new(0.6, 0.5 + self.within(0.3)) },
+                _ => Shape::Disc { center: at, radius: 0.25 },
+            })
+        })
+    }
+}
+
+impl Iterator for Tasks {
+    type Item = Task;
+
+    fn next(&mut self) -> Option<Task> {
+        let near = if self.0.next_u32() & 1 == 0 { 0.05 } else { 1.0 };
+        let from = Point::new(self.within(6.0), self.within(4.5));
+        let velocity = Vector::new(self.within(2.1), self.within(2.1));
+        let to = from + Vector::new(self.within(12.0), self.within(9.0)) * near;
+        let motion = FreeLimits::default().plan(from, velocity, to);
+        let time = motion.duration() * (0.5 + self.within(0.5));
+        let kick = Vector::polar(3.5 + self.within(3.0), Angle::new(self.within(3.0)));
+        let ball = BallModel::default().kicked(self.point(), kick);
+        let standing = self.scene();
+        let (start, target) = (self.free(&standing), self.free(&standing));
+        let moving = standing.map(|obstacle| match obstacle.shape {
+            Shape::Disc { center, radius } => {
+                Obstacle::robot(center, Vector::new(self.within(1.5), self.within(1.5)), radius)
+            }
+            _ => obstacle,
+        });
+        Some(Task { from, velocity, to, motion, time, ball, start, target, standing, moving })
+    }
+}
+
+/// What one task came to: instructions of each work, and a hash of all that was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// In the order of [`Work::ALL`].
+    pub instructions: [u32; Work::ALL.len()],
+    /// Of the bits.
+    pub found: u32,
+}
+
+impl Counted {
+    /// Does all works on a task. `count` does one, and counts.
+    pub fn of(task: &Task, mut count: impl FnMut(Work, &Task) -> (u32, u32)) -> Self {
+        let mut found = 0_u32;
+        let instructions = Work::ALL.map(|work| {
+            let (bits, instructions) = count(work, task);
+            found = found.rotate_left(7) ^ bits;
+            instructions
+        });
+        Self { instructions, found }
+    }
+
+    /// From a line of numbers.
+    pub fn from_line(line: &str) -> Option<Self> {
+        let mut words = line.split(' ').map_while(|word| word.parse().ok());
+        let mut counted = Self { instructions: [0; _], found: words.next()? };
+        for instructions in &mut counted.instructions {
+            *instructions = words.next()?;
+        }
+        words.next().is_none().then_some(counted)
+    }
+}
+
+impl fmt::Display for Counted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.found)?;
+        self.instructions.iter().try_for_each(|count| write!(f, " {count}"))
+    }
+}
+
+/// Tasks that the board is given, from this seed on.
+pub const TASKS: usize = 500;
+/// Of the tasks.
+pub const SEED: u64 = 2013;
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn a_count_comes_back_as_it_went_and_a_seed_gives_the_same_tasks() {
+        let counted = |seed| Counted::of(&Tasks::new(seed).next().unwrap(), |work, task| (work.run(task), 7));
+        assert_eq!(Counted::from_line(&counted(1).to_string()), Some(counted(1)));
+        assert_ne!(counted(1).found, counted(2).found);
+        assert_eq!(Counted::from_line("1 2 3"), None);
+    }
+}

@@ -1,0 +1,43 @@
+//! What does motion cost on this machine? This very program under callgrind, which counts instructions.
+//!
+//! It does all tasks once and then twice; the difference is free of everything that happens once.
+
+use std::env;
+use std::hint::black_box;
+use std::process::{Command, Stdio};
+
+use motion_bench::{SEED, TASKS, Task, Tasks, Work};
+
+/// Instructions a task, on average.
+pub(crate) fn instructions(work: Work) -> Result<u64, String> {
+    Ok(counted(work, 2)?.saturating_sub(counted(work, 1)?) / TASKS as u64)
+}
+
+fn counted(work: Work, rounds: u32) -> Result<u64, String> {
+    let program = env::current_exe().map_err(|error| format!("which program is this? {error}"))?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(program)
+        .args(["--work", work.word(), &rounds.to_string()])
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("valgrind does not start: {error}; install the package valgrind"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let count = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    count.filter(|_| output.status.success()).ok_or_else(|| format!("callgrind counted nothing: {said}"))
+}
+
+/// What callgrind looks at: all tasks, `rounds` times.
+pub(crate) fn work(word: &str, rounds: &str) -> Result<(), String> {
+    let work = Work::ALL.into_iter().find(|work| work.word() == word).ok_or("no such work")?;
+    let rounds: u32 = rounds.parse().map_err(|_| "rounds")?;
+    let tasks: Vec<Task> = Tasks::new(SEED).take(TASKS).collect();
+    let mut found = 0;
+    for _ in 0..rounds {
+        for task in &tasks {
+            found ^= work.run(black_box(task));
+        }
+    }
+    println!("{found}");
+    Ok(())
+}

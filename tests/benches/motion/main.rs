@@ -1,0 +1,65 @@
+//! What does motion cost, and how near the best is it? (DESIGN §9) `cargo xtask bench motion` starts it.
+//!
+//! Instructions on the robot's processor (QEMU) and on this machine (callgrind), on tasks of a seed; with `--verify` 10^6
+//! tasks held to the best of all shares. Exit code 1 where a budget is broken.
+
+mod figures;
+mod guest;
+mod host;
+mod verify;
+
+use std::process::ExitCode;
+
+use figures::Figures;
+use motion_bench::Work;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).filter(|word| *word != "--bench").collect();
+    let done = match words[..] {
+        ["--work", work, rounds] => host::work(work, rounds),
+        [] => report(false, true),
+        ["--write"] => report(true, true),
+        ["--guest"] => report(false, false),
+        ["--verify"] => verify::run(VERIFIED),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("bench motion: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Counts, prints, judges.
+fn report(write: bool, here: bool) -> Result<(), String> {
+    let counted = guest::counted()?;
+    let mut means = [None; Work::ALL.len()];
+    if here {
+        for (mean, work) in means.iter_mut().zip(Work::ALL) {
+            *mean = Some(host::instructions(work)?);
+        }
+    }
+    let figures = Figures::of(&counted, means);
+    let text = figures.table();
+    println!("{text}");
+    if write {
+        figures::write(&text)?;
+    }
+    let broken = figures.broken();
+    if broken.is_empty() { Ok(()) } else { Err(broken.join("\n")) }
+}
+
+const USAGE: &str = "\
+usage: cargo xtask bench motion [--write | --guest | --verify]
+  --write   put the table into firmware/motion/README.md
+  --guest   the robot's processor alone, without callgrind
+  --verify  hold 10^6 times to the best of all shares between the axes";
+
+/// Tasks, without drag and with.
+const VERIFIED: usize = 1_000_000;

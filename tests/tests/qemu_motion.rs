@@ -1,0 +1,20 @@
+//! Is a motion planned on the robot's processor the same as on the PC, and no dearer than it was? (DESIGN §9)
+//!
+//! `cargo xtask bench motion` prints the same counts, and those of this machine.
+//! Needs QEMU and a compiler for the target (feature `qemu`).
+
+#[path = "../benches/motion/figures.rs"]
+#[allow(dead_code, reason = "the bench prints what is not judged")]
+mod figures;
+#[path = "../benches/motion/guest.rs"]
+mod guest;
+
+use motion_bench::Work;
+
+#[test]
+fn motion_on_the_board_is_that_of_the_pc_and_within_its_budget() {
+    let counted = guest::counted().unwrap_or_else(|why| panic!("{why}"));
+    let figures = figures::Figures::of(&counted, [None; Work::ALL.len()]);
+    let broken = figures.broken();
+    assert!(broken.is_empty(), "{}\n{}", broken.join("\n"), figures.table());
+}
