@@ -10,12 +10,13 @@ use casebase::CaseBase;
 use geometry::{Field, GoalEnd, Point, Pose, Vector};
 use hil_sim::small_size::{Ball, Event, Parameters, Robot, Who, World};
 use protocol::host::{
-    Command, Directive, Duty, HostMessage, PART_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart,
+    Command, Directive, Duty, HostMessage, PART_ROBOTS_MAX, Telemetry, WireBall, WireRobot, WireWho,
+    WorldPart,
 };
 use protocol::quantized::to_mm;
 use protocol::robot_io::{ActuatorFrame, OmniKick};
-use protocol::team::TeamMessage;
-use protocol::{Instant, RobotId, TeamId};
+use protocol::team::{Closure, CycleState, Decision, TeamMessage};
+use protocol::{CycleId, Instant, RobotId, TeamId};
 use rules::{Colour, League, Phase, Side};
 
 /// A field with our robots under brains, theirs standing where the test puts them.
@@ -34,6 +35,10 @@ pub struct Carpet<'a> {
     pub events: Vec<(f64, Event)>,
     /// The newest order of each of ours.
     pub orders: BTreeMap<RobotId, ActuatorFrame>,
+    /// How cycles ended, as somebody said.
+    pub ends: Vec<(CycleId, Closure)>,
+    /// What ours told the host of themselves last, and when.
+    pub telemetry: BTreeMap<RobotId, (Instant, Telemetry)>,
     /// The host says nothing.
     pub silent: bool,
     steps: u64,
@@ -62,6 +67,8 @@ impl<'a> Carpet<'a> {
             brains,
             events: Vec::new(),
             orders: BTreeMap::new(),
+            ends: Vec::new(),
+            telemetry: BTreeMap::new(),
             silent: false,
             steps: 0,
             picture: 0,
@@ -156,6 +163,18 @@ impl<'a> Carpet<'a> {
             let Some(sensors) = self.world.sensors(who) else { continue };
             brain.handle_sensors(now, &sensors);
             while let Some(message) = brain.poll_message(now) {
+                match &message {
+                    TeamMessage::Beacon(beacon) => {
+                        if let Some(CycleState { id, decision: Decision::Closed(end), .. }) = &beacon.cycle
+                            && !self.ends.contains(&(*id, *end))
+                        {
+                            self.ends.push((*id, *end));
+                        }
+                    }
+                    TeamMessage::Telemetry(telemetry) => {
+                        self.telemetry.insert(id, (now, *telemetry));
+                    }
+                }
                 self.air.push((id, message));
             }
             if let Some(order) = brain.poll_actuators(now) {

@@ -4,8 +4,9 @@ use brain::governor::Ruling;
 use casebase::CaseBase;
 use geometry::{Angle, Field, Point};
 use match_tests::carpet::{Carpet, kicks, pose};
-use protocol::host::{Directive, Duty, KickOrder};
+use protocol::host::{Condition, Directive, Duty, Hint, KickOrder};
 use protocol::quantized::{WirePoint, WirePose};
+use protocol::team::Closure;
 use rules::{League, Phase, Side};
 
 fn base() -> CaseBase<'static> {
@@ -278,4 +279,106 @@ fn a_field_player_sent_into_its_own_area_stays_out_and_the_keeper_does_not() {
         assert!(p.x() > -3.41 || p.y().abs() > 1.09, "{p:?}");
     });
     assert!(carpet.ours(0).pose.position.distance(Point::new(-4.2, 0.2)) < 0.02);
+}
+
+fn gameplay(carpet: &mut Carpet<'_>, robots: &[u8]) {
+    for &robot in robots {
+        carpet.tell(robot, Duty::Player, Directive::Gameplay { hint: None });
+    }
+}
+
+#[test]
+fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
+    let mut scored = 0;
+    let mut ends = Vec::new();
+    for ball in [(-0.2, 0.1), (0.8, 1.0), (2.2, -0.2), (-1.5, 0.5), (2.6, 1.8)] {
+        let (x, y) = ball;
+        let mut carpet =
+            carpet(ball, &[(1, x - 0.6, y, 0.0), (2, x + 0.5, y + 1.0, 0.0), (3, x, y - 1.3, 0.0)]);
+        gameplay(&mut carpet, &[1, 2, 3]);
+        let goal = carpet.until(15.0, |c| c.ball().x() > 4.5 && c.ball().y().abs() < 0.5);
+        scored += usize::from(goal.is_some());
+        ends.extend(carpet.ends.iter().map(|(_, end)| *end));
+    }
+    let finished = ends.iter().filter(|end| **end == Closure::Finished).count();
+    let broken = ends.iter().filter(|end| matches!(end, Closure::Aborted { .. })).count();
+    assert!(scored >= 4, "{scored} of 5");
+    assert!(finished > broken, "{finished} finished, {broken} aborted: {ends:?}");
+}
+
+#[test]
+fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_without_it() {
+    let mut carpet = carpet((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
+    gameplay(&mut carpet, &[1, 2, 3]);
+    let id = |n| protocol::RobotId::new(n).unwrap();
+    let plays =
+        |c: &Carpet<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
+    carpet.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
+    carpet.tell(2, Duty::Player, go_to(-2.0, 2.0, 0.0));
+    let took = carpet.until(1.0, |c| !plays(c, 2)).expect("leaves");
+    assert!(took <= 0.1, "{took}");
+    carpet.during(4.0, |c| assert!(!plays(c, 2)));
+}
+
+#[test]
+fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
+    let base = base();
+    let robots = |ids: &[u8]| ids.iter().map(|n| protocol::RobotId::new(*n).unwrap()).collect();
+    let problem = (-0.2, 0.1);
+    let places = [(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)];
+    // Any case towards +x for two robots, played the other way round than retrieval would.
+    let case = (0..base.len() as u16)
+        .map(protocol::CaseId)
+        .find(|id| {
+            base.case(*id).is_some_and(|case| {
+                case.defending() == geometry::GoalEnd::Negative && case.robots().count() == 2
+            })
+        })
+        .unwrap();
+    let mut carpet = carpet(problem, &places);
+    let hint = |ids: &[u8]| Some(Hint { case, robots: robots(ids), pass_point: None });
+    for robot in [1, 2, 3] {
+        carpet.tell(robot, Duty::Player, Directive::Gameplay { hint: hint(&[3, 1]) });
+    }
+    let proposed = |c: &Carpet<'_>, ids: &[u8]| {
+        c.brain(1).cycle().play().is_some_and(|play| play.case == case && play.robots == robots(ids))
+    };
+    assert!(carpet.until(2.0, |c| proposed(c, &[3, 1])).is_some());
+    // Robot 7 is not there: what the robots retrieve themselves is played.
+    let mut alone = self::carpet(problem, &places);
+    for robot in [1, 2, 3] {
+        alone.tell(robot, Duty::Player, Directive::Gameplay { hint: hint(&[7, 1]) });
+    }
+    alone.during(2.0, |c| assert!(!proposed(c, &[7, 1])));
+    assert!(
+        alone.ends.iter().any(|(_, end)| *end != Closure::NoCase) || alone.brain(1).cycle().play().is_some()
+    );
+}
+
+#[test]
+fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
+    let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
+    let one = protocol::RobotId::new(1).unwrap();
+    // The kicker was discharged until the link was good, and takes half a second.
+    carpet.during(0.6, |_| {});
+    carpet.during(1.0, |c| {
+        let (at, telemetry) = c.telemetry[&one];
+        assert!(c.now().since(at) <= protocol::Duration::millis(100));
+        assert!(telemetry.condition.has(Condition::KICKER_READY) && telemetry.battery > 1400);
+        assert!(!telemetry.condition.has(Condition::LINK_LOST) && telemetry.silence < 30);
+    });
+    carpet.silent = true;
+    let lost = |c: &Carpet<'_>| c.telemetry[&one].1.condition.has(Condition::LINK_LOST);
+    let took = carpet.until(1.0, lost).expect("tells");
+    assert!((0.1..0.15).contains(&took), "{took}");
+}
+
+#[test]
+fn without_any_word_of_a_host_a_robot_does_nothing_at_all() {
+    let mut carpet = Carpet::new(League::DivisionB, base(), (0.3, 0.0), &[(1, 0.0, 0.0, 0.0)]);
+    carpet.silent = true;
+    carpet.during(2.0, |c| {
+        assert!(c.ours(1).velocity.norm() < 1e-3);
+        assert!(c.orders.values().all(|order| !kicks(order)));
+    });
 }

@@ -12,7 +12,7 @@ use crate::mates::PRESENCE_LEASE;
 use crate::team::cycle::News;
 use crate::team::{election, hybrid, retrieval};
 use crate::timer::Timer;
-use protocol::host::Directive;
+use protocol::host::{Directive, Hint};
 use rules::Phase;
 
 impl Brain<'_> {
@@ -116,7 +116,11 @@ impl Brain<'_> {
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
                 let holder = self.holder(now);
                 let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
-                    retrieval::decide(&self.base, &problem, &self.config.settings, holder)
+                    let hint = self.hint(now);
+                    hint.and_then(|hint| retrieval::accept(&self.base, &problem, hint, holder))
+                        .unwrap_or_else(|| {
+                            retrieval::decide(&self.base, &problem, &self.config.settings, holder)
+                        })
                 });
                 let decision = match decision {
                     Decision::Play(play) if self.shoots_sooner_without(now, &play) => Decision::NoCase,
@@ -133,6 +137,14 @@ impl Brain<'_> {
                 let over = self.cycle.is_mine_to_decide() && self.all_have_finished(now);
                 if over { self.cycle.closed(Closure::Finished) } else { None }
             }
+        }
+    }
+
+    /// The host's proposal, while it is fresh.
+    fn hint(&self, now: Instant) -> Option<&Hint> {
+        match self.host.as_ref()?.directive(now)? {
+            Directive::Gameplay { hint } => hint.as_ref(),
+            _ => None,
         }
     }
 

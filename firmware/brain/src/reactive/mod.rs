@@ -1,6 +1,7 @@
 //! What does a robot do by itself, when no case binds it? A behaviour per body, behind one face.
 
 mod legged;
+mod wheels;
 
 use geometry::GoalEnd;
 use protocol::team::Role;
@@ -27,14 +28,17 @@ pub enum Freedom {
 pub enum Reactive {
     /// The paper's, on legs.
     Legged(legged::Reactive),
+    /// Simple and lawful, on wheels.
+    Wheels(wheels::Reactive),
 }
 
 impl Reactive {
     /// The one of that league's robots.
     pub fn of(league: League) -> Self {
         match league {
-            League::FourLegged | League::Ssl2013 | League::DivisionB | League::DivisionA => {
-                Self::Legged(legged::Reactive::default())
+            League::FourLegged => Self::Legged(legged::Reactive::default()),
+            League::Ssl2013 | League::DivisionB | League::DivisionA => {
+                Self::Wheels(wheels::Reactive::default())
             }
         }
     }
@@ -43,6 +47,7 @@ impl Reactive {
     pub fn role(&self) -> Role {
         match self {
             Self::Legged(legs) => legs.role(),
+            Self::Wheels(wheels) => wheels.role(),
         }
     }
 
@@ -50,6 +55,7 @@ impl Reactive {
     pub fn rest(&mut self) {
         match self {
             Self::Legged(legs) => legs.rest(),
+            Self::Wheels(wheels) => wheels.rest(),
         }
     }
 
@@ -65,6 +71,7 @@ impl Reactive {
     ) -> Intent {
         match self {
             Self::Legged(legs) => legs.step(now, me, belief, mates, attacked, freedom),
+            Self::Wheels(wheels) => wheels.step(now, me, belief, mates, attacked, freedom),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! abort. For a ball at rest it is the paper's own ball position.
 
 use casebase::{CaseBase, GoalEnd, Problem, Settings};
+use protocol::host::Hint;
 use protocol::team::{Decision, Play};
 use protocol::{Instant, RobotId};
 
@@ -40,6 +41,24 @@ pub fn problem(
         let _ = problem.opponents.push((*opponent).into());
     }
     Some(problem)
+}
+
+/// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are present, each once.
+pub fn accept(
+    base: &CaseBase<'_>,
+    problem: &Problem,
+    hint: &Hint,
+    holder: Option<RobotId>,
+) -> Option<Decision> {
+    let case = base.case(hint.case)?;
+    let present = |id: &RobotId| problem.teammates.iter().any(|(mate, _)| mate == id);
+    let once = |id: &RobotId| hint.robots.iter().filter(|other| *other == id).count() == 1;
+    let all = hint.robots.iter().all(|id| present(id) && once(id));
+    let getter = hint.robots.get(case.getter().index()).copied();
+    let fits = case.robots().count() == hint.robots.len() && case.defending() == problem.defending;
+    (all && fits && (holder.is_none() || holder == getter)).then(|| {
+        Decision::Play(Play { case: hint.case, ball: problem.ball.into(), robots: hint.robots.clone() })
+    })
 }
 
 /// What the coordinator announces about `problem`.

@@ -1,0 +1,225 @@
+//! What does a robot on wheels do by itself, when no case binds it? Simple and lawful.
+//!
+//! Who has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on while there is room and the
+//! rules let it, else kicks it up the freer wing. The others take places ahead of the ball and behind it, one each. SI,
+//! field frame.
+
+use geometry::{Field, GoalEnd, Point, Segment, Vector};
+use protocol::robot_io::OmniKick;
+use protocol::team::{Role, Status};
+use protocol::{Duration, Instant, RobotId};
+
+use crate::belief::{Ball, Belief};
+use crate::body::Intent;
+use crate::body::omni::{Drive, SHOT};
+use crate::mates::Mates;
+use crate::reactive::Freedom;
+use crate::skills::Step;
+use crate::skills::wheels as skills;
+
+/// The behaviour's small memory.
+#[derive(Clone, Debug, Default)]
+pub struct Reactive {
+    role: Role,
+    held_since: Option<Instant>,
+}
+
+impl Reactive {
+    /// What this robot presently is to its team.
+    pub fn role(&self) -> Role {
+        self.role
+    }
+
+    /// Bound by a case or a directive: forget the role.
+    pub fn rest(&mut self) {
+        *self = Self::default();
+    }
+
+    /// One step.
+    pub fn step(
+        &mut self,
+        now: Instant,
+        me: RobotId,
+        belief: &Belief,
+        mates: &Mates,
+        attacked: GoalEnd,
+        freedom: Freedom,
+    ) -> Intent {
+        let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
+        if !belief.holds_ball {
+            self.held_since = None;
+        }
+        let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, mates, self.role);
+        self.role = if mine { Role::Attacker } else { Role::Supporter };
+        let goal = belief.league().field().goal_center(attacked);
+        if !mine {
+            let to = place(now, me, belief, mates, &ball, attacked);
+            return Drive::shy(to, to.direction_to(ball.position)).into();
+        }
+        if belief.holds_ball {
+            return match freedom {
+                Freedom::Full => self.advance(now, belief, attacked),
+                _ => skills::kick_held(belief, goal, OmniKick::None),
+            };
+        }
+        let face = ball.position.direction_to(goal);
+        if freedom == Freedom::Approach && !contested(belief, &ball) {
+            // Between two gameplays: near enough, but the ball lies as the next one will find it.
+            let behind = ball.rest - Vector::polar(APPROACH, face);
+            return Drive::shy(behind, face).into();
+        }
+        match skills::get_ball(belief, Some(face)) {
+            Step::Running(intent) => intent,
+            Step::Done => Intent::Stand { face: None },
+        }
+    }
+
+    /// With the ball: shoot, carry it on, or clear.
+    fn advance(&mut self, now: Instant, belief: &Belief, attacked: GoalEnd) -> Intent {
+        let since = *self.held_since.get_or_insert(now);
+        let held = now.since(since);
+        let goal = belief.league().field().goal_center(attacked);
+        let mouth = belief.mouth();
+        let (at, room) = skills::target(belief, mouth, attacked);
+        let near = mouth.distance(goal) < SHOOTS_FROM;
+        if near && room > OPEN {
+            return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
+        }
+        let ahead = Segment::new(mouth, mouth + (goal - mouth).clamped(LOOKS_AHEAD));
+        let blocked = belief.opponents.iter().any(|o| ahead.distance_to(*o) < BLOCKS);
+        let carries =
+            !blocked && held < HOLDS_FOR && belief.carried() < CARRIES && mouth.distance(goal) > TOO_NEAR;
+        if carries {
+            return Drive::holding(ahead.to, mouth.direction_to(goal)).into();
+        }
+        skills::clear_or_shoot(belief, attacked)
+    }
+}
+
+/// Whether the ball is this robot's: it has it, or nobody else under the same directive has it sooner.
+fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
+    if belief.holds_ball {
+        return true;
+    }
+    let soon = ball.position + (ball.rest - ball.position).clamped(ball.velocity.norm() * AHEAD);
+    let far = |from: Point<Field>, role: Role| {
+        from.distance(soon) - if role == Role::Attacker { KEEPS } else { 0.0 }
+    };
+    let mine = far(belief.pose.position, role);
+    mates.present(now).all(|(id, mate)| {
+        let theirs = far(mate.pose().position, mate.beacon.role);
+        !mate.beacon.status.has(Status::HOLDS_BALL) && (mine < theirs || (mine == theirs && me < id))
+    })
+}
+
+/// A supporter's place: the first one ahead on the freer side, the second on the other, the third behind.
+fn place(
+    now: Instant,
+    me: RobotId,
+    belief: &Belief,
+    mates: &Mates,
+    ball: &Ball,
+    attacked: GoalEnd,
+) -> Point<Field> {
+    let field = belief.league().field();
+    let sign = attacked.sign() as f32;
+    let side = if ball.rest.y() > 0.0 { -1.0 } else { 1.0 };
+    // Attackers and those bound by a case are no supporters: places go by rank among the others.
+    let before =
+        mates.present(now).filter(|(id, mate)| *id < me && mate.beacon.role == Role::Supporter).count();
+    let offsets =
+        [[1.5, 1.5 * side], [1.2, -1.5 * side], [-1.2, 0.0], [-0.8, 1.8 * side], [-0.8, -1.8 * side]];
+    let [along, across] = offsets[before % offsets.len()];
+    let farthest = 0.5 * field.length - field.penalty_depth - BEFORE_AREA;
+    let x = (sign * ball.rest.x() + along).clamp(-farthest, farthest) * sign;
+    let y = (ball.rest.y() + across).clamp(INSIDE - 0.5 * field.width, 0.5 * field.width - INSIDE);
+    Point::new(x, y)
+}
+
+fn contested(belief: &Belief, ball: &Ball) -> bool {
+    belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
+}
+
+/// Between gameplays a robot waits this far behind the ball, m.
+const APPROACH: f32 = 0.3;
+/// An opponent this near the ball is about to have it, m.
+const CONTESTED: f32 = 0.6;
+/// From here the goal is shot at, m.
+const SHOOTS_FROM: f32 = 4.5;
+/// A shot with that much room beside bodies' reach is taken, m.
+const OPEN: f32 = 0.03;
+/// It looks this far for who is in its way, m.
+const LOOKS_AHEAD: f32 = 0.6;
+/// An opponent this near the way ahead blocks it, m: two bodies and a hand.
+const BLOCKS: f32 = 0.25;
+/// A ball is carried no farther, m: the rules' metre, less what it takes to kick.
+const CARRIES: f32 = 0.55;
+/// And held no longer.
+const HOLDS_FOR: Duration = Duration::millis(3000);
+/// Nearer to the goal's centre carrying on gains nothing, m.
+const TOO_NEAR: f32 = 1.8;
+/// Who goes for the ball keeps that unless another is nearer by this, m.
+const KEEPS: f32 = 0.3;
+/// Where a rolling ball will be when somebody is there, s.
+const AHEAD: f32 = 0.6;
+/// Places keep this far before the area, m.
+const BEFORE_AREA: f32 = 0.5;
+/// And this far within the side lines, m.
+const INSIDE: f32 = 0.4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::belief;
+    use protocol::quantized::WirePose;
+    use protocol::team::{Beacon, Progress};
+
+    fn id(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
+
+    fn mate(x: f32, role: Role) -> Beacon {
+        let pose = WirePose::from(geometry::Pose::from_mm_deg(x * 1000.0, 0.0, 0.0));
+        let status = Status::AVAILABLE;
+        Beacon { pose, ball: None, status, case_base: 0, cycle: None, progress: Progress::Idle, role }
+    }
+
+    fn step(belief: &Belief, mates: &Mates, freedom: Freedom) -> (Intent, Role) {
+        let mut reactive = Reactive::default();
+        let intent = reactive.step(Instant(0), id(2), belief, mates, GoalEnd::Positive, freedom);
+        (intent, reactive.role())
+    }
+
+    #[test]
+    fn the_nearest_goes_for_the_ball_and_the_others_take_a_place_each() {
+        let b = belief((0.0, 0.0, 0.0), (0.5, 0.0));
+        assert_eq!(step(&b, &Mates::default(), Freedom::Full).1, Role::Attacker);
+        let mut mates = Mates::default();
+        mates.hear(Instant(0), id(1), &mate(0.4, Role::Attacker));
+        let (Intent::Drive(first), Role::Supporter) = step(&b, &mates, Freedom::Full) else { panic!() };
+        mates.hear(Instant(0), id(0), &mate(-2.0, Role::Supporter));
+        let (Intent::Drive(second), _) = step(&b, &mates, Freedom::Full) else { panic!() };
+        assert!(first.to.distance(second.to) > 1.0, "{first:?} {second:?}");
+        assert!(first.to.x() > 1.5, "ahead of the ball");
+    }
+
+    #[test]
+    fn with_the_ball_it_shoots_at_an_open_goal_and_carries_it_on_from_afar() {
+        let mut near = belief((2.5, 0.0, 0.0), (2.5945, 0.0));
+        near.holds_ball = true;
+        let (Intent::Drive(shot), _) = step(&near, &Mates::default(), Freedom::Full) else { panic!() };
+        assert_eq!(shot.to, near.pose.position, "turns or shoots on the spot");
+        let mut far = belief((-2.0, 0.0, 0.0), (-1.9055, 0.0));
+        far.holds_ball = true;
+        let (Intent::Drive(carry), _) = step(&far, &Mates::default(), Freedom::Full) else { panic!() };
+        assert!(carry.to.x() > -1.5 && carry.dribbler == 1.0);
+    }
+
+    #[test]
+    fn beside_a_gameplay_of_others_nobody_goes_for_the_ball() {
+        let b = belief((0.0, 0.0, 0.0), (0.2, 0.0));
+        assert_eq!(step(&b, &Mates::default(), Freedom::KeepNear).1, Role::Supporter);
+        let (Intent::Drive(waits), _) = step(&b, &Mates::default(), Freedom::Approach) else { panic!() };
+        assert!(waits.to.distance(Point::new(0.2, 0.0)) > 0.25);
+    }
+}
