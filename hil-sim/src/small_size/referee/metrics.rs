@@ -160,21 +160,30 @@ impl InternalReferee {
             }
         }
         let Some((who, from)) = touch else { return };
-        match self.metrics.last {
-            Some(leg) if leg.who == who && !touching => self.look_for_shot(leg, ball),
-            Some(leg) if leg.who != who => {
-                let far = leg.from.distance(from) >= PASS_LENGTH;
-                let team = self.metrics.team_mut(leg.who.colour);
-                if leg.who.colour != who.colour {
-                    team.losses += 1;
-                } else if far {
-                    team.passes += 1;
-                }
-                self.metrics.last = Some(Leg { who, from, shot: false });
+        let leg = self.metrics.last.get_or_insert(Leg { who, from, shot: false });
+        if leg.who == who {
+            if touching {
+                // Still at the robot; near to where it touched it before it may be the same kick.
+                leg.shot &= leg.from.distance(from) < SEPARATE;
+                leg.from = from;
+            } else {
+                let leg = *leg;
+                self.look_for_shot(leg, ball);
             }
-            // Still at the robot: a new leg begins with each contact.
-            _ => self.metrics.last = Some(Leg { who, from, shot: false }),
+            return;
         }
+        // In a duel the ball changes hands in every moment; it has changed hands when it is away.
+        let (leg, now) = (*leg, if touching { from } else { ball.position });
+        if leg.from.distance(now) < SEPARATE {
+            return;
+        }
+        let team = self.metrics.team_mut(leg.who.colour);
+        if leg.who.colour != who.colour {
+            team.losses += 1;
+        } else if leg.from.distance(from) >= PASS_LENGTH {
+            team.passes += 1;
+        }
+        self.metrics.last = Some(Leg { who, from, shot: false });
     }
 
     fn look_for_shot(&mut self, leg: Leg, ball: BallSeen) {
@@ -182,7 +191,8 @@ impl InternalReferee {
         let end = self.own_end(leg.who.colour).opposite();
         let sign = end.sign() as f32;
         let forward = ball.velocity.x() * sign;
-        if leg.shot || speed < SHOT_SPEED || forward <= 0.0 || leg.from.x() * sign < 0.0 {
+        let away = leg.from.distance(ball.position) >= SEPARATE;
+        if leg.shot || !away || speed < SHOT_SPEED || forward <= 0.0 || leg.from.x() * sign < 0.0 {
             return;
         }
         let way = self.field.length * 0.5 - ball.position.x() * sign;
@@ -206,5 +216,7 @@ impl InternalReferee {
 
 /// A ball slower than this is no shot, m/s: it rolls less than 3.2 m.
 const SHOT_SPEED: f32 = 1.5;
+/// A ball this far from the last touch has left the robot, m: half a robot's diameter, beyond what a dribbler bounces.
+const SEPARATE: f32 = 0.1;
 /// Touches nearer together are no pass, m.
 const PASS_LENGTH: f32 = 0.5;

@@ -177,10 +177,15 @@ fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop(
     stage.until(Phase::FreeKick(Colour::Yellow), 10.0);
     let Some(WorldOrder::RemoveRobot(taken)) = stage.orders.last().copied() else { panic!() };
     stage.orders.clear();
+    let played = |stage: &Stage| stage.referee.metrics().running_s;
+    let began = played(&stage);
+    let left = stage.referee.accounts().blue.yellow_cards[0] as f32 * 1e-6;
+    assert!((119.0..=120.0).contains(&left));
     while !stage.referee.accounts().blue.yellow_cards.is_empty() {
         stage.step();
         assert!(stage.seconds() < 400.0);
     }
+    assert!((played(&stage) - began - left).abs() < 0.1);
     while stage.orders.is_empty() {
         stage.step();
         assert!(stage.seconds() < 450.0);

@@ -62,8 +62,8 @@ fn dribbling_further_than_a_metre_is_a_free_kick_from_where_it_began() {
 #[test]
 fn a_ball_that_is_let_go_in_between_is_dribbled_anew() {
     let mut stage = dribble(0.8);
-    // 5 cm away from the robot.
-    stage.move_ball(at(-0.05, 1.0));
+    // 3 cm between hull (0.09 m) and ball (0.0215 m).
+    stage.move_ball(at(-0.1085, 1.0));
     stage.put(yellow(1), at(-0.25, 1.0));
     stage.step();
     for step in 0..80 {
@@ -185,7 +185,7 @@ fn a_glancing_crash_counts_along_the_line_between_the_robots_only() {
 }
 
 #[test]
-fn who_drives_an_opponent_before_it_for_30_cm_pushes() {
+fn who_drives_an_opponent_before_it_for_20_cm_pushes() {
     let mut stage = in_play();
     let mut push = |metres: f32| {
         for step in 0..(metres * 100.0) as u32 {
@@ -198,8 +198,10 @@ fn who_drives_an_opponent_before_it_for_30_cm_pushes() {
         }
         stage.count(Kind::Pushed)
     };
-    assert_eq!(push(0.28), 0);
+    assert_eq!(push(0.19), 0);
     assert_eq!(push(0.1), 1);
+    // From where the ball was, the centre of this stage, not from where the robots are.
+    assert!(close(stage.referee.placement().unwrap(), at(0.3, 0.0)));
     let event = stage.only(Kind::Pushed);
     assert_eq!((event.by, event.robot), (Some(Colour::Yellow), Some(id(1))));
     assert_eq!(stage.referee.next(), Some(Restart::FreeKick(Colour::Blue)));

@@ -81,3 +81,79 @@ fn the_speed_of_a_kick_is_the_simulators_own() {
     let kinds: Vec<Kind> = game.referee.events().iter().map(|event| event.what.kind()).collect();
     assert_eq!(kinds, [Kind::BallTooFast]);
 }
+
+/// A rough team: in play the robot nearest to the ball drives through it towards the goal and kicks, the others stay
+/// home; else everybody goes home slowly, and stands still in a halt.
+fn rough(game: &Match, who: Who, home: Point<Field>) -> Order {
+    let Some(robot) = game.world.robot(who) else { return Order::default() };
+    let (place, ball) = (robot.pose.position, game.world.ball.position);
+    let phase = game.referee.phase();
+    let global = |linear: Vector<Field>, turn: f32| Order {
+        drive: Drive::Global(geometry::Twist { linear, angular: turn }),
+        ..Order::default()
+    };
+    let plays = match phase {
+        Phase::Halt | Phase::Timeout(_) => return Order::default(),
+        Phase::Run => true,
+        Phase::Kickoff(team) | Phase::FreeKick(team) | Phase::Penalty(team) => team == who.colour,
+        _ => false,
+    };
+    let mates = game.world.robots().iter().filter(|robot| robot.present && robot.who.colour == who.colour);
+    let nearest =
+        mates.min_by(|a, b| a.pose.position.distance(ball).total_cmp(&b.pose.position.distance(ball)));
+    if !plays || nearest.is_none_or(|robot| robot.who != who) {
+        return global(((home - place) * 2.0).clamped(1.2), 0.0);
+    }
+    let goal = game.referee.own_end(who.colour.other()).sign() as f32 * 4.5;
+    let way = (at(goal, 0.0) - ball).unit().unwrap_or_default();
+    let behind = ball - way * 0.25;
+    let turn = (way.angle() - robot.pose.heading).radians() * 5.0;
+    let lined_up = (ball - place).unit().is_some_and(|to| to.dot(way) > 0.95);
+    let target = if lined_up { ball + way * 0.2 } else { behind };
+    let kick = Some(Kick { speed: 5.0, angle: 0.0 });
+    Order { kick, ..global(((target - place) * 3.0).clamped(1.5), turn) }
+}
+
+#[test]
+fn a_rough_match_in_the_simulator_is_played_and_robots_that_obey_halt_and_stop_are_not_accused() {
+    let mut game = Match::new(0.0);
+    let clock = MatchClock::Simulated { total: Duration::millis(120_000) };
+    // People place the ball: these robots cannot.
+    let mut settings = RefereeSettings { clock, ..settings() };
+    (settings.yellow.can_place_ball, settings.blue.can_place_ball) = (false, false);
+    game.referee = InternalReferee::new(settings, 1).unwrap();
+    let homes = [at(-1.0, 1.8), at(-1.0, -1.8), at(-2.5, 1.8), at(-2.5, -1.8)];
+    for (number, home) in (1..).zip(homes) {
+        for who in [yellow(number), blue(number)] {
+            let side = game.referee.own_end(who.colour).sign() as f32;
+            game.world.put(who, Pose { position: at(-home.x() * side, home.y()), heading: Angle::ZERO });
+        }
+    }
+    game.world.put(blue(0), Pose { position: at(4.3, 0.0), heading: Angle::ZERO });
+    while !game.referee.is_over() {
+        for (number, home) in (0..).zip([at(-4.3, 0.0)].into_iter().chain(homes)) {
+            for who in [yellow(number), blue(number)] {
+                let side = game.referee.own_end(who.colour).sign() as f32;
+                let order = rough(&game, who, at(-home.x() * side, home.y()));
+                game.world.order(who, order);
+            }
+        }
+        for _ in 0..10 {
+            game.world.step();
+        }
+        game.world.take_events(&mut game.events);
+        game.referee.look(&game.world, &game.events);
+        game.events.clear();
+        while let Some(order) = game.referee.poll_order() {
+            order.carry_out(&mut game.world);
+        }
+    }
+    let metrics = game.referee.metrics();
+    assert_eq!(game.referee.off_graph(), 0);
+    for team in [Colour::Yellow, Colour::Blue] {
+        for kind in [Kind::MovedInHalt, Kind::TooFastInStop, Kind::BallTooFast] {
+            assert_eq!(metrics.offences.of(team, kind), 0, "{team:?} {kind:?}");
+        }
+    }
+    assert!(metrics.in_play_s > 10.0 && metrics.yellow.shots + metrics.blue.shots > 3, "{metrics:#?}");
+}

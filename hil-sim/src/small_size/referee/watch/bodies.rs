@@ -93,7 +93,9 @@ impl Bodies {
         let at_ball = from.touches_ball && to.touches_ball;
         let line = between.unit()?;
         let pushed = to.velocity.dot(line);
-        let pushes = (apart <= CONTACT || at_ball) && pushed > MOVING && from.velocity.dot(line) > MOVING;
+        let straight = pushed > to.velocity.norm() * STRAIGHT;
+        let pushes =
+            (apart <= CONTACT || at_ball) && straight && pushed > MOVING && from.velocity.dot(line) > MOVING;
         if !pushes {
             if self.pushes.get(&pair).is_some_and(|push| scene.now.since(push.at).as_secs_f32() > PUSH_PAUSE)
             {
@@ -142,12 +144,14 @@ fn angle_between(a: Vector<geometry::Field>, b: Vector<geometry::Field>) -> f32 
     Angle::new(math::atan2(b.cross(a), b.dot(a))).radians()
 }
 
-/// Hulls nearer than this are in contact, m.
+/// Hulls nearer than this are in contact, m: as the automatic referee of the TIGERs has it.
 const CONTACT: f32 = 0.01;
 /// A robot that moves is faster than this, m/s: what a blocked wheel still makes is slower.
 const MOVING: f32 = 0.2;
-/// Pushed so far is a foul, m: three robots' radii, a distance that a human referee sees.
-const PUSH_DISTANCE: f32 = 0.3;
+/// Pushed so far is a foul, m: as the automatic referee of the TIGERs had it while it judged pushing.
+const PUSH_DISTANCE: f32 = 0.2;
+/// Pushed away is who moves within 0.7 rad of the line between the two (same source): the cosine of it.
+const STRAIGHT: f32 = 0.764_842;
 /// Pauses up to this do not end a push, s.
 const PUSH_PAUSE: f32 = 0.2;
 /// Robots within this of the ball are around it, m: an opponent of 0.18 m fits behind them only.
