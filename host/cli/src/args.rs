@@ -9,6 +9,7 @@ use crate::Failure;
 use crate::cases::CasesVerb;
 use crate::evaluate::EvaluateArgs;
 use crate::trial::TrialArgs;
+use crate::virtual_robot::VirtualRobotArgs;
 
 /// Case-based robot soccer: robots that choose a gameplay together and play it.
 #[derive(Debug, Parser)]
@@ -32,6 +33,9 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: CasesVerb,
     },
+    /// One robot's brain as a process, in any simulator of the league; `control` starts them.
+    #[command(hide = true)]
+    VirtualRobot(Box<VirtualRobotArgs>),
 }
 
 /// Whose cases, where every built-in league is meant unless a folder is named.

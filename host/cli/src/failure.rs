@@ -84,6 +84,8 @@ pub(crate) enum Failure {
     },
     /// No case can be drafted from the problem.
     Draft(String),
+    /// A virtual robot cannot run.
+    Robot(String),
     /// Threads cannot be started.
     Threads(String),
     /// An evaluation could not be played, kept or put together.
@@ -165,7 +167,7 @@ impl fmt::Display for Failure {
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
-            Self::Draft(words) | Self::Survey(words) => f.write_str(words),
+            Self::Draft(words) | Self::Survey(words) | Self::Robot(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) => f.write_str(words),
             Self::Markdown { file, error } => write!(f, "{}: {error}", file.display()),

@@ -12,6 +12,7 @@ mod library;
 mod picture;
 mod setup;
 mod trial;
+mod virtual_robot;
 
 use std::process::ExitCode;
 
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
         Verb::Trial(args) => trial::run(&args),
         Verb::Evaluate(args) => evaluate::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
+        Verb::VirtualRobot(args) => virtual_robot::run(&args),
     };
     outcome.unwrap_or_else(|failure| failure.report())
 }

@@ -1,0 +1,114 @@
+//! How does a virtual robot run? One socket for host and simulator, one thread, the system's clock.
+
+use std::fmt;
+use std::io::{self, BufRead as _};
+use std::net::{SocketAddr, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant as Clock};
+
+use brain::BrainConfig;
+use casebase::CaseBase;
+use protocol::Instant;
+use protocol::frame::TeamKey;
+
+use crate::robot::VirtualRobot;
+
+/// Who the robot is, and whom it speaks with.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Its brain.
+    pub brain: BrainConfig,
+    /// The team's key.
+    pub key: TeamKey,
+    /// Whoever commands.
+    pub host: SocketAddr,
+    /// The simulator's port for this team's robots: 10301 blue, 10302 yellow.
+    pub simulator: SocketAddr,
+}
+
+/// Why a robot ended, where that is no mistake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// It was asked to.
+    Asked,
+}
+
+/// Why a robot cannot run.
+#[derive(Debug)]
+pub enum RunError {
+    /// No socket could be had.
+    Socket(io::Error),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Socket(error) => write!(f, "the robot has no socket: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for RunError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        let Self::Socket(error) = self;
+        Some(error)
+    }
+}
+
+/// A flag that is raised when standard input closes: whoever started the robot has gone, or wants it to end.
+pub fn parent_gone() -> Arc<AtomicBool> {
+    let gone = Arc::new(AtomicBool::new(false));
+    let raised = gone.clone();
+    std::thread::spawn(move || {
+        let mut line = String::new();
+        while io::stdin().lock().read_line(&mut line).is_ok_and(|len| len > 0) {
+            line.clear();
+        }
+        raised.store(true, Ordering::Relaxed);
+    });
+    gone
+}
+
+/// Plays until `end` is raised.
+pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<End, RunError> {
+    let local = |address: &SocketAddr| address.ip().is_loopback();
+    let any: SocketAddr = match options.simulator {
+        SocketAddr::V4(_) if local(&options.host) && local(&options.simulator) => ([127, 0, 0, 1], 0).into(),
+        SocketAddr::V4(_) => ([0, 0, 0, 0], 0).into(),
+        SocketAddr::V6(_) => ([0_u16; 8], 0).into(),
+    };
+    let socket = UdpSocket::bind(any).map_err(RunError::Socket)?;
+    let start = Clock::now();
+    let now = || Instant(start.elapsed().as_micros() as u64);
+    let mut robot = VirtualRobot::new(now(), &options.brain, base, options.key);
+    let mut bytes = [0; LEN_MAX];
+    while !end.load(Ordering::Relaxed) {
+        let wait = robot.poll_timeout().since(now());
+        socket
+            .set_read_timeout(Some(Duration::from_micros(wait.0).max(WAIT_MIN)))
+            .map_err(RunError::Socket)?;
+        // A time-out, or somebody who does not listen yet: both pass.
+        if let Ok((len, from)) = socket.recv_from(&mut bytes) {
+            let datagram = bytes.get(..len).unwrap_or(&[]);
+            if from == options.host {
+                robot.handle_frame(now(), datagram);
+            } else if from.port() == options.simulator.port() {
+                robot.handle_response(now(), datagram);
+            }
+        }
+        robot.handle_timeout(now());
+        while let Some(frame) = robot.poll_frame(now()) {
+            let _ = socket.send_to(&frame, options.host);
+        }
+        if let Some(control) = robot.poll_control() {
+            let _ = socket.send_to(&control, options.simulator);
+        }
+    }
+    Ok(End::Asked)
+}
+
+/// The longest datagram that is read: the league's programs send none beyond.
+const LEN_MAX: usize = 8192;
+/// The shortest wait that a socket can be told.
+const WAIT_MIN: Duration = Duration::from_micros(1);

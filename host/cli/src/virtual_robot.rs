@@ -1,0 +1,137 @@
+//! `onetwo virtual-robot`: one robot's brain as a process, in any simulator of the league. Not for people: `control` starts it
+//! for each robot of `--robots sim://HOST`; by hand it helps to see why one does not run.
+
+use std::io::{self, BufRead as _};
+use std::net::{SocketAddr, ToSocketAddrs as _};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use brain::BrainConfig;
+use case_library::LEAGUES;
+use casebase::{CaseBase, GoalEnd};
+use clap::Args;
+use host::shell::key;
+use protocol::frame::TeamKey;
+use protocol::{RobotId, TeamId};
+use rules::{Colour, League};
+use virtual_robot::{Options, parent_gone, run as play};
+
+use crate::Failure;
+use crate::args::{FolderArgs, SettingsArgs};
+use crate::library::Shelf;
+
+/// Who it is and whom it speaks with.
+#[derive(Debug, Args)]
+pub(crate) struct VirtualRobotArgs {
+    /// Its number, 0 to 15.
+    #[arg(long, value_parser = robot_id)]
+    id: RobotId,
+    /// Its team: blue or yellow.
+    #[arg(long, value_parser = colour)]
+    team: Colour,
+    /// What it plays: ssl-2013, division-b or division-a.
+    #[arg(long, value_parser = league, default_value = "division-b")]
+    league: League,
+    /// Who commands it, as HOST:PORT.
+    #[arg(long, value_parser = address)]
+    host: SocketAddr,
+    /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302 yellow.
+    #[arg(long, value_name = "HOST[:PORT]")]
+    simulator: String,
+    /// The goal its team defends until its host says which.
+    #[arg(long, value_parser = goal, default_value = "yellow", value_name = "yellow|cyan")]
+    defending: GoalEnd,
+    /// The file of the team's key; left out: a key of zeros.
+    #[arg(long, value_name = "FILE", conflicts_with = "with_parent")]
+    key_file: Option<PathBuf>,
+    /// The key is standard input's first line, and the robot ends when standard input closes.
+    #[arg(long)]
+    with_parent: bool,
+    #[command(flatten)]
+    folder: FolderArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
+}
+
+/// Plays until it is stopped.
+pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
+    let (key, end) = if args.with_parent {
+        (key_of_parent()?, parent_gone())
+    } else {
+        (key_of_file(args.key_file.as_deref())?, Arc::new(AtomicBool::new(false)))
+    };
+    let shelf = args.folder.library.as_deref().map(Shelf::read).transpose()?;
+    let base = match &shelf {
+        Some(shelf) => shelf.base(),
+        // A league without cases of its own is played without.
+        None => LEAGUES
+            .iter()
+            .find(|league| league.name == args.league.name())
+            .map_or_else(CaseBase::default, case_library::League::base),
+    };
+    let brain = BrainConfig {
+        // Seconds since 1970: rises with every start that is a second after the last, which `control` sees to.
+        epoch: SystemTime::now().duration_since(UNIX_EPOCH).map_or(1, |time| time.as_secs() as u32),
+        defending: args.defending,
+        settings: args.settings.choose()?.settings,
+        ..BrainConfig::hosted(args.id, TeamId::of(args.team), args.league)
+    };
+    let options = Options { brain, key, host: args.host, simulator: simulator(&args.simulator, args.team)? };
+    play(&options, base, &end).map_err(|error| Failure::Robot(error.to_string()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn key_of_parent() -> Result<TeamKey, Failure> {
+    let mut line = String::new();
+    io::stdin().lock().read_line(&mut line).map_err(Failure::Input)?;
+    key::parse(&line)
+        .map_err(|what| Failure::Robot(format!("--with-parent: standard input begins with {what}, no key")))
+}
+
+fn key_of_file(file: Option<&std::path::Path>) -> Result<TeamKey, Failure> {
+    let Some(file) = file else { return Ok(TeamKey::ZERO) };
+    let read = key::read(file).map_err(|error| Failure::Robot(error.to_string()))?;
+    if let Some(warning) = read.warning {
+        eprintln!("warning: {warning}");
+    }
+    Ok(read.key)
+}
+
+fn simulator(text: &str, team: Colour) -> Result<SocketAddr, Failure> {
+    let port = match team {
+        Colour::Blue => ssl::net::addresses::ROBOTS_BLUE_PORT,
+        Colour::Yellow => ssl::net::addresses::ROBOTS_YELLOW_PORT,
+    };
+    let with_port = text.to_socket_addrs().or_else(|_| (text, port).to_socket_addrs());
+    with_port.ok().and_then(|mut found| found.next()).ok_or_else(|| {
+        Failure::Robot(format!("nobody knows the host of --simulator {text}; give HOST or HOST:PORT"))
+    })
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let found = text.to_socket_addrs().ok().and_then(|mut found| found.next());
+    found.ok_or_else(|| "expected HOST:PORT of somebody the network knows".to_owned())
+}
+
+fn robot_id(text: &str) -> Result<RobotId, String> {
+    let number: u8 = text.parse().map_err(|_| "expected a number from 0 to 15".to_owned())?;
+    RobotId::try_from(number).map_err(|error| error.to_string())
+}
+
+fn colour(text: &str) -> Result<Colour, String> {
+    let known = [Colour::Blue, Colour::Yellow].into_iter().find(|colour| colour.word() == text);
+    known.ok_or_else(|| "expected blue or yellow".to_owned())
+}
+
+fn league(text: &str) -> Result<League, String> {
+    let known = [League::Ssl2013, League::DivisionB, League::DivisionA];
+    let known = known.into_iter().find(|league| league.name() == text);
+    known.ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
+}
+
+fn goal(text: &str) -> Result<GoalEnd, String> {
+    GoalEnd::from_word(text).ok_or_else(|| "expected yellow (the goal at -x) or cyan (at +x)".to_owned())
+}
