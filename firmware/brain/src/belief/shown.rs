@@ -8,7 +8,7 @@ use geometry::{Field, Point, Pose, Vector};
 use motion::ball::BallModel;
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant};
-use rules::Side;
+use rules::{FieldSpec, Side};
 
 use crate::belief::{Ball, Belief, Other};
 use crate::body::omni::{BALL_AT, FRONT};
@@ -53,7 +53,7 @@ impl Belief {
         self.handling.height = 0.0;
         self.ball = picture.ball(now).map(|ball| {
             self.handling.height = ball.height;
-            rolling(ball.position, ball.velocity)
+            rolling(ball.position, ball.velocity, &self.league.field())
         });
         self.handle(now, sensors.ball_contact);
     }
@@ -103,10 +103,18 @@ impl Belief {
     }
 }
 
-/// A ball that goes on as rolling balls do; whether it still slides nobody says.
-fn rolling(position: Point<Field>, velocity: Vector<Field>) -> Ball {
-    let path = BallModel::default().rolling(position, velocity);
-    Ball { position, velocity, rest: path.rest() }
+/// A ball that goes on as rolling balls do, until just beyond the lines; whether it still slides nobody says.
+fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -> Ball {
+    let rest = BallModel::default().rolling(position, velocity).rest();
+    let way = rest - position;
+    // The share of the way that stays between two lines; all of it for a ball that is outside already.
+    let share = |at: f32, by: f32, line: f32| {
+        let (line, at) = (line + BEYOND, if by < 0.0 { -at } else { at });
+        if at < line && at + by.abs() > line { (line - at) / by.abs() } else { 1.0 }
+    };
+    let inside =
+        share(position.x(), way.x(), 0.5 * field.length).min(share(position.y(), way.y(), 0.5 * field.width));
+    Ball { position, velocity, rest: position + way * inside }
 }
 
 /// Before the flat front, as far as noise lets say.
@@ -115,6 +123,8 @@ fn is_at_mouth(pose: Pose<Field>, ball: Point<Field>) -> bool {
     (FRONT - 0.01..BALL_AT + AT_MOUTH_AHEAD).contains(&seen.x()) && seen.y().abs() < AT_MOUTH_BESIDE
 }
 
+/// A ball's way is of interest until so far beyond the lines, m: what lies on them is still on it.
+const BEYOND: f32 = 0.1;
 /// The light barrier may miss the ball for so long: a few of its turns on the roller.
 const BRIDGED: Duration = Duration::millis(60);
 /// A gap between ball and mouth that the rules call visible, m.
@@ -123,3 +133,74 @@ const VISIBLE_GAP: f32 = 0.05;
 const AT_MOUTH_AHEAD: f32 = 0.03;
 /// How far beside the middle, m: half a mouth's width.
 const AT_MOUTH_BESIDE: f32 = 0.05;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::belief::Belief;
+    use geometry::Twist;
+    use protocol::RobotId;
+    use protocol::host::{WireBall, WorldPart};
+    use protocol::quantized::{WirePoint, WirePose};
+    use protocol::robot_io::Health;
+    use rules::{League, Phase};
+
+    fn sensors(ball_contact: bool) -> SensorFrame {
+        SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health::default(),
+        }
+    }
+
+    fn picture(now: Instant, ball: (i16, i16)) -> Picture {
+        let me = RobotId::new(1).unwrap();
+        let mut picture = Picture::new(me);
+        let who = protocol::host::WireWho { side: Side::Ours, id: me };
+        let own = protocol::host::WireRobot { who, pose: WirePose::default(), vx: 0, vy: 0 };
+        picture.handle_part(
+            now,
+            &WorldPart {
+                picture: 1,
+                part: 0,
+                parts: 1,
+                phase: Phase::Run,
+                placement: None,
+                ball: Some(WireBall { at: WirePoint { x: ball.0, y: ball.1 }, height: 0, vx: 0, vy: 0 }),
+                robots: [own].into_iter().collect(),
+            },
+        );
+        picture
+    }
+
+    #[test]
+    fn the_light_barriers_flicker_is_bridged_while_the_ball_is_shown_at_the_mouth() {
+        let mut belief = Belief::new(League::DivisionB);
+        belief.show(Instant(0), &picture(Instant(0), (95, 0)), &sensors(true));
+        assert!(belief.holds_ball && belief.contact());
+        let later = Instant(50_000);
+        belief.show(later, &picture(later, (110, 0)), &sensors(false));
+        assert!(belief.holds_ball && !belief.contact());
+        belief.show(later, &picture(later, (160, 0)), &sensors(false));
+        assert!(!belief.holds_ball, "shown away from the mouth");
+        let long = Instant(70_000);
+        belief.show(long, &picture(long, (95, 0)), &sensors(false));
+        assert!(!belief.holds_ball, "missed for too long");
+    }
+
+    #[test]
+    fn the_way_of_a_ball_ends_just_beyond_the_line_it_crosses() {
+        let field = League::DivisionB.field();
+        // 3 m/s would roll 12.9 m; the goal line is at 4.5 m.
+        let out = rolling(Point::new(0.0, 0.0), Vector::new(-3.0, 0.0), &field);
+        assert!((out.rest.x() + 4.6).abs() < 1e-4 && out.rest.y() == 0.0, "{:?}", out.rest);
+        let aslant = rolling(Point::new(0.0, 2.0), Vector::new(2.0, 2.0), &field);
+        assert!((aslant.rest.y() - 3.1).abs() < 1e-4 && (aslant.rest.x() - 1.1).abs() < 1e-4);
+        let outside = rolling(Point::new(4.8, 0.0), Vector::new(0.7, 0.0), &field);
+        assert!((outside.rest.x() - 5.5).abs() < 1e-4);
+    }
+}

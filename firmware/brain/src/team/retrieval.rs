@@ -22,8 +22,7 @@ pub fn problem(
 ) -> Option<Problem> {
     let ball = belief.ball?;
     let mut problem = Problem {
-        // A ball that will leave the field is put back on its line.
-        ball: belief.league().field().clamp(ball.rest, 0.0).into(),
+        ball: ball.rest.into(),
         defending,
         teammates: heapless::Vec::new(),
         opponents: heapless::Vec::new(),
