@@ -11,8 +11,8 @@ pub(crate) fn draw(context: &Context) -> Result<(), Failure> {
 
 /// What the program is asked for each.
 const PICTURES: [&str; 5] = [
-    // As README's first command, with a seed that ends in a goal.
-    "play --seed 65 --svg docs/trial.svg",
+    // One of the third of all trials that end in a goal.
+    "trial --seed 65 --svg docs/trial.svg",
     "cases render center/pass-around --out docs/case.svg",
     "cases render center/pass-around --out docs/case.png",
     "cases render --sheet docs/cases-four-legged.svg",

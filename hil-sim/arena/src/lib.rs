@@ -6,6 +6,8 @@
 //!
 //! [`Rehearsal`] plays single cases from their own situation, many times: does a case do what its author meant?
 //!
+//! [`game`] plays matches of the Small Size League, a host and its robots on each side.
+//!
 //! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
 //!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
@@ -14,6 +16,7 @@ mod backups;
 mod cycles;
 mod defaults;
 pub mod evaluation;
+pub mod game;
 mod names;
 mod picture;
 mod recording;

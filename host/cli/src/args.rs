@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::Failure;
 use crate::cases::CasesVerb;
 use crate::evaluate::EvaluateArgs;
+use crate::play::PlayArgs;
 use crate::trial::TrialArgs;
 use crate::virtual_robot::VirtualRobotArgs;
 
@@ -22,8 +23,8 @@ pub(crate) struct Cli {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// See robots play: for now one trial of the paper, with its story and its picture.
-    Play(TrialArgs),
+    /// A match of the Small Size League in the simulator: two teams of ours, a referee, and what came of it.
+    Play(PlayArgs),
     /// One trial of the paper.
     Trial(TrialArgs),
     /// The paper's tables: thousands of trials, beside what the paper measured.

@@ -54,6 +54,10 @@ pub(crate) enum Failure {
     Survey(String),
     /// A trial could not be played.
     Trial(SimulationError),
+    /// A match could not be played.
+    Game(String),
+    /// A recording could not be written.
+    Recording(String),
     /// The robots' image or its emulator cannot be had.
     Firmware(String),
     /// A picture could not be written.
@@ -169,7 +173,8 @@ impl fmt::Display for Failure {
             }
             Self::Draft(words) | Self::Survey(words) | Self::Robot(words) => f.write_str(words),
             Self::Trial(error) => write!(f, "{error}"),
-            Self::Firmware(words) => f.write_str(words),
+            Self::Firmware(words) | Self::Game(words) => f.write_str(words),
+            Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
             Self::Markdown { file, error } => write!(f, "{}: {error}", file.display()),
             Self::Picture { file, words } => {
                 write!(f, "cannot write the picture {}: {words}", file.display())

@@ -10,6 +10,7 @@ mod evaluate;
 mod failure;
 mod library;
 mod picture;
+mod play;
 mod setup;
 mod trial;
 mod virtual_robot;
@@ -23,7 +24,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
-        Verb::Play(args) => trial::run_with_picture(&args),
+        Verb::Play(args) => play::run(&args),
         Verb::Trial(args) => trial::run(&args),
         Verb::Evaluate(args) => evaluate::run(&args),
         Verb::Cases { verb } => cases::run(&verb),

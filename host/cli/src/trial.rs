@@ -1,10 +1,8 @@
 //! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1; DESIGN §8).
-//!
-//! The same flags lead `onetwo play`, which for now is a trial with its story and picture.
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use arena::evaluation::Profile;
@@ -74,15 +72,7 @@ enum BackendWord {
 
 /// `onetwo trial`.
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
-    tell(args, args.svg.as_deref())
-}
-
-/// `onetwo play`: for now a trial, always with its picture.
-pub(crate) fn run_with_picture(args: &TrialArgs) -> Result<ExitCode, Failure> {
-    tell(args, Some(args.svg.as_deref().unwrap_or(Path::new("trial.svg"))))
-}
-
-fn tell(args: &TrialArgs, svg: Option<&Path>) -> Result<ExitCode, Failure> {
+    let svg = args.svg.as_deref();
     let (mut recording, mut story) = (Recording::default(), Story::default());
     let report = play(args, &mut [&mut recording, &mut story])?;
     if let Some(file) = svg {

@@ -97,9 +97,9 @@ fn a_setting_reaches_the_robots() {
 }
 
 #[test]
-fn play_tells_a_story_and_draws_it() {
+fn a_trial_is_told_as_a_story_and_drawn() {
     let picture = scratch("play.svg");
-    let out = onetwo(&["play", "--seed", "3", "--svg", picture.to_str().expect("UTF-8")]);
+    let out = onetwo(&["trial", "--seed", "3", "--svg", picture.to_str().expect("UTF-8")]);
     assert_eq!(out.status.code(), Some(0));
     let story = String::from_utf8(out.stdout).expect("words in UTF-8");
     for word in ["coordinates and retrieves", "plays:", "trace ", "onetwo trial --scenario 3", "picture: "] {
@@ -122,7 +122,7 @@ fn what_cannot_be_done_is_told_with_its_mend_and_ends_with_one() {
     assert!(refused(&["trial", "--library", "no/such/folder"], 1).contains("league.toml"));
     assert!(refused(&["trial", "--set", "thr_c=far"], 1).contains("thr_c"));
     let nowhere = scratch("no-folder").join("x.svg");
-    assert!(refused(&["play", "--svg", nowhere.to_str().expect("UTF-8")], 1).contains("x.svg"));
+    assert!(refused(&["trial", "--svg", nowhere.to_str().expect("UTF-8")], 1).contains("x.svg"));
 }
 
 #[test]

@@ -1,0 +1,76 @@
+//! What decides a match? League, seed, length, and each side's robots; equal configurations play equally.
+
+use brain::{Approach, BrainConfig};
+use casebase::Settings;
+use hil_sim::AirSettings;
+use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
+use protocol::Duration;
+use rules::{Colour, League};
+
+/// A match to be played.
+#[derive(Clone, Debug)]
+pub struct GameConfig {
+    /// Field, robots, ball and rules.
+    pub league: League,
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// Simulated seconds.
+    pub duration_s: f64,
+    /// How the referee runs it.
+    pub referee: RefereeSettings,
+    /// Yellow and blue, in this order.
+    pub teams: [TeamSetup; 2],
+    /// How each team's air treats packets; delays in ticks of 10 ms.
+    pub air: AirSettings,
+}
+
+/// One side.
+#[derive(Clone, Debug)]
+pub struct TeamSetup {
+    /// Its colour.
+    pub colour: Colour,
+    /// How many robots.
+    pub robots: u8,
+    /// What robots without a host's order let themselves be led by.
+    pub approach: Approach,
+    /// How they retrieve.
+    pub settings: Settings,
+}
+
+impl GameConfig {
+    /// Two full teams of ours, for so many simulated seconds.
+    pub fn new(league: League, seed: u64, duration_s: f64) -> Self {
+        let robots = match league {
+            League::DivisionA => 11,
+            _ => 6,
+        };
+        let team = |colour| TeamSetup { colour, robots, approach: Approach::Cases, settings: Settings::default() };
+        let total = Duration((duration_s * 1e6) as u64);
+        Self {
+            league,
+            seed,
+            duration_s,
+            referee: RefereeSettings { clock: MatchClock::Simulated { total }, ..RefereeSettings::new(league) },
+            teams: [team(Colour::Yellow), team(Colour::Blue)],
+            air: AirSettings::default(),
+        }
+    }
+}
+
+impl TeamSetup {
+    /// The brain of its robot `id`.
+    pub(super) fn brain(&self, league: League, id: protocol::RobotId) -> BrainConfig {
+        BrainConfig {
+            approach: self.approach,
+            settings: self.settings.clone(),
+            ..BrainConfig::hosted(id, host::team_of(self.colour), league)
+        }
+    }
+}
+
+impl GameConfig {
+    /// With what a team's host begins.
+    pub fn host_settings(&self, colour: Colour) -> host::HostSettings {
+        super::side::host_settings(self, colour)
+    }
+}

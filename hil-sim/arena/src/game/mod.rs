@@ -1,0 +1,245 @@
+//! How do two teams play a match? Simulated field, cameras, referee and radio; on each side a host and its robots' brains
+//! (DESIGN §3, §7, §8). Deterministic: a seed gives the same match to the bit, on any machine.
+//!
+//! ```text
+//! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world
+//!    └► referee 10 ms ─► referee datagrams ─► host        ▲── beacons, telemetry ──┘
+//! ```
+//! [`Game`] is the match, tick by tick; [`play`] runs it to its end and gives a [`GameReport`]. What somebody wants to keep or show
+//! is told to a [`Watcher`], which changes nothing.
+
+mod config;
+mod eyes;
+mod recording;
+mod report;
+mod side;
+mod story;
+
+pub use config::{GameConfig, TeamSetup};
+pub use report::{GameReport, TeamReport};
+pub use recording::{GameRecording, header};
+pub use side::Player;
+pub use story::{GameStory, sentence};
+
+use hil_sim::small_size::referee::{InternalReferee, WorldOrder};
+use hil_sim::small_size::camera::Cameras;
+use hil_sim::small_size::{Event, Parameters, Profile, Who, World};
+use hil_sim::{Backend, McuError, TraceHash};
+use host::Host;
+use protocol::{Instant, RobotId};
+use rules::Colour;
+use ssl::Message;
+
+use side::Team;
+
+/// Steps of physics in a tick of brains.
+pub const STEPS_A_TICK: u64 = 10;
+/// Length of a tick, µs (DESIGN §2).
+pub const TICK_US: u64 = 10_000;
+
+/// Sees a match from outside.
+pub trait Watcher {
+    /// A datagram of the cameras, as both teams get it.
+    fn vision(&mut self, _now: Instant, _bytes: &[u8]) {}
+    /// A datagram of the referee.
+    fn referee(&mut self, _now: Instant, _bytes: &[u8]) {}
+    /// Something came to a host.
+    fn input(&mut self, _now: Instant, _host: Colour, _input: host::Input<'_>) {}
+    /// A host sent something.
+    fn sent(&mut self, _now: Instant, _host: Colour, _to: host::radio::To, _packet: &[u8]) {}
+    /// A tick is over.
+    fn tick(&mut self, _game: &Game<'_>) {}
+}
+
+/// A match under way.
+pub struct Game<'a> {
+    world: World,
+    cameras: Cameras,
+    referee: InternalReferee,
+    teams: [Team<'a>; 2],
+    trace: TraceHash,
+    tick: u32,
+    events: Vec<Event>,
+}
+
+/// Why a match cannot be played.
+#[derive(Debug)]
+pub enum GameError {
+    /// A robot's computer.
+    Computer {
+        /// Whose.
+        who: Who,
+        /// What is wrong with it.
+        error: McuError,
+    },
+    /// The league has no such matches.
+    League(String),
+}
+
+impl std::fmt::Display for GameError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Computer { who, error } => write!(f, "{} {}: {error}", who.colour.word(), who.id),
+            Self::League(words) => f.write_str(words),
+        }
+    }
+}
+
+impl std::error::Error for GameError {}
+
+impl<'a> Game<'a> {
+    /// Robots on their halves, the ball in the middle, the referee before the first whistle.
+    pub fn new(config: &GameConfig, backend: &mut dyn Backend<'a>) -> Result<Self, GameError> {
+        let league = config.league;
+        let parameters = Parameters::of(league)
+            .ok_or_else(|| GameError::League(format!("{} has no wheels: `onetwo trial` plays it", league.name())))?;
+        let referee = InternalReferee::new(config.referee.clone(), config.seed)
+            .map_err(|_| GameError::League(format!("{} has no referee of its own", league.name())))?;
+        let mut world = World::new(league, parameters, config.seed);
+        let mut teams = Vec::new();
+        for setup in &config.teams {
+            teams.push(Team::new(config, setup, &mut world, backend)?);
+        }
+        let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
+        let cameras = Cameras::of(Profile::Ours, 0.0, &world, config.seed);
+        Ok(Self { world, cameras, referee, teams, trace: TraceHash::default(), tick: 0, events: Vec::new() })
+    }
+
+    /// Seconds since the beginning.
+    pub fn time(&self) -> f64 {
+        self.world.time()
+    }
+
+    /// The time on everybody's clock.
+    pub fn now(&self) -> Instant {
+        Instant(u64::from(self.tick) * TICK_US)
+    }
+
+    /// The truth.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The referee.
+    pub fn referee(&self) -> &InternalReferee {
+        &self.referee
+    }
+
+    /// A team's host.
+    pub fn host(&self, team: Colour) -> &Host {
+        &self.teams[team as usize].host
+    }
+
+    /// What happened in the last tick.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// The hash of all ticks so far.
+    pub fn trace(&self) -> TraceHash {
+        self.trace
+    }
+
+    /// Whether the referee has ended it.
+    pub fn is_over(&self) -> bool {
+        self.referee.is_over()
+    }
+
+    /// Most instructions that a robot's tick has taken, where they can be counted.
+    pub fn worst_instructions(&self) -> u32 {
+        self.teams.iter().map(Team::worst_instructions).max().unwrap_or(0)
+    }
+
+    /// 10 ms: brains think and order, then physics moves, cameras look and the referee judges.
+    pub fn step(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
+        let (tick, now) = (self.tick, self.now());
+        self.trace.small_size_tick(tick, &self.world);
+        for team in &mut self.teams {
+            team.deadline(tick, now, watcher);
+            team.think(tick, now, &mut self.world, &mut self.trace, watcher)?;
+        }
+        self.events.clear();
+        for step in 0..STEPS_A_TICK {
+            self.world.step();
+            let now = Instant(now.0 + (step + 1) * 1_000);
+            self.cameras.watch(&self.world);
+            while let Some(packet) = self.cameras.poll(self.world.now()) {
+                let bytes = packet.encode_to_vec();
+                watcher.vision(now, &bytes);
+                for team in &mut self.teams {
+                    team.tell(tick, now, host::Input::Vision(&bytes), watcher);
+                }
+            }
+        }
+        self.tick += 1;
+        let now = self.now();
+        self.judge(now, watcher);
+        watcher.tick(self);
+        Ok(())
+    }
+
+    fn judge(&mut self, now: Instant, watcher: &mut dyn Watcher) {
+        let before = self.events.len();
+        self.world.take_events(&mut self.events);
+        eyes::show(&mut self.referee, now, &self.world, &self.events[before..]);
+        while let Some(packet) = self.referee.poll_packet() {
+            let bytes = packet.encode_to_vec();
+            watcher.referee(now, &bytes);
+            for team in &mut self.teams {
+                team.tell(self.tick, now, host::Input::Referee(&bytes), watcher);
+            }
+        }
+        while let Some(order) = self.referee.poll_order() {
+            match order {
+                WorldOrder::PutBall(at) => self.world.put_ball(hil_sim::small_size::Ball::at(at)),
+                WorldOrder::RemoveRobot(who) => self.world.remove(who),
+                WorldOrder::ReturnRobot(who, pose) => {
+                    self.world.put(who, pose);
+                }
+            }
+        }
+    }
+}
+
+/// Plays a match to its end, or for so many simulated seconds.
+pub fn play<'a>(
+    config: &GameConfig,
+    backend: &mut dyn Backend<'a>,
+    watcher: &mut dyn Watcher,
+) -> Result<GameReport, GameError> {
+    let mut game = Game::new(config, backend)?;
+    let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u32;
+    while game.tick < ticks && !game.is_over() {
+        game.step(watcher)?;
+    }
+    Ok(GameReport::of(config, &game))
+}
+
+/// Watches nothing.
+pub struct Nobody;
+impl Watcher for Nobody {}
+
+/// Our robots' numbers in a team of so many.
+pub(crate) fn numbers(robots: u8) -> impl Iterator<Item = RobotId> {
+    RobotId::all().take(usize::from(robots))
+}
+
+/// Several watchers as one.
+pub struct Crowd<'w>(pub Vec<&'w mut dyn Watcher>);
+impl Watcher for Crowd<'_> {
+    fn vision(&mut self, now: Instant, bytes: &[u8]) {
+        self.0.iter_mut().for_each(|watcher| watcher.vision(now, bytes));
+    }
+    fn referee(&mut self, now: Instant, bytes: &[u8]) {
+        self.0.iter_mut().for_each(|watcher| watcher.referee(now, bytes));
+    }
+    fn input(&mut self, now: Instant, host: Colour, input: host::Input<'_>) {
+        self.0.iter_mut().for_each(|watcher| watcher.input(now, host, input));
+    }
+    fn sent(&mut self, now: Instant, host: Colour, to: host::radio::To, packet: &[u8]) {
+        self.0.iter_mut().for_each(|watcher| watcher.sent(now, host, to, packet));
+    }
+    fn tick(&mut self, game: &Game<'_>) {
+        self.0.iter_mut().for_each(|watcher| watcher.tick(game));
+    }
+}

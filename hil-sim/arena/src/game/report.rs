@@ -1,0 +1,96 @@
+//! What is said of a match when it is over? DESIGN §8's JSON of `play`, filled by the referee's books.
+
+use std::collections::BTreeMap;
+
+use hil_sim::small_size::referee::Metrics;
+use rules::Colour;
+use serde::Serialize;
+
+use super::{Game, GameConfig};
+
+/// A match in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GameReport {
+    /// Goals.
+    pub score: PerTeam<u32>,
+    /// Simulated seconds.
+    pub duration_s: f64,
+    /// Share of those seconds in which the ball was in play.
+    pub ball_in_play: f32,
+    /// Offences by kind.
+    pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
+    /// What else was counted.
+    pub metrics: PerTeam<TeamReport>,
+    /// League and seed, to play it again.
+    pub league: &'static str,
+    /// See `league`.
+    pub seed: u64,
+    /// The hash of all ticks (DESIGN §2), 16 hexadecimal digits.
+    pub trace_hash: String,
+    /// The longest step of a brain, guest instructions; 0 where they cannot be counted.
+    pub worst_step_instructions: u32,
+}
+
+/// Something of both teams.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PerTeam<T> {
+    /// Blue's.
+    pub blue: T,
+    /// Yellow's.
+    pub yellow: T,
+}
+
+impl<T> PerTeam<T> {
+    fn of(each: impl Fn(Colour) -> T) -> Self {
+        Self { blue: each(Colour::Blue), yellow: each(Colour::Yellow) }
+    }
+}
+
+/// One team in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TeamReport {
+    /// Seconds that it had the ball.
+    pub possession_s: f32,
+    /// Shots at the goal (Biswas et al. 2014: what the attack ratio counts).
+    pub shots: u32,
+    /// Shots that a keeper had to stop, that hit a post, or went in.
+    pub chances: u32,
+    /// Passes that arrived.
+    pub passes: u32,
+    /// Time of the ball in the opponents' half over that in the own.
+    pub offence_ratio: Option<f32>,
+    /// Own shots over the opponents'.
+    pub attack_ratio: Option<f32>,
+}
+
+impl TeamReport {
+    fn of(metrics: &Metrics, team: Colour) -> Self {
+        let own = metrics.team(team);
+        Self {
+            possession_s: own.possession_s,
+            shots: own.shots,
+            chances: own.chances,
+            passes: own.passes,
+            offence_ratio: metrics.offence_ratio(team),
+            attack_ratio: metrics.attack_ratio(team),
+        }
+    }
+}
+
+impl GameReport {
+    /// Of a match as it stands.
+    pub fn of(config: &GameConfig, game: &Game<'_>) -> Self {
+        let (accounts, metrics) = (game.referee().accounts(), game.referee().metrics());
+        Self {
+            score: PerTeam::of(|team| accounts.of(team).score),
+            duration_s: game.time(),
+            ball_in_play: metrics.ball_in_play(),
+            fouls: PerTeam::of(|team| metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()),
+            metrics: PerTeam::of(|team| TeamReport::of(metrics, team)),
+            league: config.league.name(),
+            seed: config.seed,
+            trace_hash: game.trace().digits(),
+            worst_step_instructions: game.worst_instructions(),
+        }
+    }
+}

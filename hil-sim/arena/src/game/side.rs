@@ -1,0 +1,155 @@
+//! One side of a match: its host, its robots' computers, and the air between them. Times in ticks of 10 ms and µs.
+
+use geometry::{Angle, GoalEnd, Point, Pose};
+use hil_sim::small_size::{Who, World};
+use hil_sim::{Air, Backend, Mcu, TraceHash};
+use host::radio::{RadioSettings, Relay, To};
+use host::{Host, HostSettings, Input};
+use protocol::lockstep::TickIn;
+use protocol::{Instant, RobotId};
+use rules::Colour;
+
+use super::{GameConfig, GameError, TeamSetup, Watcher, numbers};
+
+/// A team under way.
+pub(super) struct Team<'a> {
+    pub(super) host: Host,
+    colour: Colour,
+    air: Air,
+    players: Vec<Player<'a>>,
+}
+
+/// A robot led by a brain.
+pub struct Player<'a> {
+    who: Who,
+    computer: Box<dyn Mcu + 'a>,
+    worst_instructions: u32,
+}
+
+impl<'a> Team<'a> {
+    /// Robots on the carpet, computers and host started.
+    pub(super) fn new(
+        config: &GameConfig,
+        setup: &TeamSetup,
+        world: &mut World,
+        backend: &mut dyn Backend<'a>,
+    ) -> Result<Self, GameError> {
+        let colour = setup.colour;
+        let own = own_goal(config, colour);
+        let ids: Vec<RobotId> = numbers(setup.robots).collect();
+        let mut players = Vec::new();
+        for (place, id) in ids.iter().enumerate() {
+            let who = Who { colour, id: *id };
+            world.put(who, first_place(config, own, place, ids.len()));
+            let brain = brain::BrainConfig { defending: own, ..setup.brain(config.league, *id) };
+            let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
+            players.push(Player { who, computer, worst_instructions: 0 });
+        }
+        let settings = host_settings(config, colour);
+        let seed = config.seed ^ colour as u64;
+        let air = Air::with_host(config.air.clone(), seed, &ids);
+        Ok(Self { host: Host::new(settings, Instant(0)), colour, air, players })
+    }
+
+    pub(super) fn worst_instructions(&self) -> u32 {
+        self.players.iter().map(|player| player.worst_instructions).max().unwrap_or(0)
+    }
+
+    /// Something comes to the host; what it says goes on the air.
+    pub(super) fn tell(&mut self, tick: u32, now: Instant, input: Input<'_>, watcher: &mut dyn Watcher) {
+        watcher.input(now, self.colour, input);
+        self.host.handle(now, input);
+        while let Some((to, packet)) = self.host.poll_packet() {
+            watcher.sent(now, self.colour, to, &packet);
+            let to = match to {
+                To::All => None,
+                To::One(robot) => Some(robot),
+            };
+            self.air.send_from_host(tick, to, &packet);
+        }
+    }
+
+    /// The host's deadline, if it has come, and what robots said to it.
+    pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
+        for packet in self.air.deliver_to_host(tick) {
+            self.tell(tick, now, Input::Robot(&packet), watcher);
+        }
+        if self.host.poll_timeout().is_some_and(|due| due <= now) {
+            self.tell(tick, now, Input::Timeout, watcher);
+        }
+    }
+
+    /// All its robots think at once; bodies are told, words go on the air.
+    pub(super) fn think(
+        &mut self,
+        tick: u32,
+        now: Instant,
+        world: &mut World,
+        trace: &mut TraceHash,
+        _watcher: &mut dyn Watcher,
+    ) -> Result<(), GameError> {
+        let Self { air, players, .. } = self;
+        let mut thinking = Vec::new();
+        for (i, player) in players.iter_mut().enumerate() {
+            let who = player.who;
+            let Some(sensors) = world.sensors(who) else {
+                // Off the carpet: its radio is off too.
+                air.discard(tick, who.id);
+                continue;
+            };
+            let packets = air.deliver(tick, who.id);
+            for packet in &packets {
+                trace.small_size_packet(who, packet);
+            }
+            let input = TickIn { seq: tick, now, air: packets.iter().map(|packet| &packet[..]).collect(), sensors };
+            player.computer.post(&input).map_err(|error| GameError::Computer { who, error })?;
+            thinking.push(i);
+        }
+        for i in thinking {
+            let player = &mut players[i];
+            let who = player.who;
+            let reply = player.computer.collect().map_err(|error| GameError::Computer { who, error })?;
+            player.worst_instructions = player.worst_instructions.max(reply.instructions);
+            if let Some(order) = reply.actuators {
+                trace.small_size_order(who, &order);
+                world.command(who, &order);
+            }
+            for packet in &reply.packets {
+                air.send(tick, who.id, packet);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// With what a team's host begins; robots hear each other, so it passes nothing on.
+pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings {
+    let usual = HostSettings::new(colour, config.league, 1);
+    HostSettings {
+        defending: own_goal(config, colour),
+        keeper: config.referee.team(colour).keeper,
+        radio: RadioSettings { relay: Relay::No, ..usual.radio },
+        ..usual
+    }
+}
+
+fn own_goal(config: &GameConfig, colour: Colour) -> GoalEnd {
+    let blue_ahead = config.referee.blue_on_positive_half;
+    if blue_ahead == (colour == Colour::Blue) { GoalEnd::Positive } else { GoalEnd::Negative }
+}
+
+/// Where robots stand before the first whistle: on their half, the keeper in its goal, the others in two columns.
+fn first_place(config: &GameConfig, own: GoalEnd, place: usize, robots: usize) -> Pose<geometry::Field> {
+    let field = config.league.field();
+    let sign = own.sign() as f32;
+    let (x, y) = if place == 0 {
+        (field.length * 0.5 - 0.15, 0.0)
+    } else {
+        let (column, row) = ((place - 1) % 2, (place - 1) / 2);
+        let rows = robots.div_ceil(2).max(1) as f32;
+        let x = field.length * (0.15 + 0.12 * column as f32);
+        (x, (row as f32 + 0.5 - rows * 0.5) * field.width / (rows + 1.0))
+    };
+    let heading = if sign > 0.0 { Angle::HALF_TURN } else { Angle::ZERO };
+    Pose { position: Point::new(sign * x, sign * y), heading }
+}

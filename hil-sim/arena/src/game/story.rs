@@ -1,0 +1,73 @@
+//! How is a match told? A line for each thing that the referee notes, and for each restart. Seconds, field frame, m.
+
+use hil_sim::small_size::referee::Event;
+use rules::{Colour, Phase};
+
+use super::{Game, Watcher};
+
+/// Tells a match as it is played.
+#[derive(Clone, Debug, Default)]
+pub struct GameStory {
+    events: usize,
+    phase: Option<Phase<Colour>>,
+    score: [u32; 2],
+    lines: Vec<String>,
+}
+
+impl GameStory {
+    /// The lines since the last call.
+    pub fn take_lines(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.lines)
+    }
+
+    fn say(&mut self, time: f64, words: &str) {
+        self.lines.push(format!("{time:7.2} s  {words}"));
+    }
+}
+
+impl Watcher for GameStory {
+    fn tick(&mut self, game: &Game<'_>) {
+        let referee = game.referee();
+        for event in referee.events().iter().skip(self.events) {
+            self.say(game.time(), &sentence(event));
+        }
+        self.events = referee.events().len();
+        let phase = referee.phase();
+        if self.phase != Some(phase) {
+            self.phase = Some(phase);
+            if let Some(words) = announcement(phase) {
+                self.say(game.time(), &words);
+            }
+        }
+        let score = [Colour::Blue, Colour::Yellow].map(|team| referee.accounts().of(team).score);
+        if score != self.score {
+            self.score = score;
+            self.say(game.time(), &format!("blue {} : {} yellow", score[0], score[1]));
+        }
+    }
+}
+
+/// An event in words: who, what, where.
+pub fn sentence(event: &Event) -> String {
+    let who = match (event.by, event.robot) {
+        (Some(team), Some(robot)) => format!("{} {robot}: ", team.word()),
+        (Some(team), None) => format!("{}: ", team.word()),
+        (None, _) => String::new(),
+    };
+    let what = event.what.kind().word().replace('_', " ");
+    let (x, y) = (event.place.x(), event.place.y());
+    format!("{who}{what} at ({x:.2}, {y:.2})")
+}
+
+fn announcement(phase: Phase<Colour>) -> Option<String> {
+    let of = |what: &str, team: Colour| Some(format!("{what} for {}", team.word()));
+    match phase {
+        Phase::Kickoff(team) => of("kick-off", team),
+        Phase::Penalty(team) => of("penalty", team),
+        Phase::FreeKick(team) => of("free kick", team),
+        Phase::Timeout(team) => of("time-out", team),
+        Phase::BallPlacement(team) => of("ball placement", team),
+        Phase::Halt => Some("halt".to_owned()),
+        Phase::Stop | Phase::Run | Phase::PrepareKickoff(_) | Phase::PreparePenalty(_) => None,
+    }
+}
