@@ -17,6 +17,14 @@ use super::{defence, restart, roles, support};
 pub type Orders = heapless::Vec<Order, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
+/// A pass on its way.
+#[derive(Clone, Copy, Debug)]
+struct Pass {
+    receiver: RobotId,
+    at: Point<Attack>,
+    since: Instant,
+}
+
 /// Chooses what everybody does; see [`Coach::decide`].
 #[derive(Clone, Debug, Default)]
 pub struct Coach {
@@ -28,6 +36,8 @@ pub struct Coach {
     others: [Option<RobotId>; OTHERS],
     /// What our restart is aimed at, since when.
     aim: Option<(Instant, Target)>,
+    /// The pass of our restart that is on its way.
+    pass: Option<Pass>,
     /// Took our restart; nobody else has touched the ball since.
     barred: Option<RobotId>,
 }
@@ -67,9 +77,29 @@ impl Coach {
                 Some(Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(Side::Ours))
             );
             self.barred = if view.phase == Phase::Run && taken { self.first } else { None };
+            self.pass = match self.aim {
+                Some((_, Target::Mate { id, at, .. })) if view.phase == Phase::Run && taken => {
+                    Some(Pass { receiver: id, at, since: view.now })
+                }
+                _ => None,
+            };
             self.phase = Some(view.phase);
             self.aim = None;
             self.since = view.now;
+        }
+        if let (Some(pass), Some(ball)) = (self.pass, view.ball) {
+            let age = view.now.since(pass.since);
+            let had = |robots: &[super::view::Robot], who: &dyn Fn(RobotId) -> bool| {
+                nearest(robots.iter().filter(|robot| who(robot.id)), ball.position)
+                    .is_some_and(|(_, d)| d < TOUCHING)
+            };
+            let over = age > PASS_LASTS
+                || (age > PASS_BEGINS && ball.velocity.norm() < PASS_STOPPED)
+                || had(&view.theirs, &|_| true)
+                || had(&view.ours, &|id| id == pass.receiver);
+            if over {
+                self.pass = None;
+            }
         }
         if let (Some(barred), Some(ball)) = (self.barred, view.ball) {
             let others = view.ours.iter().filter(|robot| robot.id != barred).chain(view.theirs.iter());
@@ -96,6 +126,15 @@ impl Coach {
         {
             let (at, worth) = best_place(view, ball.position);
             plan.order(barred, Role::Barred, plan.facing_ball(at), Why::FreePlace { worth });
+        }
+        if let Some(pass) = self.pass
+            && plan.take(pass.receiver)
+        {
+            self.first = Some(pass.receiver);
+            let why = Why::BestTarget { room: support::worth(view, ball.position, pass.at) };
+            plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at }, why);
+            self.defend(plan);
+            return plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
         }
         if view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0) {
             // Nobody but a keeper may touch it there.
@@ -150,6 +189,7 @@ impl Coach {
         plan.keeper_guards();
         if side == Side::Ours {
             self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), false);
+            self.receiver(plan);
         }
         self.defend(plan);
         let places: heapless::Vec<_, ROBOTS_MAX> = restart::kickoff_places(view).into_iter().collect();
@@ -163,6 +203,7 @@ impl Coach {
         let Some(ball) = view.ball else { return self.defend(plan) };
         if side == Side::Ours {
             self.taker(plan, matches!(view.phase, Phase::FreeKick(_)), false);
+            self.receiver(plan);
             self.defend(plan);
             return self.spread(plan);
         }
@@ -230,6 +271,15 @@ impl Coach {
         }
         let (task, why) = restart::take(view, &ball, self.aim.map(|(_, target)| target));
         plan.order(id, Role::Taker, task, why);
+    }
+
+    /// The mate that our restart is aimed at.
+    fn receiver(&mut self, plan: &mut Plan<'_>) {
+        if let Some((_, Target::Mate { id, at, room })) = self.aim
+            && plan.take(id)
+        {
+            plan.order(id, Role::Receiver, Task::Receive { at }, Why::BestTarget { room });
+        }
     }
 
     /// Two defenders before our area.
@@ -359,6 +409,12 @@ const TAKER_WORTH: f32 = 1.0;
 const TOUCHING: f32 = 0.126;
 /// Mates are given this long to take their places before a restart is played, of the 5 s (A) that the rules give.
 const MATES_GET_READY: Duration = Duration::millis(1500);
+/// A pass is not waited for longer: 5 m take 2.5 s.
+const PASS_LASTS: Duration = Duration::millis(3000);
+/// It has not begun before this: the ball is known to have moved, but not yet how fast.
+const PASS_BEGINS: Duration = Duration::millis(300);
+/// A ball slower than this goes nowhere any more, m/s.
+const PASS_STOPPED: f32 = 0.3;
 /// A target once chosen stands for this long: to walk around the ball, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.

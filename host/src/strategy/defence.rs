@@ -50,7 +50,8 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     let (at, room) = best.unwrap_or((Point::new(0.0, 0.0), 0.0));
     // Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
-    let kick = if room > ROOM_FOR_FLAT { KickOrder::Flat(CLEAR_FLAT) } else { KickOrder::Chip(CLEAR_CHIP) };
+    let flat = super::support::push_kick(at.distance(ball.position));
+    let kick = if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) };
     (at, kick, room)
 }
 
@@ -173,8 +174,6 @@ const CLEAR_INSIDE: f32 = 0.6;
 const CLEAR_AT_LEAST: f32 = 1.2;
 /// With this much room the ball goes along the ground, m: an opponent's reach in the half second that it takes.
 const ROOM_FOR_FLAT: f32 = 0.35;
-/// cm/s: rolls 3 to 4 m.
-const CLEAR_FLAT: u16 = 350;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CLEAR_CHIP: u16 = 400;
 /// More room than this counts no more, m.

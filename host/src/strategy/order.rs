@@ -30,6 +30,8 @@ pub enum Role {
     Player,
     /// Takes our restart, or places the ball.
     Taker,
+    /// Has the pass of our restart.
+    Receiver,
     /// Took our restart and must not touch the ball before somebody else has.
     Barred,
     /// Stands where a pass can come.

@@ -27,18 +27,19 @@ pub fn taker_waits(view: &View, ball: &Ball) -> Point<Attack> {
 
 /// What our taker does with the target it has; nothing yet: it waits behind the ball for its mates to take their places.
 pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
-    let kick_to = |at: Point<Attack>| support::pass_kick(at.distance(ball.position));
+    let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
         None => {
             let at = taker_waits(view, ball);
             (Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Referee)
         }
         Some(Target::Shot { at, room }) => (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room }),
-        Some(Target::Ahead { at, room }) => (Task::Kick { at, kick: kick_to(at) }, Why::BestTarget { room }),
+        Some(Target::Ahead { at, room }) => {
+            (Task::Kick { at, kick: support::push_kick(distance(at)) }, Why::BestTarget { room })
+        }
         Some(Target::Mate { id, at, room }) => {
-            // It may have moved a little since it was chosen.
-            let at = view.our(id).map_or(at, |mate| mate.position);
-            (Task::Pass { at, receiver: id, kick: kick_to(at), ready: true }, Why::BestTarget { room })
+            let kick = support::pass_kick(distance(at));
+            (Task::Pass { at, receiver: id, kick, ready: true }, Why::BestTarget { room })
         }
     }
 }
