@@ -23,7 +23,8 @@ pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::referee::{InternalReferee, WorldOrder};
 use hil_sim::small_size::camera::Cameras;
-use hil_sim::small_size::{Event, Parameters, Profile, Who, World};
+use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::{Event, Parameters, Who, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
 use protocol::{Instant, RobotId};

@@ -23,7 +23,7 @@ pub use open::{BACK_STEP_MESSAGES, Place, Source, open, open_at};
 pub use packet::{Packet, PacketError};
 pub use reader::{Counts, End, LogReader};
 pub use summary::{KindSummary, Summary};
-pub use writer::LogWriter;
+pub use writer::{LogWriter, Sink};
 
 /// The first bytes of a file.
 const MAGIC: &[u8; 12] = b"SSL_LOG_FILE";
