@@ -65,7 +65,8 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         team.settings = settings.clone();
         team.robots = args.robots.unwrap_or(team.robots);
     }
-    let base = cases(args)?;
+    let shelf = cases(args)?;
+    let base = shelf.as_ref().map_or_else(CaseBase::default, Shelf::base);
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
@@ -91,14 +92,14 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.
-fn cases(args: &PlayArgs) -> Result<CaseBase<'static>, Failure> {
+fn cases(args: &PlayArgs) -> Result<Option<Shelf>, Failure> {
     let known = case_library::LEAGUES.iter().any(|league| league.name == args.league.name());
     if args.folder.library.is_none() && !known {
         eprintln!("no cases come with {}: robots that are left free play reactively", args.league.name());
-        return Ok(CaseBase::default());
+        return Ok(None);
     }
     let folder = FolderArgs { library: args.folder.library.clone() };
-    Shelf::open(&LibraryArgs { folder, league: args.league.name().to_owned() }).map(|shelf| shelf.base())
+    Shelf::open(&LibraryArgs { folder, league: args.league.name().to_owned() }).map(Some)
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<GameRecording, Failure> {
@@ -106,7 +107,8 @@ fn record(stem: &std::path::Path, config: &GameConfig) -> Result<GameRecording, 
     let hosts: Vec<_> = hosts.iter().collect();
     let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("ONETWO_COMMIT"));
     let header = game::header(version, commit, config.seed, config.league.name(), &hosts);
-    GameRecording::begin(stem, &header, &hosts).map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
+    GameRecording::begin(stem, &header, &hosts)
+        .map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
 }
 
 fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {
@@ -142,7 +144,8 @@ struct Teller {
 impl Teller {
     fn new(args: &PlayArgs) -> Self {
         let bar = if args.json && io::stderr().is_terminal() {
-            let style = ProgressStyle::with_template("{bar:40} {pos} of {len} s").unwrap_or_else(|_| ProgressStyle::default_bar());
+            let style = ProgressStyle::with_template("{bar:40} {pos} of {len} s")
+                .unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new(args.duration as u64).with_style(style)
         } else {
             ProgressBar::hidden()

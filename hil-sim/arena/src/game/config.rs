@@ -44,13 +44,17 @@ impl GameConfig {
             League::DivisionA => 11,
             _ => 6,
         };
-        let team = |colour| TeamSetup { colour, robots, approach: Approach::Cases, settings: Settings::default() };
+        let team =
+            |colour| TeamSetup { colour, robots, approach: Approach::Cases, settings: Settings::default() };
         let total = Duration((duration_s * 1e6) as u64);
         Self {
             league,
             seed,
             duration_s,
-            referee: RefereeSettings { clock: MatchClock::Simulated { total }, ..RefereeSettings::new(league) },
+            referee: RefereeSettings {
+                clock: MatchClock::Simulated { total },
+                ..RefereeSettings::new(league)
+            },
             teams: [team(Colour::Yellow), team(Colour::Blue)],
             air: AirSettings::default(),
         }

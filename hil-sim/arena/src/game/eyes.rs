@@ -30,12 +30,8 @@ pub(super) fn show(referee: &mut InternalReferee, now: Instant, world: &World, e
         })
         .collect();
     let ball = &world.ball;
-    let ball = BallSeen {
-        position: ball.position,
-        height: ball.height,
-        velocity: ball.velocity,
-        climb: ball.climb,
-    };
+    let ball =
+        BallSeen { position: ball.position, height: ball.height, velocity: ball.velocity, climb: ball.climb };
     let kicked = |event: &Event| if let Event::Kicked { speed, .. } = event { *speed } else { 0.0 };
     let fastest = events.iter().map(kicked).fold(0.0, f32::max);
     referee.observe(&Observation {

@@ -16,14 +16,14 @@ mod side;
 mod story;
 
 pub use config::{GameConfig, TeamSetup};
-pub use report::{GameReport, TeamReport};
 pub use recording::{GameRecording, header};
+pub use report::{GameReport, TeamReport};
 pub use side::Player;
 pub use story::{GameStory, sentence};
 
-use hil_sim::small_size::referee::{InternalReferee, WorldOrder};
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::referee::{InternalReferee, WorldOrder};
 use hil_sim::small_size::{Event, Parameters, Who, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
@@ -92,8 +92,9 @@ impl<'a> Game<'a> {
     /// Robots on their halves, the ball in the middle, the referee before the first whistle.
     pub fn new(config: &GameConfig, backend: &mut dyn Backend<'a>) -> Result<Self, GameError> {
         let league = config.league;
-        let parameters = Parameters::of(league)
-            .ok_or_else(|| GameError::League(format!("{} has no wheels: `onetwo trial` plays it", league.name())))?;
+        let parameters = Parameters::of(league).ok_or_else(|| {
+            GameError::League(format!("{} has no wheels: `onetwo trial` plays it", league.name()))
+        })?;
         let referee = InternalReferee::new(config.referee.clone(), config.seed)
             .map_err(|_| GameError::League(format!("{} has no referee of its own", league.name())))?;
         let mut world = World::new(league, parameters, config.seed);
@@ -203,9 +204,9 @@ impl<'a> Game<'a> {
 }
 
 /// Plays a match to its end, or for so many simulated seconds.
-pub fn play<'a>(
+pub fn play(
     config: &GameConfig,
-    backend: &mut dyn Backend<'a>,
+    backend: &mut dyn Backend<'_>,
     watcher: &mut dyn Watcher,
 ) -> Result<GameReport, GameError> {
     let mut game = Game::new(config, backend)?;

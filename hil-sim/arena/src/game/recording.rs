@@ -97,7 +97,13 @@ impl Watcher for GameRecording {
 }
 
 /// The header of a match's recording.
-pub fn header(version: &str, commit: &str, seed: u64, league: &str, hosts: &[&HostSettings]) -> RecordingHeader {
+pub fn header(
+    version: &str,
+    commit: &str,
+    seed: u64,
+    league: &str,
+    hosts: &[&HostSettings],
+) -> RecordingHeader {
     RecordingHeader {
         version: version.to_owned(),
         commit: commit.to_owned(),

@@ -85,7 +85,9 @@ impl GameReport {
             score: PerTeam::of(|team| accounts.of(team).score),
             duration_s: game.time(),
             ball_in_play: metrics.ball_in_play(),
-            fouls: PerTeam::of(|team| metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()),
+            fouls: PerTeam::of(|team| {
+                metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
+            }),
             metrics: PerTeam::of(|team| TeamReport::of(metrics, team)),
             league: config.league.name(),
             seed: config.seed,

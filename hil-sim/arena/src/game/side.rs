@@ -101,7 +101,8 @@ impl<'a> Team<'a> {
             for packet in &packets {
                 trace.small_size_packet(who, packet);
             }
-            let input = TickIn { seq: tick, now, air: packets.iter().map(|packet| &packet[..]).collect(), sensors };
+            let input =
+                TickIn { seq: tick, now, air: packets.iter().map(|packet| &packet[..]).collect(), sensors };
             player.computer.post(&input).map_err(|error| GameError::Computer { who, error })?;
             thinking.push(i);
         }
