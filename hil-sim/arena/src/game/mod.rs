@@ -9,7 +9,6 @@
 //! is told to a [`Watcher`], which changes nothing.
 
 mod config;
-mod eyes;
 mod recording;
 mod report;
 mod side;
@@ -23,7 +22,7 @@ pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
-use hil_sim::small_size::referee::{InternalReferee, WorldOrder};
+use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::{Event, Parameters, Who, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
@@ -181,9 +180,8 @@ impl<'a> Game<'a> {
     }
 
     fn judge(&mut self, now: Instant, watcher: &mut dyn Watcher) {
-        let before = self.events.len();
         self.world.take_events(&mut self.events);
-        eyes::show(&mut self.referee, now, &self.world, &self.events[before..]);
+        self.referee.look(&self.world, &self.events);
         while let Some(packet) = self.referee.poll_packet() {
             let bytes = packet.encode_to_vec();
             watcher.referee(now, &bytes);
@@ -192,13 +190,7 @@ impl<'a> Game<'a> {
             }
         }
         while let Some(order) = self.referee.poll_order() {
-            match order {
-                WorldOrder::PutBall(at) => self.world.put_ball(hil_sim::small_size::Ball::at(at)),
-                WorldOrder::RemoveRobot(who) => self.world.remove(who),
-                WorldOrder::ReturnRobot(who, pose) => {
-                    self.world.put(who, pose);
-                }
-            }
+            order.carry_out(&mut self.world);
         }
     }
 }
