@@ -274,12 +274,13 @@ const PURE: [&str; 10] = [
 ];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 25] = [
+const LOWEST_FIRST: [&str; 26] = [
     "geometry",
     "rules",
     "protocol",
     "motion",
     "motion-bench",
+    "radio-bench",
     "ssl",
     "casebase",
     "drawing",

@@ -1,4 +1,4 @@
-//! What does a retrieval cost, or motion? Starts a bench of the crate `match-tests`, with what it needs installed first.
+//! What does a retrieval cost, motion, or a radio frame? Starts a bench of the crate `match-tests`, with what it needs installed first.
 
 use firmware_build::Install;
 

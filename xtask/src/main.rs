@@ -75,7 +75,7 @@ enum Request {
     Evaluation,
     /// What a simulated second costs.
     TrialCost,
-    /// Retrieval or motion, with these words for the bench.
+    /// Retrieval, motion or radio, with these words for the bench.
     Bench(&'static str, Vec<String>),
     Help,
 }
@@ -96,9 +96,10 @@ impl Request {
             Some("bench") => {
                 return match words.next() {
                     Some("retrieval") => Ok(Self::Bench("retrieval", words.map(String::from).collect())),
+                    Some("radio") => Ok(Self::Bench("radio", words.map(String::from).collect())),
                     Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
-                    _ => Err("bench needs a name: retrieval, motion or trial".into()),
+                    _ => Err("bench needs a name: retrieval, motion, radio or trial".into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -136,6 +137,8 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo
   bench motion [--write | --guest | --verify]
                  likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,
                  --verify holds 10^6 times to the best of all shares between the axes instead
+  bench radio [--write]
+                 likewise for radio frames on the robot's processor; the table is protocol/README.md's
   bench trial    count the instructions of a simulated second and hold them to the budget";
 
 #[cfg(test)]

@@ -49,6 +49,8 @@ pub enum Program {
     RetrievalBench,
     /// Counts the instructions of motion.
     MotionBench,
+    /// Counts the instructions of radio frames.
+    RadioBench,
 }
 
 impl Program {
@@ -59,6 +61,7 @@ impl Program {
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",
+            Self::RadioBench => "radio-bench",
         }
     }
 }

@@ -1,0 +1,44 @@
+//! What does a radio frame cost on the robot's processor? Does every work several times and counts; a line each:
+//! `number of the work, what it gave, instructions`.
+//!
+//! Needs `-icount shift=6`. `cargo xtask bench radio` starts it and reads the lines.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[path = "../instructions.rs"]
+mod instructions;
+
+#[cfg(target_os = "none")]
+mod measure {
+    use core::hint::black_box;
+
+    use cortex_m_semihosting::{debug, hprintln};
+    use panic_semihosting as _;
+    use radio_bench::{Bench, ROUNDS, Work};
+    // For its functions of the run-time ABI.
+    use runtime as _;
+
+    use crate::instructions::{self, counted};
+
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        let core = cortex_m::Peripherals::take().expect("nobody took them before");
+        instructions::start(core.SYST);
+        // What counting itself takes.
+        let ((), idle) = counted(|| ());
+        let mut bench = Bench::new();
+        for _ in 0..ROUNDS {
+            for (number, work) in Work::ALL.into_iter().enumerate() {
+                let mut task = bench.task(work);
+                let (gave, count) = counted(|| black_box(&mut task).run());
+                hprintln!("{} {} {}", number, gave, count.saturating_sub(idle));
+            }
+        }
+        loop {
+            debug::exit(debug::EXIT_SUCCESS);
+        }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

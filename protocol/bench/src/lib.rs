@@ -1,0 +1,227 @@
+//! What is the radio measured on? One robot's end of it: each kind of message sealed and opened, shortest and longest, and
+//! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
+//! which drives it.
+#![no_std]
+
+use geometry::GoalEnd;
+use protocol::frame::TeamKey;
+use protocol::host::{
+    Command, Condition, Directive, Duty, Hint, HostMessage, PART_ROBOTS_MAX, Telemetry, Welcome, WireBall,
+    WireRobot, WireWho, WorldPart,
+};
+use protocol::host_link::HostLink;
+use protocol::link::{Heard, Link, Packet};
+use protocol::quantized::{WirePoint, WirePose};
+use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
+use protocol::{CaseId, CycleId, RobotId, TeamId};
+use rules::{Phase, Side};
+
+/// How often each work is done.
+pub const ROUNDS: usize = 20;
+
+/// One thing a robot's radio does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// Says what a robot says that has just booted.
+    SealShort,
+    /// The longest beacon.
+    SealLong,
+    /// Telemetry.
+    SealTelemetry,
+    /// Hears the shortest command.
+    OpenCommand,
+    /// The longest one.
+    OpenLongCommand,
+    /// A mate's short beacon.
+    OpenShort,
+    /// A mate's longest beacon.
+    OpenLong,
+    /// A part of the world with one robot in it.
+    OpenSmallWorld,
+    /// A full part of the world.
+    OpenWorld,
+    /// A frame that came before.
+    RefuseReplay,
+    /// A forged frame of a mate, as long as its longest.
+    RefuseForged,
+}
+
+impl Work {
+    /// Each.
+    pub const ALL: [Self; 11] = [
+        Self::SealShort,
+        Self::SealLong,
+        Self::SealTelemetry,
+        Self::OpenCommand,
+        Self::OpenLongCommand,
+        Self::OpenShort,
+        Self::OpenLong,
+        Self::OpenSmallWorld,
+        Self::OpenWorld,
+        Self::RefuseReplay,
+        Self::RefuseForged,
+    ];
+
+    /// What it is, for a table.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::SealShort => "seal a short beacon",
+            Self::SealLong => "seal the longest beacon",
+            Self::SealTelemetry => "seal telemetry",
+            Self::OpenCommand => "open a short command",
+            Self::OpenLongCommand => "open the longest command",
+            Self::OpenShort => "open a short beacon",
+            Self::OpenLong => "open the longest beacon",
+            Self::OpenSmallWorld => "open a world part with one robot",
+            Self::OpenWorld => "open a full world part",
+            Self::RefuseReplay => "refuse a replay",
+            Self::RefuseForged => "refuse a forged frame",
+        }
+    }
+
+    /// Whether it opens something, or refuses it; else it seals.
+    pub const fn opens(self) -> bool {
+        !matches!(self, Self::SealShort | Self::SealLong | Self::SealTelemetry)
+    }
+}
+
+/// A robot, its mate and its host, who have heard each other.
+pub struct Bench {
+    robot: Link,
+    mate: Link,
+    host: HostLink,
+}
+
+/// A work with all it needs.
+pub struct Task<'b> {
+    link: &'b mut Link,
+    /// Frame to open; empty for what seals.
+    packet: Packet,
+    message: Option<TeamMessage>,
+}
+
+impl Bench {
+    /// With a key that is not all zeros.
+    pub fn new() -> Self {
+        let (team, key) = (TeamId(2), TeamKey(core::array::from_fn(|i| 7 * i as u8 + 1)));
+        let mut bench = Self {
+            robot: Link::new(team, id(2), key, 9),
+            mate: Link::new(team, id(3), key, 4),
+            host: HostLink::new(team, key, 70),
+        };
+        let welcome = bench.host.seal(&HostMessage::Welcome(Welcome { to: id(2), life: 9 }));
+        let _welcomed = bench.robot.open(&welcome);
+        bench
+    }
+
+    /// Everything ready: only [`Task::run`] is to be counted.
+    pub fn task(&mut self, work: Work) -> Task<'_> {
+        let Self { robot, mate, host } = self;
+        let mut message = None;
+        let mut packet = Packet::new();
+        match work {
+            Work::SealShort => message = Some(short()),
+            Work::SealLong => message = Some(long()),
+            Work::SealTelemetry => message = Some(telemetry()),
+            Work::OpenCommand => packet = host.seal(&command(Directive::Stand)),
+            Work::OpenLongCommand => packet = host.seal(&command(longest())),
+            Work::OpenShort => packet = mate.seal(&short()),
+            Work::OpenLong => packet = mate.seal(&long()),
+            Work::OpenSmallWorld => packet = host.seal(&world(1)),
+            Work::OpenWorld => packet = host.seal(&world(PART_ROBOTS_MAX)),
+            Work::RefuseReplay => {
+                packet = mate.seal(&long());
+                let _believed = robot.open(&packet);
+            }
+            Work::RefuseForged => {
+                packet = mate.seal(&long());
+                if let Some(last) = packet.last_mut() {
+                    *last ^= 1;
+                }
+            }
+        }
+        Task { link: robot, packet, message }
+    }
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Task<'_> {
+    /// Does it; gives the frame's length, and 1,000 more where a frame was believed.
+    #[inline(never)]
+    pub fn run(&mut self) -> u32 {
+        if let Some(message) = &self.message {
+            return self.link.seal(message).len() as u32;
+        }
+        let believed = matches!(self.link.open(&self.packet), Ok(Heard::Mate(..) | Heard::Host(_)));
+        self.packet.len() as u32 + 1_000 * u32::from(believed)
+    }
+}
+
+fn id(number: u8) -> RobotId {
+    RobotId::new(number).unwrap_or(RobotId::ZERO)
+}
+
+const FAR: WirePoint = WirePoint { x: -12_345, y: 23_456 };
+
+fn short() -> TeamMessage {
+    TeamMessage::Beacon(Beacon {
+        pose: WirePose { at: FAR, heading: 1571 },
+        ball: None,
+        status: Status::AVAILABLE,
+        case_base: 0x1234_5678,
+        cycle: None,
+        progress: Progress::Idle,
+        role: Role::None,
+    })
+}
+
+fn long() -> TeamMessage {
+    let play = Play { case: CaseId(300), ball: FAR, robots: [1, 3, 5, 7].map(id).into_iter().collect() };
+    TeamMessage::Beacon(Beacon {
+        pose: WirePose { at: FAR, heading: 1571 },
+        ball: Some(BallReport { at: FAR, distance: 999 }),
+        status: Status::AVAILABLE,
+        case_base: 0x1234_5678,
+        cycle: Some(CycleState {
+            id: CycleId { counter: 70_000, proposer: id(1) },
+            coordinator: id(3),
+            decision: Decision::Play(play),
+        }),
+        progress: Progress::Execute { done: 2 },
+        role: Role::Attacker,
+    })
+}
+
+fn telemetry() -> TeamMessage {
+    let condition = Condition::BALL_CONTACT.with(Condition::KICKER_READY);
+    TeamMessage::Telemetry(Telemetry { condition, battery: 1580, heard: 999, ..Telemetry::default() })
+}
+
+fn command(directive: Directive) -> HostMessage {
+    let (defending, phase) = (GoalEnd::Negative, Phase::FreeKick(Side::Ours));
+    HostMessage::Command(Command { to: id(2), defending, phase, duty: Duty::Player, directive })
+}
+
+fn longest() -> Directive {
+    let robots = [1, 3, 5, 7].map(id).into_iter().collect();
+    Directive::Gameplay { hint: Some(Hint { case: CaseId(u16::MAX), robots, pass_point: Some(FAR) }) }
+}
+
+fn world(robots: usize) -> HostMessage {
+    let pose = WirePose { at: FAR, heading: -3 };
+    let robot = WireRobot { who: WireWho { side: Side::Theirs, id: id(4) }, pose, vx: 1234, vy: -1234 };
+    HostMessage::World(WorldPart {
+        picture: 7,
+        part: 0,
+        parts: 2,
+        phase: Phase::FreeKick(Side::Ours),
+        placement: Some(FAR),
+        ball: Some(WireBall { at: FAR, height: 150, vx: 3000, vy: -3000 }),
+        robots: core::iter::repeat_n(robot, robots).collect(),
+    })
+}

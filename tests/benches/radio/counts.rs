@@ -1,0 +1,86 @@
+//! What do radio frames cost on the robot's processor, and is that within DESIGN §9? The image's counts, held to this
+//! machine's answers.
+
+use std::fmt::Write as _;
+use std::process::{Command, Stdio};
+
+use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use radio_bench::{Bench, ROUNDS, Work};
+
+/// One work over all rounds.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Count {
+    pub(crate) work: Work,
+    /// Of the frame.
+    pub(crate) bytes: u32,
+    /// Guest instructions, the dearest round.
+    pub(crate) worst: u32,
+}
+
+/// Counts of every work; what the radio gave there is what it gives here.
+pub(crate) fn counted() -> Result<Vec<Count>, String> {
+    let qemu = ensure_qemu(Install::ForUser).map_err(|error| error.to_string())?;
+    let image = build_program(&workspace_root(), Program::RadioBench).map_err(|error| error.to_string())?;
+    let output = Command::new(&qemu)
+        .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
+        .args(["-icount", "shift=6,align=off", "-semihosting-config", "enable=on,target=native"])
+        .arg("-kernel")
+        .arg(&image)
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| format!("{} does not start: {error}", qemu.display()))?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let lines: Vec<[u32; 3]> = said.lines().filter_map(numbers).collect();
+    if !output.status.success() || lines.len() != ROUNDS * Work::ALL.len() {
+        let words = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("the image ended with {} after {} lines: {words}", output.status, lines.len()));
+    }
+    let mut bench = Bench::new();
+    let mut counts: Vec<Count> = Vec::new();
+    for (line, (number, work)) in
+        lines.iter().zip((0..ROUNDS).flat_map(|_| Work::ALL.into_iter().enumerate()))
+    {
+        let here = bench.task(work).run();
+        if line[..2] != [number as u32, here] {
+            return Err(format!("{}: {here} here, {} on the board", work.word(), line[1]));
+        }
+        match counts.get_mut(number) {
+            Some(count) => count.worst = count.worst.max(line[2]),
+            None => counts.push(Count { work, bytes: here % 1_000, worst: line[2] }),
+        }
+    }
+    Ok(counts)
+}
+
+fn numbers(line: &str) -> Option<[u32; 3]> {
+    let numbers: Vec<u32> = line.split(' ').map_while(|word| word.parse().ok()).collect();
+    numbers.try_into().ok()
+}
+
+/// Most guest instructions for a frame of so many bytes.
+fn limit(bytes: u32) -> Option<u32> {
+    match bytes {
+        0..=32 => Some(1_300),
+        33..=64 => Some(2_400),
+        // Worlds come to a robot a few hundred times a second; DESIGN §9 names no budget for them.
+        _ => None,
+    }
+}
+
+/// The budgets that are broken.
+pub(crate) fn broken(counts: &[Count]) -> Vec<String> {
+    let over = counts.iter().filter_map(|Count { work, bytes, worst }| {
+        let limit = limit(*bytes).filter(|limit| worst > limit)?;
+        Some(format!("{} ({bytes} B): {worst} instructions are over {limit}", work.word()))
+    });
+    over.collect()
+}
+
+pub(crate) fn table(counts: &[Count]) -> String {
+    let mut text = "| what | frame, B | instructions | budget |\n|---|---:|---:|---:|\n".to_owned();
+    for Count { work, bytes, worst } in counts {
+        let limit = limit(*bytes).map_or("–".into(), |limit| limit.to_string());
+        let _ = writeln!(text, "| {} | {bytes} | {worst} | {limit} |", work.word());
+    }
+    text
+}

@@ -1,0 +1,18 @@
+//! Does a radio frame cost no more on the robot's processor than it may? (DESIGN §9)
+//!
+//! `cargo xtask bench radio` prints the same counts. Needs QEMU and a compiler for the target (feature `qemu`).
+
+#[path = "../benches/radio/counts.rs"]
+mod counts;
+
+use radio_bench::Work;
+
+#[test]
+fn every_frame_is_sealed_and_opened_within_its_budget() {
+    let counts = counts::counted().unwrap_or_else(|why| panic!("{why}"));
+    assert_eq!(counts.len(), Work::ALL.len());
+    let broken = counts::broken(&counts);
+    assert!(broken.is_empty(), "{}\n{}", broken.join("\n"), counts::table(&counts));
+    let of = |work| counts.iter().find(|count| count.work == work).map_or(0, |count| count.worst);
+    assert!(of(Work::RefuseReplay) < 200, "a replay is refused before its tag is computed");
+}
