@@ -5,7 +5,7 @@
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
 //! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
 
-use geometry::GoalEnd;
+use geometry::{GoalEnd, Point, Vector};
 use protocol::frame::{Refusal, TeamKey};
 use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
 use protocol::link::Packet;
@@ -20,7 +20,7 @@ use crate::referee::{self, Listener};
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, View};
 use crate::tracking::{self, Tracker};
-use crate::world::World;
+use crate::world::{Ball, World};
 
 /// What is fixed for a host's life.
 #[derive(Clone, Debug)]
@@ -111,6 +111,8 @@ pub struct Host {
     coach: Coach,
     robots: [Known; RobotId::COUNT],
     world: World,
+    /// The ball as it was when last seen.
+    last_ball: Option<Ball>,
     orders: Orders,
     planned: Option<Instant>,
     undecodable: Undecodable,
@@ -134,6 +136,7 @@ impl Host {
             coach: Coach::default(),
             robots: Default::default(),
             world: World::default(),
+            last_ball: None,
             orders: Orders::new(),
             planned: None,
             undecodable: Undecodable::default(),
@@ -274,6 +277,7 @@ impl Host {
     fn plan(&mut self, now: Instant) {
         self.planned = Some(now);
         self.world = self.tracker.world(now);
+        self.remember_ball(now);
         self.listener.tick(now, self.world.ball.map(|ball| ball.position));
         let us = self.settings.us;
         let game = self.our_game();
@@ -291,6 +295,41 @@ impl Host {
         let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
         let situation = Situation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
+    }
+
+    /// A ball that no camera sees is under a robot: of ours, at the one that feels it; else where it was seen last.
+    fn remember_ball(&mut self, now: Instant) {
+        if let Some(ball) = self.world.ball {
+            self.last_ball = Some(ball);
+            return;
+        }
+        let us = self.settings.us;
+        let feels = |robot: &&crate::world::Robot| {
+            let told = &self.robots[robot.who.id.index()].telemetry;
+            told.as_ref().is_some_and(|(at, told)| {
+                now.since(*at) < TELEMETRY_LEASE && told.condition.has(Condition::BALL_CONTACT)
+            })
+        };
+        let held = self.world.ours(us).find(feels).map(|robot| {
+            let mouth = Point::new(rules::limits::ROBOT_RADIUS, 0.0);
+            (robot.pose.to_field(mouth), robot.velocity)
+        });
+        let (position, velocity) = match (held, &self.last_ball) {
+            (Some(held), _) => held,
+            (None, Some(last)) => (last.rest(&self.world.models), Vector::default()),
+            (None, None) => return,
+        };
+        self.world.ball = Some(Ball {
+            position,
+            height: 0.0,
+            velocity,
+            climb: 0.0,
+            rolls_below: f32::INFINITY,
+            bounced: false,
+            confidence: 0.0,
+            seen: self.last_ball.map_or(now, |last| last.seen),
+            kicked: None,
+        });
     }
 
     fn our_game(&self) -> Game {
@@ -357,5 +396,7 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 };
 /// Not oftener than this it is planned: four cameras that look at once give one plan, not four; half a period of 100 Hz.
 const PLAN_EVERY: Duration = Duration::millis(5);
+/// What a robot told of itself longer ago is not counted on.
+const TELEMETRY_LEASE: Duration = Duration::millis(300);
 /// As long as robots hold each other for present.
 const BEACON_LEASE: Duration = Duration::millis(400);

@@ -408,7 +408,7 @@ const TAKER_WORTH: f32 = 1.0;
 /// A robot's centre this near the ball touches it, m: radii of body and ball, and a centimetre and a half.
 const TOUCHING: f32 = 0.126;
 /// Mates are given this long to take their places before a restart is played, of the 5 s (A) that the rules give.
-const MATES_GET_READY: Duration = Duration::millis(1500);
+const MATES_GET_READY: Duration = Duration::millis(600);
 /// A pass is not waited for longer: 5 m take 2.5 s.
 const PASS_LASTS: Duration = Duration::millis(3000);
 /// It has not begun before this: the ball is known to have moved, but not yet how fast.
