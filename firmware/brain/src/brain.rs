@@ -14,7 +14,7 @@ use protocol::team::TeamMessage;
 use protocol::{CycleId, Instant, RobotId};
 
 use crate::belief::Belief;
-use crate::body::{self, Body, Limbs};
+use crate::body::{self, Body, Intent, Limbs};
 use crate::config::{Approach, BrainConfig};
 use crate::directive::Errand;
 use crate::execution::Execution;
@@ -51,6 +51,8 @@ pub struct Brain<'a> {
     was_available: bool,
     actuators: Option<ActuatorFrame>,
     beacon_due: bool,
+    /// It has retrieved, or taken up a gameplay, since its last step.
+    pondered: bool,
     spoken: Spoken,
 }
 
@@ -79,6 +81,7 @@ impl<'a> Brain<'a> {
             was_available: !config.hosted,
             actuators: None,
             beacon_due: false,
+            pondered: false,
             spoken: Spoken::default(),
         }
     }
@@ -109,12 +112,15 @@ impl<'a> Brain<'a> {
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
         self.mates.forget_the_silent(now);
-        self.belief.update(now, self.config.robot, sensors, &self.mates);
-        if let Some(host) = &mut self.host {
-            host.see(now, sensors, &mut self.belief);
+        // The host overrides own senses and mates' reports (DESIGN §3): where one leads, nobody asks them.
+        match &mut self.host {
+            Some(host) => host.see(now, sensors, &mut self.belief),
+            None => self.belief.update(now, self.config.robot, sensors, &self.mates),
         }
         self.coordinate(now);
-        let intent = self.act(now);
+        // Where steps are short, one of them is not for retrieving and planning a way both: it brakes for 10 ms.
+        let pondered = core::mem::take(&mut self.pondered) && self.limbs.has_short_steps();
+        let intent = if pondered { Intent::Stand { face: None } } else { self.act(now) };
         let Self { limbs, belief, mates, host, .. } = self;
         self.actuators = Some(limbs.act(now, belief, mates, host.as_ref(), sensors, intent));
         self.spoken.sense(sensors);

@@ -108,15 +108,17 @@ impl Hosted {
     }
 
     fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
-        let others_touch = belief.ball.is_some_and(|ball| {
-            belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
-        });
+        let others_touch = || {
+            belief.ball.is_some_and(|ball| {
+                belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
+            })
+        };
         let ours =
             matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours)) && duty == Duty::Taker;
         self.restart = match (phase, self.restart) {
             (Phase::Run, Restart::Touched) if belief.contact() => Restart::Touched,
             (Phase::Run, Restart::Touched) => Restart::Barred,
-            (Phase::Run, Restart::Barred) if others_touch => Restart::None,
+            (Phase::Run, Restart::Barred) if others_touch() => Restart::None,
             (Phase::Run, same) => same,
             (_, Restart::None) if ours && belief.contact() => Restart::Touched,
             (_, Restart::Touched) if ours && !belief.contact() && gone(belief) => Restart::Barred,

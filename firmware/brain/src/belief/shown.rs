@@ -39,6 +39,7 @@ impl Belief {
             self.angular = measured.angular;
         }
         self.kicker_ready = sensors.health.kicker_ready;
+        self.busy = sensors.busy;
         self.others.clear();
         self.opponents.clear();
         for shown in picture.others(now) {

@@ -52,6 +52,11 @@ impl Limbs {
         }
     }
 
+    /// Whether its steps are short (10 ms, DESIGN §2), so that not everything need happen in each.
+    pub fn has_short_steps(&self) -> bool {
+        matches!(self, Self::Wheels(_))
+    }
+
     /// How often this body's robots tell their mates of themselves; `None`: every step (DESIGN §5).
     pub fn beacon_period(&self) -> Option<Duration> {
         match self {

@@ -38,6 +38,7 @@ impl Brain<'_> {
             Decision::Play(_) | Decision::Closed(_) => {}
         }
         if news == News::Gameplay {
+            self.pondered = true;
             self.begin_part(now);
         }
     }
@@ -114,6 +115,7 @@ impl Brain<'_> {
                 if elects && settled && told && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
+                self.pondered = true;
                 let holder = self.holder(now);
                 let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
                     let hint = self.hint(now);

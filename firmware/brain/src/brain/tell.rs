@@ -79,10 +79,13 @@ impl Brain<'_> {
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);
-        let due = spoken.telemetry.is_none_or(|(last, said)| {
-            let since = now.since(last);
-            since >= TELEMETRY_PERIOD || (said != condition && since >= TELEMETRY_LEAST)
-        });
+        // One message a step: sealing costs, and the next step is near.
+        let spoke_now = spoken.beacon == Some(now);
+        let due = !spoke_now
+            && spoken.telemetry.is_none_or(|(last, said)| {
+                let since = now.since(last);
+                since >= TELEMETRY_PERIOD || (said != condition && since >= TELEMETRY_LEAST)
+            });
         if !due {
             return None;
         }

@@ -66,6 +66,11 @@ impl Drivetrain {
 
     fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
         let from = belief.pose.position;
+        let rests = self.velocity.norm() < THERE_SPEED;
+        if rests && from.distance(drive.to) < THERE {
+            // Nothing to plan; whoever must leave is sent elsewhere, or pushed.
+            return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
+        }
         let around = Surroundings::of(belief, drive.to, drive.manner);
         let way = avoid::plan(&Course {
             from,
@@ -76,7 +81,7 @@ impl Drivetrain {
             within: Some(around.within),
             step,
         });
-        let there = from.distance(way.goal) < THERE && self.velocity.norm() < THERE_SPEED;
+        let there = rests && from.distance(way.goal) < THERE;
         let velocity = if there { Vector::default() } else { way.next.velocity };
         self.wanted(belief, step, velocity, Some(drive.face), drive)
     }

@@ -2,7 +2,7 @@
 //!
 //! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
 
-use geometry::{Field, GoalEnd, Point, Shape};
+use geometry::{Field, GoalEnd, Point, Segment, Shape};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
 use rules::keep_out::{KeepOut, Situation, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -26,8 +26,15 @@ impl Surroundings {
         let field = belief.league().field();
         let KeepOut { forbidden, within } = keep_out(&situation(belief, &field));
         let mut around = Self { obstacles: heapless::Vec::new(), within: within.grown(-BODY - BORDER) };
+        let me = belief.pose.position;
+        // The way it means to go, and the one on which it could come to rest.
+        let way = Segment::new(me, to);
+        let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
         for region in &forbidden {
-            around.add(Obstacle::standing(region.shape.grown(BODY + LAW)));
+            let shape = region.shape.grown(BODY + LAW);
+            if is_near(&shape, way) || is_near(&shape, stops) {
+                around.add(Obstacle::standing(shape));
+            }
         }
         if manner == Manner::Shy
             && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
@@ -35,23 +42,26 @@ impl Surroundings {
             let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + SHY };
             around.add(Obstacle { shape, velocity: ball.velocity });
         }
-        let me = belief.pose.position;
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
-            let near =
-                |p: Point<Field>| p.distance(field.goal_center(goal)) < field.goal_width * 0.5 + NEAR_GOAL;
+            let near = |p: Point<Field>| p.x() * goal.sign() as f32 > 0.5 * field.length - NEAR_GOAL;
             if near(me) || near(to) {
                 around.add_goal(&field, goal);
             }
         }
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
         let margin = if manner == Manner::Shy { ROBOTS } else { ROBOTS_AT_BALL };
+        let radius = 2.0 * BODY + margin;
         for other in &belief.others {
-            around.add(Obstacle::robot(other.pose.position, other.velocity, 2.0 * BODY + margin));
+            let at = other.pose.position;
+            let reach = radius + ASIDE + ASIDE_FOR * (other.velocity.x().abs() + other.velocity.y().abs());
+            if way.distance_to(at) < reach || stops.distance_to(at) < reach {
+                around.add(Obstacle::robot(at, other.velocity, radius));
+            }
         }
         around
     }
 
-    /// Where there is no room for another one the farthest robots are left out: rules and goals come first.
+    /// Where there is no room for another one it is left out: rules and goals come first, and robots leave room.
     fn add(&mut self, obstacle: Obstacle<Field>) {
         let _ = self.obstacles.push(obstacle);
     }
@@ -71,6 +81,15 @@ impl Surroundings {
     }
 }
 
+/// Whether a region comes near the way: looked at from three places on it, each for its stretch.
+fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
+    let along = way.vector();
+    let stretch = SIXTH * (along.x().abs() + along.y().abs());
+    [SIXTH, 0.5, 1.0 - SIXTH]
+        .iter()
+        .any(|share| shape.distance_to(way.from + along * *share) < stretch + ASIDE)
+}
+
 /// The rules' question, as this robot sees it.
 pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     let game = &belief.game;
@@ -85,6 +104,8 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     }
 }
 
+/// Of a way.
+const SIXTH: f32 = 1.0 / 6.0;
 /// The robot's own radius, m.
 const BODY: f32 = ROBOT_RADIUS;
 /// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
@@ -99,5 +120,11 @@ const SHY: f32 = 0.03;
 const ROBOTS: f32 = 0.03;
 /// From other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
-/// Goal walls matter within this distance of the posts, m.
+/// Who stands farther beside the way than this is in nobody's way, m: a way around one robot keeps nearer.
+const ASIDE: f32 = 0.3;
+/// Who moves may come nearer for so long, s.
+const ASIDE_FOR: f32 = 0.4;
+/// At 3 m/s and 3.5 m/s² a robot comes to rest in 0.43 s times its speed, s.
+const STOPS_IN: f32 = 0.5;
+/// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;

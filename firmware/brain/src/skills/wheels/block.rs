@@ -10,6 +10,7 @@ use motion::intercept::{Interception, Verdict, Wish};
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
+use crate::skills::wheels::get_ball::LOOKS_AHEAD;
 
 /// Blocks on `stretch`.
 pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
@@ -38,7 +39,7 @@ fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
 /// The place with the most time to spare on the ball's way to `crossing`.
 fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     let path = BallModel::default().rolling(ball.position, ball.velocity);
-    let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY);
+    let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY).min(LOOKS_AHEAD);
     let question = Interception {
         robot: belief.pose.position,
         velocity: belief.velocity,

@@ -4,7 +4,7 @@
 //! roller. Resting: around the ball to a place behind it, as seen from where it will go, and slowly on from there.
 
 use geometry::{Angle, Field, Point, Segment, Vector, math};
-use motion::ball::BallModel;
+use motion::ball::{BallModel, BallPath};
 use motion::intercept::{Interception, Verdict, Wish};
 
 use crate::belief::{Ball, Belief};
@@ -76,7 +76,7 @@ pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
     }
     let path = BallModel::default().rolling(ball.position, ball.velocity);
     let along = path.along();
-    let until = time_in_field(belief, ball);
+    let until = time_in_field(belief, ball, &path).min(LOOKS_AHEAD);
     let question = Interception {
         robot: belief.pose.position,
         velocity: belief.velocity,
@@ -111,9 +111,8 @@ pub(super) fn receive_at(belief: &Belief, ball: &Ball, place: Point<Field>) -> D
 }
 
 /// How long the ball stays within the lines, s.
-fn time_in_field(belief: &Belief, ball: &Ball) -> f32 {
+fn time_in_field(belief: &Belief, ball: &Ball, path: &BallPath<Field>) -> f32 {
     let field = belief.league().field();
-    let path = BallModel::default().rolling(ball.position, ball.velocity);
     let rest = path.rest();
     if field.contains(rest) {
         return f32::INFINITY;
@@ -162,6 +161,8 @@ const WIDENS: f32 = 0.2;
 const ALIGNED: f32 = 0.15;
 /// What a robot is behind in time: picture, radio and a step, s.
 const LEAD: f32 = 0.05;
+/// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew before.
+pub(super) const LOOKS_AHEAD: f32 = 0.8;
 /// A point far back on the ball's line, m.
 const FAR_BACK: f32 = 20.0;
 /// So long before the ball comes the dribbler turns and the robot gives way, s.
