@@ -1,0 +1,224 @@
+//! Does the firmware image lead wheels as the same brain does on the PC, bit for bit, and how long do its steps take? (DESIGN §2, §9)
+//!
+//! Three robots of ours, each once native and once in a QEMU of its own, hear the same packets of a host and of each other and
+//! see the same world; six opponents drive about. Needs QEMU and a compiler for the target (feature `qemu`).
+
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use brain::BrainConfig;
+use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
+use hil_sim::small_size::{Ball, Drive, Order, Parameters, Who, World};
+use hil_sim::{Backend, Mcu, NativeBackend, QemuBackend};
+use protocol::frame::TeamKey;
+use protocol::host::{
+    Command, Directive, Duty, HostMessage, KickOrder, PART_ROBOTS_MAX, Welcome, WireBall, WireRobot, WireWho,
+    WorldPart,
+};
+use protocol::host_link::HostLink;
+use protocol::link::Packet;
+use protocol::lockstep::TickIn;
+use protocol::quantized::{WirePoint, WirePose, to_mm};
+use protocol::team::TeamMessage;
+use protocol::{Instant, RobotId, TeamId};
+use rules::{Colour, League, Phase, Side};
+
+/// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
+const STEP_BUDGET: u32 = 40_000;
+/// Of each of the parts below.
+const SECONDS: u64 = 6;
+
+#[test]
+fn wheels_under_qemu_equal_native_ones_and_no_step_takes_more_than_its_budget() {
+    let base = case_library::division_b();
+    let mut table = Table::new();
+    let mut native = NativeBackend::new(base);
+    let mut emulated = QemuBackend::new(&*IMAGE).with_library(base.bytes()).expect("room for it");
+    let mut robots: Vec<_> = (1..=3)
+        .map(|number| {
+            let config = BrainConfig::hosted(id(number), TeamId(1), League::DivisionB);
+            let boot = |backend: &mut dyn Backend<'static>| backend.boot(&config).expect("boots");
+            (id(number), [boot(&mut native), boot(&mut emulated)])
+        })
+        .collect();
+    let mut steps = Vec::new();
+    for (phase, directives) in parts() {
+        let mut of_part = Vec::new();
+        for _ in 0..SECONDS * 100 {
+            table.tick(phase, &directives, &mut robots, &mut of_part);
+        }
+        of_part.sort_unstable();
+        let (median, worst) = (of_part[of_part.len() / 2], of_part[of_part.len() - 1]);
+        println!("{phase:?}: median {median}, worst {worst} instructions");
+        steps.extend(of_part);
+    }
+    steps.sort_unstable();
+    let (median, worst) = (steps[steps.len() / 2], steps[steps.len() - 1]);
+    println!("{} steps on wheels: median {median}, worst {worst} instructions", steps.len());
+    assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
+}
+
+/// Phases, and what the three are told in them.
+fn parts() -> Vec<(Phase<Side>, [Directive; 3])> {
+    let at = |x, y| WirePoint { x, y };
+    let go = |x, y| Directive::GoTo { pose: WirePose { at: at(x, y), heading: 0 } };
+    let kick = KickOrder::Flat(400);
+    let play = Directive::Gameplay { hint: None };
+    vec![
+        (Phase::Run, [play.clone(), play.clone(), play]),
+        (Phase::Stop, [go(3000, 0), go(-3000, 1000), go(2000, -2500)]),
+        (
+            Phase::FreeKick(Side::Ours),
+            [Directive::Kick { at: at(4500, 0), kick }, go(3000, 1500), go(2000, -2000)],
+        ),
+        (
+            Phase::BallPlacement(Side::Ours),
+            [Directive::PlaceBall { at: at(0, 1000) }, go(0, 0), go(-2000, 0)],
+        ),
+        (
+            Phase::Run,
+            [
+                Directive::GetBall { face: None },
+                Directive::Receive { at: at(1000, 1000), then: Some(at(4500, 0)) },
+                Directive::Block { from: at(-4300, -500), to: at(-4300, 500) },
+            ],
+        ),
+    ]
+}
+
+/// The truth, the host and the air.
+struct Table {
+    world: World,
+    link: HostLink,
+    air: Vec<(RobotId, Packet)>,
+    ticks: u32,
+}
+
+impl Table {
+    fn new() -> Self {
+        let mut world =
+            World::new(League::DivisionB, Parameters::of(League::DivisionB).expect("a league"), 7);
+        for (number, x, y) in [(1_u8, -600.0, 100.0), (2, 500.0, 1200.0), (3, -200.0, -1300.0)] {
+            world.put(ours(id(number)), Pose::from_mm_deg(x, y, 0.0));
+        }
+        for number in 0..6_u8 {
+            let x = 500.0 + 600.0 * f32::from(number);
+            let y = 800.0 - 500.0 * f32::from(number % 4);
+            world.put(theirs(number), Pose::from_mm_deg(x, y, 180.0));
+        }
+        world.put_ball(Ball::at(Point::new(0.0, 0.1)));
+        Self { world, link: HostLink::new(TeamId(1), TeamKey::ZERO, 1), air: Vec::new(), ticks: 0 }
+    }
+
+    fn tick(
+        &mut self,
+        phase: Phase<Side>,
+        directives: &[Directive; 3],
+        robots: &mut [(RobotId, [Box<dyn Mcu + 'static>; 2])],
+        steps: &mut Vec<u32>,
+    ) {
+        self.ticks += 1;
+        let (seq, now) = (self.ticks, Instant(u64::from(self.ticks) * 10_000));
+        let field = League::DivisionB.field();
+        if !field.contains(self.world.ball.position) {
+            self.world.put_ball(Ball::at(Point::new(0.3, -0.4)));
+        }
+        let heard = std::mem::take(&mut self.air);
+        let parts = self.parts(phase);
+        for ((robot, computers), directive) in robots.iter_mut().zip(directives) {
+            let mut packets: Vec<Packet> = Vec::new();
+            if seq % 100 == 1 {
+                packets.push(self.link.seal(&HostMessage::Welcome(Welcome { to: *robot, life: 1 })));
+            }
+            packets.extend(parts.iter().cloned());
+            let command = Command {
+                to: *robot,
+                defending: GoalEnd::Negative,
+                phase,
+                duty: match robot.number() {
+                    1 => Duty::Taker,
+                    3 => Duty::Keeper,
+                    _ => Duty::Player,
+                },
+                directive: directive.clone(),
+            };
+            packets.push(self.link.seal(&HostMessage::Command(command)));
+            packets.extend(heard.iter().filter(|(from, _)| from != robot).map(|(_, packet)| packet.clone()));
+            let sensors = self.world.sensors(ours(*robot)).expect("a robot");
+            let tick = TickIn { seq, now, air: packets.iter().map(|p| &p[..]).collect(), sensors };
+            let [native, emulated] = computers;
+            let (a, b) = (native.exchange(&tick).expect("native"), emulated.exchange(&tick).expect("QEMU"));
+            assert_eq!((&a.actuators, &a.packets), (&b.actuators, &b.packets), "robot {robot}, tick {seq}");
+            steps.push(b.instructions);
+            if let Some(order) = a.actuators {
+                self.world.command(ours(*robot), &order);
+            }
+            // The host passes on what is for mates.
+            for packet in a.packets {
+                if let Ok((_, TeamMessage::Beacon(_))) = self.link.open(&packet) {
+                    self.air.push((*robot, packet));
+                }
+            }
+        }
+        for number in 0..6_u8 {
+            let turn = f32::from(number) + 0.004 * seq as f32;
+            let linear = Vector::<Field>::polar(0.8, geometry::Angle::new(turn));
+            let drive = Drive::Global(Twist { linear, angular: 0.0 });
+            self.world.order(theirs(number), Order { drive, ..Order::default() });
+        }
+        for _ in 0..10 {
+            self.world.step();
+        }
+    }
+
+    /// The picture, sealed.
+    fn parts(&mut self, phase: Phase<Side>) -> Vec<Packet> {
+        let ball = &self.world.ball;
+        let ball = WireBall {
+            at: ball.position.into(),
+            height: (ball.height * 1000.0) as u16,
+            vx: to_mm(ball.velocity.x()),
+            vy: to_mm(ball.velocity.y()),
+        };
+        let wire = |robot: &hil_sim::small_size::Robot| WireRobot {
+            who: WireWho {
+                side: if robot.who.colour == Colour::Blue { Side::Ours } else { Side::Theirs },
+                id: robot.who.id,
+            },
+            pose: robot.pose.into(),
+            vx: to_mm(robot.velocity.x()),
+            vy: to_mm(robot.velocity.y()),
+        };
+        let robots: Vec<_> = self.world.robots().iter().map(wire).collect();
+        let chunks = robots.chunks(PART_ROBOTS_MAX);
+        let (count, picture) = (chunks.len() as u8, self.ticks as u8);
+        let part = |(part, robots): (u8, &[WireRobot])| WorldPart {
+            picture,
+            part,
+            parts: count,
+            phase,
+            placement: Some(WirePoint { x: 0, y: 1000 }),
+            ball: Some(ball),
+            robots: robots.iter().copied().collect(),
+        };
+        let parts: Vec<_> = (0..count).zip(chunks).map(part).collect();
+        parts.into_iter().map(|part| self.link.seal(&HostMessage::World(part))).collect()
+    }
+}
+
+fn id(number: u8) -> RobotId {
+    RobotId::new(number).expect("an id")
+}
+
+fn ours(id: RobotId) -> Who {
+    Who { colour: Colour::Blue, id }
+}
+
+fn theirs(number: u8) -> Who {
+    Who { colour: Colour::Yellow, id: id(number) }
+}
+
+/// The image, built where it is missing or old.
+static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
+    firmware_build::build_image(&firmware_build::workspace_root()).unwrap_or_else(|error| panic!("{error}"))
+});
