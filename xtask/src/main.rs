@@ -10,6 +10,7 @@ mod evaluation;
 mod pictures;
 mod readme;
 mod report;
+mod simulator_cost;
 mod steps;
 mod trial_cost;
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         Ok(Request::TrialCost) => told(trial_cost::run_bench(&Context::new())),
+        Ok(Request::SimulatorCost { write }) => told(simulator_cost::run_bench(&Context::new(), write)),
         Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
         Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
@@ -75,6 +77,10 @@ enum Request {
     Evaluation,
     /// What a simulated second costs.
     TrialCost,
+    /// What a second of the Small Size simulator costs; the table goes into its README.
+    SimulatorCost {
+        write: bool,
+    },
     /// Retrieval, motion or radio, with these words for the bench.
     Bench(&'static str, Vec<String>),
     Help,
@@ -99,7 +105,12 @@ impl Request {
                     Some("radio") => Ok(Self::Bench("radio", words.map(String::from).collect())),
                     Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
-                    _ => Err("bench needs a name: retrieval, motion, radio or trial".into()),
+                    Some("simulator") => match words.next() {
+                        None => Ok(Self::SimulatorCost { write: false }),
+                        Some("--write") => Ok(Self::SimulatorCost { write: true }),
+                        Some(word) => Err(format!("unknown argument `{word}`")),
+                    },
+                    _ => Err("bench needs a name: retrieval, motion, radio, trial or simulator".into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -139,7 +150,9 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo
                  --verify holds 10^6 times to the best of all shares between the axes instead
   bench radio [--write]
                  likewise for radio frames on the robot's processor; the table is protocol/README.md's
-  bench trial    count the instructions of a simulated second and hold them to the budget";
+  bench trial    count the instructions of a simulated second and hold them to the budget
+  bench simulator [--write]
+                 the same of eleven against eleven on wheels; --write puts the table into hil-sim/README.md";
 
 #[cfg(test)]
 mod tests {
@@ -179,6 +192,8 @@ mod tests {
         );
         assert!(matches!(ask("bench motion"), Ok(Request::Bench("motion", words)) if words.is_empty()));
         assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
+        assert!(matches!(ask("bench simulator --write"), Ok(Request::SimulatorCost { write: true })));
+        assert!(ask("bench simulator --fast").unwrap_err().contains("--fast"));
         assert!(ask("bench").unwrap_err().contains("retrieval"));
     }
 }

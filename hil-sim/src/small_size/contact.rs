@@ -64,10 +64,11 @@ impl World {
         }
         let p = self.ball.position;
         let way = (p - before.position).norm();
-        for (i, robot) in self.robots.iter().enumerate() {
+        for &i in &self.near_ball {
+            let robot = &self.robots[usize::from(i)];
             let reach = robot.body.radius + self.parameters.ball.radius + way + ROBOT_STEP;
             let (dx, dy) = (p.x() - robot.pose.position.x(), p.y() - robot.pose.position.y());
-            if dx * dx + dy * dy < reach * reach && robot.present && near.push(i).is_err() {
+            if dx * dx + dy * dy < reach * reach && near.push(usize::from(i)).is_err() {
                 break;
             }
         }
@@ -332,12 +333,13 @@ impl World {
     }
 }
 
-/// Bounces of the ball in a millisecond: wedged between two bodies it has as many as anybody grants.
-const BOUNCES_PER_STEP: usize = 4;
+/// Bounces of the ball in a millisecond: wedged between two bodies it has as many as anybody grants; off one and the next
+/// it has two.
+const BOUNCES_PER_STEP: usize = 2;
 /// Steps of a sweep; each ends at a surface or beyond the way.
 const SWEEP_STEPS: usize = 24;
 /// How often what overlaps the ball is pushed apart.
-const PUSHES: usize = 3;
+const PUSHES: usize = 2;
 /// A ball deeper in a robot than this, m, could not give way, so the robot does; less is what a push's rounding leaves.
 const WEDGED: f32 = 1e-5;
 /// m: nearer is touching.

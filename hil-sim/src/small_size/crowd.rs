@@ -5,16 +5,13 @@
 
 use geometry::{Field, Point, Vector};
 
-use super::World;
 use super::event::Event;
 use super::robot::Robot;
+use super::{STEP, World};
 
 impl World {
     /// Robots against each other, goals and boards.
     pub(super) fn part_robots(&mut self) {
-        if self.step >= self.pairs_until {
-            self.find_pairs();
-        }
         for k in 0..self.pairs.len() {
             let (a, b) = self.pairs[k];
             self.part(usize::from(a), usize::from(b));
@@ -22,15 +19,16 @@ impl World {
         let [x, y] = self.pitch.corner();
         let (zone, walls) = (self.goal_zone, self.goal_walls);
         let bounce = self.parameters.bounce.robots;
-        for robot in &mut self.robots {
+        for &i in &self.near_edge {
+            let robot = &mut self.robots[usize::from(i)];
             let (p, radius) = (robot.pose.position, robot.body.radius);
             let at_boards = p.x().abs() > x - radius || p.y().abs() > y - radius;
-            if at_boards && robot.present {
+            if at_boards {
                 let held =
                     Point::new(p.x().clamp(radius - x, x - radius), p.y().clamp(radius - y, y - radius));
                 push_out(robot, held - p, bounce);
             }
-            if p.x().abs() > zone && robot.present {
+            if p.x().abs() > zone {
                 let mirror = if p.x() < 0.0 { -1.0 } else { 1.0 };
                 for wall in &walls {
                     let p = robot.pose.position;
@@ -44,10 +42,38 @@ impl World {
         }
     }
 
-    /// Pairs that could touch before the next look.
+    /// Who could touch whom, the ball, a board or a goal before the next look.
+    pub(super) fn look_around(&mut self) {
+        if self.step >= self.pairs_until {
+            self.find_pairs();
+        }
+        self.near_ball.clear();
+        self.near_edge.clear();
+        self.near_until = self.step + NEAR_STEPS;
+        let [x, y] = self.pitch.corner();
+        let x = x.min(self.goal_zone);
+        let ball_reach = self.parameters.ball.radius + BALL_REACH;
+        for (i, robot) in self.robots.iter_mut().enumerate() {
+            let (p, reach) = (robot.pose.position, robot.body.radius + ball_reach);
+            let away = self.ball.position - p;
+            if robot.present && away.dot(away) < reach * reach {
+                self.near_ball.push(i as u8);
+            } else {
+                robot.leave_ball();
+            }
+            let edge = robot.body.radius + EDGE;
+            if robot.present && (p.x().abs() > x - edge || p.y().abs() > y - edge) {
+                self.near_edge.push(i as u8);
+            }
+        }
+    }
+
+    /// Pairs of robots that could touch before the next look at them.
     fn find_pairs(&mut self) {
         self.pairs.clear();
         self.pairs_until = self.step + PAIRS_STEPS;
+        let fastest = self.robots.iter().map(|robot| robot.limits().speed).fold(0.0, f32::max);
+        let closing = 2.0 * fastest * (PAIRS_STEPS as f32 * STEP) + PUSHED;
         for a in 0..self.robots.len() {
             let (first, rest) = self.robots.split_at(a + 1);
             let one = &first[a];
@@ -57,7 +83,7 @@ impl World {
             let (x, y) = (one.pose.position.x(), one.pose.position.y());
             for (b, other) in (a + 1..).zip(rest) {
                 let (dx, dy) = (other.pose.position.x() - x, other.pose.position.y() - y);
-                let reach = one.body.radius + other.body.radius + PAIRS_REACH;
+                let reach = one.body.radius + other.body.radius + closing;
                 if dx * dx + dy * dy < reach * reach && other.present {
                     self.pairs.push((a as u8, b as u8));
                 }
@@ -113,6 +139,12 @@ fn push_out(robot: &mut Robot, by: Vector<Field>, bounce: f32) {
 }
 
 /// Steps between looks for robots that are near each other.
-const PAIRS_STEPS: u64 = 8;
-/// m that two robots come nearer in that time, at most: 2 · 10 m/s · 8 ms.
-const PAIRS_REACH: f32 = 0.16;
+const PAIRS_STEPS: u64 = 24;
+/// m that others push a robot in that time beyond what its own limits allow.
+const PUSHED: f32 = 0.05;
+/// Steps between looks for robots near the ball, a board or a goal.
+const NEAR_STEPS: u64 = 8;
+/// m between hull and ball that both can close in that time and be in a mouth: 8 ms at 20 and 10 m/s, and a mouth's depth.
+const BALL_REACH: f32 = 0.24 + 0.1;
+/// m between hull and board that a robot can close in that time: 8 ms at 10 m/s.
+const EDGE: f32 = 0.08;

@@ -48,6 +48,8 @@ pub struct World {
     /// The ball.
     pub ball: Ball,
     robots: Vec<Robot>,
+    /// Where each slot's robot stands in that list.
+    places: [Option<u8>; SLOTS],
     senses: Vec<Senses>,
     step: u64,
     parameters: Parameters,
@@ -61,6 +63,12 @@ pub struct World {
     crashes: Vec<u64>,
     pairs: Vec<(u8, u8)>,
     pairs_until: u64,
+    near_until: u64,
+    /// Robots that the ball could meet before the next look, and robots that could meet a board or goal.
+    near_ball: Vec<u8>,
+    near_edge: Vec<u8>,
+    /// Where the ball was after the last step: it may have been moved by hand since.
+    ball_was: Point<Field>,
     goal_walls: [Slab; 3],
     /// m from the middle along x: nearer no goal is in anybody's way.
     goal_zone: f32,
@@ -82,6 +90,7 @@ impl World {
         let mut world = Self {
             ball: Ball::default(),
             robots: Vec::new(),
+            places: [None; SLOTS],
             senses: Vec::new(),
             step: 0,
             parameters: parameters.clone(),
@@ -94,6 +103,10 @@ impl World {
             crashes: vec![0; SLOTS * SLOTS],
             pairs: Vec::new(),
             pairs_until: 0,
+            near_until: 0,
+            near_ball: Vec::new(),
+            near_edge: Vec::new(),
+            ball_was: Point::default(),
             goal_walls: pitch.goal_walls(),
             goal_zone: 0.0,
             highest_robot: 0.0,
@@ -107,6 +120,12 @@ impl World {
         self.pitch = pitch;
         self.goal_walls = pitch.goal_walls();
         self.goal_zone = pitch.field.length * 0.5 - GOAL_ZONE;
+        self.look_again();
+    }
+
+    /// What was near what may have changed.
+    fn look_again(&mut self) {
+        (self.pairs_until, self.near_until) = (0, 0);
     }
 
     /// Puts a robot there, at rest; it is made where it has never been.
@@ -116,10 +135,13 @@ impl World {
             Err(place) => {
                 self.robots.insert(place, Robot::new(who, pose, &self.parameters));
                 self.senses.insert(place, Senses::new(self.parameters.noise, self.seed, who));
+                for (place, robot) in self.robots.iter().enumerate() {
+                    self.places[robot.who.slot()] = Some(place as u8);
+                }
                 place
             }
         };
-        self.pairs_until = 0;
+        self.look_again();
         self.highest_robot = self.robots.iter().map(|robot| robot.body.height).fold(0.0, f32::max);
         let robot = &mut self.robots[place];
         robot.present = true;
@@ -132,10 +154,9 @@ impl World {
         if let Ok(place) = self.place_of(who) {
             let robot = &mut self.robots[place];
             robot.present = false;
-            robot.touching = false;
-            robot.ball_contact = false;
-            robot.dribbling_from = None;
+            robot.leave_ball();
             robot.push(Vector::default(), 0.0);
+            self.look_again();
         }
     }
 
@@ -143,7 +164,7 @@ impl World {
     pub fn alter(&mut self, who: Who, change: impl FnOnce(&mut Robot)) {
         if let Ok(place) = self.place_of(who) {
             change(&mut self.robots[place]);
-            self.pairs_until = 0;
+            self.look_again();
             self.highest_robot = self.robots.iter().map(|robot| robot.body.height).fold(0.0, f32::max);
         }
     }
@@ -170,7 +191,7 @@ impl World {
                 robot.pose.position = ball + direction * room;
             }
         }
-        self.pairs_until = 0;
+        self.look_again();
     }
 
     /// Somebody pulls the ball there along the carpet, through what gives way, for [`DRAG_STEPS`] at most.
@@ -212,6 +233,9 @@ impl World {
     pub fn step(&mut self) {
         self.step += 1;
         let now = self.step;
+        if now >= self.near_until || self.ball.position != self.ball_was {
+            self.look_around();
+        }
         for robot in &mut self.robots {
             if robot.present {
                 robot.drive(now, &self.parameters.battery);
@@ -226,6 +250,7 @@ impl World {
         self.pull_ball();
         self.move_ball();
         self.look_into_mouths();
+        self.ball_was = self.ball.position;
     }
 
     fn pull_ball(&mut self) {
@@ -288,7 +313,10 @@ impl World {
     }
 
     fn place_of(&self, who: Who) -> Result<usize, usize> {
-        self.robots.binary_search_by(|robot| robot.who.cmp(&who))
+        match self.places[who.slot()] {
+            Some(place) => Ok(usize::from(place)),
+            None => Err(self.robots.partition_point(|robot| robot.who < who)),
+        }
     }
 }
 

@@ -15,10 +15,11 @@ impl World {
     /// Kickers that are armed, charged and have the ball.
     pub(super) fn kick(&mut self) {
         let of = self.parameters.kick;
-        for i in 0..self.robots.len() {
+        for k in 0..self.near_ball.len() {
+            let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
             let Some(kick) = robot.order.kick else { continue };
-            let able = robot.present && !robot.tipped && robot.is_led(self.step) && robot.charged(self.step);
+            let able = !robot.tipped && robot.is_led(self.step) && robot.charged(self.step);
             if !able || !self.in_mouth(robot, of.reach, KICKABLE_HEIGHT) {
                 continue;
             }
@@ -57,9 +58,10 @@ impl World {
         if self.ball.height > DRIBBLE_HEIGHT {
             return;
         }
-        for i in 0..self.robots.len() {
+        for k in 0..self.near_ball.len() {
+            let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
-            let turns = robot.order.dribbler > 0.0 && robot.present && !robot.tipped;
+            let turns = robot.order.dribbler > 0.0 && !robot.tipped;
             if !turns || !robot.is_led(self.step) {
                 continue;
             }
@@ -81,7 +83,8 @@ impl World {
     /// Light barriers look, and a ball that has left a robot ends its dribbling.
     pub(super) fn look_into_mouths(&mut self) {
         let (now, apart) = (self.step, self.parameters.ball.radius + SEPARATE);
-        for i in 0..self.robots.len() {
+        for k in 0..self.near_ball.len() {
+            let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
             if robot.dribbling_from.is_none() && !robot.ball_contact && !robot.touching {
                 let reach = robot.body.radius + apart;
@@ -93,10 +96,8 @@ impl World {
                     continue;
                 }
             }
-            let contact =
-                robot.present && self.in_mouth(robot, self.parameters.dribbler.barrier, DRIBBLE_HEIGHT);
-            let left = !robot.present
-                || robot.pose.position.distance(self.ball.position) > robot.body.radius + apart
+            let contact = self.in_mouth(robot, self.parameters.dribbler.barrier, DRIBBLE_HEIGHT);
+            let left = robot.pose.position.distance(self.ball.position) > robot.body.radius + apart
                 || self.ball.height > robot.body.height;
             let robot = &mut self.robots[i];
             robot.ball_contact = contact;

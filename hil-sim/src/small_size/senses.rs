@@ -7,7 +7,7 @@ use protocol::robot_io::{Health, SensorFrame};
 
 use super::STEP;
 use super::parameters::{BatteryParameters, NoiseParameters};
-use super::robot::{Robot, Who};
+use super::robot::{Odometer, Robot, Who};
 use crate::rng::Stream;
 
 /// One robot's senses.
@@ -24,8 +24,9 @@ impl Senses {
 
     /// What the robot measures now; speeds are means since it last looked.
     pub(super) fn look(&mut self, robot: &mut Robot, now: u64, battery: &BatteryParameters) -> SensorFrame {
-        let odometer = std::mem::take(&mut robot.odometer);
-        let mean = 1.0 / odometer.steps.max(1) as f32;
+        let anew = Odometer { asked: now, ..Odometer::default() };
+        let odometer = std::mem::replace(&mut robot.odometer, anew);
+        let mean = 1.0 / (now - odometer.asked).max(1) as f32;
         let [x, y] = odometer.along.map(|sum| sum * mean);
         let scale = self.deviation(self.noise.odometry);
         let drift = self.deviation(self.noise.gyro);

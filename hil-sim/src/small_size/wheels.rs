@@ -10,10 +10,10 @@ use super::parameters::BodyParameters;
 /// Solved kinematics of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wheels {
-    /// Rim speed of each wheel for v_x, v_y, ω of 1.
-    rows: [[f32; 3]; 4],
-    /// v_x, v_y, ω for a rim speed of 1 of each wheel.
-    inverse: [[f32; 4]; 3],
+    /// For v_x, v_y, ω of 1 each: the rim speeds of the four wheels.
+    rims: [[f32; 4]; 3],
+    /// For a rim speed of 1 of each wheel: v_x, v_y, ω, and nothing, so that four numbers go through one instruction.
+    motions: [[f32; 4]; 4],
 }
 
 impl Wheels {
@@ -49,19 +49,32 @@ impl Wheels {
                 }
             }
         }
-        Some(Self { rows, inverse: system.map(|[_, _, _, a, b, c, d]| [a, b, c, d]) })
+        let [x, y, turn] = system;
+        Some(Self {
+            rims: [0, 1, 2].map(|way| rows.map(|row| row[way])),
+            motions: [3, 4, 5, 6].map(|wheel| [x[wheel], y[wheel], turn[wheel], 0.0]),
+        })
     }
 
     /// Rim speeds that move the body like this.
     #[inline]
     pub(super) fn rims(&self, [x, y, turn]: [f32; 3]) -> [f32; 4] {
-        self.rows.map(|[a, b, c]| a * x + b * y + c * turn)
+        let mut rims = [0.0; 4];
+        for (lane, rim) in rims.iter_mut().enumerate() {
+            *rim = self.rims[0][lane] * x + self.rims[1][lane] * y + self.rims[2][lane] * turn;
+        }
+        rims
     }
 
     /// How the body would move at these rim speeds.
     #[inline]
     pub(super) fn motion(&self, [p, q, r, s]: [f32; 4]) -> [f32; 3] {
-        self.inverse.map(|[a, b, c, d]| a * p + b * q + c * r + d * s)
+        let [a, b, c, d] = &self.motions;
+        let mut ways = [0.0; 4];
+        for (lane, way) in ways.iter_mut().enumerate() {
+            *way = a[lane] * p + b[lane] * q + c[lane] * r + d[lane] * s;
+        }
+        [ways[0], ways[1], ways[2]]
     }
 }
 

@@ -34,6 +34,8 @@ pub(super) struct View {
     phase: u64,
     first: u64,
     chance: Stream,
+    /// The other half of a pair of normal numbers.
+    spare: Option<f32>,
 }
 
 impl View {
@@ -83,6 +85,7 @@ impl View {
                 phase,
                 first: world.now() + 1,
                 chance: Stream::new(seed, &format!("camera {id}")),
+                spare: None,
             });
         }
         views
@@ -132,7 +135,7 @@ impl View {
     fn robot(&mut self, robot: &Robot, settings: &CameraSettings) -> DetectionRobot {
         let p = self.blurred(robot.pose.position, settings.noise.robot);
         let askew =
-            if settings.noise.heading > 0.0 { self.chance.normal() * settings.noise.heading } else { 0.0 };
+            if settings.noise.heading > 0.0 { self.deviation() * settings.noise.heading } else { 0.0 };
         let heading = robot.pose.heading + geometry::Angle::new(askew);
         let [pixel_x, pixel_y] = self.pixel(p, robot.body.height, settings);
         DetectionRobot {
@@ -222,6 +225,15 @@ impl View {
         }
         let (x, y) = self.chance.normals();
         point + Vector::new(x * sigma, y * sigma)
+    }
+
+    /// Normal with deviation 1; every other one is there already.
+    fn deviation(&mut self) -> f32 {
+        self.spare.take().unwrap_or_else(|| {
+            let (one, other) = self.chance.normals();
+            self.spare = Some(other);
+            one
+        })
     }
 
     fn pixel(&self, p: Point<Field>, height: f32, settings: &CameraSettings) -> [f32; 2] {

@@ -65,7 +65,7 @@ impl Server {
             }
         }
         asked.body.check().map_err(Refusal::Specs)?;
-        asked.limits.check().map_err(Refusal::Specs)?;
+        asked.limits().check().map_err(Refusal::Specs)?;
         let kick = crate::small_size::KickParameters {
             flat: asked.kick_limits[0],
             chip: asked.kick_limits[1],
@@ -74,7 +74,7 @@ impl Server {
         kick.check().map_err(Refusal::Specs)?;
         self.world.alter(who, |robot| {
             robot.set_body(asked.body);
-            robot.limits = asked.limits;
+            robot.set_limits(*asked.limits());
             robot.kick_limits = asked.kick_limits;
         });
         Ok(())
@@ -191,7 +191,8 @@ fn shape(robot: &mut Robot, specs: &RobotSpecs) {
         robot.body.wheels_deg = angles.map(|radians| radians * (180.0 / geometry::math::PI));
     }
     if let Some(asked) = specs.limits {
-        let DriveParameters { forward, side, brake, turn, speed, turn_speed, .. } = &mut robot.limits;
+        let mut limits = *robot.limits();
+        let DriveParameters { forward, side, brake, turn, speed, turn_speed, .. } = &mut limits;
         set(forward, asked.acc_speedup_absolute_max);
         set(side, asked.acc_speedup_absolute_max);
         set(brake, asked.acc_brake_absolute_max);
@@ -200,6 +201,7 @@ fn shape(robot: &mut Robot, specs: &RobotSpecs) {
         set(turn, turns.into_iter().flatten().reduce(f32::min));
         set(speed, asked.vel_absolute_max);
         set(turn_speed, asked.vel_angular_max);
+        robot.set_limits(limits);
     }
 }
 

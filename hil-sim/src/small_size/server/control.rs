@@ -122,7 +122,7 @@ impl Server {
             (velocity, turning)
         };
         let robot = self.world.put(who, to);
-        let (speed, turn) = (robot.limits.speed, robot.limits.turn_speed);
+        let (speed, turn) = (robot.limits().speed, robot.limits().turn_speed);
         robot.push(velocity.clamped(speed), turning.clamp(-turn, turn));
         Ok(())
     }

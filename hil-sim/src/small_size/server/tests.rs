@@ -252,8 +252,8 @@ fn specifications_change_a_robot_and_only_it() {
         config(&mut server, SimulatorConfig { robot_specs: vec![specs], ..Default::default() }).is_empty()
     );
     let [one, other] = [1, 2].map(|id| server.world().robot(own(id)).unwrap().clone());
-    assert_eq!((one.body.mass, one.limits.speed, one.kick_limits[0]), (3.0, 0.5, 4.0));
-    assert_eq!((other.body.mass, other.limits.speed, other.kick_limits[0]), (2.5, 3.5, 8.0));
+    assert_eq!((one.body.mass, one.limits().speed, one.kick_limits[0]), (3.0, 0.5, 4.0));
+    assert_eq!((other.body.mass, other.limits().speed, other.kick_limits[0]), (2.5, 3.5, 8.0));
 }
 
 #[test]

@@ -165,3 +165,16 @@ fn the_simulator_can_make_room_for_a_ball_and_pull_it() {
         pose.position.distance(Point::new(1.0, 0.0)) < 0.05 && (pose.heading.to_degrees() - 90.0).abs() < 3.0
     );
 }
+
+#[test]
+fn the_fastest_ball_from_afar_meets_a_robot_whenever_the_world_last_looked_around() {
+    for phase in 0..24 {
+        let mut world = world();
+        world.put(yellow(1), Pose::from_mm_deg(0.0, 0.0, 180.0)).push(Vector::new(-3.0, 0.0), 0.0);
+        run(&mut world, phase);
+        world.put_ball(Ball::rolling(Point::new(-1.0, 0.0), Vector::new(20.0, 0.0)));
+        let events = run(&mut world, 60);
+        assert!(matches!(events[..], [Event::Touched { .. }, ..]), "phase {phase}: {events:?}");
+        assert!(world.ball.velocity.x() < 0.0, "phase {phase}: {:?}", world.ball);
+    }
+}

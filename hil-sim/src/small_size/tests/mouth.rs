@@ -40,7 +40,7 @@ fn a_jerk_loses_the_ball_and_it_neither_sticks_nor_flies_off() {
     lead(&mut world, yellow(1), dribble(local(1.0, 0.0, 0.0)), 600);
     assert!(has_ball(&world));
     // Full brakes backwards pull less than the roller holds; three times the grip does not.
-    world.alter(yellow(1), |robot| robot.limits.brake = 16.0);
+    world.alter(yellow(1), |robot| robot.set_limits(DriveParameters { brake: 16.0, ..*robot.limits() }));
     lead(&mut world, yellow(1), dribble(local(-2.0, 0.0, 0.0)), 600);
     assert!(!has_ball(&world));
     assert!(world.ball.velocity.norm() < 1.1, "no faster than it was carried: {:?}", world.ball);
