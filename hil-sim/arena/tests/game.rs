@@ -1,0 +1,109 @@
+//! Does a match hold what it promises? Short matches of division B, watched from outside: the truth of the carpet, the referee's books,
+//! and what the hosts sent.
+
+use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
+use hil_sim::NativeBackend;
+use host::radio::To;
+use protocol::Instant;
+use rules::{Colour, League, Phase};
+
+fn short(seed: u64, seconds: f64, watcher: &mut dyn Watcher) -> GameReport {
+    let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+    let config = GameConfig::new(League::DivisionB, seed, seconds);
+    play(&config, &mut NativeBackend::new(base), watcher).unwrap()
+}
+
+/// What robots and ball did that they must not, as the carpet has it.
+#[derive(Default)]
+struct Conduct {
+    phase: Option<(Phase<Colour>, f64)>,
+    fastest_in_stop: f32,
+    fastest_in_halt: f32,
+    fastest_ball: f32,
+    in_play: u32,
+    ticks: u32,
+}
+
+impl Watcher for Conduct {
+    fn tick(&mut self, game: &Game<'_>) {
+        let (phase, now) = (game.referee().phase(), game.time());
+        let since = match self.phase {
+            Some((known, since)) if known == phase => since,
+            _ => now,
+        };
+        self.phase = Some((phase, since));
+        let fastest = game.world().robots().iter().map(|robot| robot.velocity.norm()).fold(0.0, f32::max);
+        // The rules give two seconds of grace.
+        if now - since > 2.0 {
+            match phase {
+                Phase::Stop => self.fastest_in_stop = self.fastest_in_stop.max(fastest),
+                Phase::Halt => self.fastest_in_halt = self.fastest_in_halt.max(fastest),
+                _ => {}
+            }
+        }
+        let ball = &game.world().ball;
+        let speed = (ball.velocity.norm().powi(2) + ball.climb.powi(2)).sqrt();
+        self.fastest_ball = self.fastest_ball.max(speed);
+        self.in_play += u32::from(matches!(phase, Phase::Run));
+        self.ticks += 1;
+    }
+}
+
+#[test]
+fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_allow() {
+    let mut conduct = Conduct::default();
+    let report = short(5, 120.0, &mut conduct);
+    assert!(conduct.fastest_in_stop < 1.5, "{} m/s in STOP", conduct.fastest_in_stop);
+    assert!(conduct.fastest_in_halt < 0.05, "{} m/s in HALT", conduct.fastest_in_halt);
+    assert!(conduct.fastest_ball <= 6.5, "a ball of {} m/s", conduct.fastest_ball);
+    assert!(conduct.in_play > conduct.ticks / 5, "in play for {} of {} ticks", conduct.in_play, conduct.ticks);
+    for fouls in [&report.fouls.blue, &report.fouls.yellow] {
+        for never in ["bot_too_fast_in_stop", "bot_moved_in_halt", "bot_kicked_ball_too_fast"] {
+            assert_eq!(fouls.get(never), None, "{fouls:?}");
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_match_to_the_bit_and_another_seed_another() {
+    let hash = |seed| short(seed, 20.0, &mut Nobody).trace_hash;
+    assert_eq!(hash(3), hash(3));
+    assert_ne!(hash(3), hash(4));
+}
+
+/// Counts what went over the air and the wire.
+#[derive(Default)]
+struct Traffic {
+    vision: u32,
+    referee: u32,
+    packets: u32,
+    longest_to_all: usize,
+    longest_to_one: usize,
+}
+
+impl Watcher for Traffic {
+    fn vision(&mut self, _now: Instant, _bytes: &[u8]) {
+        self.vision += 1;
+    }
+    fn referee(&mut self, _now: Instant, _bytes: &[u8]) {
+        self.referee += 1;
+    }
+    fn sent(&mut self, _now: Instant, _host: Colour, to: To, packet: &[u8]) {
+        self.packets += 1;
+        let longest = if to == To::All { &mut self.longest_to_all } else { &mut self.longest_to_one };
+        *longest = packet.len().max(*longest);
+    }
+}
+
+#[test]
+fn watching_changes_nothing_and_frames_keep_their_budgets() {
+    let mut traffic = Traffic::default();
+    let watched = short(6, 15.0, &mut Crowd(vec![&mut traffic]));
+    assert_eq!(watched, short(6, 15.0, &mut Nobody));
+    // DESIGN §6: a command takes at most 40 B of air, a part of the world 120 B.
+    assert!(traffic.longest_to_one > 0 && traffic.longest_to_one <= 40, "{} B", traffic.longest_to_one);
+    assert!(traffic.longest_to_all > 0 && traffic.longest_to_all <= 120, "{} B", traffic.longest_to_all);
+    // 15 s of about 40 referee packets a second, and at least 60 pictures a second for each team.
+    assert!(traffic.referee > 500 && traffic.vision > 600, "{} {}", traffic.referee, traffic.vision);
+    assert!(traffic.packets > 2 * 60 * 10, "{}", traffic.packets);
+}
