@@ -1,0 +1,248 @@
+//! Do the built `onetwo simulate` and `onetwo control` do what their help says on a network? Real sockets on this machine, ports
+//! that the system chooses, addresses of one machine, so that no multicast is needed.
+
+use std::io::{BufRead, BufReader};
+use std::net::{SocketAddr, UdpSocket};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use ssl::Message;
+use ssl::simulation::{
+    MoveCommand, MoveLocalVelocity, RobotCommand, RobotControl, RobotControlResponse, RobotMoveCommand,
+};
+use ssl::tracker::{TeamColor, TrackerWrapperPacket};
+use ssl::vision::WrapperPacket;
+
+/// Generous: a loaded machine is no failure.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A running verb; its words on stderr come line by line. Ended when dropped.
+struct Running {
+    process: Child,
+    lines: Receiver<(Duration, String)>,
+    heard: Vec<(Duration, String)>,
+}
+
+impl Running {
+    fn start(arguments: &[&str]) -> Self {
+        let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+            .args(arguments)
+            .stderr(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let (began, words) = (Instant::now(), process.stderr.take().expect("a pipe"));
+        let (send, lines) = channel();
+        thread::spawn(move || {
+            for line in BufReader::new(words).lines().map_while(Result::ok) {
+                if send.send((began.elapsed(), line)).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { process, lines, heard: Vec::new() }
+    }
+
+    /// Waits for a line with these words.
+    fn says(&mut self, words: &str) -> (Duration, String) {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            match self.lines.recv_timeout(left) {
+                Ok(line) => {
+                    self.heard.push(line.clone());
+                    if line.1.contains(words) {
+                        return line;
+                    }
+                }
+                Err(error) => panic!("`{words}` is not said ({error}); said is: {:#?}", self.heard),
+            }
+        }
+    }
+
+    fn control_port(&mut self) -> u16 {
+        let (_, line) = self.says("control  ");
+        let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
+        address.parse::<SocketAddr>().expect("an address").port()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn socket() -> UdpSocket {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    socket.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+    socket
+}
+
+/// A port nobody has at the moment.
+fn free() -> String {
+    socket().local_addr().expect("an address").to_string()
+}
+
+fn image(socket: &UdpSocket) -> ssl::vision::DetectionFrame {
+    let mut bytes = [0; 8192];
+    loop {
+        let (length, _) = socket.recv_from(&mut bytes).expect("vision comes");
+        let packet = WrapperPacket::decode(&bytes[..length]).expect("a packet of the vision");
+        if let Some(detection) = packet.detection {
+            return detection;
+        }
+    }
+}
+
+fn order(id: u32, forward: f32) -> Vec<u8> {
+    let local = MoveLocalVelocity { forward, left: 0.0, angular: 0.0 };
+    let command = RobotCommand {
+        id,
+        move_command: Some(RobotMoveCommand { command: Some(MoveCommand::LocalVelocity(local)) }),
+        ..RobotCommand::default()
+    };
+    RobotControl { robot_commands: vec![command] }.encode_to_vec()
+}
+
+#[test]
+fn a_client_sees_its_robot_move_and_is_told_what_is_wrong() {
+    let vision = socket();
+    let to = vision.local_addr().expect("an address").to_string();
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--referee", "none"];
+    let more = ["--vision", &to, "--ideal", "--cameras", "1", "--duration", "60"];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    let blue = SocketAddr::from(([127, 0, 0, 1], simulator.control_port() + 1));
+    let x_of_3 = |image: &ssl::vision::DetectionFrame| {
+        image.robots_blue.iter().find(|robot| robot.robot_id == Some(3)).map(|robot| robot.x)
+    };
+    let mut begin = None;
+    while begin.is_none() {
+        begin = x_of_3(&image(&vision));
+    }
+    let (begin, client, mut moved) = (begin.expect("seen"), socket(), 0.0);
+    for _ in 0..2000 {
+        client.send_to(&order(3, 1.0), blue).expect("sent");
+        let seen = image(&vision);
+        moved = x_of_3(&seen).map_or(moved, |x| x - begin);
+        if moved > 300.0 {
+            break;
+        }
+    }
+    assert!(moved > 300.0, "robot 3 moved {moved} mm along +x");
+    // What came before is answered before.
+    client.send_to(&order(99, 1.0), blue).expect("sent");
+    let mut bytes = [0; 8192];
+    let refused = (0..3000).find_map(|_| {
+        let (length, _) = client.recv_from(&mut bytes).expect("an answer");
+        let answer = RobotControlResponse::decode(&bytes[..length]).expect("an answer of the protocol");
+        answer.errors.first().and_then(|error| error.code.clone())
+    });
+    assert!(refused.as_ref().is_some_and(|code| code.starts_with("ONETWO_")), "{refused:?}");
+}
+
+#[test]
+fn a_taken_port_is_told_and_the_rest_goes_on() {
+    let vision = socket();
+    let to = vision.local_addr().expect("an address").to_string();
+    let taken = socket();
+    let port = taken.local_addr().expect("an address").port().min(65_000).to_string();
+    let simulate = ["simulate", "--ports", &port, "--listen", "127.0.0.1", "--referee", "none"];
+    let mut simulator = Running::start(&[&simulate[..], &["--vision", &to, "--duration", "60"]].concat());
+    let (_, line) = simulator.says("is taken");
+    assert!(line.contains(&port) && line.contains("tried again"), "{line}");
+    image(&vision);
+}
+
+#[test]
+fn the_internal_referee_speaks_and_the_simulator_ends_in_order() {
+    let referee = socket();
+    let to = referee.local_addr().expect("an address").to_string();
+    let arguments = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--vision", &free()];
+    let mut simulator = Running::start(&[&arguments[..], &["--referee-to", &to, "--duration", "1"]].concat());
+    let mut bytes = [0; 8192];
+    let (length, _) = referee.recv_from(&mut bytes).expect("the referee speaks");
+    ssl::referee::Referee::decode(&bytes[..length]).expect("a packet of the referee");
+    simulator.says("ended after");
+    assert!(simulator.process.wait().expect("it ends").success());
+}
+
+#[test]
+fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
+    let (vision, referee) = (free(), free());
+    let arguments =
+        ["control", "--robots", "udp://127.0.0.1:9", "--tracker", "127.0.0.1:9", "--duration", "60"];
+    let mut control =
+        Running::start(&[&arguments[..], &["--vision", &vision, "--referee", &referee]].concat());
+    let mut waits: Vec<String> = Vec::new();
+    let mut latest = Duration::ZERO;
+    for _ in 0..3 {
+        let (at, line) = control.says("waiting for");
+        latest = latest.max(at);
+        waits.push(line);
+    }
+    for (what, mend) in
+        [("vision", "onetwo simulate"), ("the referee", "game controller"), ("robots", "base station")]
+    {
+        let line = waits.iter().find(|line| line.contains(&format!("waiting for {what}")));
+        assert!(line.is_some_and(|line| line.contains(mend)), "{what}: {waits:?}");
+    }
+    // 2 s are promised; a loaded machine may take longer to start a program at all.
+    assert!(latest < Duration::from_secs(15), "{latest:?}");
+    let arguments = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--duration", "60"];
+    let _simulator =
+        Running::start(&[&arguments[..], &["--vision", &vision, "--referee-to", &referee]].concat());
+    let mut came = [control.says("vision comes").1, String::new()];
+    if !control.heard.iter().any(|(_, line)| line.contains("the referee is heard")) {
+        came[1] = control.says("the referee is heard").1;
+    }
+    assert!(came[0].contains(&vision), "{came:?}");
+}
+
+#[test]
+fn brains_of_our_own_take_their_places_for_the_kickoff() {
+    let (vision, referee, tracked) = (free(), free(), socket());
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--duration", "60"];
+    let mut simulator =
+        Running::start(&[&simulate[..], &["--vision", &vision, "--referee-to", &referee]].concat());
+    let robots = format!("sim://127.0.0.1:{}", simulator.control_port());
+    let to = tracked.local_addr().expect("an address").to_string();
+    let control = ["control", "--robots", &robots, "--tracker", &to, "--duration", "60"];
+    let mut control = Running::start(&[&control[..], &["--vision", &vision, "--referee", &referee]].concat());
+    control.says("robots are heard");
+    // Blue begins within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
+    let (until, mut bytes) = (Instant::now() + PATIENCE, [0; 8192]);
+    let mut places = Vec::new();
+    while Instant::now() < until {
+        let (length, _) = tracked.recv_from(&mut bytes).expect("our tracker speaks");
+        let packet = TrackerWrapperPacket::decode(&bytes[..length]).expect("a tracker packet");
+        let robots = packet.tracked_frame.unwrap_or_default().robots;
+        let blue = robots.iter().filter(|robot| robot.robot_id.team_color == TeamColor::Blue as i32);
+        places = blue.map(|robot| (robot.robot_id.id, robot.pos.x, robot.pos.y)).collect();
+        let lawful = places.iter().all(|(_, x, y)| *x < 0.0 && x.hypot(*y) > 0.5);
+        let guarded = places.iter().any(|(id, x, y)| *id == 0 && *x < -4.0 && y.abs() < 0.6);
+        if places.len() == 6 && lawful && guarded {
+            return;
+        }
+    }
+    panic!("not at their places: {places:?}");
+}
+
+#[test]
+fn wrong_settings_are_refused_with_what_would_be_right() {
+    for (arguments, words) in [
+        (vec!["control", "--colour", "red"], "blue or yellow"),
+        (vec!["control", "--robots", "tcp://x"], "sim://HOST"),
+        (vec!["control", "--config", "no-such.toml"], "no-such.toml"),
+        (vec!["control", "--kick", "3=9"], "0.5 to 2"),
+    ] {
+        let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(&arguments).output().expect("it starts");
+        assert_eq!(out.status.code(), Some(1), "{arguments:?}");
+        assert!(String::from_utf8_lossy(&out.stderr).contains(words), "{arguments:?}");
+    }
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(["simulate", "--cameras", "3"]).output();
+    assert_eq!(out.expect("it starts").status.code(), Some(2));
+}
