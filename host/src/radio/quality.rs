@@ -220,7 +220,7 @@ impl Quality {
 /// The league's table, a line a robot; `-` where nothing was measured.
 pub fn table<'q>(rows: impl Iterator<Item = (RobotId, &'q Quality)>, foreign: u32) -> String {
     let mut text = String::from(
-        "robot  RTT mean  var  max ms  loss down  up %  rate kbit/s mean  var  start-up ms  battery V  refused\n",
+        "robot  RTT mean     var   max ms  loss down    up %  kbit/s mean      var  start-up ms  battery V  refused\n",
     );
     for (robot, quality) in rows {
         let (trip, rate) = (quality.round_trip(), quality.data_rate());
@@ -237,7 +237,7 @@ pub fn table<'q>(rows: impl Iterator<Item = (RobotId, &'q Quality)>, foreign: u3
             cell(quality.battery().map(f64::from), 2),
             quality.refused().to_string(),
         ];
-        let widths = [8, 5, 8, 11, 6, 18, 5, 13, 11, 9];
+        let widths = [10, 8, 9, 11, 8, 13, 9, 13, 11, 9];
         // Into a string writing never fails.
         let _ = write!(text, "{robot:>5}");
         for (cell, width) in cells.iter().zip(widths) {

@@ -250,7 +250,10 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     assert_eq!(quality.start_up(), Some(way + held + way));
     assert!(near(quality.battery().map(f64::from), 15.8, 1e-4));
     let table = table([(id(4), quality)].into_iter(), radio.foreign());
-    assert!(table.contains("    4    3.00 0.00    3.00") && table.ends_with("interference: no\n"), "{table}");
+    assert!(
+        table.contains("    4      3.00    0.00     3.00") && table.ends_with("interference: no\n"),
+        "{table}"
+    );
 }
 
 /// Bytes of a part without placement and ball and with so many robots: overhead, variant, picture, part, parts, phase,
