@@ -84,4 +84,5 @@ fn task_excess<L: CalcMotion>(task: &Task, limits: &L, alone: impl Fn(f32) -> L)
 
 const ZOOMS: usize = 4;
 const POINTS: u32 = 40;
-const ANGLE_MIN: f32 = 1e-4;
+/// Below this an axis alone would have less than the least limit that counts as one.
+const ANGLE_MIN: f32 = 1e-3;
