@@ -56,7 +56,12 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
     assert!(conduct.fastest_in_stop < 1.5, "{} m/s in STOP", conduct.fastest_in_stop);
     assert!(conduct.fastest_in_halt < 0.05, "{} m/s in HALT", conduct.fastest_in_halt);
     assert!(conduct.fastest_ball <= 6.5, "a ball of {} m/s", conduct.fastest_ball);
-    assert!(conduct.in_play > conduct.ticks / 5, "in play for {} of {} ticks", conduct.in_play, conduct.ticks);
+    assert!(
+        conduct.in_play > conduct.ticks / 5,
+        "in play for {} of {} ticks",
+        conduct.in_play,
+        conduct.ticks
+    );
     for fouls in [&report.fouls.blue, &report.fouls.yellow] {
         for never in ["bot_too_fast_in_stop", "bot_moved_in_halt", "bot_kicked_ball_too_fast"] {
             assert_eq!(fouls.get(never), None, "{fouls:?}");

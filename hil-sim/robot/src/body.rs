@@ -102,7 +102,8 @@ impl SimulatedBody {
 
     /// The simulator answered.
     pub fn handle_response(&mut self, now: Instant, response: &RobotControlResponse) {
-        let ours = response.feedback.iter().find(|robot| robot.id == u32::from(self.id.number()));
+        // A late answer may hold several of one robot: the last is the newest.
+        let ours = response.feedback.iter().rfind(|robot| robot.id == u32::from(self.id.number()));
         if let Some(contact) = ours.and_then(|robot| robot.dribbler_ball_contact) {
             self.contact = Some((now, contact));
         }

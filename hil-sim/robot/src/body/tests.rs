@@ -104,6 +104,8 @@ fn trap_09_ours_counts_among_all_configured_robots_and_a_dropped_answer_does_not
     body.handle_response(ms(70), &response(&[(2, Some(true))]));
     body.handle_response(ms(80), &response(&[(2, Some(false))]));
     assert!(!feels(&body, 80), "gone at once when told so");
+    body.handle_response(ms(90), &response(&[(2, Some(false)), (3, Some(false)), (2, Some(true))]));
+    assert!(feels(&body, 90), "of several the last is the newest");
 }
 
 #[test]
@@ -118,7 +120,7 @@ fn errors_of_the_simulator_are_counted_and_the_last_is_kept() {
 }
 
 #[test]
-fn trap_09_the_answers_that_grsim_and_er_force_really_gave_are_felt() {
+fn trap_09_the_answers_that_er_forces_simulator_really_gave_are_felt() {
     let recordings = [
         (
             "clean",
