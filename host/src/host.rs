@@ -11,7 +11,7 @@ use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
-use rules::{Colour, FieldSpec, League, Limits};
+use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
 use crate::geometry::VisionGeometry;
@@ -116,6 +116,7 @@ pub struct Host {
     orders: Orders,
     planned: Option<Instant>,
     undecodable: Undecodable,
+    halted: bool,
 }
 
 /// What a robot of ours last said of itself.
@@ -140,6 +141,7 @@ impl Host {
             orders: Orders::new(),
             planned: None,
             undecodable: Undecodable::default(),
+            halted: false,
             settings,
         }
     }
@@ -155,6 +157,12 @@ impl Host {
                 Verdict::Timeout
             }
         }
+    }
+
+    /// Our robots halt, whatever the referee says, until the end: somebody ends the program. No input, so no trace has it.
+    pub fn halt(&mut self, now: Instant) {
+        self.halted = true;
+        self.plan(now);
     }
 
     /// The next packet for the robots.
@@ -335,7 +343,7 @@ impl Host {
     fn our_game(&self) -> Game {
         let (us, game) = (self.settings.us, self.listener.game());
         Game {
-            phase: game.phase.seen_by(us),
+            phase: if self.halted { Phase::Halt } else { game.phase.seen_by(us) },
             next: game.next.map(|phase| phase.seen_by(us)),
             placement: game.placement,
             defending: game.own_goal(us).unwrap_or(self.settings.defending),

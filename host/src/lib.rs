@@ -9,6 +9,7 @@ pub mod config;
 pub mod geometry;
 mod host;
 pub mod radio;
+pub mod recheck;
 pub mod recording;
 pub mod referee;
 pub mod shell;

@@ -11,6 +11,7 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
+use crate::HostSettings;
 use crate::radio::{RadioSettings, Relay};
 
 /// What a trace begins with.
@@ -124,6 +125,24 @@ impl HostHeader {
             way_us: radio.way.0,
             keyed: radio.key != TeamKey::ZERO,
         }
+    }
+
+    /// Of a host with these settings that begins at `began`.
+    pub fn of(settings: &HostSettings, began: Instant) -> Self {
+        let who = (settings.us, settings.keeper, settings.defending);
+        Self::new(who, &settings.kick, &settings.radio, began)
+    }
+
+    /// The settings it began with; the key is for the caller to bring.
+    pub fn settings(&self, league: League, key: TeamKey) -> Result<HostSettings, HeaderError> {
+        Ok(HostSettings {
+            us: self.colour()?,
+            league,
+            keeper: self.keeper()?,
+            defending: self.defending()?,
+            kick: self.kick()?,
+            radio: self.radio(key)?,
+        })
     }
 
     /// Its colour.

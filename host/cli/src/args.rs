@@ -7,8 +7,11 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::Failure;
 use crate::cases::CasesVerb;
+use crate::control::ControlArgs;
 use crate::evaluate::EvaluateArgs;
 use crate::play::PlayArgs;
+use crate::replay::ReplayArgs;
+use crate::simulate::SimulateArgs;
 use crate::trial::TrialArgs;
 use crate::virtual_robot::VirtualRobotArgs;
 
@@ -29,6 +32,12 @@ pub(crate) enum Verb {
     Trial(TrialArgs),
     /// The paper's tables: thousands of trials, beside what the paper measured.
     Evaluate(Box<EvaluateArgs>),
+    /// The host of a team on the league's network: vision and referee in, commands to robots out.
+    Control(Box<ControlArgs>),
+    /// A recorded match: what is in it, the field at a moment, and whether the hosts decide the same again.
+    Replay(Box<ReplayArgs>),
+    /// A Small Size field for any team's software: vision out, the league's simulation protocol in, a referee beside it.
+    Simulate(Box<SimulateArgs>),
     /// Check, list, show, retrieve and explain cases.
     Cases {
         #[command(subcommand)]

@@ -96,6 +96,15 @@ pub(crate) enum Failure {
     Evaluation(EvaluationError),
     /// The filters of an evaluation leave nothing.
     NoTrials,
+    /// A recording could not be read, or has not what was asked for.
+    Recorded {
+        /// Which.
+        file: PathBuf,
+        /// What, and how to mend it.
+        words: String,
+    },
+    /// What a verb on the league's networks cannot go on without.
+    Network(String),
     /// Stdin could not be read.
     Input(io::Error),
     /// Stdout could not be written.
@@ -171,7 +180,9 @@ impl fmt::Display for Failure {
             Self::EmptyLibrary(league) => {
                 write!(f, "the library {league} holds no case; add one at <region>/<name>.toml")
             }
-            Self::Draft(words) | Self::Survey(words) | Self::Robot(words) => f.write_str(words),
+            Self::Draft(words) | Self::Survey(words) | Self::Robot(words) | Self::Network(words) => {
+                f.write_str(words)
+            }
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) | Self::Game(words) => f.write_str(words),
             Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
@@ -194,6 +205,11 @@ impl fmt::Display for Failure {
                  leave out a filter",
             ),
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
+            Self::Recorded { file, words } => {
+                let file = file.display().to_string();
+                // Some of what is said names the file already.
+                if words.starts_with(&file) { f.write_str(words) } else { write!(f, "{file}: {words}") }
+            }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),
         }

@@ -6,12 +6,18 @@
 
 mod args;
 mod cases;
+mod control;
 mod evaluate;
 mod failure;
 mod library;
+mod net;
+mod output;
 mod picture;
 mod play;
+mod replay;
 mod setup;
+mod simulate;
+mod stop;
 mod trial;
 mod virtual_robot;
 
@@ -27,6 +33,9 @@ fn main() -> ExitCode {
         Verb::Play(args) => play::run(&args),
         Verb::Trial(args) => trial::run(&args),
         Verb::Evaluate(args) => evaluate::run(&args),
+        Verb::Replay(args) => replay::run(&args),
+        Verb::Simulate(args) => simulate::run(&args),
+        Verb::Control(args) => control::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
         Verb::VirtualRobot(args) => virtual_robot::run(&args),
     };

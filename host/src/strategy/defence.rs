@@ -55,7 +55,7 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
     (at, kick, room)
 }
 
-/// Distance of the nearest opponent from the way of a ball, m; at most [`ROOM_ENOUGH`].
+/// Distance of the nearest opponent from the way of a ball, m; at most a metre.
 pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
     let way = geometry::Segment::new(from, to);
     view.theirs.iter().map(|robot| way.distance_to(robot.position)).fold(ROOM_ENOUGH, f32::min)

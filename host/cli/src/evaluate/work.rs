@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use arena::CaseNames;
 use arena::evaluation::{
@@ -18,6 +18,7 @@ use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
 use crate::setup::SetupArgs;
+use crate::stop::stopped_by_hand;
 
 /// Where and how fast.
 #[derive(Debug, Args)]
@@ -87,6 +88,7 @@ pub(super) fn play(
     pool: &rayon::ThreadPool,
     title: &str,
 ) -> Result<Vec<TrialRow>, Failure> {
+    // The trials under way are still played and kept.
     let stopped = stopped_by_hand();
     // Drawn on a terminal's stderr, and nowhere else.
     let bar = ProgressBar::new(0);
@@ -107,18 +109,6 @@ pub(super) fn play(
     let rows = pool.install(|| evaluation.play_shard(shard, file, &told));
     bar.finish_and_clear();
     Ok(rows?)
-}
-
-/// Has somebody pressed Ctrl-C? The trials under way are then still played and kept; a second time ends the program at once.
-fn stopped_by_hand() -> &'static AtomicBool {
-    static STOPPED: AtomicBool = AtomicBool::new(false);
-    // Where no handler can be set, or one is there already, Ctrl-C does what it did before: every trial over is kept anyway.
-    let _ = ctrlc::try_set_handler(|| {
-        if STOPPED.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
-    &STOPPED
 }
 
 /// Plays a shard of a plan and, where it is the whole, writes and tells what came out.

@@ -1,0 +1,196 @@
+//! `onetwo control`: the host of a team on the league's network (DESIGN §3, §8).
+//!
+//! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
+//! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.
+
+mod desk;
+mod port_for_teams;
+mod record;
+mod threads;
+mod watch;
+
+use std::net::{IpAddr, SocketAddr};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use hil_sim::small_size::Parameters;
+use host::config::{Calibration, RobotLink, TeamConfig, TeamSettings};
+use protocol::RobotId;
+use rules::Colour;
+use ssl::net::addresses;
+
+use crate::Failure;
+use crate::simulate::seconds;
+
+/// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
+#[derive(Debug, Args)]
+pub(crate) struct ControlArgs {
+    /// The team's settings; each can be told here instead.
+    #[arg(long, value_name = "team.toml")]
+    config: Option<PathBuf>,
+    /// The team's name, as the game controller knows it.
+    #[arg(long)]
+    name: Option<String>,
+    /// blue or yellow.
+    #[arg(long)]
+    colour: Option<String>,
+    /// ssl-2013, division-b or division-a.
+    #[arg(long)]
+    league: Option<String>,
+    /// Our keeper's number, until the referee says another.
+    #[arg(long, value_name = "ID")]
+    keeper: Option<u8>,
+    /// Address of the interface that hears and speaks multicast; every interface hears unless told.
+    #[arg(long, value_name = "ADDRESS")]
+    interface: Option<IpAddr>,
+    /// Where the robots are: sim://HOST[:PORT] (brains of our own in a simulator; its control port, 10300), udp://HOST:PORT or
+    /// serial:DEVICE[:BAUD].
+    #[arg(long, value_name = "LINK")]
+    robots: Option<String>,
+    /// Which robots are started in a simulator, such as 0-5 or 1,4,7; the league's number from 0 on unless told.
+    #[arg(long, value_name = "IDS", value_parser = ids)]
+    ids: Option<Ids>,
+    /// The team's key: 32 hexadecimal digits in a file; zeros unless told.
+    #[arg(long, value_name = "FILE")]
+    key_file: Option<PathBuf>,
+    /// Where vision is heard: 224.5.23.2:10006, and 224.5.23.2:10020 for robots in a simulator.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    vision: Option<SocketAddr>,
+    /// Where the referee is heard: 224.5.23.1:10003.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    referee: Option<SocketAddr>,
+    /// Where our tracker's packets go: 224.5.23.2:10010.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    tracker: Option<SocketAddr>,
+    /// The game controller's port for teams, such as 127.0.0.1:10008; nobody is told our keeper unless this is.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    game_controller: Option<SocketAddr>,
+    /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
+    #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
+    kicks: Vec<Calibration>,
+    /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
+    #[arg(long, value_name = "NAME")]
+    record: Option<PathBuf>,
+    /// End after so many seconds; else Ctrl-C ends it, and robots are halted first.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    duration: Option<f64>,
+}
+
+/// Robots' numbers, each once, rising.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Ids(Vec<RobotId>);
+
+/// `onetwo control`.
+pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
+    let config = configure(args)?;
+    let usual = Parameters::of(config.league).map_or(0, |parameters| parameters.robots);
+    let robots = match &args.ids {
+        Some(Ids(ids)) => ids.clone(),
+        None => (0..usual).filter_map(RobotId::new).collect(),
+    };
+    desk::run(&config, &robots, args.record.as_deref(), args.duration)
+}
+
+/// Flags over the file over what is usual.
+fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
+    let file = match &args.config {
+        None => TeamSettings::default(),
+        Some(path) => {
+            let said = |words: String| Failure::Network(format!("{}: {words}", path.display()));
+            let text = std::fs::read_to_string(path).map_err(|error| said(error.to_string()))?;
+            TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))?
+        }
+    };
+    let flags = TeamSettings {
+        name: args.name.clone(),
+        colour: args.colour.clone(),
+        league: args.league.clone(),
+        keeper: args.keeper,
+        interface: args.interface,
+        robots: args.robots.clone(),
+        key_file: args.key_file.clone(),
+        vision: args.vision,
+        referee: args.referee,
+        tracker: args.tracker,
+        game_controller: args.game_controller,
+        calibration: args.kicks.clone(),
+    };
+    let settings = flags.over(file);
+    let told = settings.vision.is_some();
+    let mut config = settings.complete().map_err(|error| Failure::Network(error.to_string()))?;
+    if !told && matches!(config.robots, RobotLink::Simulator(_)) {
+        config.vision = addresses::VISION_SIMULATED.into();
+    }
+    Ok(config)
+}
+
+/// Where a simulator takes a team's commands: `HOST[:PORT]` names its control port.
+fn simulator(host: &str, colour: Colour) -> Result<SocketAddr, Failure> {
+    use std::net::ToSocketAddrs;
+    let (name, port) = match host.rsplit_once(':') {
+        Some((name, port)) if !name.contains(':') => (name, port.parse().ok()),
+        _ => (host, Some(addresses::SIMULATOR_PORT)),
+    };
+    let offset = match colour {
+        Colour::Blue => 1,
+        Colour::Yellow => 2,
+    };
+    let port = port.and_then(|port: u16| port.checked_add(offset));
+    let found = port.and_then(|port| (name, port).to_socket_addrs().ok()?.next());
+    found.ok_or_else(|| {
+        Failure::Network(format!(
+            "sim://{host}: no such machine; give sim://HOST or sim://HOST:PORT of a simulator"
+        ))
+    })
+}
+
+fn ids(text: &str) -> Result<Ids, String> {
+    let wrong = || "expected numbers from 0 to 15, such as 0-5 or 1,4,7".to_owned();
+    let mut ids = Vec::new();
+    for part in text.split(',') {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let (first, last): (u8, u8) =
+            (first.trim().parse().map_err(|_| wrong())?, last.trim().parse().map_err(|_| wrong())?);
+        for number in first..=last {
+            ids.push(RobotId::new(number).ok_or_else(wrong)?);
+        }
+    }
+    ids.sort_unstable();
+    ids.dedup();
+    if ids.is_empty() { Err(wrong()) } else { Ok(Ids(ids)) }
+}
+
+fn kick(text: &str) -> Result<Calibration, String> {
+    let parts =
+        text.split_once('=').and_then(|(robot, kick)| Some((robot.parse().ok()?, kick.parse().ok()?)));
+    let (robot, kick) = parts.ok_or_else(|| "expected ROBOT=FACTOR, such as 3=1.06".to_owned())?;
+    Ok(Calibration { robot, kick })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_are_named_by_ranges_and_lists() {
+        let numbers = |text| ids(text).map(|Ids(ids)| ids.iter().map(|id| id.number()).collect::<Vec<_>>());
+        assert_eq!(numbers("0-2"), Ok(vec![0, 1, 2]));
+        assert_eq!(numbers("7,1, 1"), Ok(vec![1, 7]));
+        assert!(numbers("0-16").is_err() && numbers("").is_err() && numbers("5-2").is_err());
+    }
+
+    #[test]
+    fn a_simulator_s_ports_follow_its_control_port() {
+        let port = |host, colour| simulator(host, colour).map(|address| address.port()).ok();
+        assert_eq!(port("127.0.0.1", Colour::Blue), Some(10301));
+        assert_eq!(port("127.0.0.1:20300", Colour::Yellow), Some(20302));
+        assert_eq!(port("127.0.0.1:x", Colour::Blue), None);
+    }
+
+    #[test]
+    fn a_calibration_is_a_robot_and_a_factor() {
+        assert_eq!(kick("3=1.06"), Ok(Calibration { robot: 3, kick: 1.06 }));
+        assert!(kick("3").is_err());
+    }
+}

@@ -1,0 +1,102 @@
+//! The game controller's port for teams: a connection that comes back, around [`TeamPort`], which knows what to say.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use host::referee::team_port::{Event, Request, TeamPort};
+use protocol::RobotId;
+use rules::Colour;
+
+use super::threads::{Mail, sleep};
+
+/// An open connection is read at most so long before the time is looked at.
+const WAIT: Duration = Duration::from_millis(100);
+/// Somebody who does not take a connection in this time is not there.
+const CONNECT: Duration = Duration::from_secs(1);
+
+/// Registers us and asks for our keeper.
+pub(super) fn talk(
+    address: SocketAddr,
+    (name, colour, keeper): (String, Colour, RobotId),
+    mail: Sender<Mail>,
+    end: Arc<AtomicBool>,
+) -> JoinHandle<()> {
+    thread::spawn(move || {
+        let mut port = TeamPort::new(name, colour);
+        let began = Instant::now();
+        let now = || protocol::Instant(began.elapsed().as_micros() as u64);
+        let mut stream: Option<TcpStream> = None;
+        let mut last = None;
+        port.ask(Request::Keeper(keeper), now());
+        while !end.load(Ordering::Relaxed) {
+            if port.wants_connection(now()) {
+                stream = connect(address);
+                if stream.is_some() { port.connected(now()) } else { port.lost(now()) }
+            }
+            let open = stream.as_mut().is_some_and(|stream| exchange(stream, &mut port, now()));
+            if !open && stream.take().is_some() {
+                port.lost(now());
+            }
+            port.tick(now());
+            while let Some(event) = port.poll_event() {
+                if matches!(event, Event::GivenUp(_) | Event::RegistrationRefused { .. }) {
+                    stream = None;
+                }
+                let words = words(&event, address);
+                // A controller that is away is told of once.
+                if words.is_some() && words != last {
+                    let _ = mail.send(Mail::Word(words.clone().unwrap_or_default()));
+                    last = words;
+                }
+            }
+            if stream.is_none() {
+                sleep(WAIT, &end);
+            }
+        }
+    })
+}
+
+fn connect(address: SocketAddr) -> Option<TcpStream> {
+    let stream = TcpStream::connect_timeout(&address, CONNECT).ok()?;
+    stream.set_nodelay(true).ok()?;
+    stream.set_read_timeout(Some(WAIT)).ok()?;
+    stream.set_write_timeout(Some(CONNECT)).ok()?;
+    Some(stream)
+}
+
+/// Sends what is to be sent and reads what came; false where the connection is gone.
+fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant) -> bool {
+    use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
+    while let Some(bytes) = port.poll_transmit() {
+        if stream.write_all(&bytes).is_err() {
+            return false;
+        }
+    }
+    let mut chunk = [0; 4096];
+    match stream.read(&mut chunk) {
+        Ok(0) => false,
+        Ok(bytes) => {
+            port.receive(&chunk[..bytes], now);
+            true
+        }
+        Err(error) => matches!(error.kind(), WouldBlock | TimedOut | Interrupted),
+    }
+}
+
+fn words(event: &Event, address: SocketAddr) -> Option<String> {
+    Some(match event {
+        Event::Registered { .. } => format!("game controller  at {address} knows us now"),
+        Event::RegistrationRefused { reason } => format!(
+            "game controller  at {address} will not have us: {reason}; is our --name the one it shows, and our --colour?"
+        ),
+        Event::Granted(Request::Ping) => return None,
+        Event::Granted(request) => format!("game controller  granted: {request:?}"),
+        Event::Refused { request, reason } => format!("game controller  refused {request:?}: {reason}"),
+        Event::GivenUp(trouble) => format!("waiting for the game controller at {address}: {trouble}"),
+    })
+}

@@ -1,0 +1,141 @@
+//! How do verbs hear and speak on the league's networks? By group where an address is multicast, straight where it is one
+//! machine's.
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::time::Duration;
+
+use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
+
+/// Speaks to an address; what fails is told once, not a thousand times a second.
+#[derive(Debug)]
+pub(crate) struct Mouth {
+    to: SocketAddr,
+    /// The interface to speak by; none: the system's choice.
+    by: Option<String>,
+    sender: Option<Sender>,
+    troubled: bool,
+    /// Datagrams that went out.
+    pub(crate) sent: u64,
+}
+
+impl Mouth {
+    /// Nothing is opened before something is said.
+    pub(crate) fn new(to: SocketAddr, by: Option<&str>) -> Self {
+        Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
+    }
+
+    /// Where it speaks to.
+    pub(crate) const fn to(&self) -> SocketAddr {
+        self.to
+    }
+
+    /// Speaks to another port of the same address from now on.
+    pub(crate) fn set_port(&mut self, port: u16) {
+        if self.to.port() != port {
+            self.to.set_port(port);
+            self.sender = None;
+        }
+    }
+
+    /// Sends; gives words for people where something began to fail, or goes another way than was asked for.
+    pub(crate) fn send(&mut self, bytes: &[u8]) -> Option<String> {
+        let words = match self.try_send(bytes) {
+            Ok(()) => return self.works(),
+            Err(NetError::NoRoute { .. }) if self.by.is_none() && self.to.ip().is_multicast() => {
+                // No network at all: this machine still has itself.
+                self.by = Some(Ipv4Addr::LOCALHOST.to_string());
+                self.sender = None;
+                match self.try_send(bytes) {
+                    Ok(()) => {
+                        self.sent += 1;
+                        return Some(format!(
+                            "no network leads to {}: only this machine is spoken to",
+                            self.to
+                        ));
+                    }
+                    Err(error) => error.to_string(),
+                }
+            }
+            Err(error) => error.to_string(),
+        };
+        self.sender = None;
+        (!std::mem::replace(&mut self.troubled, true)).then_some(words)
+    }
+
+    fn works(&mut self) -> Option<String> {
+        self.sent += 1;
+        std::mem::take(&mut self.troubled).then(|| format!("{} can be spoken to again", self.to))
+    }
+
+    fn try_send(&mut self, bytes: &[u8]) -> Result<(), NetError> {
+        let sender = match &mut self.sender {
+            Some(sender) => sender,
+            None => self.sender.insert(match self.to {
+                SocketAddr::V4(to) if to.ip().is_multicast() => Sender::multicast(to, self.by.as_deref())?,
+                to => Sender::unicast(to)?,
+            }),
+        };
+        sender.send(bytes)
+    }
+}
+
+/// Hears an address: a group beside other programs, or a port of its own.
+#[derive(Debug)]
+pub(crate) enum Ear {
+    /// A multicast group.
+    Group(Receiver),
+    /// A port that is spoken to straight.
+    Own(Port),
+}
+
+impl Ear {
+    /// Joins the group, or takes the port.
+    pub(crate) fn open(address: SocketAddr, by: &Interfaces) -> Result<Self, NetError> {
+        match address {
+            SocketAddr::V4(group) if group.ip().is_multicast() => Receiver::join(group, by).map(Self::Group),
+            address => Port::bind(address).map(Self::Own),
+        }
+    }
+
+    /// The next datagram, within `wait`.
+    pub(crate) fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
+        match self {
+            Self::Group(receiver) => receiver.receive(wait),
+            Self::Own(port) => port.receive(wait),
+        }
+    }
+
+    /// By which way it hears, in words.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Group(receiver) => {
+                receiver.joined().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+            }
+            Self::Own(port) => port.address().to_string(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_machine_is_spoken_to_and_heard_straight() {
+        let any: SocketAddr = ([127, 0, 0, 1], 0).into();
+        let port = Port::bind(any).expect("a port").address();
+        let mut ear = Ear::open(port, &Interfaces::All).expect("the port is free again");
+        let mut mouth = Mouth::new(port, None);
+        assert_eq!(mouth.send(b"hello"), None);
+        let heard = ear.receive(Duration::from_secs(5)).expect("no error").expect("a datagram");
+        assert_eq!((heard.bytes, mouth.sent), (&b"hello"[..], 1));
+    }
+
+    #[test]
+    fn what_cannot_be_sent_is_told_once() {
+        let mut mouth = Mouth::new(([127, 0, 0, 1], 9).into(), None);
+        let too_large = vec![0; 70_000];
+        assert!(mouth.send(&too_large).is_some_and(|words| words.contains("70000")));
+        assert_eq!(mouth.send(&too_large), None);
+    }
+}

@@ -1,0 +1,297 @@
+//! A league log file: one pass that counts, tracks, listens, and stops at a moment if one is asked for.
+//!
+//! The clock is the recorder's, from the file's first message on; where it steps back (half a millisecond is usual) ours
+//! stands still.
+
+use std::process::ExitCode;
+
+use host::referee::Listener;
+use host::tracking::{Heard, Tracker};
+use host::{Host, HostSettings, Input};
+use indicatif::ProgressBar;
+use protocol::Instant;
+use rules::Colour;
+use ssl::log::{MessageKind, Packet, Record};
+
+use super::happening::{Finder, is_meant};
+use super::moment::{Moment, Score};
+use super::report::{self, Gap, Report};
+use super::{ReplayArgs, failed};
+use crate::Failure;
+use crate::output::say;
+
+/// Vision that is silent longer than this is a gap: robots are blind for three of their beats at 60 Hz, and teams
+/// complain from 0.2 s on.
+const VISION_GAP_S: f64 = 0.2;
+/// The referee's: pauses of 1.5 s come on a loaded machine.
+const REFEREE_GAP_S: f64 = 2.0;
+
+pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
+    let mut pass = Pass::new(args)?;
+    let bar = ProgressBar::new_spinner();
+    let mut shown = None;
+    for (number, record) in (0_u64..).zip(reader.by_ref()) {
+        bar.inc(1);
+        if let Some(moment) = pass.read(number, &record) {
+            shown = Some(moment);
+            break;
+        }
+    }
+    bar.finish_and_clear();
+    if let Some(moment) = shown {
+        say(&if args.json { json(&moment)? } else { moment.tell() })?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let damage = reader.end().filter(|end| !end.is_whole()).map(ToString::to_string);
+    let back_steps = reader.counts().back_steps;
+    if args.at.is_some() || args.event.is_some() {
+        return Err(Failure::Recorded {
+            file: args.file.clone(),
+            words: pass.not_there(args, damage.as_deref()),
+        });
+    }
+    let report = pass.finish(damage, back_steps);
+    say(&if args.json { json(&report)? } else { report.tell() })?;
+    if report.messages.is_empty() {
+        let words = report.damage.unwrap_or_else(|| "holds no message".to_owned());
+        return Err(Failure::Recorded { file: args.file.clone(), words });
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string(value).map(|text| text + "\n").map_err(|error| Failure::Output(error.into()))
+}
+
+struct Pass<'a> {
+    args: &'a ReplayArgs,
+    report: Report,
+    began_ns: Option<i64>,
+    now: Instant,
+    tracker: Tracker,
+    listener: Listener,
+    finder: Finder,
+    team: Option<Team>,
+    /// Events as asked for that have been met.
+    met: u32,
+}
+
+struct Team {
+    host: Host,
+    told: report::Host,
+    hash: u64,
+}
+
+impl<'a> Pass<'a> {
+    fn new(args: &'a ReplayArgs) -> Result<Self, Failure> {
+        let limits = args.league.limits();
+        let limits =
+            limits.ok_or_else(|| failed(&args.file, &"its league has no rules of the Small Size League"))?;
+        let report = Report { kind: "log", file: args.file.display().to_string(), ..Report::default() };
+        let team = args.team.map(|colour| Team {
+            host: Host::new(HostSettings::new(colour, args.league, 1), Instant(0)),
+            told: report::Host { colour: colour.word().to_owned(), ..report::Host::default() },
+            hash: FNV_BASIS,
+        });
+        Ok(Self {
+            args,
+            report,
+            began_ns: None,
+            now: Instant(0),
+            tracker: Tracker::default(),
+            listener: Listener::new(limits, Instant(0)),
+            finder: Finder::default(),
+            team,
+            met: 0,
+        })
+    }
+
+    /// The next message; a moment, if this is the one.
+    fn read(&mut self, number: u64, record: &Record) -> Option<Moment> {
+        let began = *self.began_ns.get_or_insert(record.timestamp_ns);
+        let micros = u64::try_from(record.timestamp_ns.saturating_sub(began) / 1000).unwrap_or(0);
+        let later = Instant(micros).max(self.now);
+        // The moment between two messages is before the second.
+        if let Some(at) = self.args.at
+            && later.0 as f64 * 1e-6 > at
+        {
+            let at = Instant((at * 1e6) as u64).max(self.now);
+            return Some(self.moment(at, None));
+        }
+        self.now = later;
+        let at_s = self.seconds();
+        self.count(record, at_s);
+        let packet = match record.decode() {
+            Ok(packet) => packet,
+            Err(error) => {
+                self.report.undecodable += 1;
+                if let Some(kind) = self.report.messages.get_mut(&record.kind.to_string()) {
+                    kind.undecodable += 1;
+                }
+                let words = || format!("message {number} at {at_s:.3} s: {error}");
+                self.report.first_undecodable.get_or_insert_with(words);
+                None
+            }
+        };
+        match packet {
+            Some(Packet::Vision(packet)) => {
+                if let Some(image) = &packet.detection {
+                    self.image(image.camera_id, at_s);
+                }
+                let heard = self.tracker.handle(&packet, self.now);
+                if matches!(heard, Heard::Newest | Heard::Restarted) {
+                    self.look();
+                }
+                self.feed(Input::Vision(&record.payload));
+            }
+            Some(Packet::Referee(packet)) => {
+                let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
+                self.listener.hear(&packet, self.now, ball);
+                let before = self.report.happenings.len();
+                self.finder.read(&packet, at_s, &mut self.report.happenings);
+                self.report.score = Score { blue: packet.blue.score, yellow: packet.yellow.score };
+                self.feed(Input::Referee(&record.payload));
+                return self.asked_for(before);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    /// The moment of the event that was asked for, if it is among the newest.
+    fn asked_for(&mut self, since: usize) -> Option<Moment> {
+        let word = self.args.event.as_deref()?;
+        for place in since..self.report.happenings.len() {
+            if is_meant(&self.report.happenings[place], word) {
+                self.met += 1;
+                if self.met == self.args.nth {
+                    let name = self.report.happenings[place].name.clone();
+                    return Some(self.moment(self.now, Some(name)));
+                }
+            }
+        }
+        None
+    }
+
+    fn moment(&mut self, at: Instant, event: Option<String>) -> Moment {
+        let world = self.tracker.world(at);
+        self.listener.tick(at, world.ball.map(|ball| ball.position));
+        Moment::new(at.0 as f64 * 1e-6, event, &world, self.listener.game())
+    }
+
+    fn not_there(&self, args: &ReplayArgs, damage: Option<&str>) -> String {
+        let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
+        match (&args.event, args.at) {
+            (Some(word), _) => {
+                let mut known: Vec<_> = self.report.happenings.iter().map(|h| h.name.as_str()).collect();
+                known.sort_unstable();
+                known.dedup();
+                let known = if known.is_empty() { "no event".to_owned() } else { known.join(", ") };
+                format!("{} `{word}` in it, not {}; it has: {known}{damage}", self.met, args.nth)
+            }
+            (None, at) => {
+                format!("it ends after {:.3} s, before {} s{damage}", self.seconds(), at.unwrap_or_default())
+            }
+        }
+    }
+
+    fn count(&mut self, record: &Record, at_s: f64) {
+        let name = record.kind.to_string();
+        let known = self.report.messages.entry(name.clone()).or_default();
+        known.messages += 1;
+        known.bytes += record.payload.len() as u64;
+        let longest = match record.kind {
+            MessageKind::Vision2014 | MessageKind::Vision2010 => VISION_GAP_S,
+            MessageKind::Refbox2013 => REFEREE_GAP_S,
+            _ => f64::INFINITY,
+        };
+        let (last, first) = (known.last_s, known.first_s.replace(known.first_s.unwrap_or(at_s)));
+        known.last_s = at_s;
+        if first.is_some() && at_s - last > longest {
+            self.report.gap(Gap { at_s: last, of: name, for_s: at_s - last });
+        }
+    }
+
+    fn image(&mut self, camera: u32, at_s: f64) {
+        // A damaged file may name any number; no field has more.
+        if self.report.cameras.len() < CAMERAS_MAX || self.report.cameras.contains_key(&camera) {
+            let camera = self.report.cameras.entry(camera).or_default();
+            camera.images += 1;
+            camera.first_s.get_or_insert(at_s);
+            camera.last_s = at_s;
+        }
+    }
+
+    /// What is seen now.
+    fn look(&mut self) {
+        let world = self.tracker.picture();
+        for robot in world.robots() {
+            let seen = match robot.who.colour {
+                Colour::Blue => &mut self.report.robots.blue,
+                Colour::Yellow => &mut self.report.robots.yellow,
+            };
+            seen.insert(robot.who.id.number());
+        }
+        if let Some(ball) = &world.ball {
+            self.report.ball_speed_max = self.report.ball_speed_max.max(ball.velocity.norm());
+        }
+    }
+
+    fn feed(&mut self, input: Input<'_>) {
+        let Some(team) = &mut self.team else { return };
+        while let Some(due) = team.host.poll_timeout().filter(|due| *due < self.now) {
+            team.tell(due, Input::Timeout);
+            // A deadline that stands after it was met would stand for ever.
+            if team.host.poll_timeout().is_some_and(|next| next <= due) {
+                break;
+            }
+        }
+        team.tell(self.now, input);
+    }
+
+    fn seconds(&self) -> f64 {
+        self.now.0 as f64 * 1e-6
+    }
+
+    fn finish(mut self, damage: Option<String>, back_steps: u64) -> Report {
+        self.report.take(self.tracker.counts(), self.listener.counts());
+        self.report.span_s = self.seconds();
+        self.report.began_unix_s = self.began_ns.unwrap_or(0) as f64 * 1e-9;
+        self.report.damage = damage;
+        self.report.back_steps = back_steps;
+        let rate = |n: u64, first: Option<f64>, last: f64| match first {
+            Some(first) if last > first => (n - 1) as f64 / (last - first),
+            _ => 0.0,
+        };
+        for kind in self.report.messages.values_mut() {
+            kind.rate_hz = rate(kind.messages, kind.first_s, kind.last_s);
+        }
+        for camera in self.report.cameras.values_mut() {
+            camera.rate_hz = rate(camera.images, camera.first_s, camera.last_s);
+        }
+        self.report.host =
+            self.team.map(|team| report::Host { packets_hash: format!("{:016x}", team.hash), ..team.told });
+        self.report
+    }
+}
+
+impl Team {
+    fn tell(&mut self, at: Instant, input: Input<'_>) {
+        self.told.inputs += 1;
+        self.host.handle(at, input);
+        while let Some((_, packet)) = self.host.poll_packet() {
+            self.told.packets += 1;
+            self.told.bytes += packet.len() as u64;
+            for byte in &packet[..] {
+                self.hash = (self.hash ^ u64::from(*byte)).wrapping_mul(FNV_PRIME);
+            }
+        }
+    }
+}
+
+/// No field has more.
+const CAMERAS_MAX: usize = 64;
+/// FNV-1a-64, as the trace hash (DESIGN §2).
+const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+const FNV_PRIME: u64 = 0x0100_0000_01b3;

@@ -1,0 +1,112 @@
+//! `onetwo replay`: what is in a recorded match, what was the field like at a moment, and does the host decide the same again?
+//!
+//! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
+
+mod happening;
+mod league_log;
+mod moment;
+mod report;
+mod trace;
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+use flate2::bufread::MultiGzDecoder;
+use rules::{Colour, League};
+
+pub(crate) use moment::phase_words;
+
+use crate::Failure;
+
+/// Which file, and what of it.
+#[derive(Debug, Args)]
+pub(crate) struct ReplayArgs {
+    /// A log file of the league (.log, .log.gz) or a trace of ours (.trace), gzipped or not.
+    file: PathBuf,
+    /// Print what is told as JSON, and nothing else.
+    #[arg(long)]
+    json: bool,
+    /// Show the field and the referee so many seconds after the file's begin.
+    #[arg(long, value_name = "SECONDS", value_parser = moment_in_seconds, conflicts_with = "event")]
+    at: Option<f64>,
+    /// Show the field and the referee at an event: goal, a command such as halt, stop or prepare_kickoff, a game event such as
+    /// ball_left_field, or a stage; the begin of a name will do.
+    #[arg(long, value_name = "NAME")]
+    event: Option<String>,
+    /// Which of several such events, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "event", value_parser = clap::value_parser!(u32).range(1..))]
+    nth: u32,
+    /// Feed the host of this team with a log file's messages, and tell what it would have sent.
+    #[arg(long, value_name = "COLOUR", value_parser = colour)]
+    team: Option<Colour>,
+    /// The league of that host: ssl-2013, division-b or division-a; a trace knows its own.
+    #[arg(long, value_name = "NAME", default_value = "division-b", value_parser = league)]
+    league: League,
+    /// Feed the hosts of a trace again and hold every packet they send to the record, byte for byte: so it is done with every
+    /// trace, and asked of anything else it is an error.
+    #[arg(long)]
+    check: bool,
+    /// The key of the team that recorded a trace, where it had one: 32 hexadecimal digits in a file.
+    #[arg(long, value_name = "FILE")]
+    key_file: Option<PathBuf>,
+}
+
+/// `onetwo replay`.
+pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    if begins(&args.file)?.starts_with(TRACE) {
+        return trace::run(args);
+    }
+    if args.check {
+        let words =
+            "no trace, and only a trace can be checked: give the NAME.trace that `--record NAME` wrote";
+        return Err(Failure::Recorded { file: args.file.clone(), words: words.to_owned() });
+    }
+    league_log::run(args)
+}
+
+/// The first bytes of every trace.
+const TRACE: &[u8] = b"ONETWO_TRACE";
+
+/// A file's bytes, gunzipped where they are gzipped.
+fn open(file: &Path) -> Result<Box<dyn Read>, Failure> {
+    let mut begin = [0; 2];
+    let opened = || File::open(file).map_err(|error| failed(file, &error));
+    let gzipped = opened()?.read_exact(&mut begin).is_ok() && begin == [0x1f, 0x8b];
+    let bytes = BufReader::new(opened()?);
+    Ok(if gzipped { Box::new(MultiGzDecoder::new(bytes)) } else { Box::new(bytes) })
+}
+
+fn begins(file: &Path) -> Result<Vec<u8>, Failure> {
+    let mut begin = Vec::new();
+    // What cannot be gunzipped is for the reader of log files to tell.
+    let _ = open(file)?.take(TRACE.len() as u64).read_to_end(&mut begin);
+    Ok(begin)
+}
+
+fn failed(file: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::Recorded { file: file.to_owned(), words: error.to_string() }
+}
+
+fn moment_in_seconds(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|s: &f64| (0.0..1e9).contains(s))
+        .ok_or_else(|| "expected seconds from the begin, such as 12.5".to_owned())
+}
+
+pub(crate) fn colour(word: &str) -> Result<Colour, String> {
+    [Colour::Blue, Colour::Yellow]
+        .into_iter()
+        .find(|colour| colour.word() == word)
+        .ok_or_else(|| "expected blue or yellow".to_owned())
+}
+
+pub(crate) fn league(name: &str) -> Result<League, String> {
+    [League::Ssl2013, League::DivisionB, League::DivisionA]
+        .into_iter()
+        .find(|league| league.name() == name)
+        .ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
+}

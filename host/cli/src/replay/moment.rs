@@ -1,0 +1,163 @@
+//! What was the field like at one moment of a recorded match? Tracker and referee as they stood then. SI, field frame.
+
+use geometry::{Field, Point};
+use host::referee::Game;
+use host::world::World;
+use rules::{Colour, Phase};
+use serde::Serialize;
+
+/// A moment, for people and for JSON.
+#[derive(Debug, Serialize)]
+pub(super) struct Moment {
+    /// Seconds since the file's begin.
+    at_s: f64,
+    /// What it was asked for by, if by an event.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    event: Option<String>,
+    phase: String,
+    stage: String,
+    score: Score,
+    /// Where the ball is to be placed, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    placement: Option<[f32; 2]>,
+    ball: Option<Ball>,
+    blue: Vec<Robot>,
+    yellow: Vec<Robot>,
+}
+
+/// Goals.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Score {
+    pub(super) blue: u32,
+    pub(super) yellow: u32,
+}
+
+#[derive(Debug, Serialize)]
+struct Ball {
+    /// m.
+    at: [f32; 2],
+    /// Above the carpet, m.
+    height: f32,
+    /// m/s.
+    velocity: [f32; 2],
+    /// 0–1.
+    confidence: f32,
+}
+
+#[derive(Debug, Serialize)]
+struct Robot {
+    id: u8,
+    /// m.
+    at: [f32; 2],
+    heading_deg: f32,
+    /// m/s.
+    speed: f32,
+    /// 0–1.
+    confidence: f32,
+}
+
+impl Moment {
+    pub(super) fn new(at_s: f64, event: Option<String>, world: &World, game: &Game) -> Self {
+        let team = |colour| -> Vec<Robot> {
+            let robot = |robot: &host::world::Robot| Robot {
+                id: robot.who.id.number(),
+                at: metres(robot.pose.position),
+                heading_deg: robot.pose.heading.radians().to_degrees(),
+                speed: robot.velocity.norm(),
+                confidence: robot.confidence,
+            };
+            world.team(colour).map(robot).collect()
+        };
+        Self {
+            at_s,
+            event,
+            phase: phase_words(game.phase),
+            stage: spaced(&format!("{:?}", game.stage)),
+            score: Score { blue: game.team(Colour::Blue).score, yellow: game.team(Colour::Yellow).score },
+            placement: game.placement.map(metres),
+            ball: world.ball.as_ref().map(|ball| Ball {
+                at: metres(ball.position),
+                height: ball.height,
+                velocity: [ball.velocity.x(), ball.velocity.y()],
+                confidence: ball.confidence,
+            }),
+            blue: team(Colour::Blue),
+            yellow: team(Colour::Yellow),
+        }
+    }
+
+    /// A few lines for people.
+    pub(super) fn tell(&self) -> String {
+        let mut lines = vec![match &self.event {
+            Some(event) => format!("{:.3} s: {event}", self.at_s),
+            None => format!("{:.3} s", self.at_s),
+        }];
+        let Score { blue, yellow } = self.score;
+        lines.push(format!("referee  {}, {}, blue {blue} : {yellow} yellow", self.phase, self.stage));
+        if let Some([x, y]) = self.placement {
+            lines.push(format!("         the ball is to be placed at ({x:.2}, {y:.2}) m"));
+        }
+        lines.push(match &self.ball {
+            None => "ball     not seen".to_owned(),
+            Some(ball) => {
+                let ([x, y], [vx, vy]) = (ball.at, ball.velocity);
+                format!(
+                    "ball     ({x:.3}, {y:.3}) m, {:.3} m high, velocity ({vx:.2}, {vy:.2}) m/s, sure by {:.2}",
+                    ball.height, ball.confidence
+                )
+            }
+        });
+        for (name, robots) in [("blue", &self.blue), ("yellow", &self.yellow)] {
+            if robots.is_empty() {
+                lines.push(format!("{name:<8} no robot is seen"));
+            }
+            for robot in robots {
+                let [x, y] = robot.at;
+                lines.push(format!(
+                    "{:<8} ({x:.3}, {y:.3}) m, heading {:.0}°, {:.2} m/s",
+                    format!("{name} {}", robot.id),
+                    robot.heading_deg,
+                    robot.speed
+                ));
+            }
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+fn metres(point: Point<Field>) -> [f32; 2] {
+    [point.x(), point.y()]
+}
+
+/// `FreeKick(Blue)` as `free kick, blue`.
+pub(crate) fn phase_words(phase: Phase<Colour>) -> String {
+    let debug = format!("{phase:?}");
+    match debug.split_once('(') {
+        Some((name, who)) => format!("{}, {}", spaced(name), spaced(who.trim_end_matches(')'))),
+        None => spaced(&debug),
+    }
+}
+
+/// `FirstHalfPre` as `first half pre`.
+fn spaced(name: &str) -> String {
+    let mut out = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && !out.is_empty() {
+            out.push(' ');
+        }
+        out.push(letter.to_ascii_lowercase());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn phases_and_stages_are_told_in_words() {
+        assert_eq!(phase_words(Phase::FreeKick(Colour::Blue)), "free kick, blue");
+        assert_eq!(phase_words(Phase::Halt), "halt");
+        assert_eq!(spaced("ExtraFirstHalfPre"), "extra first half pre");
+    }
+}

@@ -1,0 +1,216 @@
+//! What does one pass over a league log file bring? Counts of everything, for people and for JSON. Times: s since the begin.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use host::{referee, tracking};
+use serde::Serialize;
+
+use super::happening::Happening;
+use super::moment::Score;
+
+/// A league log file in numbers.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Report {
+    pub(super) kind: &'static str,
+    pub(super) file: String,
+    /// From the first to the last message.
+    pub(super) span_s: f64,
+    /// The first message, Unix time.
+    pub(super) began_unix_s: f64,
+    pub(super) messages: BTreeMap<String, OfKind>,
+    pub(super) undecodable: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) first_undecodable: Option<String>,
+    /// How the file ended, where it did not end as it should.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) damage: Option<String>,
+    /// Messages that are earlier than the one before.
+    pub(super) back_steps: u64,
+    pub(super) cameras: BTreeMap<u32, Camera>,
+    pub(super) robots: Robots,
+    /// The fastest ball that the tracker believed, m/s.
+    pub(super) ball_speed_max: f32,
+    pub(super) score: Score,
+    pub(super) happenings: Vec<Happening>,
+    pub(super) gaps: Vec<Gap>,
+    /// Gaps beyond those that are listed.
+    pub(super) gaps_more: u64,
+    pub(super) tracker: Tracker,
+    pub(super) referee: Referee,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) host: Option<Host>,
+}
+
+/// Messages of one kind.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct OfKind {
+    pub(super) messages: u64,
+    pub(super) bytes: u64,
+    pub(super) undecodable: u64,
+    pub(super) rate_hz: f64,
+    #[serde(skip)]
+    pub(super) first_s: Option<f64>,
+    #[serde(skip)]
+    pub(super) last_s: f64,
+}
+
+/// One camera's images.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Camera {
+    pub(super) images: u64,
+    pub(super) rate_hz: f64,
+    #[serde(skip)]
+    pub(super) first_s: Option<f64>,
+    #[serde(skip)]
+    pub(super) last_s: f64,
+}
+
+/// Shell numbers that the tracker believed.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Robots {
+    pub(super) blue: BTreeSet<u8>,
+    pub(super) yellow: BTreeSet<u8>,
+}
+
+/// Nothing came for long.
+#[derive(Debug, Serialize)]
+pub(super) struct Gap {
+    pub(super) at_s: f64,
+    pub(super) of: String,
+    pub(super) for_s: f64,
+}
+
+/// What became of images.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Tracker {
+    pub(super) images: u64,
+    pub(super) newest: u64,
+    pub(super) reordered: u64,
+    pub(super) repeated: u64,
+    pub(super) late: u64,
+    pub(super) nonsense: u64,
+    pub(super) foreign: u64,
+    pub(super) restarts: u64,
+}
+
+/// What became of the referee's packets.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Referee {
+    pub(super) taken: u64,
+    pub(super) commands: u64,
+    pub(super) missed: u64,
+    pub(super) old: u64,
+    pub(super) copies: u64,
+    pub(super) other_source: u64,
+    pub(super) unknown: u64,
+}
+
+/// What a host made of it.
+#[derive(Debug, Default, Serialize)]
+pub(super) struct Host {
+    pub(super) colour: String,
+    pub(super) inputs: u64,
+    pub(super) packets: u64,
+    pub(super) bytes: u64,
+    /// The same over all packets: two runs can be compared by it.
+    pub(super) packets_hash: String,
+}
+
+/// Gaps that are listed; of more only the number is told.
+const GAPS_LISTED: usize = 20;
+
+impl Report {
+    pub(super) fn gap(&mut self, gap: Gap) {
+        if self.gaps.len() < GAPS_LISTED { self.gaps.push(gap) } else { self.gaps_more += 1 }
+    }
+
+    pub(super) fn take(&mut self, tracker: &tracking::Counts, referee: referee::Counts) {
+        self.tracker = Tracker {
+            images: tracker.images(),
+            newest: tracker.newest,
+            reordered: tracker.reordered,
+            repeated: tracker.repeated,
+            late: tracker.late,
+            nonsense: tracker.nonsense,
+            foreign: tracker.foreign,
+            restarts: tracker.restarts,
+        };
+        self.referee = Referee {
+            taken: referee.taken,
+            commands: referee.commands,
+            missed: referee.missed,
+            old: referee.old,
+            copies: referee.copies,
+            other_source: referee.other_source,
+            unknown: referee.unknown,
+        };
+    }
+
+    /// For people.
+    pub(super) fn tell(&self) -> String {
+        let mut lines = vec![format!("{}: a league log file of {:.1} s", self.file, self.span_s)];
+        for (name, messages) in &self.messages {
+            let bad = if messages.undecodable > 0 {
+                format!(", {} undecodable", messages.undecodable)
+            } else {
+                String::new()
+            };
+            lines.push(format!("  {:>7} {name}, {:.1} a second{bad}", messages.messages, messages.rate_hz));
+        }
+        if let Some(first) = &self.first_undecodable {
+            lines.push(format!("  the first undecodable one: {first}"));
+        }
+        if self.back_steps > 0 {
+            lines.push(format!("  {} messages are earlier than the one before them", self.back_steps));
+        }
+        for (id, camera) in &self.cameras {
+            lines.push(format!("camera {id}: {} images, {:.1} a second", camera.images, camera.rate_hz));
+        }
+        let numbers = |ids: &BTreeSet<u8>| {
+            if ids.is_empty() {
+                "none".to_owned()
+            } else {
+                ids.iter().map(u8::to_string).collect::<Vec<_>>().join(" ")
+            }
+        };
+        lines.push(format!(
+            "robots: blue {}, yellow {}",
+            numbers(&self.robots.blue),
+            numbers(&self.robots.yellow)
+        ));
+        lines.push(format!("fastest ball: {:.2} m/s", self.ball_speed_max));
+        let t = &self.tracker;
+        lines.push(format!(
+            "tracker: {} images, {} newest, {} put in between, {} repeated, {} late, {} of another clock, {} nonsense, {} restarts",
+            t.images, t.newest, t.reordered, t.repeated, t.late, t.foreign, t.nonsense, t.restarts
+        ));
+        let r = &self.referee;
+        lines.push(format!(
+            "referee: {} packets, {} commands, {} never heard, {} old, {} copies, {} of others, {} unknown",
+            r.taken, r.commands, r.missed, r.old, r.copies, r.other_source, r.unknown
+        ));
+        if let Some(host) = &self.host {
+            lines.push(format!(
+                "{}'s host: {} inputs, {} packets to robots, {} bytes, hash {}",
+                host.colour, host.inputs, host.packets, host.bytes, host.packets_hash
+            ));
+        }
+        for gap in &self.gaps {
+            lines.push(format!("gap: no {} for {:.2} s from {:.2} s on", gap.of, gap.for_s, gap.at_s));
+        }
+        if self.gaps_more > 0 {
+            lines.push(format!("and {} gaps more", self.gaps_more));
+        }
+        let Score { blue, yellow } = self.score;
+        lines.push(format!("score: blue {blue} : {yellow} yellow"));
+        for happening in &self.happenings {
+            let words =
+                if happening.words.is_empty() { String::new() } else { format!(" ({})", happening.words) };
+            lines.push(format!("{:>9.2} s  {}{words}", happening.at_s, happening.name));
+        }
+        if let Some(damage) = &self.damage {
+            lines.push(format!("the file is damaged: {damage}"));
+        }
+        lines.join("\n") + "\n"
+    }
+}

@@ -1,0 +1,218 @@
+//! A trace of ours: what is in it, and do the hosts decide the same again? Exit code 1 where they do not.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use host::recheck::Recheck;
+use host::recording::RecordingHeader;
+use host::trace::{End, Kind, Reader};
+use indicatif::ProgressBar;
+use protocol::Instant;
+use protocol::frame::TeamKey;
+use serde::Serialize;
+use ssl::Message;
+use ssl::referee::Referee;
+
+use super::happening::{Finder, Happening, is_meant};
+use super::moment::Moment;
+use super::{ReplayArgs, failed, open};
+use crate::Failure;
+use crate::output::say;
+
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    kind: &'static str,
+    file: String,
+    header: &'a RecordingHeader,
+    /// On the hosts' clock.
+    span_s: (f64, f64),
+    records: BTreeMap<&'static str, u64>,
+    /// Records of hosts that the header does not tell of.
+    strays: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    damage: Option<String>,
+    happenings: &'a [Happening],
+    hosts: Vec<Outcome>,
+    same_decisions: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct Outcome {
+    colour: String,
+    inputs: u64,
+    same_packets: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    difference: Option<String>,
+}
+
+pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    let file = &args.file;
+    let mut reader = Reader::new(open(file)?).map_err(|error| failed(file, &error))?;
+    let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
+    let key = key(args, &header)?;
+    let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
+    let (mut finder, mut happenings) = (Finder::default(), Vec::new());
+    let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
+    let mut span: Option<(Instant, Instant)> = None;
+    // Every host hears the same referee; the one that is looked at tells of the match.
+    let shown =
+        header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::word));
+    let shown = shown.unwrap_or(0);
+    let bar = ProgressBar::new_spinner();
+    for record in reader.by_ref() {
+        bar.inc(1);
+        if let Some(at) = args.at
+            && record.at.0 as f64 * 1e-6 > at
+            && let Some(host) = recheck.host(shown)
+        {
+            bar.finish_and_clear();
+            return show(args, host, Instant((at * 1e6) as u64), None);
+        }
+        let (first, last) = span.get_or_insert((record.at, record.at));
+        (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
+        *records.entry(word(record.kind)).or_insert(0) += 1;
+        strays += u64::from(!recheck.feed(&record));
+        if record.kind == Kind::Referee && usize::from(record.host) == shown {
+            let before = happenings.len();
+            if let Ok(packet) = Referee::decode(&record.bytes[..]) {
+                finder.read(&packet, record.at.0 as f64 * 1e-6, &mut happenings);
+            }
+            let asked = |h: &&Happening| args.event.as_deref().is_some_and(|word| is_meant(h, word));
+            for happening in happenings[before..].iter().filter(asked) {
+                met += 1;
+                if met == args.nth
+                    && let Some(host) = recheck.host(shown)
+                {
+                    bar.finish_and_clear();
+                    return show(args, host, record.at, Some(happening.name.clone()));
+                }
+            }
+        }
+    }
+    bar.finish_and_clear();
+    let damage = match reader.end() {
+        Some(End::Cut) => Some("cut within a record; all before it was read".to_owned()),
+        Some(End::Broken { what }) => Some(format!("{what}; all before it was read")),
+        Some(End::Whole) | None => None,
+    };
+    if args.at.is_some() || args.event.is_some() {
+        let (_, last) = span.unwrap_or_default();
+        let asked = args.event.as_ref().map_or_else(
+            || format!("{} s is after its end", args.at.unwrap_or_default()),
+            |word| format!("{met} `{word}` in it, not {}", args.nth),
+        );
+        return Err(failed(file, &format!("{asked}; it ends at {:.3} s", last.0 as f64 * 1e-6)));
+    }
+    recheck.finish(damage.is_some());
+    let hosts: Vec<Outcome> = (header.hosts.iter().zip(recheck.results()))
+        .map(|(host, (counts, difference))| Outcome {
+            colour: host.colour.clone(),
+            inputs: counts.inputs,
+            same_packets: counts.same,
+            difference: difference.map(ToString::to_string),
+        })
+        .collect();
+    let (first, last) = span.unwrap_or_default();
+    let report = Report {
+        kind: "trace",
+        file: file.display().to_string(),
+        header: &header,
+        span_s: (first.0 as f64 * 1e-6, last.0 as f64 * 1e-6),
+        records,
+        strays,
+        damage,
+        happenings: &happenings,
+        same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
+        hosts,
+    };
+    let words = if args.json {
+        serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))? + "\n"
+    } else {
+        report.tell()
+    };
+    say(&words)?;
+    Ok(if report.same_decisions { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn show(
+    args: &ReplayArgs,
+    host: &host::Host,
+    at: Instant,
+    event: Option<String>,
+) -> Result<ExitCode, Failure> {
+    let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game());
+    let words = if args.json {
+        serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
+    } else {
+        moment.tell()
+    };
+    say(&words)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The key that hosts sealed with, where one did.
+fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
+    match &args.key_file {
+        Some(file) => {
+            let read = host::shell::key::read(file).map_err(|error| failed(file, &error))?;
+            if let Some(warning) = read.warning {
+                eprintln!("warning: {warning}");
+            }
+            Ok(read.key)
+        }
+        None if header.hosts.iter().any(|host| host.keyed) => {
+            let words =
+                "its frames were sealed with the team's key, which no recording holds: add --key-file FILE";
+            Err(failed(&args.file, &words))
+        }
+        None => Ok(TeamKey::ZERO),
+    }
+}
+
+fn word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Vision => "vision",
+        Kind::Referee => "referee",
+        Kind::Robot => "robots",
+        Kind::Timeout => "deadlines",
+        Kind::Sent => "sent",
+    }
+}
+
+impl Report<'_> {
+    fn tell(&self) -> String {
+        let (first, last) = self.span_s;
+        let header = self.header;
+        let mut out = format!("{}: a trace from {first:.3} to {last:.3} s, {}", self.file, header.league);
+        if let Some(seed) = header.seed {
+            let _ = write!(out, ", seed {seed}");
+        }
+        let _ = writeln!(out, ", by onetwo {} (commit {})", header.version, header.commit);
+        for (name, n) in &self.records {
+            let _ = writeln!(out, "  {n:>8} {name}");
+        }
+        for happening in self.happenings {
+            let words =
+                if happening.words.is_empty() { String::new() } else { format!(" ({})", happening.words) };
+            let _ = writeln!(out, "{:>9.2} s  {}{words}", happening.at_s, happening.name);
+        }
+        if self.strays > 0 {
+            let _ = writeln!(out, "{} records are of hosts that its header does not tell of", self.strays);
+        }
+        if let Some(damage) = &self.damage {
+            let _ = writeln!(out, "the file is damaged: {damage}");
+        }
+        for host in &self.hosts {
+            let _ = match &host.difference {
+                None => writeln!(
+                    out,
+                    "{}: same decisions: {} packets, from {} inputs",
+                    host.colour, host.same_packets, host.inputs
+                ),
+                Some(difference) => writeln!(out, "{}: other decisions {difference}", host.colour),
+            };
+        }
+        out
+    }
+}

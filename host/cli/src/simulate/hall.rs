@@ -1,0 +1,296 @@
+//! The hall in which the simulated field lies: the clock that drives it, the network around it, the referee beside it.
+//!
+//! One thread: every millisecond it looks at three sockets, lets the world follow the clock and sends what fell due.
+
+use std::net::SocketAddr;
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use hil_sim::small_size::referee::{InternalReferee, RefereeSettings};
+use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
+use hil_sim::small_size::{Event, World};
+use host::referee::Listener;
+use host::tracking::{Publisher, Tracker};
+use indicatif::ProgressBar;
+use ssl::Message;
+use ssl::net::{Interfaces, LoopbackProbe, probe_loopback};
+use ssl::simulation::{SimulatorCommand, SimulatorControl};
+use ssl::vision::WrapperPacket;
+
+use super::ports::Ports;
+use super::{SimulateArgs, Whistle};
+use crate::Failure;
+use crate::net::{Ear, Mouth};
+use crate::stop::stopped_by_hand;
+
+/// The referee looks this often, simulated ms: what its detectors are tuned with.
+const REFEREE_EVERY: u64 = 10;
+/// The beat of the hall: as one step of the world.
+const BEAT: Duration = Duration::from_millis(1);
+/// More skipped than this in a second is told: a twentieth of the time.
+const SLOW_MS: u64 = 50;
+/// A slow machine is told of this often.
+const SLOW_EVERY: u64 = 10;
+/// A probe of the loopback waits so long.
+const PROBE: Duration = Duration::from_millis(100);
+
+/// Runs until somebody ends it.
+pub(super) fn run(
+    args: &SimulateArgs,
+    settings: &ServerSettings,
+    mut server: Server,
+    unix_us: u64,
+) -> Result<ExitCode, Failure> {
+    let stopped = stopped_by_hand();
+    let mut words = Vec::new();
+    let mut ports = Ports::open(args.listen, args.ports, &mut words);
+    let mut vision = Mouth::new(args.vision, args.interface.as_deref());
+    let mut whistle = Referee::new(args, unix_us)?;
+    let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
+    eprintln!(
+        "simulating {}, {} v {} robots, seed {}; Ctrl-C ends it",
+        args.league.name(),
+        settings.robots,
+        settings.robots,
+        args.seed
+    );
+    eprintln!("control  {}", ports.words());
+    eprintln!("vision   to {}", vision.to());
+    eprintln!("referee  {}", whistle.words());
+    if let Some(tracked) = &tracker {
+        eprintln!("tracker  to {}", tracked.mouth.to());
+    }
+    words.extend(multicast_advice(args.vision));
+    set_pace(&mut server, args.speed);
+
+    let bar = ProgressBar::new_spinner();
+    let (began, mut second, mut skipped) = (Instant::now(), 0, 0);
+    while !stopped.load(Ordering::Relaxed) {
+        let running = began.elapsed();
+        if args.duration.is_some_and(|duration| running.as_secs_f64() >= duration) {
+            break;
+        }
+        ports.listen(&mut server, &mut words);
+        advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words);
+        while let Some(transmit) = server.poll_transmit() {
+            match transmit.to {
+                Destination::Reply { from, to } => ports.answer(from, to, &transmit.bytes),
+                Destination::Vision(port) => {
+                    vision.set_port(port);
+                    words.extend(vision.send(&transmit.bytes));
+                    if let Some(tracked) = &mut tracker {
+                        words.extend(tracked.hear(&transmit.bytes, running));
+                    }
+                }
+            }
+        }
+        words.extend(whistle.listen(running));
+        if running.as_secs() > second {
+            second = running.as_secs();
+            let late = server.counts().skipped - std::mem::replace(&mut skipped, server.counts().skipped);
+            if late > SLOW_MS && second.is_multiple_of(SLOW_EVERY) {
+                words.push(format!(
+                    "this machine is too slow: {late} ms of the last second were left out; take --speed below {} or fewer robots",
+                    server.pace()
+                ));
+            }
+            bar.set_message(status(&server, &whistle, &vision));
+            bar.tick();
+        }
+        for words in words.drain(..) {
+            bar.suspend(|| eprintln!("{words}"));
+        }
+        thread::sleep(BEAT.saturating_sub(began.elapsed().saturating_sub(running)));
+    }
+    bar.finish_and_clear();
+    let counts = server.counts();
+    eprintln!(
+        "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",
+        server.world().time(),
+        vision.sent,
+        counts.simulator,
+        counts.control,
+        counts.undecodable,
+        counts.refused,
+        counts.skipped
+    );
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The world follows to `now`, µs; the referee looks on the way.
+fn advance(server: &mut Server, now: u64, whistle: &mut Referee, words: &mut Vec<String>) {
+    let step = (REFEREE_EVERY as f32 * 1000.0 / server.pace().max(1.0)) as u64;
+    let mut at = whistle.advanced;
+    // The simulator itself leaves out what a pause of this program was too long for.
+    if now.saturating_sub(at) > 1_000_000 {
+        at = now - 1_000_000;
+    }
+    while at < now {
+        at = (at + step.max(100)).min(now);
+        server.advance(protocol::Instant(at));
+        words.extend(whistle.look(server.world_mut()));
+    }
+    whistle.advanced = at;
+}
+
+/// Who blows the whistle, and what is seen of it.
+struct Referee {
+    who: Blower,
+    mouth: Mouth,
+    events: Vec<Event>,
+    /// The step of the world in which it last looked.
+    looked: u64,
+    /// How far the world has followed, µs.
+    advanced: u64,
+}
+
+enum Blower {
+    Ours(Box<InternalReferee>),
+    Nobody,
+    Heard { ear: Option<Ear>, from: SocketAddr, listener: Box<Listener> },
+}
+
+impl Referee {
+    fn new(args: &SimulateArgs, unix_us: u64) -> Result<Self, Failure> {
+        let who = match args.referee {
+            Whistle::None => Blower::Nobody,
+            Whistle::Internal => {
+                let settings = RefereeSettings { epoch_us: unix_us, ..RefereeSettings::new(args.league) };
+                let settings =
+                    RefereeSettings { blue_on_positive_half: false, max_robots: args.robots, ..settings };
+                let ours = InternalReferee::new(settings, args.seed);
+                Blower::Ours(Box::new(ours.map_err(|error| Failure::Network(error.to_string()))?))
+            }
+            Whistle::Heard(from) => {
+                let limits = args.league.limits();
+                let limits = limits.ok_or_else(|| Failure::Network("a league without rules".to_owned()))?;
+                Blower::Heard {
+                    ear: None,
+                    from,
+                    listener: Box::new(Listener::new(limits, protocol::Instant(0))),
+                }
+            }
+        };
+        let mouth = Mouth::new(args.referee_to, args.interface.as_deref());
+        Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0 })
+    }
+
+    fn words(&self) -> String {
+        match &self.who {
+            Blower::Ours(_) => format!("internal, to {}", self.mouth.to()),
+            Blower::Nobody => "none".to_owned(),
+            Blower::Heard { from, .. } => format!("heard at {from}"),
+        }
+    }
+
+    /// The state of the game, in a word.
+    fn state(&self) -> String {
+        match &self.who {
+            Blower::Ours(ours) => crate::replay::phase_words(ours.phase()),
+            Blower::Nobody => "no referee".to_owned(),
+            Blower::Heard { listener, .. } => crate::replay::phase_words(listener.game().phase),
+        }
+    }
+
+    /// Our referee looks at the world, and what people do for it is done.
+    fn look(&mut self, world: &mut World) -> Option<String> {
+        world.take_events(&mut self.events);
+        if world.now() < self.looked + REFEREE_EVERY {
+            return None;
+        }
+        self.looked = world.now();
+        let mut words = None;
+        if let Blower::Ours(ours) = &mut self.who {
+            ours.look(world, &self.events);
+            while let Some(order) = ours.poll_order() {
+                order.carry_out(world);
+            }
+            while let Some(packet) = ours.poll_packet() {
+                words = self.mouth.send(&packet.encode_to_vec()).or(words);
+            }
+        }
+        self.events.clear();
+        words
+    }
+
+    /// A game controller of others is heard, where one is.
+    fn listen(&mut self, running: Duration) -> Option<String> {
+        let Blower::Heard { ear, from, listener } = &mut self.who else { return None };
+        let now = protocol::Instant(running.as_micros() as u64);
+        let open = match ear {
+            Some(open) => open,
+            // Tried once a second.
+            None if running.subsec_millis() < 2 => match Ear::open(*from, &Interfaces::All) {
+                Ok(open) => ear.insert(open),
+                Err(error) => return Some(format!("referee  {error}")),
+            },
+            None => return None,
+        };
+        while let Ok(Some(datagram)) = open.receive(Duration::ZERO) {
+            if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
+                listener.hear(&packet, now, None);
+            }
+        }
+        None
+    }
+}
+
+/// Our own tracker's view of the simulated vision.
+struct Tracked {
+    tracker: Tracker,
+    publisher: Publisher,
+    mouth: Mouth,
+}
+
+impl Tracked {
+    fn new(to: SocketAddr, args: &SimulateArgs) -> Self {
+        Self {
+            tracker: Tracker::default(),
+            publisher: Publisher::new("onetwo-simulate", "onetwo simulate"),
+            mouth: Mouth::new(to, args.interface.as_deref()),
+        }
+    }
+
+    fn hear(&mut self, vision: &[u8], running: Duration) -> Option<String> {
+        let packet = WrapperPacket::decode(vision).ok()?;
+        packet.detection.as_ref()?;
+        self.tracker.handle(&packet, protocol::Instant(running.as_micros() as u64));
+        let tracked = self.publisher.publish(&self.tracker)?;
+        self.mouth.send(&tracked.encode_to_vec())
+    }
+}
+
+/// By the protocol itself, as a client would; the answer is nobody's.
+fn set_pace(server: &mut Server, speed: f32) {
+    let control = SimulatorControl { simulation_speed: Some(speed), ..SimulatorControl::default() };
+    let command = SimulatorCommand { control: Some(control), config: None };
+    let nobody = SocketAddr::from(([127, 0, 0, 1], 9));
+    server.handle(Port::Simulator, nobody, &command.encode_to_vec());
+    while server.poll_transmit().is_some() {}
+}
+
+/// What is to be mended where programs on this machine cannot hear a group that this one speaks to.
+fn multicast_advice(to: SocketAddr) -> Option<String> {
+    let SocketAddr::V4(group) = to else { return None };
+    if !group.ip().is_multicast() {
+        return None;
+    }
+    match probe_loopback(*group.ip(), PROBE) {
+        LoopbackProbe::Works { .. } => None,
+        probe => Some(format!("{probe}; or speak to one machine: --vision 127.0.0.1:{}", group.port())),
+    }
+}
+
+fn status(server: &Server, whistle: &Referee, vision: &Mouth) -> String {
+    let counts = server.counts();
+    format!(
+        "{:.0} s, {}, {} vision packets out, {} robot messages in, {} refusals",
+        server.world().time(),
+        whistle.state(),
+        vision.sent,
+        counts.control,
+        counts.refused
+    )
+}

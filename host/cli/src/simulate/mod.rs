@@ -1,0 +1,163 @@
+//! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation protocol (DESIGN §7).
+//!
+//! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
+//! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.
+
+mod hall;
+mod ports;
+
+use std::net::SocketAddr;
+use std::process::ExitCode;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use clap::{Args, ValueEnum};
+use hil_sim::small_size::NoiseParameters;
+use hil_sim::small_size::quirks::Profile;
+use hil_sim::small_size::server::{Server, ServerSettings};
+use rules::League;
+use ssl::net::addresses;
+
+use crate::Failure;
+use crate::replay::league;
+
+/// What is simulated, and where it hears and speaks.
+#[derive(Debug, Args)]
+pub(crate) struct SimulateArgs {
+    /// Field, robots and rules: ssl-2013, division-b or division-a.
+    #[arg(long, value_name = "NAME", default_value = "division-b", value_parser = league)]
+    league: League,
+    /// Robots of each team; the league's number unless told.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=16))]
+    robots: Option<u8>,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Simulated seconds a second; clients change it by the protocol.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
+    speed: f32,
+    /// Whose manners it has on the wire: its own, or those of another simulator, to try a program against.
+    #[arg(long, value_enum, default_value_t = ProfileWord::Ours)]
+    profile: ProfileWord,
+    /// Cameras: 1, 2 or 4; the league's or the profile's number unless told.
+    #[arg(long, value_name = "N", value_parser = cameras)]
+    cameras: Option<u32>,
+    /// Without noise: vision sees everything as it is.
+    #[arg(long)]
+    ideal: bool,
+    /// Where vision goes: a multicast group, or one machine.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::VISION_SIMULATED.into())]
+    vision: SocketAddr,
+    /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
+    #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
+    ports: u16,
+    /// Whose address takes control; 127.0.0.1 keeps others away.
+    #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
+    listen: std::net::IpAddr,
+    /// The interface that multicast leaves by, its name or address; the system's choice unless told.
+    #[arg(long, value_name = "NAME")]
+    interface: Option<String>,
+    /// Who blows the whistle: internal, none, or the ADDRESS:PORT of a game controller's packets, to be shown beside the field.
+    #[arg(long, value_name = "WHO", default_value = "internal", value_parser = referee)]
+    referee: Whistle,
+    /// Where the internal referee's packets go.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
+    referee_to: SocketAddr,
+    /// Send what our own tracker makes of the vision, too: the league's address is 224.5.23.2:10010.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    tracker: Option<SocketAddr>,
+    /// End after so many seconds; else Ctrl-C ends it.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    duration: Option<f64>,
+}
+
+/// Who blows the whistle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Whistle {
+    Internal,
+    None,
+    /// A game controller, heard here.
+    Heard(SocketAddr),
+}
+
+/// A profile on the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ProfileWord {
+    /// As this simulator is.
+    Ours,
+    /// As grSim: four cameras at once, its own seconds, no noise.
+    Grsim,
+    /// As ER-Force's simulator: one camera, geometry with every frame, answers that get lost.
+    ErForce,
+}
+
+/// `onetwo simulate`.
+pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
+    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let profile = match args.profile {
+        ProfileWord::Ours => Profile::Ours,
+        ProfileWord::Grsim => Profile::Grsim,
+        ProfileWord::ErForce => Profile::ErForce,
+    };
+    let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
+    let no_rules = || Failure::Network(format!("{} is not played on wheels", args.league.name()));
+    let mut settings = settings.ok_or_else(no_rules)?;
+    settings.robots = args.robots.unwrap_or(settings.robots);
+    settings.vision_port = args.vision.port();
+    if let Some(count) = args.cameras {
+        settings.parameters.camera.count = count;
+    }
+    if args.ideal {
+        settings.parameters.noise = NoiseParameters::NONE;
+    }
+    let server = Server::new(&settings);
+    hall::run(args, &settings, server, unix.as_micros() as u64)
+}
+
+fn speed(text: &str) -> Result<f32, String> {
+    let most = hil_sim::small_size::server::SPEED_MAX;
+    text.parse()
+        .ok()
+        .filter(|x| (0.0..=most).contains(x))
+        .ok_or_else(|| format!("expected 0 (stands still) to {most}"))
+}
+
+fn cameras(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| [1, 2, 4].contains(n)).ok_or_else(|| "expected 1, 2 or 4".to_owned())
+}
+
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|s| (0.0..1e7).contains(s))
+        .ok_or_else(|| "expected seconds, such as 60".to_owned())
+}
+
+fn referee(text: &str) -> Result<Whistle, String> {
+    match text {
+        "internal" => Ok(Whistle::Internal),
+        "none" => Ok(Whistle::None),
+        address => address
+            .parse()
+            .map(Whistle::Heard)
+            .map_err(|_| "expected internal, none or an address such as 224.5.23.1:10003".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whistle_is_ours_nobodys_or_somebody_elses() {
+        assert_eq!(referee("internal"), Ok(Whistle::Internal));
+        assert_eq!(referee("none"), Ok(Whistle::None));
+        assert_eq!(referee("224.5.23.1:10003"), Ok(Whistle::Heard(addresses::REFEREE.into())));
+        assert!(referee("224.5.23.1").is_err_and(|words| words.contains("10003")));
+    }
+
+    #[test]
+    fn only_what_can_be_simulated_is_taken() {
+        assert!(speed("0").is_ok() && speed("-1").is_err() && speed("NaN").is_err());
+        assert!(cameras("4").is_ok() && cameras("3").is_err());
+    }
+}

@@ -1,0 +1,160 @@
+//! The three ports that clients command the simulator by. One that is taken is told, and taken as soon as it is free.
+
+use std::net::{IpAddr, SocketAddr};
+use std::time::{Duration, Instant};
+
+use hil_sim::small_size::server::{self, Server};
+use rules::Colour;
+use ssl::net::Port;
+
+/// A taken port is tried again this often.
+const AGAIN: Duration = Duration::from_secs(1);
+/// Datagrams of one port between two steps, at most: a flood of commands must not stop the world.
+const AT_ONCE: usize = 64;
+
+/// Sockets of the simulation protocol.
+#[derive(Debug)]
+pub(super) struct Ports {
+    doors: [Door; 3],
+    tried: Instant,
+}
+
+#[derive(Debug)]
+struct Door {
+    port: server::Port,
+    address: SocketAddr,
+    socket: Option<Port>,
+    troubled: bool,
+}
+
+impl Ports {
+    /// Opens what can be opened, and gives words for the rest.
+    pub(super) fn open(listen: IpAddr, base: u16, words: &mut Vec<String>) -> Self {
+        let door = |offset: u16, port| {
+            let number = if base == 0 { 0 } else { base + offset };
+            Door { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
+        };
+        let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
+        let mut ports = Self {
+            doors: [door(0, server::Port::Simulator), door(1, teams[0]), door(2, teams[1])],
+            tried: Instant::now(),
+        };
+        if base == 0 {
+            ports.take_any();
+        }
+        ports.take(words);
+        ports
+    }
+
+    /// Three free ports in a row, so that clients need to be told one number only.
+    fn take_any(&mut self) {
+        let listen = self.doors[0].address.ip();
+        for _ in 0..100 {
+            let Ok(first) = Port::bind(SocketAddr::new(listen, 0)) else { return };
+            let base = first.address().port();
+            let next = |offset: u16| {
+                base.checked_add(offset).and_then(|port| Port::bind(SocketAddr::new(listen, port)).ok())
+            };
+            if let (Some(second), Some(third)) = (next(1), next(2)) {
+                for (door, socket) in self.doors.iter_mut().zip([first, second, third]) {
+                    door.address = socket.address();
+                    door.socket = Some(socket);
+                }
+                return;
+            }
+        }
+    }
+
+    fn take(&mut self, words: &mut Vec<String>) {
+        for door in self.doors.iter_mut().filter(|door| door.socket.is_none()) {
+            match Port::bind(door.address) {
+                Ok(socket) => {
+                    door.address = socket.address();
+                    door.socket = Some(socket);
+                    if std::mem::take(&mut door.troubled) {
+                        words.push(format!("{} is free and taken now", door.address));
+                    }
+                }
+                Err(error) if !door.troubled => {
+                    door.troubled = true;
+                    words.push(format!("{}: {error}; it is tried again every second", door.name()));
+                }
+                Err(_) => {}
+            }
+        }
+    }
+
+    /// What came goes to the simulator.
+    pub(super) fn listen(&mut self, server: &mut Server, words: &mut Vec<String>) {
+        for door in &mut self.doors {
+            let Some(socket) = &mut door.socket else { continue };
+            for _ in 0..AT_ONCE {
+                match socket.receive(Duration::ZERO) {
+                    Ok(Some(datagram)) => server.handle(door.port, datagram.from, datagram.bytes),
+                    Ok(None) => break,
+                    Err(error) => {
+                        words.push(format!("{}: {error}; it is opened again", door.name()));
+                        door.socket = None;
+                        break;
+                    }
+                }
+            }
+        }
+        if self.tried.elapsed() >= AGAIN {
+            self.tried = Instant::now();
+            self.take(words);
+        }
+    }
+
+    /// An answer to whoever asked. One that cannot be sent is lost, as any datagram may be.
+    pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
+        if let Some(socket) =
+            self.doors.iter().find(|door| door.port == from).and_then(|door| door.socket.as_ref())
+        {
+            let _ = socket.send(to, bytes);
+        }
+    }
+
+    /// For people: where clients speak to.
+    pub(super) fn words(&self) -> String {
+        let [simulator, blue, yellow] = &self.doors;
+        format!(
+            "{}, blue robots {}, yellow robots {}",
+            simulator.address,
+            blue.address.port(),
+            yellow.address.port()
+        )
+    }
+}
+
+impl Door {
+    const fn name(&self) -> &'static str {
+        match self.port {
+            server::Port::Simulator => "control",
+            server::Port::Team(Colour::Blue) => "blue robots",
+            server::Port::Team(Colour::Yellow) => "yellow robots",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_taken_port_is_told_and_the_others_serve() {
+        let home: IpAddr = [127, 0, 0, 1].into();
+        let mut words = Vec::new();
+        let first = Ports::open(home, 0, &mut words);
+        assert!(words.is_empty(), "{words:?}");
+        let base = first.doors[0].address.port();
+        let second = Ports::open(home, base, &mut words);
+        assert_eq!(words.len(), 3, "{words:?}");
+        assert!(words[0].contains("is taken") && words[0].contains(&base.to_string()), "{}", words[0]);
+        drop(first);
+        let mut second = second;
+        words.clear();
+        second.take(&mut words);
+        assert_eq!(words.len(), 3, "free again: {words:?}");
+    }
+}

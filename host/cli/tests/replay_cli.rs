@@ -1,0 +1,198 @@
+//! Does the built `onetwo replay` do what its help says, on recordings of the league's own programs, seen from outside?
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use host::radio::To;
+use host::recording::{HostHeader, RecordingHeader};
+use host::trace::{Kind, Writer};
+use host::{Host, HostSettings, Input};
+use protocol::Instant;
+use rules::{Colour, League};
+use serde_json::Value;
+use ssl::log::{MessageKind, open};
+
+fn onetwo(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .arg("replay")
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+fn json(arguments: &[&str], code: i32) -> Value {
+    let out = onetwo(&[arguments, &["--json"]].concat());
+    assert_eq!(out.status.code(), Some(code), "{}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let out = onetwo(arguments);
+    assert_eq!(out.status.code(), Some(1), "{arguments:?}");
+    String::from_utf8(out.stderr).expect("words in UTF-8")
+}
+
+fn recording(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data");
+    folder.join(name).display().to_string()
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("replay-cli");
+    fs::create_dir_all(&folder).expect("a scratch folder");
+    folder.join(name)
+}
+
+#[test]
+fn a_recording_of_grsim_and_the_game_controller_is_counted() {
+    let report = json(&[&recording("grsim_divB_22s.log.gz")], 0);
+    assert_eq!((&report["kind"], &report["undecodable"]), (&"log".into(), &0.into()));
+    assert_eq!(report["cameras"].as_object().map(serde_json::Map::len), Some(4), "grSim has four cameras");
+    let names: Vec<_> = report["happenings"].as_array().expect("a list").iter().map(|h| &h["name"]).collect();
+    assert!(
+        names.contains(&&"PREPARE_KICKOFF_YELLOW".into()) || names.contains(&&"PREPARE_KICKOFF_BLUE".into()),
+        "{names:?}"
+    );
+    assert!(report["span_s"].as_f64().is_some_and(|s| (20.0..25.0).contains(&s)), "{}", report["span_s"]);
+    assert_eq!(report["tracker"]["nonsense"], 0);
+    assert!(report["damage"].is_null() && report["host"].is_null());
+}
+
+#[test]
+fn gzipped_and_indexed_tell_the_same() {
+    let mut zipped = json(&[&recording("grsim_divB_22s.log.gz")], 0);
+    let mut plain = json(&[&recording("grsim_divB_22s_indexed.log")], 0);
+    for report in [&mut zipped, &mut plain] {
+        report["file"] = Value::Null;
+    }
+    assert_eq!(zipped, plain);
+}
+
+#[test]
+fn an_event_is_found_and_the_field_shown_as_it_was() {
+    let file = recording("grsim_divB_noisy_64s.log.gz");
+    let report = json(&[&file], 0);
+    let stops: Vec<f64> = (report["happenings"].as_array().expect("a list").iter())
+        .filter(|h| h["name"] == "STOP")
+        .filter_map(|h| h["at_s"].as_f64())
+        .collect();
+    assert!(stops.len() >= 2, "{stops:?}");
+    let second = json(&[&file, "--event", "stop", "--nth", "2"], 0);
+    assert_eq!(second["at_s"].as_f64(), Some(stops[1]));
+    assert_eq!((&second["phase"], &second["event"]), (&"stop".into(), &"STOP".into()));
+    assert!(second["blue"].as_array().is_some_and(|robots| !robots.is_empty()));
+    let words = refused(&[&file, "--event", "stop", "--nth", "99"]);
+    assert!(words.contains("not 99") && words.contains("HALT"), "{words}");
+}
+
+#[test]
+fn a_moment_is_shown_and_one_after_the_end_refused() {
+    let file = recording("erforce_divB_realistic_22s.log.gz");
+    let moment = json(&[&file, "--at", "10"], 0);
+    assert_eq!(moment["at_s"].as_f64(), Some(10.0));
+    assert!(
+        moment["ball"].is_object() && moment["yellow"].as_array().is_some_and(|r| !r.is_empty()),
+        "{moment}"
+    );
+    assert!(refused(&[&file, "--at", "1000"]).contains("it ends after"));
+}
+
+#[test]
+fn a_host_fed_twice_sends_the_same() {
+    let file = recording("erforce_divB_realistic_22s.log.gz");
+    let first = json(&[&file, "--team", "blue"], 0);
+    assert!(first["host"]["packets"].as_u64().is_some_and(|n| n > 1000), "{}", first["host"]);
+    assert_eq!(first["host"], json(&[&file, "--team", "blue"], 0)["host"]);
+    assert_ne!(first["host"]["packets_hash"], json(&[&file, "--team", "yellow"], 0)["host"]["packets_hash"]);
+}
+
+#[test]
+fn cut_and_foreign_files_are_told_with_their_place() {
+    let bytes = fs::read(recording("grsim_divB_22s_indexed.log")).expect("the recording");
+    let cut = scratch("cut.log");
+    fs::write(&cut, &bytes[..100_001]).expect("a file");
+    let report = json(&[&cut.display().to_string()], 0);
+    assert!(report["damage"].as_str().is_some_and(|words| words.contains("byte")), "{}", report["damage"]);
+    assert!(report["messages"].as_object().is_some_and(|kinds| !kinds.is_empty()));
+    let foreign = scratch("foreign.log");
+    fs::write(&foreign, "goals: none\n").expect("a file");
+    assert!(refused(&[&foreign.display().to_string()]).contains("SSL_LOG_FILE"));
+    assert!(refused(&["no-such-file.log"]).contains("no-such-file.log"));
+    assert!(refused(&[&recording("grsim_divB_22s.log.gz"), "--check"]).contains("no trace"));
+}
+
+/// A trace of a host that hears a recording, as a match writes it.
+fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
+    let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
+    let header = RecordingHeader {
+        version: "0".to_owned(),
+        commit: "unknown".to_owned(),
+        seed: None,
+        league: League::DivisionB.name().to_owned(),
+        zero_unix_us: None,
+        hosts: vec![HostHeader::of(&settings, Instant(0))],
+    };
+    let mut host = Host::new(settings, Instant(0));
+    let json = header.to_json();
+    let mut writer = Writer::new(Vec::new(), &json).expect("memory");
+    // Magic, version and length come before the header, 14 bytes before each record.
+    let (mut length, mut last_sent) = (20 + json.len(), 0);
+    let log = open(Path::new(&recording("erforce_divB_realistic_22s.log.gz"))).expect("the recording");
+    for (number, record) in (1_u64..).zip(log.take(2000)) {
+        let (kind, input) = match record.kind {
+            MessageKind::Vision2014 => (Kind::Vision, Input::Vision(&record.payload)),
+            MessageKind::Refbox2013 => (Kind::Referee, Input::Referee(&record.payload)),
+            _ => continue,
+        };
+        let at = Instant(number * 5_000);
+        writer.write(at, 0, kind, &[&record.payload]).expect("memory");
+        length += 14 + record.payload.len();
+        host.handle(at, input);
+        while let Some((to, packet)) = host.poll_packet() {
+            let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
+            writer.write(at, 0, Kind::Sent, &[&[to], &packet]).expect("memory");
+            length += 14 + 1 + packet.len();
+            last_sent = length;
+        }
+    }
+    let mut bytes = writer.into_inner();
+    change(&mut bytes, last_sent);
+    let file = scratch(name);
+    fs::write(&file, bytes).expect("a file");
+    file.display().to_string()
+}
+
+#[test]
+fn from_its_trace_a_host_decides_the_same_again() {
+    let file = trace("same.trace", |_, _| {});
+    let report = json(&[&file, "--check"], 0);
+    assert_eq!((&report["kind"], &report["same_decisions"]), (&"trace".into(), &true.into()));
+    assert!(report["hosts"][0]["same_packets"].as_u64().is_some_and(|n| n > 500), "{}", report["hosts"]);
+    assert_eq!(report["records"]["sent"], report["hosts"][0]["same_packets"]);
+    let out = onetwo(&[&file]);
+    assert!(String::from_utf8_lossy(&out.stdout).contains("blue: same decisions: "));
+}
+
+#[test]
+fn one_bit_that_was_turned_in_a_packet_is_found() {
+    let file = trace("turned.trace", |bytes, last_sent| {
+        bytes[last_sent - 3] ^= 1;
+    });
+    let report = json(&[&file], 1);
+    assert_eq!(report["same_decisions"], false);
+    assert!(
+        report["hosts"][0]["difference"].as_str().is_some_and(|words| words.contains("differs from byte")),
+        "{report}"
+    );
+}
+
+#[test]
+fn a_trace_cut_in_a_record_is_checked_up_to_there() {
+    let file = trace("cut.trace", |bytes, _| bytes.truncate(bytes.len() / 2));
+    let report = json(&[&file], 0);
+    assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut")), "{}", report["damage"]);
+    assert_eq!(report["same_decisions"], true);
+    let begin = trace("begin.trace", |bytes, _| bytes.truncate(20));
+    assert!(refused(&[&begin]).contains("header"));
+}
