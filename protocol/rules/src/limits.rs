@@ -1,100 +1,100 @@
 //! How fast, how near, how long? Every number of the rules that players and referee need: m, m/s, s.
 //!
 //! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a robot are
-//! measured from its nearest side with an assumed radius of 0.09 m [playing environment], to the ball's centre.
+//! measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the ball's centre.
 
 use crate::League;
 
-/// Robots on STOP are slower than this, m/s [referee commands, stop]. Not asked for in ball placement [offenses].
+/// Robots on STOP are slower than this, m/s (referee commands, stop). Not asked for in ball placement (offenses).
 pub const STOP_SPEED: f32 = 1.5;
 /// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line between ball and
-/// target while opponents place, m [referee commands; offenses].
+/// target while opponents place, m (referee commands; offenses).
 pub const BALL_DISTANCE: f32 = 0.5;
 /// Time to brake after HALT, to slow down after STOP, to leave the opponents' defence area or the placement stadium, s.
 pub const GRACE: f32 = 2.0;
-/// On STOP and at free kicks robots keep this far from the opponents' defence area, m [offenses].
+/// On STOP and at free kicks robots keep this far from the opponents' defence area, m (offenses).
 pub const OPPONENT_AREA_DISTANCE: f32 = 0.2;
-/// A ball that has moved this far from its place is in play, m [referee commands, ball in and out of play].
+/// A ball that has moved this far from its place is in play, m (referee commands, ball in and out of play).
 pub const IN_PLAY_DISTANCE: f32 = 0.05;
-/// A kick-off is in play after this long at the latest, s [same].
+/// A kick-off is in play after this long at the latest, s (same).
 pub const KICKOFF_TIME: f32 = 10.0;
-/// A penalty ends after this long, s [referee commands, penalty kick].
+/// A penalty ends after this long, s (referee commands, penalty kick).
 pub const PENALTY_TIME: f32 = 10.0;
-/// All but keeper and shooter are this far behind the ball at a penalty, m [same].
+/// All but keeper and shooter are this far behind the ball at a penalty, m (same).
 pub const PENALTY_BEHIND: f32 = 1.0;
-/// Placing the ball may take this long, s [referee commands, ball placement].
+/// Placing the ball may take this long, s (referee commands, ball placement).
 pub const PLACEMENT_TIME: f32 = 30.0;
-/// What an interference adds to it, s [offenses].
+/// What an interference adds to it, s (offenses).
 pub const PLACEMENT_EXTRA_TIME: f32 = 10.0;
-/// A placed ball is this near its target, m [referee commands, ball placement].
+/// A placed ball is this near its target, m (referee commands, ball placement).
 pub const PLACEMENT_TOLERANCE: f32 = 0.15;
-/// Robots are this far from a placed ball where the placing team's free kick follows, m [same].
+/// Robots are this far from a placed ball where the placing team's free kick follows, m (same).
 pub const PLACEMENT_CLEARANCE: f32 = 0.05;
-/// The game goes on no earlier than this after the command to place, s [same].
+/// The game goes on no earlier than this after the command to place, s (same).
 pub const PLACEMENT_TIME_MIN: f32 = 2.0;
-/// A team that failed so often places no more in this half [same].
+/// A team that failed so often places no more in this half (same).
 pub const PLACEMENT_FAILURES_MAX: u32 = 5;
-/// No placement is needed nearer than this to the target, m [same].
+/// No placement is needed nearer than this to the target, m (same).
 pub const PLACEMENT_SKIP_DISTANCE: f32 = 1.0;
-/// … and farther than this from both defence areas, m [same].
+/// … and farther than this from both defence areas, m (same).
 pub const PLACEMENT_SKIP_AREA_DISTANCE: f32 = 0.7;
 /// A ball slower than this lies still, m/s. The rules name no number; trackers' noise on a lying ball stays below it.
 pub const BALL_STILL: f32 = 0.05;
-/// A goal counts up to this height of the ball after the scorers' last touch, m [scoring goals].
+/// A goal counts up to this height of the ball after the scorers' last touch, m (scoring goals).
 pub const GOAL_BALL_HEIGHT: f32 = 0.15;
-/// No goal this soon after a foul that did not stop the game, s [scoring goals].
+/// No goal this soon after a foul that did not stop the game, s (scoring goals).
 pub const GOAL_AFTER_FOUL: f32 = 2.0;
-/// A collision with a greater speed difference along the line between the robots is a foul, m/s [offenses, crashing].
+/// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses, crashing).
 pub const CRASH_SPEED: f32 = 1.5;
-/// … of both where their speeds differ by less than this, m/s [same].
+/// … of both where their speeds differ by less than this, m/s (same).
 pub const CRASH_DRAWN: f32 = 0.3;
-/// The same foul that does not stop the game counts again after this, s [non stopping fouls].
+/// The same foul that does not stop the game counts again after this, s (non stopping fouls).
 pub const FOUL_REPEAT: f32 = 2.0;
-/// Fouls for a yellow card [fouls].
+/// Fouls for a yellow card (fouls).
 pub const FOULS_PER_CARD: u32 = 3;
-/// A yellow card's playing time, s [sanctions].
+/// A yellow card's playing time, s (sanctions).
 pub const YELLOW_CARD_TIME: f32 = 120.0;
-/// Time to take the robot out, s [sanctions].
+/// Time to take the robot out, s (sanctions).
 pub const CARD_REMOVAL_TIME: f32 = 10.0;
-/// Yellow cards at a time; the next one is red [sanctions].
+/// Yellow cards at a time; the next one is red (sanctions).
 pub const YELLOW_CARDS_MAX: u32 = 2;
-/// The game controller waits at most this long after HALT, s [referee commands, halt].
+/// The game controller waits at most this long after HALT, s (referee commands, halt).
 pub const AFTER_HALT_TIME: f32 = 10.0;
-/// Playing time of a half and of the break, s [game structure].
+/// Playing time of a half and of the break, s (game structure).
 pub const HALF_TIME: f32 = 300.0;
-/// Playing time of a half of overtime, s [game structure].
+/// Playing time of a half of overtime, s (game structure).
 pub const OVERTIME_HALF_TIME: f32 = 150.0;
-/// Goals that end a game with a lead of two or more [game structure].
+/// Goals that end a game with a lead of two or more (game structure).
 pub const GOALS_MAX: u32 = 10;
-/// … and the lead that it takes [game structure].
+/// … and the lead that it takes (game structure).
 pub const GOALS_LEAD: u32 = 2;
-/// Time-outs of a team [game structure].
+/// Time-outs of a team (game structure).
 pub const TIMEOUTS: u32 = 4;
-/// Their time in all, s [game structure].
+/// Their time in all, s (game structure).
 pub const TIMEOUT_TIME: f32 = 300.0;
-/// Substitutions a half that are free [substitution].
+/// Substitutions a half that are free (substitution).
 pub const SUBSTITUTIONS: u32 = 5;
-/// Time for a substitution, s [substitution].
+/// Time for a substitution, s (substitution).
 pub const SUBSTITUTION_TIME: f32 = 20.0;
-/// The centre substitution area reaches this far from the halfway line, in the margin, m [substitution].
+/// The centre substitution area reaches this far from the halfway line, in the margin, m (substitution).
 pub const SUBSTITUTION_REACH: f32 = 1.0;
-/// A robot changes only this far from the ball, m [substitution].
+/// A robot changes only this far from the ball, m (substitution).
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
-/// Division A's goal substitution area begins this far behind the own goal line, m [substitution].
+/// Division A's goal substitution area begins this far behind the own goal line, m (substitution).
 pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
-/// The radius that the rules take every robot to have, m [playing environment].
+/// The radius that the rules take every robot to have, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
-/// The greatest height of a robot, m [robots].
+/// The greatest height of a robot, m (robots).
 pub const ROBOT_HEIGHT: f32 = 0.15;
-/// The ball's radius, m: a golf ball of 43 mm [playing environment].
+/// The ball's radius, m: a golf ball of 43 mm (playing environment).
 pub const BALL_RADIUS: f32 = 0.0215;
-/// The ball's mass, kg [playing environment].
+/// The ball's mass, kg (playing environment).
 pub const BALL_MASS: f32 = 0.046;
-/// A robot covers at most this share of the ball, seen from above [robots].
+/// A robot covers at most this share of the ball, seen from above (robots).
 pub const BALL_COVERED: f32 = 0.2;
 /// Teams have this long to take their places for a kick-off or penalty, s (the game controller's setting).
 pub const PREPARE_TIME: f32 = 10.0;
-/// Numbers that a robot can have: 0 to 15 [robots].
+/// Numbers that a robot can have: 0 to 15 (robots).
 pub const ROBOT_IDS: u32 = 16;
 /// Robots of a team on any field of these leagues, at most.
 pub const ROBOTS_MAX: usize = 11;
@@ -102,27 +102,27 @@ pub const ROBOTS_MAX: usize = 11;
 /// What differs between the leagues with a referee of the Small Size League.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Robots of a team, keeper included [robots].
+    /// Robots of a team, keeper included (robots).
     pub robots: u32,
-    /// Nobody kicks faster than this, m/s, in three dimensions [offenses, ball speed].
+    /// Nobody kicks faster than this, m/s, in three dimensions (offenses, ball speed).
     pub ball_speed: f32,
-    /// Nobody dribbles farther than this, m, straight from the first contact [offenses, excessive dribbling].
+    /// Nobody dribbles farther than this, m, straight from the first contact (offenses, excessive dribbling).
     pub dribble: f32,
-    /// A free kick is in play after this, s [referee commands, ball in and out of play].
+    /// A free kick is in play after this, s (referee commands, ball in and out of play).
     pub free_kick_time: f32,
-    /// The keeper's team holds the ball in its area for at most this, s [offenses].
+    /// The keeper's team holds the ball in its area for at most this, s (offenses).
     pub keeper_hold: f32,
-    /// Play that gets nowhere for this long is stopped, s [offenses, no progress].
+    /// Play that gets nowhere for this long is stopped, s (offenses, no progress).
     pub no_progress: f32,
-    /// Whether a kick from the own half over their goal line is "aimless" [ball leaves the field].
+    /// Whether a kick from the own half over their goal line is "aimless" (ball leaves the field).
     pub aimless_kick: bool,
-    /// Whether teams must place the ball; else they may decline [referee commands, ball placement].
+    /// Whether teams must place the ball; else they may decline (referee commands, ball placement).
     pub placement_duty: bool,
-    /// A free kick is taken this far or farther from every line, m [referee commands, free kick].
+    /// A free kick is taken this far or farther from every line, m (referee commands, free kick).
     pub spot_line_distance: f32,
-    /// … and this far from both defence areas, m [same].
+    /// … and this far from both defence areas, m (same).
     pub spot_area_distance: f32,
-    /// A goal kick is taken this far from the goal line, m [ball leaves the field].
+    /// A goal kick is taken this far from the goal line, m (ball leaves the field).
     pub goal_kick_distance: f32,
 }
 

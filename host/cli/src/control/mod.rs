@@ -44,8 +44,8 @@ pub(crate) struct ControlArgs {
     /// Address of the interface that hears and speaks multicast; every interface hears unless told.
     #[arg(long, value_name = "ADDRESS")]
     interface: Option<IpAddr>,
-    /// Where the robots are: sim://HOST[:PORT] (brains of our own in a simulator; its control port, 10300), udp://HOST:PORT or
-    /// serial:DEVICE[:BAUD].
+    /// Where the robots are: `sim://HOST[:PORT]` (brains of our own in a simulator; its control port, 10300), `udp://HOST:PORT` or
+    /// `serial:DEVICE[:BAUD]`.
     #[arg(long, value_name = "LINK")]
     robots: Option<String>,
     /// Which robots are started in a simulator, such as 0-5 or 1,4,7; the league's number from 0 on unless told.
