@@ -110,7 +110,11 @@ impl SimLink {
         let Some(robot) = self.robots.get_mut(place) else { return Ok(()) };
         let settings = &self.settings;
         let start = |error| LinkError::Start { program: settings.program.display().to_string(), error };
-        let mut process = Command::new(&settings.program)
+        let mut command = Command::new(&settings.program);
+        // Ctrl-C in a terminal reaches a whole group: robots must live on until their host has halted them.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let mut process = command
             .arg("virtual-robot")
             .args(["--id", &robot.id.to_string(), "--team", settings.colour.word()])
             .args(["--league", settings.league.name(), "--host", &self.own.to_string()])
