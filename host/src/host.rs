@@ -48,17 +48,9 @@ impl HostSettings {
             keeper: RobotId::ZERO,
             defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
             kick: [1.0; RobotId::COUNT],
-            radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(team_of(us), epoch) },
+            radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
         }
     }
-}
-
-/// The radio's number of a colour: two teams in one hall must not hear each other.
-pub fn team_of(colour: Colour) -> TeamId {
-    TeamId(match colour {
-        Colour::Yellow => 1,
-        Colour::Blue => 2,
-    })
 }
 
 /// What came to the host.

@@ -18,4 +18,4 @@ pub mod trace;
 pub mod tracking;
 pub mod world;
 
-pub use host::{Host, HostSettings, Input, Undecodable, Verdict, team_of};
+pub use host::{Host, HostSettings, Input, Undecodable, Verdict};

@@ -214,7 +214,7 @@ impl Coach {
         // Near our area the defenders are the wall already.
         if ball.position.distance(view.our_goal()) > WALL_BEYOND {
             let _ = places.push(restart::wall(view, &ball));
-            let _ = whom.push((Role::Wall, Why::OnBallLine { y: 0.0 }));
+            let _ = whom.push((Role::Wall, Why::OnBallLine { y: view.our_goal().y() }));
         }
         for (i, (at, opponent)) in defence::marks(view).into_iter().enumerate() {
             let _ = places.push(at);

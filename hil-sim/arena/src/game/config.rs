@@ -4,7 +4,7 @@ use brain::{Approach, BrainConfig};
 use casebase::Settings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
-use protocol::Duration;
+use protocol::{Duration, TeamId};
 use rules::{Colour, League};
 
 /// A match to be played.
@@ -67,7 +67,7 @@ impl TeamSetup {
         BrainConfig {
             approach: self.approach,
             settings: self.settings.clone(),
-            ..BrainConfig::hosted(id, host::team_of(self.colour), league)
+            ..BrainConfig::hosted(id, TeamId::of(self.colour), league)
         }
     }
 }

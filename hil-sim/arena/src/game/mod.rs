@@ -17,7 +17,6 @@ mod story;
 pub use config::{GameConfig, TeamSetup};
 pub use recording::{GameRecording, header};
 pub use report::{GameReport, TeamReport};
-pub use side::Player;
 pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::camera::Cameras;
@@ -157,7 +156,7 @@ impl<'a> Game<'a> {
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
             team.deadline(tick, now, watcher);
-            team.think(tick, now, &mut self.world, &mut self.trace, watcher)?;
+            team.think(tick, now, &mut self.world, &mut self.trace)?;
         }
         self.events.clear();
         for step in 0..STEPS_A_TICK {

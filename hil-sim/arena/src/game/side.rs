@@ -1,6 +1,6 @@
 //! One side of a match: its host, its robots' computers, and the air between them. Times in ticks of 10 ms and µs.
 
-use geometry::{Angle, GoalEnd, Point, Pose};
+use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::{Who, World};
 use hil_sim::{Air, Backend, Mcu, TraceHash};
 use host::radio::{RadioSettings, Relay, To};
@@ -8,6 +8,7 @@ use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
 use protocol::{Instant, RobotId};
 use rules::Colour;
+use rules::restart::kickoff_places;
 
 use super::{GameConfig, GameError, TeamSetup, Watcher, numbers};
 
@@ -20,7 +21,7 @@ pub(super) struct Team<'a> {
 }
 
 /// A robot led by a brain.
-pub struct Player<'a> {
+struct Player<'a> {
     who: Who,
     computer: Box<dyn Mcu + 'a>,
     worst_instructions: u32,
@@ -38,9 +39,12 @@ impl<'a> Team<'a> {
         let own = own_goal(config, colour);
         let ids: Vec<RobotId> = numbers(setup.robots).collect();
         let mut players = Vec::new();
-        for (place, id) in ids.iter().enumerate() {
+        // As for the other team's kick-off: nobody in the circle. The keeper comes first.
+        let places = kickoff_places(&config.league.field(), own, false);
+        let heading = if own == GoalEnd::Positive { Angle::HALF_TURN } else { Angle::ZERO };
+        for (id, position) in ids.iter().zip(places) {
             let who = Who { colour, id: *id };
-            world.put(who, first_place(config, own, place, ids.len()));
+            world.put(who, Pose { position, heading });
             let brain = brain::BrainConfig { defending: own, ..setup.brain(config.league, *id) };
             let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
             players.push(Player { who, computer, worst_instructions: 0 });
@@ -86,7 +90,6 @@ impl<'a> Team<'a> {
         now: Instant,
         world: &mut World,
         trace: &mut TraceHash,
-        _watcher: &mut dyn Watcher,
     ) -> Result<(), GameError> {
         let Self { air, players, .. } = self;
         let mut thinking = Vec::new();
@@ -137,20 +140,4 @@ pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings
 fn own_goal(config: &GameConfig, colour: Colour) -> GoalEnd {
     let blue_ahead = config.referee.blue_on_positive_half;
     if blue_ahead == (colour == Colour::Blue) { GoalEnd::Positive } else { GoalEnd::Negative }
-}
-
-/// Where robots stand before the first whistle: on their half, the keeper in its goal, the others in two columns.
-fn first_place(config: &GameConfig, own: GoalEnd, place: usize, robots: usize) -> Pose<geometry::Field> {
-    let field = config.league.field();
-    let sign = own.sign() as f32;
-    let (x, y) = if place == 0 {
-        (field.length * 0.5 - 0.15, 0.0)
-    } else {
-        let (column, row) = ((place - 1) % 2, (place - 1) / 2);
-        let rows = robots.div_ceil(2).max(1) as f32;
-        let x = field.length * (0.15 + 0.12 * column as f32);
-        (x, (row as f32 + 0.5 - rows * 0.5) * field.width / (rows + 1.0))
-    };
-    let heading = if sign > 0.0 { Angle::HALF_TURN } else { Angle::ZERO };
-    Pose { position: Point::new(sign * x, sign * y), heading }
 }
