@@ -4,12 +4,13 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use arena::game::{self, Crowd, Game, GameConfig, GameRecording, GameReport, GameStory, Watcher};
+use arena::game::{self, Crowd, Game, GameConfig, GameReport, GameStory, Watcher};
 use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
+use host::shell::Recorder;
 use indicatif::{ProgressBar, ProgressStyle};
-use rules::{Colour, League};
+use rules::League;
 
 use crate::Failure;
 use crate::args::{FolderArgs, LibraryArgs, SettingsArgs};
@@ -102,13 +103,9 @@ fn cases(args: &PlayArgs) -> Result<Option<Shelf>, Failure> {
     Shelf::open(&LibraryArgs { folder, league: args.league.name().to_owned() }).map(Some)
 }
 
-fn record(stem: &std::path::Path, config: &GameConfig) -> Result<GameRecording, Failure> {
-    let hosts = [Colour::Yellow, Colour::Blue].map(|colour| config.host_settings(colour));
-    let hosts: Vec<_> = hosts.iter().collect();
-    let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("ONETWO_COMMIT"));
-    let header = game::header(version, commit, config.seed, config.league.name(), &hosts);
-    GameRecording::begin(stem, &header, &hosts)
-        .map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
+fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {
+    let header = game::header(env!("CARGO_PKG_VERSION"), env!("ONETWO_COMMIT"), config);
+    Recorder::begin(stem, &header).map_err(|error| Failure::Recording(format!("{}: {error}", stem.display())))
 }
 
 fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Result<()> {

@@ -1,11 +1,13 @@
 //! How do frames get to robots and back? The effects of the host: network, serial line, processes, files.
 //!
 //! [`open`] takes the link that a team's settings name; [`Link`] carries whole frames and knows nothing of what is in them.
-//! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key.
+//! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;
+//! [`Recorder`] keeps a match.
 
 mod error;
 mod hub;
 pub mod key;
+mod recorder;
 mod serial;
 mod sim;
 mod udp;
@@ -18,6 +20,7 @@ use crate::config::RobotLink;
 use crate::radio::{Relay, To};
 
 pub use error::LinkError;
+pub use recorder::Recorder;
 pub use serial::SerialLink;
 pub use sim::{SimLink, SimSettings};
 pub use udp::UdpLink;

@@ -15,7 +15,7 @@ mod side;
 mod story;
 
 pub use config::{GameConfig, TeamSetup};
-pub use recording::{GameRecording, header};
+pub use recording::header;
 pub use report::{GameReport, TeamReport};
 pub use story::{GameStory, sentence};
 

@@ -3,6 +3,7 @@
 //! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock, which shows 0 when
 //! the program starts.
 
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -12,17 +13,19 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::TeamConfig;
 use host::radio::{RadioSettings, To};
-use host::shell::{SimSettings, key};
+use host::recording::{HostHeader, RecordingHeader};
+use host::shell::{Recorder, SimSettings, key};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
 use indicatif::ProgressBar;
 use protocol::RobotId;
 use protocol::frame::TeamKey;
 use protocol::link::Packet;
+use rules::Colour;
 use ssl::Message;
+use ssl::log::MessageKind;
 use ssl::net::Interfaces;
 
-use super::record::Recorder;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
 use super::{port_for_teams, simulator};
@@ -56,7 +59,7 @@ pub(super) fn run(
         ..usual
     };
     let recorder = record.map(|stem| {
-        Recorder::begin(stem, &settings)
+        Recorder::begin(stem, &header(&settings))
             .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
     });
     let recorder = recorder.transpose()?;
@@ -87,7 +90,9 @@ pub(super) fn run(
         host: Host::new(settings, protocol::Instant(0)),
         began: Instant::now(),
         out,
+        us: config.colour,
         recorder,
+        recording: Ok(()),
         watch,
         publisher: Publisher::new(
             &format!("onetwo-{}-{}", config.colour.word(), unix.as_secs()),
@@ -106,6 +111,9 @@ pub(super) fn run(
             looked = Instant::now();
             let now = desk.now();
             desk.watch.look(now, &desk.host, config, &mut desk.words);
+            if desk.recorder.as_ref().is_some_and(Recorder::failed) {
+                desk.end_recording();
+            }
             bar.set_message(desk.status());
             bar.tick();
         }
@@ -114,10 +122,10 @@ pub(super) fn run(
         }
     }
     bar.finish_and_clear();
-    let recorded = desk.recorder.take().map(Recorder::finish);
+    desk.end_recording();
     desk.halt();
     end.store(true, Ordering::Relaxed);
-    let Desk { counts, out, .. } = desk;
+    let Desk { counts, out, recording, .. } = desk;
     drop(out);
     for thread in threads {
         let _ = thread.join();
@@ -126,10 +134,21 @@ pub(super) fn run(
         "robots halted; ended after {} vision and {} referee packets, {} frames from robots and {} to them",
         counts.vision, counts.referee, counts.robots, counts.sent
     );
-    if let Some(Err(error)) = recorded {
-        return Err(Failure::Network(format!("the recording is not whole: {error}")));
-    }
+    recording.map_err(|error| Failure::Recording(format!("it is not whole: {error}")))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// With what the host begins; its clock shows 0 now.
+fn header(settings: &HostSettings) -> RecordingHeader {
+    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    RecordingHeader {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: env!("ONETWO_COMMIT").to_owned(),
+        seed: None,
+        league: settings.league.name().to_owned(),
+        zero_unix_us: Some(unix.as_micros() as u64),
+        hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
+    }
 }
 
 fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
@@ -176,7 +195,10 @@ struct Desk {
     host: Host,
     began: Instant,
     out: Sender<(To, Packet)>,
+    us: Colour,
     recorder: Option<Recorder>,
+    /// How a recording ended that ended before the match.
+    recording: io::Result<()>,
     watch: Watch,
     publisher: Publisher,
     mouth: Mouth,
@@ -237,7 +259,15 @@ impl Desk {
     /// One input, then what the host says to it.
     fn tell(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
         if let Some(recorder) = &mut self.recorder {
-            recorder.input(now, input);
+            let heard = match input {
+                Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
+                Input::Referee(bytes) => Some((MessageKind::Refbox2013, bytes)),
+                Input::Robot(_) | Input::Timeout => None,
+            };
+            if let Some((kind, bytes)) = heard {
+                recorder.heard(now, kind, bytes);
+            }
+            recorder.input(now, self.us, input);
         }
         let verdict = self.host.handle(now, input);
         self.send(now);
@@ -247,7 +277,7 @@ impl Desk {
     fn send(&mut self, now: protocol::Instant) {
         while let Some((to, packet)) = self.host.poll_packet() {
             if let Some(recorder) = &mut self.recorder {
-                recorder.sent(now, to, &packet);
+                recorder.sent(now, self.us, to, &packet);
             }
             self.counts.sent += 1;
             let _ = self.out.send((to, packet));
@@ -259,7 +289,15 @@ impl Desk {
         let bytes = packet.encode_to_vec();
         self.words.extend(self.mouth.send(&bytes).map(|words| format!("tracker  {words}")));
         if let Some(recorder) = &mut self.recorder {
-            recorder.tracked(now, &bytes);
+            recorder.heard(now, MessageKind::Tracker2020, &bytes);
+        }
+    }
+
+    fn end_recording(&mut self) {
+        let Some(recorder) = self.recorder.take() else { return };
+        self.recording = recorder.finish();
+        if let Err(error) = &self.recording {
+            self.words.push(format!("recording  {error}: nothing more is kept; is the disk full?"));
         }
     }
 

@@ -5,7 +5,6 @@
 
 mod desk;
 mod port_for_teams;
-mod record;
 mod threads;
 mod watch;
 
