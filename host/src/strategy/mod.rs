@@ -10,6 +10,7 @@ mod order;
 pub mod restart;
 pub mod roles;
 pub mod support;
+pub mod threat;
 pub mod view;
 
 pub use coach::{Coach, Orders};

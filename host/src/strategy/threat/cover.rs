@@ -1,0 +1,237 @@
+//! Where do keeper and primary defenders stand against the first-level threat? (Biswas et al. 2014 §5.1: three cases; its
+//! Figure 7.) Attack frame, m, rad.
+//!
+//! 1. One defender takes the whole open angle: it stands on the bisector, the keeper before the middle of the goal.
+//! 2. Defender and keeper take it together: the defender just inside the line from the threat to the nearer post, the keeper on
+//!    the bisector of the rest, as far back as it can be.
+//! 3. Else two defenders: the keeper on the bisector of all, a defender on the bisector of each of the two rests.
+//!
+//! Division B's goal is wide (1 m): from far away not even three bodies take all of it as they stand. The keeper then comes out
+//! as far as it may, and [`Cover::uncovered`] says what is left to its reaction.
+
+use geometry::{Angle, Attack, Point, Vector};
+
+use super::super::view::View;
+use super::Settings;
+use super::angle::{Opening, distance_for, half_shadow};
+use super::edge::Edge;
+
+/// Which of the three placements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Case {
+    /// One defender suffices.
+    Defender,
+    /// One defender and the keeper.
+    DefenderAndKeeper,
+    /// Two defenders and the keeper.
+    DefendersAndKeeper,
+}
+
+/// What was decided before, so that nothing turns round for a millimetre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Before {
+    /// The placement.
+    pub case: Case,
+    /// Whether the post at +y counted as the nearer one.
+    pub upper_post: bool,
+}
+
+/// The placement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cover {
+    /// Which.
+    pub case: Case,
+    /// The goal as seen from the threat.
+    pub opening: Opening,
+    /// Where the keeper stands.
+    pub keeper: Point<Attack>,
+    /// Where the primary defenders stand that are needed, from −y to +y along the edge.
+    pub primaries: heapless::Vec<Point<Attack>, 2>,
+    /// What bodies at these places leave of the open angle, rad.
+    pub uncovered: f32,
+    /// Whether the post at +y counts as the nearer one.
+    pub upper_post: bool,
+}
+
+/// Keeper and at most `available` primary defenders against a shot from `threat`.
+pub fn cover(
+    view: &View,
+    threat: Point<Attack>,
+    available: usize,
+    before: Option<Before>,
+    settings: &Settings,
+) -> Cover {
+    let place = Placing::new(view, threat, before, settings);
+    let held = before.map(|before| before.case);
+    let fits = |case: Case, taken: f32, open: f32| {
+        // Fewer bodies than now only where they suffice with something to spare.
+        let spare = if held.is_some_and(|held| case < held) { settings.to_spare } else { 1.0 };
+        taken >= open * spare
+    };
+    let one = place.on_bisector(0.0);
+    let angle = place.opening.angle();
+    if available >= 1 && fits(Case::Defender, 2.0 * half_shadow(place.distance(one)), angle) {
+        return place.finish(Case::Defender, place.before_goal(), &[one]);
+    }
+    if available == 0 {
+        let keeper = place.keeper(0.0, place.opening.half).0;
+        return place.finish(Case::DefenderAndKeeper, keeper, &[]);
+    }
+    let (defender, keeper, taken, rest) = place.defender_and_keeper();
+    if available == 1 || fits(Case::DefenderAndKeeper, taken, rest) {
+        return place.finish(Case::DefenderAndKeeper, keeper, &[defender]);
+    }
+    let (keeper, defenders) = place.defenders_and_keeper();
+    place.finish(Case::DefendersAndKeeper, keeper, &defenders)
+}
+
+/// What every placement needs.
+struct Placing<'v> {
+    view: &'v View,
+    settings: &'v Settings,
+    opening: Opening,
+    edge: Edge,
+    upper_post: bool,
+}
+
+impl<'v> Placing<'v> {
+    fn new(view: &'v View, threat: Point<Attack>, before: Option<Before>, settings: &'v Settings) -> Self {
+        let opening = Opening::of(threat, view.our_goal(), view.field.goal_width);
+        let edge = Edge::of(&view.field, settings.off_area);
+        let near_axis = threat.y().abs() < settings.axis;
+        let upper_post = before.filter(|_| near_axis).map_or(threat.y() > 0.0, |before| before.upper_post);
+        Self { view, settings, opening, edge, upper_post }
+    }
+
+    fn distance(&self, place: Point<Attack>) -> f32 {
+        place.distance(self.opening.from)
+    }
+
+    /// Where the ray `off` the middle meets our goal line.
+    fn on_goal_line(&self, off: f32) -> Point<Attack> {
+        let (from, direction) = (self.opening.from, self.opening.direction(off));
+        let (goal, half) = (self.view.our_goal(), self.view.field.goal_width * 0.5);
+        let y = from.y() + direction.y() * (goal.x() - from.x()) / direction.x().min(-LEAST_SLOPE);
+        Point::new(goal.x(), y.clamp(-half, half))
+    }
+
+    /// The point of the edge on the ray `off` the middle.
+    fn on_bisector(&self, off: f32) -> Point<Attack> {
+        let end = self.on_goal_line(off);
+        self.edge.crossing(end, self.opening.from - end)
+    }
+
+    /// In front of the middle of the goal.
+    fn before_goal(&self) -> Point<Attack> {
+        self.view.our_goal() + Vector::new(self.settings.keeper_back, 0.0)
+    }
+
+    /// On the ray `off` the middle, as far back as lets the keeper take `half` to either side, but no farther out than it may;
+    /// and the half angle that it takes there.
+    fn keeper(&self, off: f32, half: f32) -> (Point<Attack>, f32) {
+        let (from, direction) = (self.opening.from, self.opening.direction(off));
+        let goal = self.view.our_goal();
+        let out = |x: f32| (goal.x() + x - from.x()) / direction.x().min(-LEAST_SLOPE);
+        let (back, front) = (out(self.settings.keeper_back).max(0.0), out(self.settings.keeper_out).max(0.0));
+        let mut at = from + direction * distance_for(half).max(front).min(back);
+        // A shot along the goal line is met before the near post, not beside the goal.
+        let post = self.view.field.goal_width * 0.5;
+        at = Point::new(at.x().max(goal.x() + self.settings.keeper_back), at.y().clamp(-post, post));
+        (at, half_shadow(self.distance(at)))
+    }
+
+    /// Case 2: defender, keeper, and what the keeper takes of which rest, rad.
+    fn defender_and_keeper(&self) -> (Point<Attack>, Point<Attack>, f32, f32) {
+        let half = self.opening.half;
+        // Seen from a threat before our goal, +y lies to the right.
+        let post = if self.upper_post { -half } else { half };
+        let inwards = if self.upper_post { 1.0 } else { -1.0 };
+        let mut at = self.on_bisector(post);
+        let mut taken = half_shadow(self.distance(at)).min(half);
+        // Its shadow begins at the post; its distance, and so its shadow, changes little with where that leaves it.
+        for _ in 0..ROUNDS {
+            at = self.on_bisector(post + inwards * taken);
+            taken = half_shadow(self.distance(at)).min(half);
+        }
+        let rest = 2.0 * (half - taken);
+        let (keeper, keeps) = self.keeper(post + inwards * (2.0 * taken + 0.5 * rest), 0.5 * rest);
+        (at, keeper, 2.0 * keeps, rest)
+    }
+
+    /// Case 3: keeper, and a defender to either side.
+    fn defenders_and_keeper(&self) -> (Point<Attack>, [Point<Attack>; 2]) {
+        let half = self.opening.half;
+        let mut needed = 0.0;
+        let (mut keeper, mut defenders) = (self.before_goal(), [self.before_goal(); 2]);
+        for _ in 0..ROUNDS {
+            let (at, keeps) = self.keeper(0.0, needed);
+            let rest = (half - keeps).max(0.0);
+            keeper = at;
+            defenders = [1.0, -1.0].map(|side| self.on_bisector(side * (keeps + 0.5 * rest)));
+            let least = defenders.map(|at| 2.0 * half_shadow(self.distance(at)));
+            needed = (half - least[0].min(least[1])).max(0.0);
+        }
+        (keeper, self.apart(defenders))
+    }
+
+    /// The same, far enough from each other along the edge for two bodies.
+    fn apart(&self, places: [Point<Attack>; 2]) -> [Point<Attack>; 2] {
+        let [a, b] = places.map(|place| self.edge.along(place));
+        let (middle, least) = (0.5 * (a + b), self.settings.shoulder);
+        let mut off = (0.5 * (b - a).abs()).max(least);
+        let on = |along: f32| self.edge.point(along);
+        // Around a corner bodies come nearer to each other than along the edge.
+        for _ in 0..ROUNDS {
+            let missing = 2.0 * least - on(middle - off).distance(on(middle + off));
+            off += missing.max(0.0);
+        }
+        let middle = middle.clamp(off, self.edge.length() - off);
+        [on(middle - off), on(middle + off)]
+    }
+
+    fn finish(&self, case: Case, keeper: Point<Attack>, primaries: &[Point<Attack>]) -> Cover {
+        let mut primaries: heapless::Vec<_, 2> = primaries.iter().copied().collect();
+        primaries.sort_unstable_by(|a, b| self.edge.along(*a).total_cmp(&self.edge.along(*b)));
+        let bodies = primaries.iter().copied().chain([keeper]);
+        let gaps = self.opening.gaps(bodies, f32::INFINITY);
+        let uncovered = gaps.iter().fold(0.0, |sum, gap| sum + gap.width());
+        Cover { case, opening: self.opening, keeper, primaries, uncovered, upper_post: self.upper_post }
+    }
+}
+
+impl Cover {
+    /// Where a primary defender stands that is not needed: beside the one that is, on the side of the field's middle.
+    pub fn spare_place(&self, edge: &Edge, settings: &Settings) -> Point<Attack> {
+        let along = self.primaries.first().map_or(0.5 * edge.length(), |place| edge.along(*place));
+        beside(edge, along, if self.upper_post { -1.0 } else { 1.0 }, settings)
+    }
+
+    /// What to remember of it.
+    pub fn remember(&self) -> Before {
+        Before { case: self.case, upper_post: self.upper_post }
+    }
+
+    /// The direction of the bisector.
+    pub fn bisector(&self) -> Angle {
+        self.opening.middle
+    }
+}
+
+/// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards (−1).
+pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &Settings) -> Point<Attack> {
+    let (here, least) = (edge.point(along), 2.0 * settings.shoulder);
+    let mut off = least;
+    // Around a corner bodies come nearer to each other than along the edge.
+    for _ in 0..ROUNDS {
+        off += (least - here.distance(edge.point(along + towards * off))).max(0.0);
+    }
+    edge.point(along + towards * off)
+}
+
+/// Rounds after which a place that depends on its own distance moves by less than a millimetre.
+const ROUNDS: usize = 4;
+/// A ray towards our goal line that falls by less is as good as parallel to it.
+const LEAST_SLOPE: f32 = 1e-3;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,197 @@
+//! Who defends against what? Threats from the ball and from opponents who could have it next (Biswas et al. 2014 §5).
+//!
+//! [`defend`] is the whole of it: [`receiving`] finds the *first-level threat* (the ball, or whom it is being passed to),
+//! [`cover`] places keeper and primary defenders against it ([`angle`] says what a body takes, [`edge`] where primaries may
+//! stand), [`danger`] finds and ranks the *second-level threats*, and the rest is given to defenders greedily, with
+//! tasks held: a defender keeps its task until another would be clearly nearer, and a defender that blocks the shot of an
+//! opponent to whom the ball is passed goes on blocking it until the primaries are there.
+//!
+//! Attack frame (we defend −x), SI. Everything carries its numbers. [`Memory`] is what makes it calm; an empty one is lawful.
+
+pub mod angle;
+mod assign;
+pub mod cover;
+pub mod danger;
+pub mod edge;
+mod lawful;
+pub mod receiving;
+
+use geometry::{Attack, Point};
+use protocol::RobotId;
+
+use super::view::{ROBOTS_MAX, RobotSet, View};
+use cover::{Case, Cover};
+use danger::{Blocks, Danger};
+use receiving::FirstLevel;
+
+pub use lawful::lawful;
+
+/// What the paper leaves open, in one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// c of equation 6: between the 5 and 20 of the paper's Figure 6.
+    pub c: f32,
+    /// A slower ball is no pass, m/s.
+    pub pass_speed: f32,
+    /// A risk above this makes an opponent the one whom the ball is passed to, s: it has the ball within a second.
+    pub risk_threshold: f32,
+    /// A pass once seen is believed until speed falls, or risk grows, by this factor beyond its threshold.
+    pub hold: f32,
+    /// By how much another opponent's risk must be greater to be believed instead, s.
+    pub risk_worth: f32,
+    /// Primary defenders' centres are this far outside our area, m: a body (0.09) and what tracking and control err by.
+    pub off_area: f32,
+    /// Primary defenders stand this far, each, from the middle between them, m: bodies side by side and a finger between.
+    pub shoulder: f32,
+    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it.
+    pub keeper_back: f32,
+    /// … and no farther from it, m: "staying near the goal"; half of division B's area.
+    pub keeper_out: f32,
+    /// A placement of fewer bodies than now must take this many times the angle that it needs.
+    pub to_spare: f32,
+    /// This near to the axis the nearer post stays what it was, m.
+    pub axis: f32,
+    /// Opponents with x below this are near to our goal, m: in our half.
+    pub near: f32,
+    /// One that was near stays so until it is this much farther, m.
+    pub near_hold: f32,
+    /// Greater open angles count as equal, rad: 10°, from where a shot is as good as any.
+    pub open_enough: f32,
+    /// What a defended opponent's open angle counts more, rad, so that noise does not change ranks: about 1°.
+    pub open_worth: f32,
+    /// What a defended opponent's time to shoot counts less, s.
+    pub time_worth: f32,
+    /// How strongly opponents and our defenders speed up, m/s²: what teams publish (3 to 4.7).
+    pub acceleration: f32,
+    /// From an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a tick of ours and theirs more.
+    pub latency: f32,
+    /// A defender is no nearer to its opponent's centre than this, m: two bodies and room to brake.
+    pub clear: f32,
+    /// The primaries are in place within this, m: a body's radius.
+    pub in_place: f32,
+    /// A defender changes its task, or two swap, for a way shorter by this, m: 0.4 s at 2 m/s.
+    pub worth: f32,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            c: 10.0,
+            pass_speed: 0.5,
+            risk_threshold: -1.0,
+            hold: 1.3,
+            risk_worth: 0.2,
+            off_area: 0.13,
+            shoulder: 0.105,
+            keeper_back: 0.15,
+            keeper_out: 0.5,
+            to_spare: 1.1,
+            axis: 0.15,
+            near: 0.0,
+            near_hold: 0.3,
+            open_enough: 0.174_532_93,
+            open_worth: 0.02,
+            time_worth: 0.2,
+            acceleration: 4.0,
+            latency: 0.1,
+            clear: 0.25,
+            in_place: 0.09,
+            worth: 0.8,
+        }
+    }
+}
+
+/// What one robot guards against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Guards {
+    /// Keeper or primary defender: the first-level threat.
+    FirstLevel {
+        /// Which of the three placements.
+        case: Case,
+        /// The open angle, rad.
+        open: f32,
+        /// What the bodies of this placement leave of it, rad.
+        uncovered: f32,
+    },
+    /// A primary defender that is not needed, at the edge beside the one that is.
+    Spare,
+    /// A second-level threat.
+    SecondLevel {
+        /// Whom.
+        opponent: RobotId,
+        /// Its shot, or the pass to it.
+        blocks: Blocks,
+        /// Its place among all positions, from 0.
+        rank: usize,
+        /// Its open angle on our goal, rad.
+        open: f32,
+        /// When it could shoot: pass and shot, s.
+        time_to_shoot: f32,
+    },
+    /// The shot of an opponent to whom the ball is being passed, until the primaries are there.
+    Held {
+        /// Whom.
+        opponent: RobotId,
+        /// How far the primaries have yet to go, m.
+        primaries_off: f32,
+    },
+}
+
+/// One robot's part in the defence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assignment {
+    /// Who.
+    pub robot: RobotId,
+    /// Where.
+    pub at: Point<Attack>,
+    /// Against what, and why.
+    pub guards: Guards,
+}
+
+/// The whole defence of one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Defence {
+    /// From where a shot is most imminent.
+    pub threat: FirstLevel,
+    /// Keeper and primaries against it.
+    pub cover: Cover,
+    /// Who else could have the ball and shoot.
+    pub dangers: heapless::Vec<Danger, ROBOTS_MAX>,
+    /// Who does what, the keeper first; robots without a task are not in it.
+    pub assignments: heapless::Vec<Assignment, ROBOTS_MAX>,
+}
+
+/// What the defence remembers from tick to tick.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Memory {
+    threat: Option<FirstLevel>,
+    cover: Option<cover::Before>,
+    /// The one that is needed (or the one at −y, of two) first.
+    primaries: [Option<RobotId>; 2],
+    tasks: heapless::Vec<Kept, ROBOTS_MAX>,
+    held: Option<Kept>,
+    near: RobotSet,
+}
+
+/// A task somebody has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Kept {
+    robot: RobotId,
+    opponent: RobotId,
+    blocks: Blocks,
+}
+
+/// The defence by our keeper and those of our robots that are in `team`; `memory` is this function's own.
+pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &Settings) -> Defence {
+    let threat = receiving::first_level(view, memory.threat, settings);
+    let players = view.ours.iter().filter(|robot| robot.id != view.keeper && team.has(robot.id)).count();
+    let cover = cover::cover(view, threat.at, players.min(2), memory.cover, settings);
+    let dangers = danger::dangers(view, &threat, &cover, memory, settings);
+    let assignments = assign::assign(view, team, &threat, &cover, &dangers, memory, settings);
+    memory.threat = Some(threat);
+    memory.cover = Some(cover.remember());
+    Defence { threat, cover, dangers, assignments }
+}
+
+#[cfg(test)]
+mod tests;
