@@ -3,8 +3,11 @@
 //! [`view`] is the field as strategy sees it, turned so that we attack towards +x (the one place that flips); [`roles`] says
 //! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them
 //! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
+//!
+//! [`threat`] is the second paper's defence and [`coerce`] its planner of free kicks, both for the coach to call.
 
 mod coach;
+pub mod coerce;
 pub mod defence;
 mod order;
 pub mod restart;

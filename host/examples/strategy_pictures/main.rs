@@ -1,0 +1,39 @@
+//! What does strategy believe, drawn? The figures of the second paper, by our own code (Biswas et al. 2014).
+//!
+//! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them; `cargo xtask pictures` keeps those in `docs/strategy`.
+
+mod angles;
+mod page;
+mod risk;
+mod scenes;
+mod tactics;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [folder] = &words[..] else {
+        eprintln!("usage: strategy_pictures FOLDER");
+        return ExitCode::from(2);
+    };
+    for (name, draw) in PICTURES {
+        let file = Path::new(folder).join(name);
+        let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&file, draw()));
+        if let Err(error) = written {
+            eprintln!("{}: {error}; name a folder that can be written to", file.display());
+            return ExitCode::FAILURE;
+        }
+        println!("{}", file.display());
+    }
+    ExitCode::SUCCESS
+}
+
+/// A picture's file and what draws it.
+type Picture = (&'static str, fn() -> String);
+
+const PICTURES: [Picture; 3] = [
+    ("tactics.svg", tactics::draw),
+    ("risk-of-receiving.svg", risk::draw),
+    ("open-angles.svg", angles::draw),
+];

@@ -1,0 +1,77 @@
+//! Where is a robot that runs a tactic? P(p | M_t, W) of the four models over the field, as the paper's Figure 5.
+
+use drawing::{Anchor, Font, Svg};
+use geometry::Point;
+use host::strategy::coerce::detect::Detector;
+use host::strategy::coerce::tactics::{Models, Situation, Tactic};
+
+use crate::page::{BLUE, GAP, GREEN, PURPLE, Panel, RED, TEXT, YELLOW, finish, lines_of_text};
+use crate::scenes;
+
+/// Draws it.
+pub(crate) fn draw() -> String {
+    let view = scenes::free_kick();
+    let taker = view.ours[1].id;
+    let mut panel = Panel::whole(view.field, [GAP, 118.0], 120.0);
+    let situation = Situation::new(&view, Models::default(), Some(taker));
+    for tactic in [Tactic::Mark, Tactic::Wall, Tactic::PrimaryDefence, Tactic::Goalkeeper] {
+        let which = Tactic::ALL.iter().position(|other| *other == tactic).unwrap_or(0);
+        for level in LEVELS {
+            let style = format!(r#"fill="{}" fill-opacity="0.2""#, colour(tactic));
+            panel.area_above(0.05, level, style, |at| situation.likelihoods(at)[which]);
+        }
+    }
+    panel.lines();
+    let mut detector = Detector::new(Models::default());
+    detector.watch(&view, Some(taker));
+    for robot in &view.ours {
+        let name = if robot.id == taker { "T".into() } else { robot.id.number().to_string() };
+        panel.ours(robot.position, &name, YELLOW);
+    }
+    for known in detector.read(&view, Some(taker)) {
+        let fill = known.tactic.map_or("#bbbbbb", colour);
+        panel.theirs(known.at, fill, "#1b1b1b");
+        let most = known.likelihoods.iter().copied().fold(0.0, f32::max);
+        let right = known.at.x() < 2.4;
+        let at = Point::new(known.at.x() + if right { 0.13 } else { 0.0 }, known.at.y());
+        let (up, anchor) = if right { (-4.0, Anchor::Start) } else { (14.0, Anchor::Middle) };
+        panel.note(at, up, &format!("{most:.2}"), anchor);
+    }
+    if let Some(ball) = view.ball {
+        panel.ball(ball.position);
+    }
+    let [width, height] = panel.size();
+    let mut legend = Svg::default();
+    let mut x = GAP;
+    for tactic in Tactic::ALL {
+        legend.rect(
+            [x, 92.0],
+            [x + 26.0, 106.0],
+            format_args!(r#"fill="{}" fill-opacity="0.75""#, colour(tactic)),
+        );
+        let font = Font { size: TEXT, fill: "#1b1b1b", bold: false, halo: None };
+        legend.text([x + 34.0, 94.0], tactic.name(), Anchor::Start, font);
+        x += 56.0 + drawing::width(tactic.name(), TEXT);
+    }
+    let text = "Bands: the model's likelihood is above 0.2 (α, the threshold), 0.4, 0.6 and 0.8. Discs: our robots, T takes the free kick, 0 is \
+                the keeper. Squares: opponents in the colour of the tactic that explains their place best, with its likelihood. We attack \
+                to the right; field of 2013.";
+    lines_of_text(&mut legend, [GAP, 66.0], width, text);
+    finish(
+        &[&panel.svg],
+        [width + 2.0 * GAP, height + 118.0 + GAP],
+        &legend,
+        "Tactics of opponents at a free kick",
+    )
+}
+
+pub(crate) fn colour(tactic: Tactic) -> &'static str {
+    match tactic {
+        Tactic::Goalkeeper => BLUE,
+        Tactic::PrimaryDefence => GREEN,
+        Tactic::Mark => RED,
+        Tactic::Wall => PURPLE,
+    }
+}
+
+const LEVELS: [f32; 4] = [0.2, 0.4, 0.6, 0.8];

@@ -1,0 +1,125 @@
+//! Where is a pass of our free kick received best? Every cell of the grid, every receiver, by P(receive) · P(goal) (Biswas et al. 2014
+//! §4.2). Attack frame, m, probabilities.
+
+use geometry::{Angle, Attack, Point, Vector, math};
+use protocol::RobotId;
+use protocol::host::KickOrder;
+use rand_core::{RngCore, SeedableRng};
+use rand_xoshiro::Xoshiro128PlusPlus;
+
+use super::super::view::{Robot, View};
+use super::grid::{CELLS, Cell};
+
+/// What a pass to a place is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worth {
+    /// P(receive | x).
+    pub receive: f32,
+    /// P(goal | receive, x).
+    pub goal: f32,
+    /// How the ball is kicked.
+    pub kick: KickOrder,
+    /// Where the receiver shoots at.
+    pub aim: Point<Attack>,
+}
+
+impl Worth {
+    /// P(goal | x): what is maximised.
+    pub fn value(&self) -> f32 {
+        self.receive * self.goal
+    }
+}
+
+/// Values passes and shots: section 3.1, as the planner needs it.
+pub trait PassValue {
+    /// Passes from `from`, played by `taker` to `receiver`, to each of these places, against all opponents of the view and beside
+    /// all our robots in it.
+    fn worths(
+        &self,
+        view: &View,
+        from: Point<Attack>,
+        taker: RobotId,
+        receiver: &Robot,
+        places: &mut dyn Iterator<Item = Point<Attack>>,
+        take: &mut dyn FnMut(Point<Attack>, Worth),
+    );
+
+    /// How likely this opponent meets a pass from `from` to `to`.
+    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
+
+    /// How likely it meets a shot.
+    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
+}
+
+/// A pass to a receiver, and a shot from there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttackPlan {
+    /// Who receives.
+    pub receiver: RobotId,
+    /// The best cell.
+    pub cell: Cell,
+    /// The place in it.
+    pub at: Point<Attack>,
+    /// What it is worth.
+    pub worth: Worth,
+    /// How many opponents were taken into account.
+    pub against: usize,
+}
+
+/// The best value found in each cell, 0 where nobody can receive, in the order of [`Cell::all`].
+pub type CellValues = [f32; CELLS];
+
+/// The best attack by one of `receivers` in this view, and the value of every cell.
+///
+/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn from `seed`.
+pub fn best_attack(
+    view: &View,
+    value: &dyn PassValue,
+    taker: RobotId,
+    receivers: &[RobotId],
+    seed: u64,
+) -> (Option<AttackPlan>, CellValues) {
+    let mut values = [0.0; CELLS];
+    let Some(ball) = view.ball else { return (None, values) };
+    let mut best: Option<AttackPlan> = None;
+    for id in receivers {
+        let Some(receiver) = view.our(*id) else { continue };
+        let mut cells = Cell::all();
+        let mut middles = Cell::all().map(|cell| cell.middle(&view.field));
+        value.worths(view, ball.position, taker, receiver, &mut middles, &mut |at, worth| {
+            let Some(cell) = cells.next() else { return };
+            values[cell.index()] = values[cell.index()].max(worth.value());
+            if best.is_none_or(|best| worth.value() > best.worth.value()) {
+                best = Some(AttackPlan { receiver: *id, cell, at, worth, against: view.theirs.len() });
+            }
+        });
+    }
+    let Some(mut found) = best else { return (None, values) };
+    let Some(receiver) = view.our(found.receiver) else { return (best, values) };
+    let (middle, size) = (found.at, Cell::size(&view.field));
+    let mut random = Xoshiro128PlusPlus::seed_from_u64(seed);
+    let mut around = (0..SAMPLES).map(|_| {
+        let by = gaussian(&mut random);
+        // Within the cell: a sample beyond it is cut to its border.
+        let cut = |x: f32, side: f32| (x * side * SPREAD).clamp(-0.5 * side, 0.5 * side);
+        middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
+    });
+    value.worths(view, ball.position, taker, receiver, &mut around, &mut |at, worth| {
+        if worth.value() > found.worth.value() {
+            (found.at, found.worth) = (at, worth);
+        }
+    });
+    (Some(found), values)
+}
+
+/// Two independent normal numbers (Box and Muller).
+fn gaussian(random: &mut Xoshiro128PlusPlus) -> Vector<Attack> {
+    let share = 1.0 - (random.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0);
+    let turn = (random.next_u32() >> 8) as f32 * (math::TAU / 16_777_216.0);
+    Vector::polar(math::sqrt(-2.0 * math::ln(share)), Angle::new(turn))
+}
+
+/// Places tried around the best cell's middle: the paper takes the cell, this is its refinement (papers-checklist D18).
+pub const SAMPLES: u32 = 24;
+/// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
+const SPREAD: f32 = 0.25;

@@ -1,0 +1,168 @@
+//! What does each of their robots do? Tactics estimated from where they were over the last half second (Biswas et al. 2014 §4.1;
+//! papers-checklist D17). Attack frame, s.
+
+use geometry::{Attack, Point};
+use protocol::{Instant, RobotId};
+
+use super::super::view::{ROBOTS_MAX, View};
+use super::tactics::{Likelihoods, Models, Situation, Tactic, detected};
+
+/// What is known of an opponent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detected {
+    /// Who.
+    pub opponent: RobotId,
+    /// Where it is.
+    pub at: Point<Attack>,
+    /// What explains its places best; `None` if nothing does: it counts as one that follows the ball.
+    pub tactic: Option<Tactic>,
+    /// Mean likelihoods over the last half second, in the order of [`Tactic::ALL`].
+    pub likelihoods: Likelihoods,
+    /// The robot of ours that it follows.
+    pub follows: Option<RobotId>,
+    /// How far from it, m: what was seen of this opponent, the model's number before anything was.
+    pub stand_off: f32,
+    /// It stands between that robot and the ball, not their goal.
+    pub ball_side: bool,
+}
+
+impl Detected {
+    /// Whether it follows our robots: these are coerced. All others are taken to follow the ball.
+    pub fn follows_robots(&self) -> bool {
+        self.tactic == Some(Tactic::Mark)
+    }
+}
+
+/// Means over time, for every opponent.
+#[derive(Clone, Debug)]
+pub struct Detector {
+    models: Models,
+    seen: Option<Instant>,
+    known: [Option<Known>; ROBOTS_MAX],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    likelihoods: Likelihoods,
+    stand_off: f32,
+}
+
+impl Detector {
+    /// Knows nothing of anybody yet.
+    pub fn new(models: Models) -> Self {
+        Self { models, seen: None, known: [None; ROBOTS_MAX] }
+    }
+
+    /// The models' numbers.
+    pub fn models(&self) -> &Models {
+        &self.models
+    }
+
+    /// Takes a picture in; older ones count less and less, half of them after 0.35 s.
+    pub fn watch(&mut self, view: &View, taker: Option<RobotId>) {
+        let since = self.seen.map_or(f32::INFINITY, |seen| view.now.since(seen).as_secs_f32());
+        self.seen = Some(view.now);
+        let keeps = if since < FORGOTTEN { geometry::math::exp(-since / MEMORY) } else { 0.0 };
+        let situation = Situation::new(view, self.models, taker);
+        let mut known = [None; ROBOTS_MAX];
+        for robot in &view.theirs {
+            let new = situation.likelihoods(robot.position);
+            let before = self.known[robot.id.index()].filter(|_| keeps > 0.0);
+            let mixed = |before: f32, new: f32| before * keeps + new * (1.0 - keeps);
+            let likelihoods =
+                before.map_or(new, |before| core::array::from_fn(|i| mixed(before.likelihoods[i], new[i])));
+            let mut stand_off = before.map_or(self.models.stand_off, |before| before.stand_off);
+            // How near a marker keeps is learned while it surely marks.
+            if let (likely, Some(ours)) = situation.mark(robot.position)
+                && likely > SURE
+            {
+                stand_off = mixed(stand_off, view.ours[ours].position.distance(robot.position));
+            }
+            known[robot.id.index()] = Some(Known { likelihoods, stand_off });
+        }
+        self.known = known;
+    }
+
+    /// What each opponent of the view does, by number; one never watched is judged by where it is now.
+    pub fn read(&self, view: &View, taker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
+        let situation = Situation::new(view, self.models, taker);
+        let read = |robot: &super::super::view::Robot| {
+            let known = self.known[robot.id.index()];
+            let now = || situation.likelihoods(robot.position);
+            let likelihoods = known.map_or_else(now, |known| known.likelihoods);
+            let stand_off = known.map_or(self.models.stand_off, |known| known.stand_off);
+            let tactic = detected(&likelihoods, &self.models);
+            let follows = situation.mark(robot.position).1.filter(|_| tactic == Some(Tactic::Mark));
+            let ball_side = follows.is_some_and(|ours| {
+                let [goal, ball] = situation.mark_places(view.ours[ours].position, stand_off);
+                ball.distance(robot.position) < goal.distance(robot.position)
+            });
+            Detected {
+                opponent: robot.id,
+                at: robot.position,
+                tactic,
+                likelihoods,
+                follows: follows.map(|ours| view.ours[ours].id),
+                stand_off,
+                ball_side,
+            }
+        };
+        view.theirs.iter().map(read).collect()
+    }
+}
+
+/// Pictures count by e^(−age/this), s (D17: the last half second).
+const MEMORY: f32 = 0.5;
+/// After a gap of this length everything is new, s.
+const FORGOTTEN: f32 = 2.0;
+/// A mark as likely as this is one to learn from.
+const SURE: f32 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::view::tests::view;
+    use super::*;
+    use rules::League;
+
+    fn picture(ms: u64, theirs: &[(f32, f32)]) -> View {
+        let ours = [(-2.8, 0.0), (-0.1, 1.0), (1.0, -1.0), (1.0, 0.5)];
+        let mut view = view((0.0, 1.0), &ours, theirs);
+        view.field = League::Ssl2013.field();
+        view.now = Instant(ms * 1000);
+        view
+    }
+
+    #[test]
+    fn a_robot_that_keeps_to_ours_follows_it_and_one_passing_by_does_not() {
+        let mut detector = Detector::new(Models::default());
+        let taker = RobotId::new(1);
+        for tick in 0..150_u64 {
+            // 0 stands 0.4 m goal-side of our 2; 1 runs through our 3's mark and is far behind 0.8 s later.
+            let y = (-3.0 + 0.05 * tick as f32).min(1.95);
+            let view = picture(tick * 10, &[(1.358, -0.821), (1.3, y)]);
+            detector.watch(&view, taker);
+        }
+        let view = picture(1_500, &[(1.358, -0.821), (1.3, 1.95)]);
+        let read = detector.read(&view, taker);
+        assert_eq!((read[0].tactic, read[0].follows), (Some(Tactic::Mark), RobotId::new(2)));
+        assert!(!read[0].ball_side && (read[0].stand_off - 0.4).abs() < 0.02, "{:?}", read[0]);
+        assert_eq!(read[1].tactic, None, "{:?}", read[1]);
+    }
+
+    #[test]
+    fn half_a_second_of_places_outweighs_one_picture() {
+        let mut detector = Detector::new(Models::default());
+        let taker = RobotId::new(1);
+        for tick in 0..60 {
+            detector.watch(&picture(tick * 10, &[(2.7, 0.1)]), taker);
+        }
+        // One picture in which the keeper is taken for somebody at our robot 2.
+        let off = picture(600, &[(1.25, -0.9)]);
+        detector.watch(&off, taker);
+        assert_eq!(detector.read(&off, taker)[0].tactic, Some(Tactic::Goalkeeper));
+        // After a gap everything is new.
+        let later = picture(5_000, &[(1.25, -0.9)]);
+        detector.watch(&later, taker);
+        assert_eq!(detector.read(&later, taker)[0].tactic, Some(Tactic::Mark));
+    }
+}

@@ -1,0 +1,80 @@
+//! How is our free kick played against a defence that follows us? The Coerce and Attack Planner (Biswas et al. 2014 §4).
+//!
+//! | step | what | where |
+//! |---|---|---|
+//! | 1 | which opponents follow the ball, and which our robots? | [`tactics`], [`detect`] |
+//! | 2 | the best attack if only the former were there: the *optimistic attack* | [`attack`] |
+//! | 3 | where to send robots so that the latter follow them out of its way: the *coerce plan* | [`coercing`] |
+//! | 4, 5 | send them; see whether they were followed | [`Planner::watch`] |
+//! | 6, 7 | the attack as planned, or a new one against everybody as they stand | [`Planner::watch`] |
+//!
+//! [`Planner`] is a value: pictures go in ([`Planner::observe`], [`Planner::plan`], [`Planner::watch`]), a plan with its reasons
+//! comes out, and [`Planner::postings`] says who goes where. Attack frame, SI. What passes are worth is section 3.1's, by
+//! [`attack::PassValue`]. The same pictures and the same seed give the same plan.
+
+pub mod attack;
+pub mod coercing;
+pub mod detect;
+pub mod grid;
+mod planner;
+pub mod tactics;
+
+use motion::trajectory::FreeLimits;
+use rules::League;
+
+pub use planner::{CapPlan, End, FinalAttack, Followed, Part, Planner, Posting, Progress};
+
+/// What the paper leaves open, in one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// How our robots drive, for when they are in a cell.
+    pub robot: FreeLimits,
+    /// Coercing takes at most so long, s: of the time that a free kick may take.
+    pub coerce_time: f32,
+    /// Coercers are there within this, m: a body's diameter.
+    pub arrived: f32,
+    /// Opponents are given this long to come after them, s.
+    pub follow_time: f32,
+    /// An opponent farther than this from where it is expected was not coerced, m (papers-checklist D16).
+    pub expected_within: f32,
+    /// A robot with an opponent nearer than this is marked, m: the same.
+    pub marked_within: f32,
+    /// Coercers stay this far from pass and shot, m (D19).
+    pub off_ways: f32,
+    /// … from the ball, m: what everybody keeps off a ball that is not in play.
+    pub off_ball: f32,
+    /// … and from both areas, m: the rules' 0.2 m at free kicks, a body, a finger.
+    pub off_areas: f32,
+}
+
+impl Settings {
+    /// For a league's rules.
+    pub fn of(league: League) -> Self {
+        let free_kick = league.limits().map_or(FREE_KICK_TIME, |limits| limits.free_kick_time);
+        Self { coerce_time: COERCE_SHARE * free_kick, ..Self::default() }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            robot: FreeLimits::default(),
+            coerce_time: COERCE_SHARE * FREE_KICK_TIME,
+            arrived: 0.18,
+            follow_time: 0.5,
+            expected_within: 0.5,
+            marked_within: 0.5,
+            off_ways: 0.5,
+            off_ball: 0.7,
+            off_areas: 0.32,
+        }
+    }
+}
+
+/// Share of a free kick's time for coercing: 4 s of 10 (D16); the rest is for the pass-ahead.
+const COERCE_SHARE: f32 = 0.4;
+/// s (paper §4; division B).
+const FREE_KICK_TIME: f32 = 10.0;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,345 @@
+//! In which order is coerced, looked and attacked? The seven steps over time (Biswas et al. 2014 §4). Attack frame, s, m.
+
+use geometry::{Attack, Point};
+use protocol::{Instant, RobotId};
+use rules::{Phase, Side};
+
+use super::super::view::{ROBOTS_MAX, View};
+use super::Settings;
+use super::attack::{AttackPlan, CellValues, PassValue, best_attack};
+use super::coercing::{CoercePlan, Coercer, Pair, coerce, pairs};
+use super::detect::{Detected, Detector};
+use super::tactics::{Models, Situation};
+
+/// What is planned for a free kick, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CapPlan {
+    /// Who takes the kick.
+    pub taker: RobotId,
+    /// What each opponent does (step 1).
+    pub detected: heapless::Vec<Detected, ROBOTS_MAX>,
+    /// The attack against those who follow the ball alone (step 2).
+    pub optimistic: AttackPlan,
+    /// What every cell was worth then.
+    pub values: CellValues,
+    /// Who coerces whom (step 3).
+    pub coerce: CoercePlan,
+    /// Who coerces nobody and attacks.
+    pub attackers: heapless::Vec<RobotId, ROBOTS_MAX>,
+}
+
+impl CapPlan {
+    /// The part of a robot of ours in the coerce plan.
+    pub fn coercer(&self, robot: RobotId) -> Option<&Coercer> {
+        self.coerce.coercers.iter().find(|coercer| coercer.robot == robot)
+    }
+}
+
+/// Whether the opponents did as expected (step 5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Followed {
+    /// All who follow robots are where they were expected: the optimistic attack stands.
+    AsExpected {
+        /// The farthest of them is so far off, m; 0 where nobody was coerced.
+        worst: f32,
+    },
+    /// One is not: a new attack against everybody.
+    Otherwise {
+        /// Who.
+        opponent: RobotId,
+        /// How far from where it was expected, m.
+        off: f32,
+    },
+    /// They are, but the attack's receiver, a coercer to be used again, is marked: a new attack.
+    ReceiverMarked {
+        /// By whom.
+        opponent: RobotId,
+        /// How near, m.
+        near: f32,
+    },
+}
+
+/// The attack that is played (steps 6 and 7).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FinalAttack {
+    /// Pass and shot.
+    pub plan: AttackPlan,
+    /// What was seen.
+    pub followed: Followed,
+    /// Whether the receiver coerced somebody before (the paper's Table 1 counts them).
+    pub reused: bool,
+}
+
+/// How far it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// Nothing is planned.
+    Idle,
+    /// Robots go to the places of the coerce plan (step 4).
+    Coercing {
+        /// How many are there.
+        arrived: usize,
+        /// Of how many.
+        of: usize,
+        /// How long at most, s.
+        left: f32,
+    },
+    /// The attack is on (step 7): the receiver is passed to, ahead of it.
+    Attacking(FinalAttack),
+    /// It is over.
+    Over(End),
+}
+
+/// Why it is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The ball is in play.
+    InPlay,
+    /// The referee changed his mind.
+    Stopped,
+    /// Nobody could receive anything anywhere, or taker or receiver are gone.
+    NoAttack,
+}
+
+/// What a robot does in the plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    /// Takes the free kick.
+    Takes,
+    /// Draws this opponent away.
+    Coerces {
+        /// Whom.
+        marker: RobotId,
+        /// Where to.
+        expected: Point<Attack>,
+    },
+    /// Holds its place until the attack: whoever moves there early shows where the pass will go.
+    Waits,
+    /// Receives the pass, at that place, moving there as pass-ahead tells it.
+    Receives,
+}
+
+/// Who goes where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Posting {
+    /// Who.
+    pub robot: RobotId,
+    /// Where.
+    pub at: Point<Attack>,
+    /// As what.
+    pub part: Part,
+}
+
+/// The planner, from picture to picture.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    settings: Settings,
+    detector: Detector,
+    seed: u64,
+    plan: Option<CapPlan>,
+    /// When coercing began: with the free kick, or with the plan.
+    begun: Option<Instant>,
+    /// When the last coercer arrived.
+    arrived: Option<Instant>,
+    attack: Option<FinalAttack>,
+    over: Option<End>,
+}
+
+impl Planner {
+    /// Knows nothing yet.
+    pub fn new(settings: Settings, models: Models) -> Self {
+        Self {
+            settings,
+            detector: Detector::new(models),
+            seed: 0,
+            plan: None,
+            begun: None,
+            arrived: None,
+            attack: None,
+            over: None,
+        }
+    }
+
+    /// The plan, if there is one.
+    pub fn current(&self) -> Option<&CapPlan> {
+        self.plan.as_ref()
+    }
+
+    /// Takes a picture in for step 1; from some time before the plan is asked for, on STOP for instance.
+    pub fn observe(&mut self, view: &View, taker: RobotId) {
+        self.detector.watch(view, Some(taker));
+    }
+
+    /// Steps 1 to 3, for our free kick with `taker` at the ball. `None` where no attack is possible.
+    pub fn plan(
+        &mut self,
+        view: &View,
+        value: &dyn PassValue,
+        taker: RobotId,
+        seed: u64,
+    ) -> Option<&CapPlan> {
+        (self.seed, self.begun, self.arrived, self.attack, self.over) = (seed, None, None, None, None);
+        self.plan = self.make(view, value, taker);
+        if self.plan.is_none() {
+            self.over = Some(End::NoAttack);
+        }
+        self.plan.as_ref()
+    }
+
+    fn make(&self, view: &View, value: &dyn PassValue, taker: RobotId) -> Option<CapPlan> {
+        let detected = self.detector.read(view, Some(taker));
+        let players: heapless::Vec<RobotId, ROBOTS_MAX> =
+            view.ours.iter().map(|robot| robot.id).filter(|id| *id != view.keeper && *id != taker).collect();
+        let pairs = pairs(view, &detected, &players);
+        let coerces = |id: &RobotId| pairs.iter().any(|pair: &Pair| pair.robot == *id);
+        let attackers: heapless::Vec<RobotId, ROBOTS_MAX> =
+            players.iter().copied().filter(|id| !coerces(id)).collect();
+        // All of them coerce: one will be used again.
+        let receivers = if attackers.is_empty() { &players } else { &attackers };
+        let imagined = optimistic(view, &detected, taker, receivers);
+        let (attack, values) = best_attack(&imagined, value, taker, receivers, self.seed);
+        let attack = attack?;
+        let situation = Situation::new(view, *self.detector.models(), Some(taker));
+        let coerce = coerce(view, value, &situation, &pairs, &attack, &self.settings);
+        Some(CapPlan { taker, detected, optimistic: attack, values, coerce, attackers })
+    }
+
+    /// Steps 4 to 7: how far the plan is in this picture.
+    pub fn watch(&mut self, view: &View, value: &dyn PassValue) -> Progress {
+        if let Some(end) = self.over {
+            return Progress::Over(end);
+        }
+        let Some(plan) = &self.plan else { return Progress::Idle };
+        self.detector.watch(view, Some(plan.taker));
+        let end = match view.phase {
+            Phase::FreeKick(Side::Ours) | Phase::Stop | Phase::BallPlacement(Side::Ours) => None,
+            Phase::Run => Some(End::InPlay),
+            _ => Some(End::Stopped),
+        };
+        let gone = view.our(plan.taker).is_none()
+            || self.attack.is_some_and(|attack| view.our(attack.plan.receiver).is_none());
+        if let Some(end) = end.or(gone.then_some(End::NoAttack)) {
+            self.over = Some(end);
+            return Progress::Over(end);
+        }
+        if let Some(attack) = self.attack {
+            return Progress::Attacking(attack);
+        }
+        let free_kick = view.phase == Phase::FreeKick(Side::Ours);
+        let coercers = &plan.coerce.coercers;
+        let there = |coercer: &&Coercer| {
+            view.our(coercer.robot)
+                .is_none_or(|robot| robot.position.distance(coercer.at) < self.settings.arrived)
+        };
+        let (arrived, of) = (coercers.iter().filter(there).count(), coercers.len());
+        if arrived == of {
+            self.arrived.get_or_insert(view.now);
+        } else {
+            self.arrived = None;
+        }
+        if !free_kick {
+            return Progress::Coercing { arrived, of, left: self.settings.coerce_time };
+        }
+        let begun = *self.begun.get_or_insert(view.now);
+        let left = self.settings.coerce_time - view.now.since(begun).as_secs_f32();
+        let settled = self
+            .arrived
+            .is_some_and(|since| of == 0 || view.now.since(since).as_secs_f32() >= self.settings.follow_time);
+        if !settled && left > 0.0 {
+            return Progress::Coercing { arrived, of, left };
+        }
+        let attack = self.attack_now(view, value, plan);
+        self.attack = attack;
+        if let Some(attack) = attack {
+            return Progress::Attacking(attack);
+        }
+        self.over = Some(End::NoAttack);
+        Progress::Over(End::NoAttack)
+    }
+
+    /// Step 6.
+    fn attack_now(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Option<FinalAttack> {
+        let followed = self.verify(view, plan);
+        let coerced = |id: RobotId| plan.coercer(id).is_some();
+        if matches!(followed, Followed::AsExpected { .. }) && view.our(plan.optimistic.receiver).is_some() {
+            let reused = coerced(plan.optimistic.receiver);
+            return Some(FinalAttack { plan: plan.optimistic, followed, reused });
+        }
+        // Against everybody, where they stand; by who is free, and coercers whom nobody marks.
+        let mut receivers: heapless::Vec<RobotId, ROBOTS_MAX> = plan.attackers.clone();
+        let coercers = || plan.coerce.coercers.iter().map(|coercer| coercer.robot);
+        receivers.extend(coercers().filter(|id| self.marked(view, *id).is_none()));
+        if receivers.is_empty() {
+            receivers.extend(coercers());
+        }
+        let (attack, _) = best_attack(view, value, plan.taker, &receivers, self.seed);
+        attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
+    }
+
+    /// Step 5.
+    fn verify(&self, view: &View, plan: &CapPlan) -> Followed {
+        let mut worst: Option<(RobotId, f32)> = None;
+        for coercer in &plan.coerce.coercers {
+            // Whoever left the field is in nobody's way.
+            let Some(marker) = view.theirs.iter().find(|robot| robot.id == coercer.marker) else { continue };
+            let off = marker.position.distance(coercer.expected);
+            if worst.is_none_or(|(_, most)| off > most) {
+                worst = Some((coercer.marker, off));
+            }
+        }
+        match worst {
+            Some((opponent, off)) if off > self.settings.expected_within => {
+                return Followed::Otherwise { opponent, off };
+            }
+            _ => {}
+        }
+        let receiver = plan.optimistic.receiver;
+        if plan.coercer(receiver).is_some()
+            && let Some((opponent, near)) = self.marked(view, receiver)
+        {
+            return Followed::ReceiverMarked { opponent, near };
+        }
+        Followed::AsExpected { worst: worst.map_or(0.0, |(_, off)| off) }
+    }
+
+    /// Who marks our robot, and how near.
+    fn marked(&self, view: &View, ours: RobotId) -> Option<(RobotId, f32)> {
+        let at = view.our(ours)?.position;
+        let nearest = view.nearest_theirs(at).map(|(robot, near)| (robot.id, near));
+        nearest.filter(|(_, near)| *near < self.settings.marked_within)
+    }
+
+    /// Who goes where now, by number.
+    pub fn postings(&self, view: &View) -> heapless::Vec<Posting, ROBOTS_MAX> {
+        let Some(plan) = self.plan.as_ref().filter(|_| self.over.is_none()) else {
+            return heapless::Vec::new();
+        };
+        let post = |robot: &super::super::view::Robot| {
+            let id = robot.id;
+            let (at, part) = if id == plan.taker {
+                (view.ball.map_or(robot.position, |ball| ball.position), Part::Takes)
+            } else if let Some(attack) = self.attack.filter(|attack| attack.plan.receiver == id) {
+                (attack.plan.at, Part::Receives)
+            } else if let Some(coercer) = plan.coercer(id) {
+                let Coercer { marker, expected, .. } = *coercer;
+                (coercer.at, Part::Coerces { marker, expected })
+            } else {
+                (robot.position, Part::Waits)
+            };
+            Posting { robot: id, at, part }
+        };
+        view.ours.iter().filter(|robot| robot.id != view.keeper).map(post).collect()
+    }
+}
+
+/// The view with opponents who follow robots gone, and of ours only keeper, taker and the receivers (§4.2: "only … ball-following
+/// tactics" count; and coercers will be elsewhere).
+fn optimistic(view: &View, detected: &[Detected], taker: RobotId, receivers: &[RobotId]) -> View {
+    let mut imagined = view.clone();
+    let follows = |id| detected.iter().any(|known| known.opponent == id && known.follows_robots());
+    imagined.theirs.retain(|robot| !follows(robot.id));
+    imagined
+        .ours
+        .retain(|robot| robot.id == view.keeper || robot.id == taker || receivers.contains(&robot.id));
+    imagined
+}
