@@ -3,7 +3,9 @@
 //! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them; `cargo xtask pictures` keeps those in `docs/strategy`.
 
 mod angles;
+mod field;
 mod page;
+mod pass_probability;
 mod risk;
 mod scenes;
 mod tactics;
@@ -32,7 +34,8 @@ fn main() -> ExitCode {
 /// A picture's file and what draws it.
 type Picture = (&'static str, fn() -> String);
 
-const PICTURES: [Picture; 3] = [
+const PICTURES: [Picture; 4] = [
+    ("pass-probability.svg", pass_probability::draw),
     ("tactics.svg", tactics::draw),
     ("risk-of-receiving.svg", risk::draw),
     ("open-angles.svg", angles::draw),

@@ -10,6 +10,7 @@ mod coach;
 pub mod coerce;
 pub mod defence;
 mod order;
+pub mod pass;
 pub mod restart;
 pub mod roles;
 pub mod support;

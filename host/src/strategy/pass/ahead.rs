@@ -1,0 +1,172 @@
+//! When does who start, and when does the ball leave, so that ball and receiver are at x* together? (Biswas et al. 2014 §3.2,
+//! Algorithm 1: pass-ahead; D14) Attack frame, SI units.
+//!
+//! The shorter the time between the first move and the shot, the less opponents can see of it: whoever needs longer starts first, the
+//! other one when both would be ready together. A start is never taken back; who gave up does not shoot. The tests hold the start times
+//! to the latest schedule of least length of the paper's Simple Temporal Network (Fig. 4; D15).
+
+use geometry::{Angle, Attack, Point, math};
+use motion::intercept::{kick_place, kick_reach};
+use motion::trajectory::{CalcMotion, FreeLimits, TurnLimits};
+use protocol::{Duration, Instant};
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+
+use super::super::view::Robot;
+use super::scene::Rating;
+
+/// What Algorithm 1 goes by, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// T_r: the receiver's way to x_r.
+    pub receiver: f32,
+    /// T_s: the passer's way to x_p.
+    pub passer: f32,
+    /// T_b: the ball's way from x0 to x*.
+    pub ball: f32,
+    /// P is at x_p.
+    pub at_ball: bool,
+}
+
+/// Where the two stand when the ball leaves, and when it comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Places {
+    /// x_p: behind the ball, facing x*.
+    pub passer: (Point<Attack>, Angle),
+    /// x_r: behind x*, facing the goal for a one-touch shot, else the ball.
+    pub receiver: (Point<Attack>, Angle),
+}
+
+impl Places {
+    /// For a pass from `from` as rated.
+    pub fn of(from: Point<Attack>, rating: &Rating) -> Self {
+        let reach = kick_reach(ROBOT_RADIUS, BALL_RADIUS);
+        let onwards = if rating.shot.one_touch { rating.shot.aim } else { from };
+        Self {
+            passer: (kick_place(from, rating.at, reach), from.direction_to(rating.at)),
+            receiver: (kick_place(rating.at, onwards, reach), rating.at.direction_to(onwards)),
+        }
+    }
+}
+
+impl Times {
+    /// Estimated for passer and receiver as they are, by `CalcMotion2D` and the turn to their headings, whichever takes longer.
+    pub fn of(
+        places: &Places,
+        passer: &Robot,
+        receiver: &Robot,
+        ball_time: f32,
+        limits: &FreeLimits,
+    ) -> Self {
+        let time = |robot: &Robot, (at, facing): (Point<Attack>, Angle)| {
+            let turn = TurnLimits::default().plan(robot.heading, 0.0, facing).duration();
+            limits.time(robot.position, robot.velocity, at).max(turn)
+        };
+        let off = passer.position.distance(places.passer.0);
+        Self {
+            receiver: time(receiver, places.receiver),
+            passer: time(passer, places.passer),
+            ball: ball_time,
+            at_ball: off < AT_PLACE && (passer.heading - places.passer.1).abs() < AIMED,
+        }
+    }
+
+    /// T_p = T_s + T_b.
+    pub fn pass(&self) -> f32 {
+        self.passer + self.ball
+    }
+}
+
+/// A pass that is being coordinated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassAhead {
+    began: Instant,
+    passer: Option<Instant>,
+    receiver: Option<Instant>,
+    shot: Option<Instant>,
+}
+
+/// What both shall do now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moves {
+    /// The passer.
+    pub passer: PasserMove,
+    /// Whether the receiver goes to x_r.
+    pub receiver_goes: bool,
+}
+
+/// What the passer does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PasserMove {
+    /// Not yet.
+    Waits,
+    /// To x_p, and there waits for the receiver.
+    Goes,
+    /// Kicks now.
+    Shoots,
+    /// T_f is over: somebody else decides.
+    GivesUp {
+        /// Since the pass was wanted.
+        after: Duration,
+    },
+}
+
+impl PassAhead {
+    /// Begins at `now`.
+    pub fn new(now: Instant) -> Self {
+        Self { began: now, passer: None, receiver: None, shot: None }
+    }
+
+    /// When the passer started, if it has.
+    pub fn passer_started(&self) -> Option<Instant> {
+        self.passer
+    }
+
+    /// When the receiver started, if it has.
+    pub fn receiver_started(&self) -> Option<Instant> {
+        self.receiver
+    }
+
+    /// When the ball was told to leave, if it was.
+    pub fn shot(&self) -> Option<Instant> {
+        self.shot
+    }
+
+    /// One step of Algorithm 1. Where T_p = T_r both start.
+    pub fn step(&mut self, now: Instant, times: &Times) -> Moves {
+        let after = now.since(self.began);
+        if self.shot.is_none() && after > SEARCH_TIME {
+            return Moves { passer: PasserMove::GivesUp { after }, receiver_goes: false };
+        }
+        if times.pass() >= times.receiver {
+            self.passer.get_or_insert(now);
+        }
+        if times.receiver >= times.pass() {
+            self.receiver.get_or_insert(now);
+        }
+        // T_r ≈ T_p, and T_s is 0 by now.
+        let together = times.receiver <= times.ball + TOGETHER;
+        if self.passer.is_some() && times.at_ball && together {
+            self.shot.get_or_insert(now);
+            // Who shoots now has a receiver on its way, however short that is.
+            self.receiver.get_or_insert(now);
+        }
+        let passer = match (self.shot, self.passer) {
+            (Some(_), _) => PasserMove::Shoots,
+            (None, Some(_)) => PasserMove::Goes,
+            (None, None) => PasserMove::Waits,
+        };
+        Moves { passer, receiver_goes: self.receiver.is_some() }
+    }
+}
+
+/// T_f: a pass that has not left by then is planned anew, s: the 10 s that a free kick may take leave room for a second try.
+pub const SEARCH_TIME: Duration = Duration::millis(4000);
+/// The receiver may come this much later than the ball, s: what a body of 0.09 m covers before it stands, and an image's delay (D14).
+const TOGETHER: f32 = 0.08;
+/// Nearer to x_p the passer is there, m: what its mouth forgives.
+const AT_PLACE: f32 = 0.03;
+/// … when it looks at x* this exactly, rad (3°, as the robots' own kicks).
+const AIMED: f32 = 3.0 * (math::PI / 180.0);
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,275 @@
+//! Can an opponent be at the ball's way before the ball? The least margin over all opponents and all places of the way, for c2
+//! (Biswas et al. 2014 §3.1, Fig. 2). Attack frame, SI units.
+//!
+//! An opponent's margin at a place is its time to touch a ball there, less the ball's time to it. Along the way the margin first falls
+//! (the opponent nears its best place faster than the ball comes) and then rises; the turning point is guessed from both speeds there,
+//! and margins are taken at it, at the nearest place and at the end. A test holds this to the search through every centimetre.
+
+use geometry::{Attack, Point, Vector, math};
+use protocol::RobotId;
+
+use super::kicks::{ChipKick, FlatKick};
+use super::reach::Mover;
+
+/// An opponent that may come to the ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Opponent {
+    /// Its number.
+    pub id: RobotId,
+    /// How it moves.
+    pub mover: Mover,
+}
+
+/// Who comes nearest to having the ball, and where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interceptor {
+    /// Who.
+    pub id: RobotId,
+    /// Its time there less the ball's, s.
+    pub margin: f32,
+    /// How far along the way, m.
+    pub along: f32,
+}
+
+/// The way of a pass.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Where the ball lies.
+    pub from: Point<Attack>,
+    /// Of length 1.
+    pub along: Vector<Attack>,
+    /// To where it is received, m.
+    pub length: f32,
+    /// A body touches a ball that passes this near its centre, m.
+    pub body: f32,
+    /// An opponent sees the kick so late, s.
+    pub reaction: f32,
+}
+
+impl Way {
+    /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below −[`SAFE`], which certainly
+    /// has the ball.
+    pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
+        let end = kick.at(self.length);
+        self.worst(opponents, end.0, |opponent, worst| {
+            self.stretch(opponent, (0.0, self.length), end, |s| kick.at(s), worst);
+        })
+    }
+
+    /// … along a chip: while it rises over a robot's height, and from where it comes down below it.
+    pub fn chip(&self, kick: &ChipKick, opponents: &[Opponent]) -> Option<Interceptor> {
+        let end = kick.at(self.length);
+        let (up, down) = kick.over;
+        self.worst(opponents, end.0, |opponent, worst| {
+            self.stretch(opponent, (0.0, up), kick.at(up), |s| kick.at(s), worst);
+            self.stretch(opponent, (down, self.length), end, |s| kick.at(s), worst);
+        })
+    }
+
+    fn worst(
+        &self,
+        opponents: &[Opponent],
+        arrival: f32,
+        look: impl Fn(&Opponent, &mut Interceptor),
+    ) -> Option<Interceptor> {
+        let mut worst = Interceptor { id: RobotId::ZERO, margin: SAFE, along: 0.0 };
+        for opponent in opponents {
+            // Whoever cannot be at the way by the ball's arrival and the margin to beat is no worse than who is known.
+            let (foot, across) = self.seen(opponent);
+            let beyond = (foot - self.length).max(-foot).max(0.0);
+            let reach = opponent.mover.farthest_touched(arrival + worst.margin - self.reaction)
+                + self.body
+                + REACTION_FADES;
+            if beyond * beyond + across * across <= reach * reach {
+                look(opponent, &mut worst);
+            }
+            if worst.margin < -SAFE {
+                break;
+            }
+        }
+        (worst.margin < SAFE).then_some(worst)
+    }
+
+    /// How far along the way it is seen, and how far beside, m.
+    #[inline]
+    fn seen(&self, opponent: &Opponent) -> (f32, f32) {
+        let off = opponent.mover.position - self.from;
+        (off.dot(self.along), self.along.cross(off))
+    }
+
+    /// Takes the margins on a stretch of the way, whose end the ball reaches at `end` (s, m/s).
+    #[inline]
+    fn stretch(
+        &self,
+        opponent: &Opponent,
+        (low, high): (f32, f32),
+        end: (f32, f32),
+        ball: impl Fn(f32) -> (f32, f32),
+        worst: &mut Interceptor,
+    ) {
+        if high < low {
+            return;
+        }
+        let (foot, across) = self.seen(opponent);
+        let nearest = foot.max(low).min(high);
+        let (time, speed) = ball(nearest);
+        let touched = self.look(opponent, nearest, time, worst);
+        // Nowhere is it sooner than at the nearest place, nowhere the ball later than at the end.
+        if nearest >= high
+            || (touched - end.0 >= worst.margin && opponent.mover.velocity == Vector::default())
+        {
+            return;
+        }
+        self.look(opponent, high, end.0, worst);
+        // dD/ds = w / u at the turning point, D the distance to the place: s − foot = across · q / √(1 − q²), q = w / u; and half the
+        // way that the opponent's speed carries it along the ball's way in the meantime.
+        let pace = opponent.mover.pace(across.abs() - self.body);
+        let q = pace / speed.max(1e-3);
+        let drift = 0.5 * opponent.mover.velocity.dot(self.along) * touched;
+        if q < 1.0 {
+            let turning = foot + drift + across.abs() * q / math::sqrt(1.0 - q * q);
+            if turning > low && turning < high && (turning - nearest).abs() > WORTH_LOOKING {
+                self.look(opponent, turning, ball(turning).0, worst);
+            }
+        }
+    }
+
+    #[inline]
+    fn look(&self, opponent: &Opponent, along: f32, ball_time: f32, worst: &mut Interceptor) -> f32 {
+        let place = self.from + self.along * along;
+        let time = self.touch_time(&opponent.mover, place);
+        if time - ball_time < worst.margin {
+            *worst = Interceptor { id: opponent.id, margin: time - ball_time, along };
+        }
+        time
+    }
+
+    /// When it touches a ball at `place`, s. It need not react to one that comes to it; what it gains by that fades out with the way
+    /// it has to make.
+    #[inline]
+    fn touch_time(&self, mover: &Mover, place: Point<Attack>) -> f32 {
+        let time = mover.time_to_touch(place, self.body);
+        // Time and way go together; 0.24 s are 0.1 m from rest.
+        time + self.reaction * (time * (1.0 / REACTION_TIME)).min(1.0)
+    }
+}
+
+/// No margin above this is told, s: at a width of 0.1 s it is a certain pass (1 − exp(−6) = 0.998), below its negative a lost one.
+pub const SAFE: f32 = 0.6;
+/// A way of this length takes the whole reaction, m: what a kick of 0.5° to 1° scatters by over 5 m; nearer, a body is likely hit
+/// without moving.
+const REACTION_FADES: f32 = 0.1;
+/// 2 √(0.1 m / 3.5 m/s²), s.
+const REACTION_TIME: f32 = 0.338;
+/// Places nearer to each other than this tell the same, m.
+const WORTH_LOOKING: f32 = 0.02;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use motion::ball::BallModel;
+    use motion::ball::chip::ChipModel;
+    use motion::trajectory::FreeLimits;
+    use rand_core::{RngCore, SeedableRng};
+    use rand_xoshiro::Xoshiro128PlusPlus;
+    use rules::League;
+
+    use super::super::constants::PassConstants;
+    use super::super::kicks::Kicks;
+
+    fn opponent(id: u8, at: (f32, f32), velocity: (f32, f32)) -> Opponent {
+        let (at, velocity) = (Point::new(at.0, at.1), Vector::new(velocity.0, velocity.1));
+        let mover = Mover::new(at, velocity, &FreeLimits::default());
+        Opponent { id: RobotId::new(id).unwrap(), mover }
+    }
+
+    fn way(length: f32) -> Way {
+        let (from, along) = (Point::new(0.0, 0.0), Vector::new(1.0, 0.0));
+        Way { from, along, length, body: 0.1115, reaction: 0.1 }
+    }
+
+    fn kicks() -> Kicks {
+        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+    }
+
+    #[test]
+    fn a_body_on_the_way_has_the_ball_and_one_far_off_never() {
+        let kick = kicks().flat(3.0);
+        let on_it = way(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
+        // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to walk to.
+        assert!(on_it.id.number() == 4 && on_it.margin < -0.4, "{on_it:?}");
+        assert_eq!(way(3.0).flat(&kick, &[opponent(4, (1.5, 4.0), (0.0, 0.0))]), None);
+    }
+
+    #[test]
+    fn the_margin_beside_the_way_by_hand() {
+        // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) − 0.1115 = 0.745192 m from
+        // touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which is 0.276890 s sooner than the ball.
+        let kick = kicks().flat(3.0);
+        let found = way(3.0).flat(&kick, &[opponent(2, (2.4, 0.6115), (0.0, 0.0))]).unwrap();
+        assert!((found.margin + 0.276_890).abs() < 1e-4 && found.along == 3.0, "{found:?}");
+    }
+
+    #[test]
+    fn a_chip_passes_over_whom_a_flat_pass_would_meet() {
+        let kicks = kicks();
+        let chip = kicks.chip(3.0).unwrap();
+        let under_the_arch = [opponent(1, (1.0, 0.0), (0.0, 0.0))];
+        let over = way(3.0).chip(&chip, &under_the_arch).map_or(SAFE, |found| found.margin);
+        let flat = way(3.0).flat(&kicks.flat(3.0), &under_the_arch).unwrap().margin;
+        assert!(over > 0.0 && flat < -0.1, "{over} {flat}");
+        // Where it comes down it is stopped.
+        let where_it_lands = [opponent(1, (chip.lands + 0.2, 0.0), (0.0, 0.0))];
+        assert!(way(3.0).chip(&chip, &where_it_lands).unwrap().margin < -0.5);
+    }
+
+    #[test]
+    fn the_margin_is_that_of_the_search_through_every_centimetre() {
+        let kicks = kicks();
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(6);
+        let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
+        let (mut counted, mut far, mut sum, mut worst) = (0, 0, 0.0_f32, 0.0_f32);
+        for round in 0..2_000 {
+            let length = 2.6 + within(2.0);
+            let way = way(length);
+            let speed = if round % 2 == 0 { 0.0 } else { 1.5 };
+            let opponents: Vec<_> = (0..4)
+                .map(|i| {
+                    let at = (length * 0.5 + within(length), within(2.5));
+                    opponent(i, at, (within(1.0) * speed, within(1.0) * speed))
+                })
+                .collect();
+            for chip in [None, kicks.chip(length)] {
+                let flat = kicks.flat(length);
+                let (found, touchable): (_, Box<dyn Fn(f32) -> Option<f32>>) = match chip {
+                    None => (way.flat(&flat, &opponents), Box::new(|s| Some(flat.at(s).0))),
+                    Some(chip) => (
+                        way.chip(&chip, &opponents),
+                        Box::new(move |s| (s < chip.over.0 || s > chip.over.1).then(|| chip.at(s).0)),
+                    ),
+                };
+                let mut truth = SAFE;
+                for step in 0..=(length * 100.0) as u32 {
+                    let s = (step as f32 * 0.01).min(length);
+                    let Some(ball) = touchable(s) else { continue };
+                    for opponent in &opponents {
+                        let place = Point::new(s, 0.0);
+                        truth = truth.min(way.touch_time(&opponent.mover, place) - ball);
+                    }
+                }
+                let found = found.map_or(SAFE, |found| found.margin).max(-SAFE);
+                let truth = truth.max(-SAFE);
+                // What matters is below three widths.
+                if truth < 0.3 {
+                    let off = found - truth;
+                    far += u32::from(off.abs() > 0.1);
+                    (counted, sum, worst) = (counted + 1, sum + off.abs(), worst.max(off.abs()));
+                }
+            }
+        }
+        let mean = sum / counted as f32;
+        // The few that are off stand within half a metre and run across the way, or away from it.
+        assert!(counted > 1_000 && mean < 0.01 && worst < 0.4, "{counted}: {mean} {worst}");
+        assert!(far * 100 < counted, "{far} of {counted} are off by more than a width");
+    }
+}

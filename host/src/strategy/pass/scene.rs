@@ -1,0 +1,347 @@
+//! How likely does a pass to x end in a goal? P(receive | x) · P(goal | receive, x), with everything it was found from (Biswas et al.
+//! 2014 §3.1, equations 3–5). Attack frame, SI units.
+//!
+//! A [`Scene`] is one moment with one receiver; what does not depend on x is worked out once. DESIGN §9 bounds what a place costs
+//! (`cargo xtask bench strategy`).
+
+use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
+use protocol::RobotId;
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+
+use super::super::view::{ROBOTS_MAX, Robot, View};
+use super::conditions as given;
+use super::constants::PassConstants;
+use super::intercept::{Interceptor, Opponent, SAFE, Way};
+use super::kicks::{FlatKick, Kicks, PassKick};
+use super::open::Mouth;
+use super::reach::Mover;
+
+/// What comes of a pass to a place, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rating {
+    /// Where it is received.
+    pub at: Point<Attack>,
+    /// The kick that is likelier to end in a goal.
+    pub kick: PassKick,
+    /// P(c1) … P(c5).
+    pub receive_factors: [f32; 5],
+    /// P(c1') … P(c4').
+    pub goal_factors: [f32; 4],
+    /// When the ball is there, s after the kick.
+    pub ball_time: f32,
+    /// When the receiver can be there and at rest, s.
+    pub receiver_time: f32,
+    /// The opponent that can be there soonest, and when, s; none if not within [`SAFE`] after the receiver. Of those that are there
+    /// [`SAFE`] before it, any.
+    pub rival: Option<(RobotId, f32)>,
+    /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those that certainly do
+    /// (−[`SAFE`]), any.
+    pub interceptor: Option<Interceptor>,
+    /// What is nearest to spoiling the place, with its margin, m.
+    pub spoiler: (Spoiler, f32),
+    /// The shot that follows.
+    pub shot: ShotFrom,
+}
+
+/// A shot from where a pass is received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShotFrom {
+    /// At this point of the goal line.
+    pub aim: Point<Attack>,
+    /// The open angle around it, rad.
+    pub angle: f32,
+    /// Until it is there, s.
+    pub time: f32,
+    /// Without taking the ball first.
+    pub one_touch: bool,
+}
+
+/// What can make a place unreliable (c5).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spoiler {
+    /// Our defence area.
+    OurArea,
+    /// Theirs, where attackers must not be.
+    TheirArea,
+    /// A line of the field.
+    Line,
+    /// A mate.
+    Mate,
+}
+
+impl Rating {
+    /// P(receive | x).
+    pub fn receive(&self) -> f32 {
+        self.receive_factors.iter().product()
+    }
+
+    /// P(goal | receive, x).
+    pub fn goal(&self) -> f32 {
+        self.goal_factors.iter().product()
+    }
+
+    /// P(goal | x), what is maximised.
+    pub fn value(&self) -> f32 {
+        self.receive() * self.goal()
+    }
+}
+
+/// One moment, a ball to be passed and who shall receive it.
+#[derive(Clone, Debug)]
+pub struct Scene<'k> {
+    kicks: &'k Kicks,
+    from: Point<Attack>,
+    receiver: Mover,
+    opponents: heapless::Vec<Opponent, ROBOTS_MAX>,
+    mates: heapless::Vec<Point<Attack>, ROBOTS_MAX>,
+    our_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
+    their_area: heapless::Vec<Shape<Field>, { rules::AREA_SHAPES_MAX }>,
+    half: [f32; 2],
+    mouth: Mouth,
+    shot: FlatKick,
+}
+
+impl<'k> Scene<'k> {
+    /// A pass from `from`, played by `passer`, to `receiver`, against all opponents of the view.
+    pub fn of(
+        view: &View,
+        kicks: &'k Kicks,
+        from: Point<Attack>,
+        passer: Option<RobotId>,
+        receiver: &Robot,
+    ) -> Self {
+        Self::against(view, kicks, from, passer, receiver, view.theirs.iter())
+    }
+
+    /// … against some of them, or where they are expected to be (the optimistic attack of §4.2).
+    pub fn against<'r>(
+        view: &View,
+        kicks: &'k Kicks,
+        from: Point<Attack>,
+        passer: Option<RobotId>,
+        receiver: &Robot,
+        opponents: impl Iterator<Item = &'r Robot>,
+    ) -> Self {
+        let c = kicks.constants();
+        let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
+        let others = view.ours.iter().filter(|mate| mate.id != receiver.id && Some(mate.id) != passer);
+        let (length, width) = (view.field.length, view.field.width);
+        // The field is the same seen from either end, so its areas are where they are in the attack frame too.
+        Self {
+            kicks,
+            from,
+            receiver: mover(receiver, &c.receiver),
+            opponents: opponents
+                .map(|robot| Opponent { id: robot.id, mover: mover(robot, &c.opponent) })
+                .take(ROBOTS_MAX)
+                .collect(),
+            mates: others.map(|mate| mate.position).collect(),
+            our_area: view.field.defence_area(GoalEnd::Negative),
+            their_area: view.field.defence_area(GoalEnd::Positive),
+            half: [length * 0.5, width * 0.5],
+            mouth: Mouth {
+                x: length * 0.5,
+                half: view.field.goal_width * 0.5 - BALL_RADIUS,
+                body: ROBOT_RADIUS + BALL_RADIUS,
+            },
+            shot: kicks.shot(),
+        }
+    }
+
+    /// Where the pass starts, x0.
+    pub fn from(&self) -> Point<Attack> {
+        self.from
+    }
+
+    /// The kicks to choose from.
+    pub fn kicks(&self) -> &'k Kicks {
+        self.kicks
+    }
+
+    /// Half the field's length and width, m.
+    pub fn half(&self) -> [f32; 2] {
+        self.half
+    }
+
+    /// Rates a pass to `at`.
+    pub fn rate(&self, at: Point<Attack>) -> Rating {
+        self.weigh(at, f32::NEG_INFINITY)
+    }
+
+    /// P(c2) of a flat pass and of a chip to `at`, each by itself; 0 where no such chip can be kicked.
+    pub fn not_intercepted(&self, at: Point<Attack>) -> [f32; 2] {
+        let (way, c) = (self.way(at - self.from), self.kicks.constants());
+        let of = |found: Option<Interceptor>, chip: bool| {
+            given::not_intercepted(found.map_or(SAFE, |found| found.margin), chip, c)
+        };
+        let chip = self.kicks.chip(way.length).map_or(0.0, |chip| of(way.chip(&chip, &self.opponents), true));
+        [of(way.flat(&self.kicks.flat(way.length), &self.opponents), false), chip]
+    }
+
+    fn way(&self, off: Vector<Attack>) -> Way {
+        let length = off.norm();
+        let along = if length > ON_THE_SPOT { off * (1.0 / length) } else { Vector::new(1.0, 0.0) };
+        let reaction = self.kicks.constants().reaction;
+        Way { from: self.from, along, length, body: self.mouth.body, reaction }
+    }
+
+    /// Rates it, if it is worth more than `floor`; finding out that it is not is cheaper.
+    pub fn rate_above(&self, at: Point<Attack>, floor: f32) -> Option<Rating> {
+        Some(self.weigh(at, floor)).filter(|rating| rating.value() > floor)
+    }
+
+    /// Factor by factor, until the value cannot be above `floor` any more; what was not looked at by then stays 1.
+    fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
+        let c = self.kicks.constants();
+        let way = self.way(at - self.from);
+        let Way { along, length, .. } = way;
+        let spoiler = self.spoiler(at, c);
+        let goal = Point::new(self.mouth.x, 0.0);
+        let mut rating = Rating {
+            at,
+            kick: PassKick::Flat { speed: 0.0 },
+            receive_factors: [
+                1.0,
+                1.0,
+                1.0,
+                given::short_enough(length, c),
+                given::reliable_place(spoiler.1, c),
+            ],
+            goal_factors: [
+                // No point of the goal is nearer.
+                given::beats_the_keeper(self.shot.at((at.distance(goal) - self.mouth.half).max(0.0)).0, c),
+                1.0,
+                1.0,
+                given::not_stolen(self.in_their_area(at), c),
+            ],
+            ball_time: 0.0,
+            receiver_time: 0.0,
+            rival: None,
+            interceptor: None,
+            spoiler,
+            shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
+        };
+        if rating.value() <= floor {
+            return rating;
+        }
+        rating.shot = self.shot(at, along, c);
+        rating.goal_factors[0] = given::beats_the_keeper(rating.shot.time, c);
+        rating.goal_factors[1] = given::open_goal(rating.shot.angle, c);
+        rating.goal_factors[2] = given::shot_in_time(rating.shot.one_touch, c);
+        if rating.value() <= floor {
+            return rating;
+        }
+        rating.receiver_time = self.receiver.time_to(at);
+        rating.rival = self.rival(at, rating.receiver_time);
+        let soonest = rating.rival.map_or(rating.receiver_time + SAFE, |(_, time)| time);
+        rating.receive_factors[0] = given::first_there(rating.receiver_time, soonest, c);
+        if rating.value() <= floor {
+            return rating;
+        }
+        let flat = self.kicks.flat(length);
+        rating.kick = PassKick::Flat { speed: flat.speed };
+        rating.ball_time = flat.at(length).0;
+        rating.interceptor = way.flat(&flat, &self.opponents);
+        let margin = rating.interceptor.map_or(SAFE, |found| found.margin);
+        rating.receive_factors[1] = given::not_intercepted(margin, false, c);
+        rating.receive_factors[2] = given::time_to_react(rating.ball_time, c);
+        self.chip_if_better(&way, &mut rating, floor, c);
+        rating
+    }
+
+    /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over opponents (c2), but bounces: no
+    /// one-touch shot follows (c3').
+    fn chip_if_better(&self, way: &Way, rating: &mut Rating, floor: f32, c: &PassConstants) {
+        let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
+        let most = c.chip_prior * c.turn_prior;
+        let others = rating.value() / flat.max(f32::MIN_POSITIVE);
+        // Neither above the flat pass, nor above what is asked for.
+        if flat >= most || others * most <= floor.max(WORTH_A_CHIP) {
+            return;
+        }
+        let Some(kick) = self.kicks.chip(way.length) else { return };
+        let interceptor = way.chip(&kick, &self.opponents);
+        let ball_time = kick.at(way.length).0;
+        let c2 = given::not_intercepted(interceptor.map_or(SAFE, |found| found.margin), true, c);
+        let c3 = given::time_to_react(ball_time, c);
+        let in_time = given::shot_in_time(false, c);
+        if c2 * c3 * in_time > flat {
+            rating.kick = PassKick::Chip { speed: kick.speed, lands: kick.lands };
+            (rating.receive_factors[1], rating.receive_factors[2]) = (c2, c3);
+            rating.goal_factors[2] = in_time;
+            (rating.ball_time, rating.interceptor) = (ball_time, interceptor);
+            rating.shot.one_touch = false;
+        }
+    }
+
+    /// The opponent that can be at `at` soonest, if it is of any account to a receiver that takes `receiver_time`; the first one that
+    /// is there so much sooner that it is of no account who else is.
+    fn rival(&self, at: Point<Attack>, receiver_time: f32) -> Option<(RobotId, f32)> {
+        let mut soonest = (None, receiver_time + SAFE);
+        for opponent in &self.opponents {
+            let way = at - opponent.mover.position;
+            let reach = opponent.mover.farthest(soonest.1);
+            if way.dot(way) > reach * reach {
+                continue;
+            }
+            let time = opponent.mover.time_to(at);
+            if time < soonest.1 {
+                soonest = (Some(opponent.id), time);
+            }
+            if soonest.1 < receiver_time - SAFE {
+                break;
+            }
+        }
+        soonest.0.map(|id| (id, soonest.1))
+    }
+
+    /// What is nearest to spoiling the place.
+    fn spoiler(&self, at: Point<Attack>, c: &PassConstants) -> (Spoiler, f32) {
+        let line = (self.half[0] - at.x().abs()).min(self.half[1] - at.y().abs()) - c.line_margin;
+        let mut worst = (Spoiler::Line, line);
+        let mut look = |spoiler: Spoiler, margin: f32| {
+            if margin < worst.1 {
+                worst = (spoiler, margin);
+            }
+        };
+        let place = Point::new(at.x(), at.y());
+        let off = |area: &[Shape<Field>]| {
+            area.iter().map(|shape| shape.distance_to(place)).fold(f32::INFINITY, f32::min) - c.area_margin
+        };
+        if at.x() < 0.0 {
+            look(Spoiler::OurArea, off(&self.our_area));
+        } else if c.their_area_forbidden {
+            look(Spoiler::TheirArea, off(&self.their_area));
+        }
+        let nearest =
+            self.mates.iter().map(|mate| (at - *mate).dot(at - *mate)).fold(f32::INFINITY, f32::min);
+        if nearest < f32::INFINITY {
+            look(Spoiler::Mate, geometry::math::sqrt(nearest) - c.mate_margin);
+        }
+        worst
+    }
+
+    /// In the opponents' defence area, lines included.
+    pub fn in_their_area(&self, at: Point<Attack>) -> bool {
+        let place = Point::new(at.x(), at.y());
+        at.x() > 0.0 && at.x() <= self.half[0] && self.their_area.iter().any(|shape| shape.contains(place))
+    }
+
+    /// The shot that follows a pass which comes along `along`.
+    fn shot(&self, at: Point<Attack>, along: Vector<Attack>, c: &PassConstants) -> ShotFrom {
+        let open = self.mouth.open_from(at, self.opponents.iter().map(|opponent| opponent.mover.position));
+        let way = open.aim - at;
+        let distance = way.norm();
+        // Between where the ball comes from and where it shall go, seen from the receiver.
+        let one_touch = -along.dot(way) >= c.one_touch_cos * distance;
+        ShotFrom { aim: open.aim, angle: open.angle, time: self.shot.at(distance).0, one_touch }
+    }
+}
+
+/// m; nearer, directions mean nothing.
+const ON_THE_SPOT: f32 = 1e-3;
+/// A chip that ends in a goal less often than this is not looked at: one in two hundred.
+const WORTH_A_CHIP: f32 = 0.005;
+
+#[cfg(test)]
+pub(crate) mod tests;

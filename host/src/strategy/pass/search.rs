@@ -1,0 +1,232 @@
+//! Which place is best for a receiver? Random samples near the best of a moment ago, and some anywhere (Biswas et al. 2014 §3.1; D13).
+//!
+//! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not jump. So does this, but
+//! for a tenth of its samples, which look over the whole field; the target jumps only for a place that is better by [`JUMP_GAIN`].
+//! One seed, one stream: the same moments give the same places.
+
+use geometry::{Angle, Attack, Point, Vector, math};
+use protocol::RobotId;
+use rand_core::{RngCore, SeedableRng};
+use rand_xoshiro::Xoshiro128PlusPlus;
+
+use super::super::view::{ROBOTS_MAX, View};
+use super::kicks::Kicks;
+use super::scene::{Rating, Scene};
+
+/// A receiver's search, from moment to moment.
+#[derive(Clone, Debug)]
+pub struct Search {
+    random: Xoshiro128PlusPlus,
+    last: Option<Point<Attack>>,
+}
+
+impl Search {
+    /// Its samples are those of this seed.
+    pub fn new(seed: u64) -> Self {
+        Self { random: Xoshiro128PlusPlus::seed_from_u64(seed), last: None }
+    }
+
+    /// The optimum of the last moment.
+    pub fn last(&self) -> Option<Point<Attack>> {
+        self.last
+    }
+
+    /// Forgets it: another pass is sought.
+    pub fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// Rates `samples` places and the last optimum, and gives the best.
+    pub fn step(&mut self, scene: &Scene<'_>, samples: u32) -> Rating {
+        let anywhere = match self.last {
+            Some(_) => samples / GLOBAL_SHARE,
+            None => samples,
+        };
+        let mut near = self.last.map(|at| scene.rate(at));
+        if let Some(last) = self.last {
+            for _ in anywhere..samples {
+                let at = last + self.gaussian() * NEAR;
+                near = Some(better(near, scene, at));
+            }
+        }
+        let mut far: Option<Rating> = None;
+        for _ in 0..anywhere.max(u32::from(near.is_none())) {
+            let [x, y] = scene.half();
+            let at = Point::new(x * self.uniform(), y * self.uniform());
+            far = Some(better(far, scene, at));
+        }
+        let best = match (near, far) {
+            (Some(near), Some(far)) if far.value() > near.value() * JUMP_GAIN => far,
+            (Some(near), _) => near,
+            (None, Some(far)) => far,
+            // At least one place was rated.
+            (None, None) => scene.rate(scene.from()),
+        };
+        self.last = Some(best.at);
+        best
+    }
+
+    /// −1 to 1.
+    fn uniform(&mut self) -> f32 {
+        (self.random.next_u32() >> 8) as f32 * (1.0 / 8_388_608.0) - 1.0
+    }
+
+    /// Two independent normal numbers (Box and Muller).
+    fn gaussian(&mut self) -> Vector<Attack> {
+        let share = 1.0 - (self.random.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0);
+        let length = math::sqrt(-2.0 * math::ln(share));
+        let turn = math::PI * self.uniform();
+        Vector::polar(length, Angle::new(turn))
+    }
+}
+
+/// The best so far, or the place `at` where it is worth more.
+fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating {
+    match best {
+        Some(best) => scene.rate_above(at, best.value()).unwrap_or(best),
+        None => scene.rate(at),
+    }
+}
+
+/// A mate's best place, and what a pass there is worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offer {
+    /// Who would receive.
+    pub receiver: RobotId,
+    /// Where, and why.
+    pub rating: Rating,
+}
+
+/// All receivers' searches: each mate seeks its own place, the passer chooses among them (§3).
+#[derive(Clone, Debug)]
+pub struct Searches {
+    each: [Search; ROBOTS_MAX],
+}
+
+impl Searches {
+    /// Every robot has a stream of its own.
+    pub fn new(seed: u64) -> Self {
+        // 2⁶⁴ / φ apart, as splitmix seeds are.
+        let apart = 0x9e37_79b9_7f4a_7c15_u64;
+        Self { each: std::array::from_fn(|i| Search::new(seed.wrapping_add(apart.wrapping_mul(i as u64)))) }
+    }
+
+    /// What every robot but `passer` and our keeper offers for a pass from `from`, best first; of equal ones the lower number.
+    pub fn offers(
+        &mut self,
+        view: &View,
+        kicks: &Kicks,
+        from: Point<Attack>,
+        passer: RobotId,
+        samples: u32,
+    ) -> heapless::Vec<Offer, ROBOTS_MAX> {
+        let mut offers: heapless::Vec<Offer, ROBOTS_MAX> = heapless::Vec::new();
+        for mate in view.ours.iter().filter(|mate| mate.id != passer && mate.id != view.keeper) {
+            let scene = Scene::of(view, kicks, from, Some(passer), mate);
+            let rating = self.each[mate.id.index()].step(&scene, samples);
+            let worse = |other: &Offer| other.rating.value() < rating.value();
+            let place = offers.iter().position(worse).unwrap_or(offers.len());
+            // One a robot.
+            let _ = offers.insert(place, Offer { receiver: mate.id, rating });
+        }
+        offers
+    }
+
+    /// Forgets all places: another ball, another passer.
+    pub fn forget(&mut self) {
+        self.each.iter_mut().for_each(Search::forget);
+    }
+}
+
+/// Places rated at one moment (D13).
+pub const SAMPLES: u32 = 200;
+/// Standard deviation of samples near the last optimum, m along each axis (D13).
+const NEAR: f32 = 0.5;
+/// One of so many samples lies anywhere (D13: 10 %).
+const GLOBAL_SHARE: u32 = 10;
+/// How many times better a place elsewhere must be to jump there: a receiver that turns round loses half a second, which costs a
+/// fifth of the passes that were likely.
+const JUMP_GAIN: f32 = 1.25;
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::view::tests::view;
+    use super::super::constants::PassConstants;
+    use super::*;
+    use motion::ball::BallModel;
+    use motion::ball::chip::ChipModel;
+    use rules::League;
+
+    fn kicks() -> Kicks {
+        Kicks::new(PassConstants::of(League::DivisionB), BallModel::default(), ChipModel::default())
+    }
+
+    const OURS: [(f32, f32); 4] = [(-4.4, 0.0), (0.4, 0.0), (2.0, 1.5), (1.0, -2.0)];
+    const THEIRS: [(f32, f32); 4] = [(4.4, 0.1), (3.3, 0.4), (2.0, 0.2), (2.2, -0.9)];
+
+    #[test]
+    fn the_same_seed_finds_the_same_places_and_another_one_similar_worth() {
+        let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
+        let run = |seed| {
+            let mut searches = Searches::new(seed);
+            (0..10)
+                .map(|_| searches.offers(&view, &kicks, Point::new(0.5, 0.0), view.ours[1].id, SAMPLES))
+                .last()
+                .unwrap()
+        };
+        let (one, again, other) = (run(1), run(1), run(2));
+        assert_eq!(one, again);
+        let (a, b) = (one[0].rating.value(), other[0].rating.value());
+        assert!((a - b).abs() < 0.1 * a && one[0].receiver == other[0].receiver, "{a} {b}");
+        // Keeper and passer are no receivers.
+        assert_eq!(one.len(), 2);
+    }
+
+    #[test]
+    fn it_finds_what_a_fine_grid_finds() {
+        let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
+        let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        let mut best = 0.0_f32;
+        for i in 0..180 {
+            for j in 0..120 {
+                let at = Point::new(-4.475 + 0.05 * i as f32, -2.975 + 0.05 * j as f32);
+                best = best.max(scene.rate(at).value());
+            }
+        }
+        let mut search = Search::new(3);
+        let found = (0..10).map(|_| search.step(&scene, SAMPLES)).last().unwrap().value();
+        assert!(found > 0.97 * best, "{found} of {best}");
+    }
+
+    #[test]
+    fn the_target_stays_near_while_the_field_changes_little() {
+        let kicks = kicks();
+        let mut search = Search::new(4);
+        let mut last: Option<Point<Attack>> = None;
+        let mut moved = 0.0_f32;
+        for tick in 0..60 {
+            let shift = tick as f32 * 0.002;
+            let theirs = THEIRS.map(|(x, y)| (x, y + shift));
+            let view = view((0.5, 0.0), &OURS, &theirs);
+            let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
+            let at = search.step(&scene, 60).at;
+            // The first moments still seek.
+            if let (Some(last), true) = (last, tick > 10) {
+                moved = moved.max(at.distance(last));
+            }
+            last = Some(at);
+        }
+        assert!(moved < 0.5, "jumped by {moved} m");
+    }
+
+    #[test]
+    fn a_search_without_samples_still_answers() {
+        let (kicks, view) = (kicks(), view((0.5, 0.0), &OURS, &THEIRS));
+        let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
+        let mut search = Search::new(5);
+        assert!(search.step(&scene, 0).value() >= 0.0);
+        assert!(search.last().is_some());
+        search.forget();
+        assert_eq!(search.last(), None);
+    }
+}

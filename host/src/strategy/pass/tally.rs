@@ -1,0 +1,182 @@
+//! How many passes arrived, why not the others, and was P(receive) right? Counts that add up over matches: the passes of the second
+//! paper's Table 1, and the calibration of its equation 5, predicted against seen.
+
+use serde::{Deserialize, Serialize};
+
+use super::watch::{Ordered, Verdict};
+
+/// Passes of one kind of kick, by what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fates {
+    /// The receiver had it.
+    pub received: u32,
+    /// Another mate had it.
+    pub by_mate: u32,
+    /// An opponent had it.
+    pub intercepted: u32,
+    /// It went by.
+    pub missed: u32,
+    /// The receiver came too late.
+    pub late: u32,
+    /// It left the field.
+    pub out: u32,
+    /// It was never kicked.
+    pub no_kick: u32,
+}
+
+/// Passes whose P(receive) lay in one tenth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    /// Passes kicked.
+    pub passes: u32,
+    /// Sum of their P(receive).
+    pub predicted: f64,
+    /// How many their receiver had.
+    pub received: u32,
+}
+
+/// All passes of a team.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PassTally {
+    /// Along the ground.
+    pub flat: Fates,
+    /// Through the air.
+    pub chip: Fates,
+    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in none.
+    pub calibration: [Bin; BINS],
+}
+
+/// Tenths.
+pub const BINS: usize = 10;
+
+impl Fates {
+    /// All of them.
+    pub fn ordered(&self) -> u32 {
+        self.kicked() + self.no_kick
+    }
+
+    /// Those that left the passer: what the paper's Table 1 calls attempted.
+    pub fn kicked(&self) -> u32 {
+        let Self { received, by_mate, intercepted, missed, late, out, .. } = self;
+        received + by_mate + intercepted + missed + late + out
+    }
+
+    /// Those that the team had in the end.
+    pub fn successful(&self) -> u32 {
+        self.received + self.by_mate
+    }
+
+    fn count(&mut self, verdict: &Verdict) -> &mut u32 {
+        match verdict {
+            Verdict::Received { .. } => &mut self.received,
+            Verdict::ByMate { .. } => &mut self.by_mate,
+            Verdict::Intercepted { .. } => &mut self.intercepted,
+            Verdict::Missed { .. } => &mut self.missed,
+            Verdict::Late { .. } => &mut self.late,
+            Verdict::Out { .. } => &mut self.out,
+            Verdict::NoKick { .. } => &mut self.no_kick,
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.received += other.received;
+        self.by_mate += other.by_mate;
+        self.intercepted += other.intercepted;
+        self.missed += other.missed;
+        self.late += other.late;
+        self.out += other.out;
+        self.no_kick += other.no_kick;
+    }
+}
+
+impl PassTally {
+    /// Counts one pass.
+    pub fn record(&mut self, pass: &Ordered, verdict: &Verdict) {
+        let fates = if pass.chip { &mut self.chip } else { &mut self.flat };
+        *fates.count(verdict) += 1;
+        if matches!(verdict, Verdict::NoKick { .. }) {
+            return;
+        }
+        // NaN counts as 0.
+        let bin = ((pass.likely * BINS as f32) as usize).min(BINS - 1);
+        let bin = &mut self.calibration[bin];
+        bin.passes += 1;
+        bin.predicted += f64::from(pass.likely);
+        bin.received += u32::from(matches!(verdict, Verdict::Received { .. }));
+    }
+
+    /// The passes of another match, too.
+    pub fn add(&mut self, other: &Self) {
+        self.flat.add(&other.flat);
+        self.chip.add(&other.chip);
+        for (bin, more) in self.calibration.iter_mut().zip(&other.calibration) {
+            bin.passes += more.passes;
+            bin.predicted += more.predicted;
+            bin.received += more.received;
+        }
+    }
+
+    /// How far P(receive) is off what was seen: the mean over the bins of |predicted − seen|, each by its passes (expected calibration
+    /// error); `None` without passes.
+    pub fn calibration_error(&self) -> Option<f64> {
+        let passes: u32 = self.calibration.iter().map(|bin| bin.passes).sum();
+        let off: f64 =
+            self.calibration.iter().map(|bin| (bin.predicted - f64::from(bin.received)).abs()).sum();
+        (passes > 0).then(|| off / f64::from(passes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Point;
+    use protocol::{Instant, RobotId};
+    use rules::Colour;
+
+    fn pass(likely: f32, chip: bool) -> Ordered {
+        Ordered {
+            at: Instant(0),
+            us: Colour::Blue,
+            passer: RobotId::ZERO,
+            receiver: RobotId::ZERO,
+            from: Point::default(),
+            to: Point::default(),
+            flight: 1.0,
+            chip,
+            likely,
+        }
+    }
+
+    const RECEIVED: Verdict = Verdict::Received { off: 0.0, late: 0.0 };
+
+    #[test]
+    fn passes_are_counted_by_kick_and_fate_and_those_never_kicked_predict_nothing() {
+        let mut tally = PassTally::default();
+        tally.record(&pass(0.95, false), &RECEIVED);
+        tally.record(&pass(1.0, false), &Verdict::Late { receiver_off: 1.0 });
+        tally.record(&pass(0.2, true), &Verdict::Intercepted { by: RobotId::ZERO, along: 1.0, after: 0.5 });
+        tally.record(&pass(0.2, true), &Verdict::NoKick { after: 5.0, lost_to: None });
+        assert_eq!((tally.flat.kicked(), tally.flat.successful(), tally.flat.late), (2, 1, 1));
+        assert_eq!((tally.chip.ordered(), tally.chip.kicked(), tally.chip.intercepted), (2, 1, 1));
+        let last = tally.calibration[9];
+        assert_eq!((last.passes, last.received), (2, 1));
+        assert_eq!(tally.calibration[2].passes, 1);
+    }
+
+    #[test]
+    fn the_calibration_error_by_hand_and_over_two_matches() {
+        let mut one = PassTally::default();
+        assert_eq!(one.calibration_error(), None);
+        // Predicted 0.75 + 0.75, one seen: |1.5 − 1| / 2.
+        one.record(&pass(0.75, false), &RECEIVED);
+        one.record(&pass(0.75, false), &Verdict::Missed { by: 1.0 });
+        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        let mut other = PassTally::default();
+        // Predicted 0.25 + 0.25, none seen: with the above (0.5 + 0.5) / 4.
+        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
+        other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
+        one.add(&other);
+        assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
+        assert_eq!((one.chip.out, one.flat.kicked()), (2, 2));
+    }
+}
