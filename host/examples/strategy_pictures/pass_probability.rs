@@ -62,15 +62,10 @@ type Panel<'a> = (&'static str, Box<dyn Fn(Point<Attack>) -> f32 + 'a>, f64);
 fn over(svg: &mut Svg, view: &View, best: Option<&Rating>) {
     field_lines(svg, &in_mm(&view.field), colors(), "#ffffff");
     if let (Some(best), Some(ball)) = (best, view.ball) {
-        let line = |color: &str, dash: &str| format!(r#"stroke="{color}" stroke-width="45" {dash}"#);
-        svg.arrow(mm(ball.position), mm(best.at), 160.0, "#ffffff", line("#ffffff", ""));
-        svg.arrow(
-            mm(best.at),
-            mm(best.shot.aim),
-            160.0,
-            "#ffffff",
-            line("#ffffff", r#"stroke-dasharray="120 80""#),
-        );
+        let width = r#"stroke-width="45""#;
+        svg.arrow(mm(ball.position), mm(best.at), 160.0, "#ffffff", width);
+        let dashed = format!(r#"{width} stroke-dasharray="120 80""#);
+        svg.arrow(mm(best.at), mm(best.shot.aim), 160.0, "#ffffff", dashed);
     }
     robots(svg, view);
     if let Some(best) = best {
