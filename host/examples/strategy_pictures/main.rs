@@ -3,6 +3,7 @@
 //! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them; `cargo xtask pictures` keeps those in `docs/strategy`.
 
 mod angles;
+mod coercing;
 mod field;
 mod page;
 mod pass_probability;
@@ -34,9 +35,10 @@ fn main() -> ExitCode {
 /// A picture's file and what draws it.
 type Picture = (&'static str, fn() -> String);
 
-const PICTURES: [Picture; 4] = [
+const PICTURES: [Picture; 5] = [
     ("pass-probability.svg", pass_probability::draw),
     ("tactics.svg", tactics::draw),
     ("risk-of-receiving.svg", risk::draw),
     ("open-angles.svg", angles::draw),
+    ("coerce-plan.svg", coercing::draw),
 ];

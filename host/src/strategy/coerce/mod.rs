@@ -10,9 +10,10 @@
 //!
 //! [`Planner`] is a value: pictures go in ([`Planner::observe`], [`Planner::plan`], [`Planner::watch`]), a plan with its reasons
 //! comes out, and [`Planner::postings`] says who goes where. Attack frame, SI. What passes are worth is section 3.1's, by
-//! [`attack::PassValue`]. The same pictures and the same seed give the same plan.
+//! [`attack::PassValue`], for which [`ByPassLocation`] asks [`super::pass`]. The same pictures and the same seed give the same plan.
 
 pub mod attack;
+mod by_pass;
 pub mod coercing;
 pub mod detect;
 pub mod grid;
@@ -22,6 +23,7 @@ pub mod tactics;
 use motion::trajectory::FreeLimits;
 use rules::League;
 
+pub use by_pass::ByPassLocation;
 pub use planner::{CapPlan, End, FinalAttack, Followed, Part, Planner, Posting, Progress};
 
 /// What the paper leaves open, in one place.

@@ -286,3 +286,57 @@ fn without_a_ball_or_mates_there_is_no_plan() {
     let mut idle = Planner::new(Settings::default(), Models::default());
     assert_eq!(idle.watch(&lonely, &ByDistance), Progress::Idle);
 }
+
+/// Counts what is asked of it.
+#[derive(Default)]
+struct Counting {
+    worths: core::cell::Cell<usize>,
+    meets: core::cell::Cell<usize>,
+}
+
+impl PassValue for Counting {
+    fn worths(
+        &self,
+        view: &View,
+        from: Point<Attack>,
+        taker: RobotId,
+        receiver: &Robot,
+        places: &mut dyn Iterator<Item = Point<Attack>>,
+        take: &mut dyn FnMut(Point<Attack>, Worth),
+    ) {
+        ByDistance.worths(view, from, taker, receiver, places, &mut |at, worth| {
+            self.worths.set(self.worths.get() + 1);
+            take(at, worth);
+        });
+    }
+
+    fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+        self.meets.set(self.meets.get() + 1);
+        ByDistance.meets_pass(opponent, from, to)
+    }
+
+    fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32 {
+        ByDistance.meets_shot(opponent, from, to)
+    }
+}
+
+#[test]
+fn the_work_of_a_tick_is_bounded_by_cells_receivers_and_followers() {
+    for marked in [&[][..], &[0, 1], &[0, 1, 2, 3]] {
+        let mut view = free_kick(&MATES, marked);
+        let mut planner = planner();
+        let counting = Counting::default();
+        planner.plan(&view, &counting, id(1), 1);
+        let receivers = if marked.len() == 4 { 4 } else { 4 - marked.len() };
+        // Every cell for every receiver, and the samples around the best one.
+        assert_eq!(counting.worths.take(), 24 * receivers + attack::SAMPLES as usize);
+        // Every cell that may be gone to for every follower, and each where it stands.
+        assert!(counting.meets.take() <= 25 * marked.len());
+        planner.watch(&view, &counting);
+        let ticks = counting.worths.take();
+        assert!(marked.is_empty() || ticks == 0, "nothing is rated while they go");
+        view.now += protocol::Duration::millis(5_000);
+        planner.watch(&view, &counting);
+        assert!(counting.worths.take() <= 24 * 4 + attack::SAMPLES as usize);
+    }
+}
