@@ -269,6 +269,7 @@ impl Host {
                 self.robots[robot.index()].telemetry = Some((now, telemetry));
                 Verdict::Robot(robot)
             }
+            Ok(radio::Heard::Greeting(robot)) => Verdict::Robot(robot),
             Err(refusal) => Verdict::Refused(refusal),
         }
     }

@@ -134,7 +134,7 @@ pub enum Refusal {
     Tag,
     /// The payload is no message.
     Payload,
-    /// A host that has not shown that it knows this life of ours: another one, or a recording.
+    /// A host or mate that has not shown that it knows this life of ours: a new one, or a recording.
     Stranger {
         /// The epoch in the frame.
         epoch: u32,
@@ -173,7 +173,7 @@ impl core::fmt::Display for Refusal {
             Self::Tag => f.write_str("frame with a wrong tag"),
             Self::Payload => f.write_str("frame whose payload is no message"),
             Self::Stranger { epoch } => {
-                write!(f, "frame of a host in epoch {epoch}, which has not welcomed us")
+                write!(f, "frame of a sender in epoch {epoch}, which has not named our life")
             }
         }
     }

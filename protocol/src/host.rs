@@ -11,6 +11,7 @@ pub use rules::Duty;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
+use crate::frame::Refusal;
 use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
@@ -242,9 +243,9 @@ pub struct Telemetry {
     /// Parts that never came, by the pictures' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
-    /// Frames refused, of any kind, wrapping.
-    #[serde(with = "postcard::fixint::le")]
-    pub refused: u16,
+    /// Frames refused in this life, by [`Refusal::kind`], saturating; the robot's own words, given back, are not counted.
+    #[serde(with = "counts")]
+    pub refused: [u16; Refusal::KINDS],
     /// The newest picture a part of which came; means nothing before the first.
     pub picture: u8,
     /// How long ago the last frame of the host came, 0.1 ms, saturating.
@@ -280,6 +281,25 @@ impl Condition {
     /// Every bit of `other` is set.
     pub const fn has(self, other: Self) -> bool {
         self.0 & other.0 == other.0
+    }
+}
+
+mod counts {
+    //! Counters as two fixed bytes each.
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use crate::frame::Refusal;
+
+    #[derive(Serialize, Deserialize)]
+    #[serde(transparent)]
+    struct Fixed(#[serde(with = "postcard::fixint::le")] u16);
+
+    pub(super) fn serialize<S: Serializer>(counts: &[u16; Refusal::KINDS], s: S) -> Result<S::Ok, S::Error> {
+        counts.map(Fixed).serialize(s)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(d: D) -> Result<[u16; Refusal::KINDS], D::Error> {
+        <[Fixed; Refusal::KINDS]>::deserialize(d).map(|counts| counts.map(|Fixed(count)| count))
     }
 }
 

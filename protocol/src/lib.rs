@@ -1,7 +1,7 @@
 //! What travels between robots, host and simulator? (DESIGN §5–§7)
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
-//! [`frame`] is the radio's envelope (who, when, genuine?), [`link`] and [`host_link`] are its two ends, [`serial`] puts it
+//! [`frame`] is the radio's envelope (who, when, genuine?), [`link`] and [`host_link`] are its two ends ([`acquaintance`]: which mates are believed), [`serial`] puts it
 //! on a line; [`team`] is what robots tell each other, [`mod@host`] what host and robots do; [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer,
 //! [`slot`] is where a computer finds a case table that was not built into it.
 //! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
@@ -9,6 +9,7 @@
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![no_std]
 
+pub mod acquaintance;
 pub mod frame;
 pub mod host;
 pub mod host_link;

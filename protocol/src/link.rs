@@ -1,16 +1,15 @@
 //! How does a robot's message become a packet of the air, and which packets does it believe? The robot's end of the radio;
 //! [`crate::host_link`] is the other.
 //!
-//! A robot hears its mates and its host. Mates are believed from their first genuine frame on; what an old recording of
-//! theirs could do is little, for everything they say is outdated by what they say next. The host moves robots, so it must
-//! first have answered this very life of the robot with a [`Welcome`]: a recording cannot, for it was made before the
-//! robot's epoch was known. Until then, and again when a host with a newer epoch speaks, its frames are refused as a
-//! [`Refusal::Stranger`]'s.
+//! A robot hears its mates and its host, and believes neither before they have answered this very life of it: the host with a
+//! [`Welcome`], mates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
+//! and again when a host or mate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s.
 
+use crate::acquaintance::Acquaintances;
 use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, Sender, Sessions, TeamKey};
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, Welcome, WorldPart};
-use crate::team::{TEAM_MESSAGE_LEN_MAX, TeamMessage};
-use crate::{RobotId, TeamId};
+use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
+use crate::{Instant, RobotId, TeamId};
 
 /// A packet of the air: one whole frame.
 pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
@@ -34,7 +33,10 @@ pub struct Link {
     epoch: u32,
     counter: u32,
     sessions: Sessions,
+    acquaintances: Acquaintances,
     refused: [u32; Refusal::KINDS],
+    /// Of these, its own words given back.
+    echoes: u32,
     pictures: Pictures,
 }
 
@@ -48,7 +50,9 @@ impl Link {
             epoch,
             counter: 0,
             sessions: Sessions::default(),
+            acquaintances: Acquaintances::default(),
             refused: [0; Refusal::KINDS],
+            echoes: 0,
             pictures: Pictures::default(),
         }
     }
@@ -64,6 +68,12 @@ impl Link {
         packet(&frame, &self.key)
     }
 
+    /// The packet that greets mates who do not know yet that we live now, if there are any and it is time.
+    pub fn poll_greeting(&mut self, now: Instant) -> Option<Packet> {
+        let greeting = self.acquaintances.poll(now)?;
+        Some(self.seal(&TeamMessage::Greeting(greeting)))
+    }
+
     /// Who says what, or why the packet is not believed (counted).
     pub fn open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
         let opened = self.try_open(packet);
@@ -71,6 +81,11 @@ impl Link {
             count(&mut self.refused, refusal);
         }
         opened
+    }
+
+    /// The life of the host that is believed, if there is one; when it changes, what the last one's numbers meant is over.
+    pub fn host_life(&self) -> Option<u32> {
+        self.sessions.epoch(Sender::Host)
     }
 
     /// How many packets were refused, by [`Refusal::kind`].
@@ -88,15 +103,16 @@ impl Link {
         telemetry.heard = self.pictures.heard as u16;
         telemetry.lost = self.pictures.lost as u16;
         telemetry.picture = self.pictures.newest().unwrap_or(0);
+        telemetry.refused = self.refused.map(|count| count.min(u32::from(u16::MAX)) as u16);
         // A base station that sends to all gives a robot its own words back; that is no sign of trouble.
-        let echo = Refusal::Sender(self.me.number()).kind();
-        let counts = self.refused.iter().enumerate().filter(|(kind, _)| *kind != echo);
-        telemetry.refused = counts.fold(0_u32, |sum, (_, count)| sum.wrapping_add(*count)) as u16;
+        let sender = &mut telemetry.refused[Refusal::Sender(0).kind()];
+        *sender = sender.saturating_sub(self.echoes.min(u32::from(u16::MAX)) as u16);
     }
 
     fn try_open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         if frame.sender == Sender::Robot(self.me) {
+            self.echoes = self.echoes.saturating_add(1);
             return Err(Refusal::Sender(self.me.number()));
         }
         self.sessions.check(&frame)?;
@@ -104,13 +120,23 @@ impl Link {
             return Err(Refusal::Tag);
         }
         match frame.sender {
-            Sender::Robot(mate) => {
-                self.sessions.accept(&frame);
-                let message = decode::<TeamMessage>(frame.payload).ok_or(Refusal::Payload)?;
-                Ok(Heard::Mate(mate, message))
-            }
+            Sender::Robot(mate) => self.open_mate(mate, &frame).map(|message| Heard::Mate(mate, message)),
             Sender::Host => self.open_host(&frame).map(Heard::Host),
         }
+    }
+
+    fn open_mate(&mut self, mate: RobotId, frame: &Frame<'_>) -> Result<TeamMessage, Refusal> {
+        self.acquaintances.hear(mate, frame.epoch);
+        let message = decode::<TeamMessage>(frame.payload);
+        if let Some(TeamMessage::Greeting(Greeting { mates })) = &message
+            && let Some(own) = mates.iter().find(|own| own.who == self.me && own.life == self.epoch)
+        {
+            self.acquaintances.believe(mate, frame.epoch, own.bond);
+        } else if self.sessions.epoch(frame.sender) != Some(frame.epoch) {
+            return Err(Refusal::Stranger { epoch: frame.epoch });
+        }
+        self.sessions.accept(frame);
+        message.ok_or(Refusal::Payload)
     }
 
     fn open_host(&mut self, frame: &Frame<'_>) -> Result<HostMessage, Refusal> {

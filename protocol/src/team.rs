@@ -3,7 +3,8 @@
 //! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
 //! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is
 //! a value that only grows ([`CycleState::is_newer_than`]), so that packets may be lost, doubled and reordered, and
-//! any robot may pass on what the coordinator said. The other message, [`Telemetry`], is for the host; mates leave it.
+//! any robot may pass on what the coordinator said. [`Telemetry`] is for the host; mates leave it. A [`Greeting`] is what makes
+//! mates believe each other after a boot ([`crate::acquaintance`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,41 @@ pub enum TeamMessage {
     Beacon(Beacon),
     /// To the host: how the sender's body and link are.
     Telemetry(Telemetry),
+    /// To mates that do not know yet that the sender lives now.
+    Greeting(Greeting),
+}
+
+/// Mates' lives that the sender has heard: who is named in its present life knows that this is no recording.
+#[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Greeting {
+    /// Who, in which life.
+    pub mates: heapless::Vec<Greeted, GREETED_MAX>,
+}
+
+/// Mates in one greeting: as many as its frame holds.
+pub const GREETED_MAX: usize = 7;
+
+/// A mate that is greeted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Greeted {
+    /// Who.
+    pub who: RobotId,
+    /// The epoch of its frames.
+    #[serde(with = "postcard::fixint::le")]
+    pub life: u32,
+    /// How far the two are with each other.
+    pub bond: Bond,
+}
+
+/// How far two mates are with each other, as one of them knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Bond {
+    /// The greeter has heard the other, and does not believe it yet.
+    Heard,
+    /// It believes the other.
+    Believed,
+    /// And knows that the other believes it: no answer is needed.
+    Mutual,
 }
 
 /// A robot's whole state.
@@ -273,12 +309,21 @@ mod tests {
             battery: u16::MAX,
             heard: u16::MAX,
             lost: u16::MAX,
-            refused: u16::MAX,
+            refused: [u16::MAX; crate::frame::Refusal::KINDS],
             picture: u8::MAX,
             silence: u16::MAX,
         };
         let mut out = [0; 128];
         let n = postcard::to_slice(&TeamMessage::Telemetry(telemetry), &mut out).unwrap().len();
+        assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");
+    }
+
+    #[test]
+    fn the_longest_greeting_fits_its_budget() {
+        let mate = Greeted { who: robot(15), life: u32::MAX, bond: Bond::Mutual };
+        let mates = [mate; GREETED_MAX].into_iter().collect();
+        let mut out = [0; 128];
+        let n = postcard::to_slice(&TeamMessage::Greeting(Greeting { mates }), &mut out).unwrap().len();
         assert!(n <= TEAM_MESSAGE_LEN_MAX, "{n} bytes");
     }
 

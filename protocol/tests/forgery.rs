@@ -6,7 +6,7 @@ use protocol::host::{Command, Directive, Duty, HostMessage, Telemetry, Welcome, 
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
 use protocol::team::TeamMessage;
-use protocol::{RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId};
 use rand_core::{RngCore as _, SeedableRng as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rules::Phase;
@@ -65,6 +65,12 @@ impl Team {
             host: HostLink::new(TEAM, KEY, 70),
             recorded: Vec::new(),
         };
+        // Mates believe each other once they have greeted.
+        let (first, second) = (team.robot.seal(&telemetry(0)), team.mate.seal(&telemetry(0)));
+        assert!(team.robot.open(&second).is_err() && team.mate.open(&first).is_err());
+        let greeting = team.mate.poll_greeting(Instant(0)).unwrap();
+        assert!(team.robot.open(&greeting).is_ok() && team.host.open(&greeting).is_ok());
+        team.recorded.extend([first, second, greeting]);
         for n in 0..100 {
             team.speak(n);
         }

@@ -9,7 +9,8 @@ use protocol::host::{
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::serial::{Lines, line};
 use protocol::team::{
-    AbortReason, BallReport, Beacon, Closure, CycleState, Decision, Play, Progress, Role, Status, TeamMessage,
+    AbortReason, BallReport, Beacon, Bond, Closure, CycleState, Decision, Greeted, Greeting, Play, Progress,
+    Role, Status, TeamMessage,
 };
 use protocol::{CaseId, CycleId, RobotId, TeamId};
 use rules::{Phase, Side};
@@ -175,11 +176,14 @@ fn robots_messages_have_the_bytes_of_the_specification() {
         battery: 1640,
         heard: 500,
         lost: 3,
-        refused: 1,
+        refused: [0, 0, 2, 0, 0, 1, 0, 0, 258],
         picture: 249,
         silence: 73,
     };
     both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
+    let mate = |who, life, bond| Greeted { who: robot(who), life, bond };
+    let mates = [mate(1, 9, Bond::Heard), mate(3, 258, Bond::Believed), mate(12, 1, Bond::Mutual)];
+    both_ways("greeting", &TeamMessage::Greeting(Greeting { mates: mates.into_iter().collect() }));
 }
 
 #[test]
@@ -234,8 +238,8 @@ fn a_keyed_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_o
 #[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Four of robots, two worlds, a welcome, two frames and a line.
-    assert_eq!(examples, 4 + worlds().len() + 1 + 3 + commands().len());
+    // Five of robots, two worlds, a welcome, two frames and a line.
+    assert_eq!(examples, 5 + worlds().len() + 1 + 3 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

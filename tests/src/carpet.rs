@@ -174,6 +174,8 @@ impl<'a> Carpet<'a> {
                     TeamMessage::Telemetry(telemetry) => {
                         self.telemetry.insert(id, (now, *telemetry));
                     }
+                    // The link's, not the brain's: here is no link.
+                    TeamMessage::Greeting(_) => {}
                 }
                 self.air.push((id, message));
             }

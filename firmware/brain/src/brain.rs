@@ -40,8 +40,6 @@ pub struct Brain<'a> {
     reactive: Reactive,
     timers: TimerTable,
     awake: bool,
-    /// How far the first proposal of this life jumps ahead.
-    skip: u32,
     /// The closed cycle whose end this robot has told its mates.
     told_end_of: Option<CycleId>,
     limbs: Limbs,
@@ -73,7 +71,6 @@ impl<'a> Brain<'a> {
             reactive: Reactive::of(config.league),
             timers,
             awake: false,
-            skip: config.epoch.saturating_sub(1) % coordinate::BOOT_SKIP,
             told_end_of: None,
             limbs: Limbs::of(config.league),
             host: config.hosted.then(|| Hosted::new(config.robot)),
@@ -105,6 +102,13 @@ impl<'a> Brain<'a> {
         self.timers.advance(now);
         if host.handle(now, message) {
             self.limbs.hear_host(now);
+        }
+    }
+
+    /// A host that was not believed before leads from now on.
+    pub fn handle_new_host(&mut self) {
+        if let Some(host) = &mut self.host {
+            host.begin_anew();
         }
     }
 

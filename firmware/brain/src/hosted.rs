@@ -68,6 +68,11 @@ impl Hosted {
         true
     }
 
+    /// Another host than before has welcomed this robot: its pictures have numbers of their own.
+    pub fn begin_anew(&mut self) {
+        self.picture.begin_anew();
+    }
+
     /// What the wheels measured: carries the picture on, and shows `belief` all of it.
     pub fn see(&mut self, now: Instant, sensors: &SensorFrame, belief: &mut Belief) {
         self.picture.handle_odometry(now, sensors.odometry);

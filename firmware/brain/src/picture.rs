@@ -126,6 +126,11 @@ impl Picture {
         taken
     }
 
+    /// Another host shows the field from now on: any picture is a new one.
+    pub fn begin_anew(&mut self) {
+        self.number = None;
+    }
+
     /// The body's own measure of its motion; carries the pose on to `now`.
     pub fn handle_odometry(&mut self, now: Instant, odometry: Twist<Body>) {
         let finite = odometry.linear.is_finite() && odometry.angular.is_finite();

@@ -33,9 +33,15 @@ impl<'a> Station<'a> {
 
     /// A packet came; whatever is not a genuine, new message of this team is counted and dropped.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
+        let led_by = self.link.host_life();
         match self.link.open(packet) {
             Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
-            Ok(Heard::Host(message)) => self.brain.handle_host_message(now, &message),
+            Ok(Heard::Host(message)) => {
+                if self.link.host_life() != led_by {
+                    self.brain.handle_new_host();
+                }
+                self.brain.handle_host_message(now, &message);
+            }
             Err(_) => {}
         }
     }
@@ -52,7 +58,7 @@ impl<'a> Station<'a> {
 
     /// The next packet to send. Call after every `handle_…` until `None`.
     pub fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
-        let mut message = self.brain.poll_message(now)?;
+        let Some(mut message) = self.brain.poll_message(now) else { return self.link.poll_greeting(now) };
         if let TeamMessage::Telemetry(telemetry) = &mut message {
             self.link.tell(telemetry);
         }

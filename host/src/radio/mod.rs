@@ -6,7 +6,7 @@
 //! again, carried forward. After [`REPEAT_MAX`] without a new one the radio falls silent: robots brake by themselves, and a
 //! guess that old would be worse.
 //!
-//! **Relay.** Where robots hear their host but not each other, the host passes each beacon on, the very bytes.
+//! **Relay.** Where robots hear their host but not each other, the host passes each beacon and greeting on, the very bytes.
 //!
 //! No heap: capacities are named constants, what does not fit is dropped and counted.
 
@@ -92,6 +92,8 @@ pub enum Heard {
     Beacon(RobotId, Beacon),
     /// To us: how it is.
     Telemetry(RobotId, Telemetry),
+    /// To its mates: that it lives now.
+    Greeting(RobotId),
 }
 
 /// The host's radio.
@@ -191,6 +193,10 @@ impl Radio {
             TeamMessage::Beacon(beacon) => {
                 self.relay(now, robot, packet);
                 Ok(Heard::Beacon(robot, beacon))
+            }
+            TeamMessage::Greeting(_) => {
+                self.relay(now, robot, packet);
+                Ok(Heard::Greeting(robot))
             }
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.picture)];

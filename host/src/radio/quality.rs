@@ -136,8 +136,8 @@ impl Quality {
     }
 
     /// Frames it refused in this life, of any kind.
-    pub fn refused(&self) -> u16 {
-        self.telemetry.map_or(0, |(_, telemetry)| telemetry.refused)
+    pub fn refused(&self) -> u32 {
+        self.telemetry.map_or(0, |(_, telemetry)| telemetry.refused.iter().copied().map(u32::from).sum())
     }
 
     /// A genuine frame of it came.

@@ -240,8 +240,8 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     assert!(near(quality.round_trip().max(), 3.0, 1e-6));
     assert!(near(quality.loss_down(), 20.0, 0.5), "{:?}", quality.loss_down());
     assert!(near(quality.loss_up(), 12.5, 0.5), "{:?}", quality.loss_up());
-    // 100 pictures of one part (71 B) and a command (24 B), 10 welcomes (25 B), 70 telemetries (33 B) a second.
-    let bits = (100.0 * (part_len(4) + 24.0) + 10.0 * 25.0 + 70.0 * 33.0) * 8.0 * 1e-3;
+    // 100 pictures of one part (71 B) and a command (24 B), 10 welcomes (25 B), 70 telemetries (49 B) a second.
+    let bits = (100.0 * (part_len(4) + 24.0) + 10.0 * 25.0 + 70.0 * 49.0) * 8.0 * 1e-3;
     assert!(
         near(quality.data_rate().mean(), bits, bits * 0.02),
         "{:?}, not {bits}",

@@ -13,7 +13,7 @@ use protocol::host_link::HostLink;
 use protocol::link::{Heard, Link, Packet};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
-use protocol::{CaseId, CycleId, RobotId, TeamId};
+use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::{Phase, Side};
 
 /// How often each work is done.
@@ -111,6 +111,12 @@ impl Bench {
         };
         let welcome = bench.host.seal(&HostMessage::Welcome(Welcome { to: id(2), life: 9 }));
         let _welcomed = bench.robot.open(&welcome);
+        // The mate hears a first frame and greets; whom it has greeted believes it.
+        let first = bench.robot.seal(&short());
+        let _heard = bench.mate.open(&first);
+        if let Some(greeting) = bench.mate.poll_greeting(Instant(0)) {
+            let _greeted = bench.robot.open(&greeting);
+        }
         bench
     }
 

@@ -1,5 +1,7 @@
 //! Does a robot believe what its mates and its host say, and nothing else?
 
+extern crate std;
+
 use super::*;
 use crate::host::{Command, Directive, Duty, WorldPart};
 use crate::host_link::HostLink;
@@ -60,18 +62,31 @@ fn acquainted() -> (Link, HostLink) {
     (link, host)
 }
 
+/// Both hear a first frame of each other, greet, and believe from then on.
+fn acquaint(a: &mut Link, b: &mut Link) {
+    let (from_a, from_b) = (a.seal(&beacon(0)), b.seal(&beacon(0)));
+    assert!(matches!(b.open(&from_a), Err(Refusal::Stranger { .. })));
+    assert!(matches!(a.open(&from_b), Err(Refusal::Stranger { .. })));
+    let now = Instant(0);
+    let (greets_b, greets_a) = (a.poll_greeting(now).unwrap(), b.poll_greeting(now).unwrap());
+    assert!(a.open(&greets_a).is_ok() && b.open(&greets_b).is_ok());
+}
+
 #[test]
 fn what_one_seals_another_opens_once() {
     let (mut a, mut b) = (link(1, 0), link(2, 0));
+    acquaint(&mut a, &mut b);
     let packet = a.seal(&beacon(7));
     assert_eq!(b.open(&packet), Ok(Heard::Mate(robot(1), beacon(7))));
-    assert_eq!(b.open(&packet), Err(Refusal::Counter { seen: 1, last: 1 }));
+    // After a first frame and a greeting.
+    assert_eq!(b.open(&packet), Err(Refusal::Counter { seen: 3, last: 3 }));
     assert_eq!(b.refused()[5], 1);
 }
 
 #[test]
 fn a_forged_packet_does_not_move_the_counter() {
     let (mut a, mut b) = (link(1, 0), link(2, 0));
+    acquaint(&mut a, &mut b);
     let good = a.seal(&beacon(7));
     let mut forged = good.clone();
     forged[7] = 200;
@@ -83,6 +98,7 @@ fn a_forged_packet_does_not_move_the_counter() {
 fn frames_of_an_earlier_life_are_refused() {
     let (mut old, mut new, mut b) = (link(1, 4), link(1, 5), link(2, 0));
     let late = old.seal(&beacon(1));
+    acquaint(&mut new, &mut b);
     assert!(b.open(&new.seal(&beacon(2))).is_ok());
     assert_eq!(b.open(&late), Err(Refusal::Epoch { seen: 4, current: 5 }));
 }
@@ -167,10 +183,70 @@ fn what_is_lost_of_pictures_is_counted_by_their_numbers() {
     let mut telemetry = Telemetry { silence: 3, ..Telemetry::default() };
     a.tell(&mut telemetry);
     assert_eq!((telemetry.heard, telemetry.lost, telemetry.picture), (5, 5, 2));
-    assert_eq!((telemetry.refused, telemetry.silence), (0, 3));
-    assert!(a.open(&[0; 30]).is_err());
+    assert_eq!((telemetry.refused, telemetry.silence), ([0; Refusal::KINDS], 3));
+}
+
+#[test]
+fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
+    let (mut a, mut host) = acquainted();
+    let good = host.seal(&stand(2));
+    let sealed = |sender: Sender, epoch: u32, counter: u32, payload: &[u8]| {
+        packet(&Frame { team: TeamId(1), sender, epoch, counter, payload }, &TeamKey::ZERO)
+    };
+    let mut forged = good.clone();
+    forged[7] = 200;
+    let refused = [
+        Packet::from_slice(&[0; 18]).unwrap(),
+        Packet::from_slice(&[9; 30]).unwrap(),
+        link(3, 1).seal(&beacon(0)),
+        sealed(Sender::Host, 69, 1, &[]),
+        sealed(Sender::Host, 70, 1, &[]),
+        forged,
+        sealed(Sender::Host, 70, 500, &[0xff; 3]),
+        sealed(Sender::Host, 71, 1, &[0xff; 3]),
+    ];
+    let kinds = [0, 1, 2, 4, 5, 6, 7, 8];
+    let mut expected = [0; Refusal::KINDS];
+    for (times, (mut packet, kind)) in refused.into_iter().zip(kinds).enumerate() {
+        if kind == 2 {
+            packet[1] = 7;
+        }
+        for _ in 0..=times {
+            let refusal = a.open(&packet).unwrap_err();
+            // The unreadable one is news only once.
+            let kind = if refusal.kind() == 5 { 5 } else { kind };
+            assert_eq!(refusal.kind(), kind);
+            expected[kind] += 1;
+        }
+    }
+    // No such sender; and our own words, which a base station that sends to all gives us back: no sign of trouble.
+    let mut nobody = good.clone();
+    nobody[2] = 17;
+    assert_eq!(a.open(&nobody), Err(Refusal::Sender(17)));
+    let own = a.seal(&beacon(0));
+    assert_eq!(a.open(&own), Err(Refusal::Sender(2)));
+    expected[3] = 1;
+    let mut telemetry = Telemetry::default();
     a.tell(&mut telemetry);
-    assert_eq!(telemetry.refused, 1);
+    assert_eq!(telemetry.refused, expected);
+    assert!(expected.iter().all(|count| *count > 0), "{expected:?}");
+}
+
+#[test]
+fn after_a_boot_a_recording_of_a_mate_is_not_believed_and_keeps_the_mate_from_nothing() {
+    let (mut mate, mut before) = (link(1, 5), link(2, 8));
+    acquaint(&mut mate, &mut before);
+    let recorded: std::vec::Vec<Packet> = (0..20).map(|n| mate.seal(&beacon(n))).collect();
+    let mut after = link(2, 9);
+    for packet in recorded.iter().chain(&recorded) {
+        assert_eq!(after.open(packet), Err(Refusal::Stranger { epoch: 5 }));
+    }
+    let mut born_again = link(1, 6);
+    acquaint(&mut born_again, &mut after);
+    assert!(after.open(&born_again.seal(&beacon(7))).is_ok());
+    for packet in &recorded {
+        assert_eq!(after.open(packet), Err(Refusal::Epoch { seen: 5, current: 6 }));
+    }
 }
 
 #[test]

@@ -173,8 +173,7 @@ impl Brain<'_> {
     fn propose(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
         let coordinator = election::coordinator(now, me, &self.beacon(), &self.mates)?;
-        let skip = core::mem::take(&mut self.skip);
-        Some(election::proposal(self.cycle.id(), me, coordinator, skip))
+        Some(election::proposal(self.cycle.id(), me, coordinator, self.config.epoch))
     }
 
     /// Involved in the running case, or its coordinator.
@@ -235,5 +234,3 @@ const SETTLE_FOR: Duration = Duration::millis(120);
 const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
 /// How soon the coordinator tries again after "no case": six steps of a walking robot.
 const RETRY_AFTER: Duration = Duration::millis(240);
-/// Lives of a robot jump ahead by their number modulo this.
-pub(super) const BOOT_SKIP: u32 = 64;

@@ -22,12 +22,18 @@ pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, mates: &Mates) -> Op
         .map(|(id, _)| id)
 }
 
-/// The next cycle. `skip` more than the successor: a robot that has just booted cannot know whether an earlier life
-/// of its own proposed the successor already to somebody it does not hear.
-pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, skip: u32) -> CycleState {
-    let counter = known.map_or(0, |id| id.counter).saturating_add(1).saturating_add(skip);
+/// The next cycle, as proposed in that `life` of this robot. Each life counts in a residue class of its own: a robot that has
+/// booted cannot know which cycles its earlier lives proposed to mates it does not hear, and no cycle shall be two.
+pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, life: u32) -> CycleState {
+    let successor = known.map_or(0, |id| id.counter).saturating_add(1);
+    let ahead = life.wrapping_sub(successor) % LIVES;
+    let counter = successor.saturating_add(ahead);
     CycleState { id: CycleId { counter, proposer: me }, coordinator, decision: Decision::Undecided }
 }
+
+/// So many lives of a robot in a row never propose the same cycle. A power of two, so that residues hold over the wrap of the
+/// difference; at a cycle a second counters last for two years.
+const LIVES: u32 = 64;
 
 #[cfg(test)]
 mod tests {
@@ -62,6 +68,25 @@ mod tests {
         assert_eq!(coordinator(now, robot(5), &beacon(Some(400), false), &mates), Some(robot(7)));
         assert_eq!(coordinator(now, robot(5), &beacon(Some(500), true), &mates), Some(robot(5)));
         assert_eq!(coordinator(now, robot(5), &beacon(None, true), &mates), Some(robot(7)));
+    }
+
+    #[test]
+    fn no_life_proposes_what_another_has_proposed_whatever_it_has_heard() {
+        let mut proposed = [0_u32; 4];
+        for (life, newest) in (5..9).zip(&mut proposed) {
+            let mut known = None;
+            for heard in [0, 1, 40, 63, 64, 65, 200] {
+                let before = known.map_or(0, |id: CycleId| id.counter).max(heard);
+                let id = CycleId { counter: before, proposer: robot(3) };
+                let next = proposal(Some(id), robot(1), robot(1), life).id;
+                assert!(next.counter > before && next.counter <= before + 64, "{before} {next}");
+                assert_eq!(next.counter % 64, life % 64);
+                (known, *newest) = (Some(next), next.counter);
+            }
+        }
+        assert_eq!(proposal(None, robot(1), robot(1), 1).id.counter, 1);
+        let last = CycleId { counter: u32::MAX, proposer: robot(1) };
+        assert_eq!(proposal(Some(last), robot(1), robot(1), 7).id.counter, u32::MAX);
     }
 
     #[test]
