@@ -29,6 +29,28 @@ pub struct AirSettings {
     pub host_group: u8,
     /// Links that lose more or less than `loss`.
     pub links: Vec<LinkLoss>,
+    /// Stretches in which a link carries nothing at all, beside `loss`.
+    pub bursts: Option<Bursts>,
+}
+
+/// Loss that comes in stretches (Gilbert 1960, Elliott 1963): each direction between two stations is by turns good and dead,
+/// and both stretches are of exponential length. `loss` holds while it is good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bursts {
+    /// Share of the time in which it is dead, 0 to below 1.
+    pub share: f32,
+    /// Mean length of a dead stretch, ticks; at least 1.
+    pub ticks: f32,
+}
+
+impl Bursts {
+    /// The state of a link a tick later.
+    fn next(self, dead: bool, chance: &mut Stream) -> bool {
+        let ends = 1.0 / self.ticks.max(1.0);
+        // Balance: as many stretches begin as end.
+        let begins = ends * self.share / (1.0 - self.share).max(f32::MIN_POSITIVE);
+        if dead { !chance.chance(ends) } else { chance.chance(begins) }
+    }
 }
 
 /// One direction between two stations.
@@ -53,6 +75,7 @@ impl Default for AirSettings {
             groups: [0; RobotId::COUNT],
             host_group: 0,
             links: Vec::new(),
+            bursts: None,
         }
     }
 }
@@ -98,6 +121,10 @@ pub struct Air {
     inbound: Vec<(Sender, Vec<InFlight>)>,
     order: u64,
     counts: AirCounts,
+    /// Which links are dead, by speaker and listener, and until which tick that is worked out.
+    dead: Vec<[bool; Sender::COUNT]>,
+    dead_in: u32,
+    stretches: Stream,
 }
 
 #[derive(Clone, Debug)]
@@ -119,6 +146,9 @@ impl Air {
             inbound: receivers.into_iter().map(|robot| (Sender::Robot(robot), Vec::new())).collect(),
             order: 0,
             counts: AirCounts::default(),
+            dead: vec![[false; Sender::COUNT]; Sender::COUNT],
+            dead_in: 0,
+            stretches: Stream::new(seed, "air bursts"),
         }
     }
 
@@ -155,12 +185,14 @@ impl Air {
     }
 
     fn spread(&mut self, now: u32, from: Sender, only: Option<Sender>, packet: &Packet) {
-        let Self { settings, chance, inbound, order, counts } = self;
+        self.work_out_bursts(now);
+        let Self { settings, chance, inbound, order, counts, dead, .. } = self;
         let meant = |to: Sender| to != from && only.is_none_or(|only| only == to);
         for (to, queue) in inbound.iter_mut().filter(|(to, _)| meant(*to)) {
             counts.sent += 1;
             let apart = settings.group(from) != settings.group(*to);
-            if apart || chance.chance(settings.loss_between(from, *to)) {
+            let dead = settings.bursts.is_some() && dead[from.index()][to.index()];
+            if apart || dead || chance.chance(settings.loss_between(from, *to)) {
                 counts.lost += 1;
                 continue;
             }
@@ -174,6 +206,20 @@ impl Air {
                     overtake(queue, &mut arriving);
                 }
                 enqueue(queue, arriving);
+            }
+        }
+    }
+
+    /// Which links are dead in tick `now`: all of them go on tick by tick, whoever speaks.
+    fn work_out_bursts(&mut self, now: u32) {
+        let Some(bursts) = self.settings.bursts else {
+            self.dead_in = now;
+            return;
+        };
+        while self.dead_in < now {
+            self.dead_in += 1;
+            for dead in self.dead.iter_mut().flatten() {
+                *dead = bursts.next(*dead, &mut self.stretches);
             }
         }
     }
@@ -283,6 +329,20 @@ mod tests {
         assert!((heard.len() as f32 - once * 1.1).abs() < 4.0 * (29.0 + 16.0), "{}", heard.len());
         assert_eq!(counts.sent, 8_000);
         assert!(counts.lost.abs_diff(2_400) < 4 * 41 && counts.doubled.abs_diff(560) < 4 * 23, "{counts:?}");
+    }
+
+    #[test]
+    fn bursts_lose_their_share_in_stretches_of_their_length() {
+        let settings =
+            AirSettings { bursts: Some(Bursts { share: 0.3, ticks: 8.0 }), ..AirSettings::default() };
+        let n = 40_000;
+        let (heard, _) = heard(settings, n);
+        let came: std::collections::BTreeSet<u32> = heard.iter().map(|(_, number)| *number).collect();
+        let lost = f64::from(n) - came.len() as f64;
+        let stretches = (1..n).filter(|i| came.contains(&(i - 1)) && !came.contains(i)).count() as f64;
+        // 1,500 stretches of 8 ± 8: 0.2 of their mean, and 2 % of the share; four of each.
+        assert!((lost / f64::from(n) - 0.3).abs() < 0.03, "{lost}");
+        assert!((lost / stretches - 8.0).abs() < 0.9, "{}", lost / stretches);
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub mod small_size;
 mod trace;
 pub mod world;
 
-pub use air::{Air, AirCounts, AirSettings, LinkLoss};
+pub use air::{Air, AirCounts, AirSettings, Bursts, LinkLoss};
 pub use fault::{Fault, ScheduledFault};
 pub use hash::Fnv;
 pub use mcu::{Backend, Mcu, McuError, Reply};

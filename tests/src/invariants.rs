@@ -38,6 +38,8 @@ pub enum Air {
     Lossless,
     /// Packets are lost: overlaps are counted, robots leave the old gameplay when they hear of the new one.
     Lossy,
+    /// Anything may happen to packets: as lossy air, and no new cycle is owed to a fault until everything has healed.
+    Hostile,
 }
 
 /// Watches a team.
@@ -179,7 +181,8 @@ impl Watcher {
         self.robots.remove(&id);
         // Whoever is left must start anew, unless a gameplay goes on that the lost robot has no part in.
         let goes_on = self.plays_on_without(id);
-        if let (Some(newer_than), false, false) = (newest, goes_on, self.robots.is_empty()) {
+        let owed = self.air != Air::Hostile && !goes_on && !self.robots.is_empty();
+        if let (Some(newer_than), true) = (newest, owed) {
             self.pending = Some(Pending { lost: id, since: now, heard_since: false, newer_than });
         }
     }

@@ -4,5 +4,7 @@ pub mod carpet;
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;
+pub mod swarm;
+pub mod sweep;
 pub mod tabletop;
 pub mod workspace;

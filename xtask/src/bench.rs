@@ -1,4 +1,5 @@
-//! What does a retrieval cost, motion, or a radio frame? Starts a bench of the crate `match-tests`, with what it needs installed first.
+//! What does a retrieval cost, motion, or a radio frame, and what comes of faults? Starts a bench or an example of the crate
+//! `match-tests`, with what it needs installed first.
 
 use firmware_build::Install;
 
@@ -9,4 +10,9 @@ pub(crate) fn start(context: &Context, name: &str, words: &[String]) -> Result<(
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     context.ensure_target()?;
     run(context.cargo(&format!("bench --package match-tests --bench {name} --")).args(words))
+}
+
+/// Likewise an example, which needs no more than this machine.
+pub(crate) fn start_example(context: &Context, name: &str, words: &[String]) -> Result<(), Failure> {
+    run(context.cargo(&format!("run --release --package match-tests --example {name} --")).args(words))
 }

@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Ok(Request::SimulatorCost { write }) => told(simulator_cost::run_bench(&Context::new(), write)),
         Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
+        Ok(Request::Faults(name, words)) => told(bench::start_example(&Context::new(), name, &words)),
         Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
         Ok(Request::Help) => {
             println!("{USAGE}");
@@ -83,6 +84,8 @@ enum Request {
     },
     /// Retrieval, motion or radio, with these words for the bench.
     Bench(&'static str, Vec<String>),
+    /// The swarm, or another of the faults' programs, with these words for it.
+    Faults(&'static str, Vec<String>),
     Help,
 }
 
@@ -92,6 +95,8 @@ impl Request {
         match words.next() {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
+            Some("swarm") => return Ok(Self::Faults("swarm", words.map(String::from).collect())),
+            Some("faults") => return Ok(Self::Faults("faults", words.map(String::from).collect())),
             Some(verb @ ("pictures" | "evaluation")) => {
                 return match words.next() {
                     None if verb == "evaluation" => Ok(Self::Evaluation),
@@ -135,10 +140,14 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench NAME
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xtask faults | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench NAME
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
+  swarm [--seeds N] [--first N] [--jobs J]
+                 play N runs (100 if not told) with faults drawn from their seeds, and hold them to what is promised
+  faults [--seeds N] [--write]
+                 what loss costs a team; --write puts table and picture into docs/faults.md
   pictures       draw the documentation's pictures anew
   evaluation     play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation
   bench retrieval [--write | --guest | --verify]
@@ -191,6 +200,9 @@ mod tests {
             matches!(ask("bench retrieval --guest"), Ok(Request::Bench("retrieval", words)) if words == ["--guest"])
         );
         assert!(matches!(ask("bench motion"), Ok(Request::Bench("motion", words)) if words.is_empty()));
+        assert!(
+            matches!(ask("swarm --seeds 9"), Ok(Request::Faults("swarm", words)) if words == ["--seeds", "9"])
+        );
         assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
         assert!(matches!(ask("bench simulator --write"), Ok(Request::SimulatorCost { write: true })));
         assert!(ask("bench simulator --fast").unwrap_err().contains("--fast"));

@@ -1,0 +1,148 @@
+//! What reaches a robot's antenna that the air did not bring as it was sent? Flipped bits, recordings, other teams, guesses.
+
+use geometry::GoalEnd;
+use hil_sim::Stream;
+use protocol::frame::{FRAME_LEN_MAX, Frame, Sender, TeamKey};
+use protocol::host::{Command, Directive, Duty, HostMessage, Welcome};
+use protocol::host_link::HostLink;
+use protocol::link::{Link, Packet};
+use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
+use protocol::quantized::{WirePoint, WirePose};
+use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
+use protocol::{CaseId, CycleId, RobotId, TeamId};
+use rules::Phase;
+
+use super::honest::Sayings;
+use super::plan::{FIRST_LIFE, Plan, TEAM};
+
+/// Whoever tampers with one robot's radio.
+#[derive(Debug)]
+pub struct Adversary {
+    chance: Stream,
+    me: RobotId,
+    flips: f32,
+    replays: f32,
+    foreign: f32,
+}
+
+impl Adversary {
+    /// Of that robot in the run of that plan.
+    pub fn new(plan: &Plan, me: RobotId) -> Self {
+        let chance = Stream::new(plan.seed, &format!("swarm adversary {me}"));
+        Self { chance, me, flips: plan.flips, replays: plan.replays, foreign: plan.foreign }
+    }
+
+    /// What the robot hears in a tick in which `packets` reach it; all the team ever said is known to the adversary.
+    pub fn tamper(&mut self, packets: Vec<Packet>, sayings: &Sayings) -> Vec<Packet> {
+        let mut heard = Vec::new();
+        for mut packet in packets {
+            if self.chance.chance(self.flips) && !packet.is_empty() {
+                for _ in 0..=self.chance.whole(0, 2) {
+                    let bit = self.chance.whole(0, packet.len() as u32 * 8 - 1);
+                    packet[(bit / 8) as usize] ^= 1 << (bit % 8);
+                }
+            }
+            heard.push(packet);
+        }
+        while self.chance.chance(self.replays) && !sayings.in_order.is_empty() {
+            let i = self.chance.whole(0, sayings.in_order.len() as u32 - 1) as usize;
+            self.insert(&mut heard, sayings.in_order[i].clone());
+        }
+        while self.chance.chance(self.foreign) {
+            let packet = self.foreign_packet();
+            self.insert(&mut heard, packet);
+        }
+        // A tick hands over no more than this; what is too much is lost in the noise.
+        let mut bytes = 0;
+        heard.truncate(AIR_IN_MAX);
+        heard.retain(|packet| {
+            bytes += packet.len();
+            bytes <= AIR_IN_BYTES_MAX
+        });
+        heard
+    }
+
+    fn insert(&mut self, heard: &mut Vec<Packet>, packet: Packet) {
+        let place = self.chance.whole(0, heard.len() as u32) as usize;
+        heard.insert(place, packet);
+    }
+
+    /// Of another team, or of one who has not the key, or noise.
+    fn foreign_packet(&mut self) -> Packet {
+        let chance = &mut self.chance;
+        let key = TeamKey(std::array::from_fn(|_| chance.whole(0, 255) as u8));
+        let team = if chance.chance(0.5) { TEAM } else { TeamId(2) };
+        let epoch = if chance.chance(0.5) { u32::MAX } else { chance.whole(0, 20) };
+        let sender = Sender::new(chance.whole(0, 16) as u8).unwrap_or(Sender::Host);
+        let mut payload = [0; 64];
+        let written = match (sender, chance.chance(0.5)) {
+            (Sender::Host, true) => postcard::to_slice(&go_away(self.me), &mut payload),
+            (Sender::Host, false) => {
+                let welcome = Welcome { to: self.me, life: FIRST_LIFE + chance.whole(0, 4) };
+                postcard::to_slice(&HostMessage::Welcome(welcome), &mut payload)
+            }
+            (Sender::Robot(robot), _) => {
+                postcard::to_slice(&TeamMessage::Beacon(boast(robot, chance)), &mut payload)
+            }
+        };
+        let length = written.map_or(0, |bytes| bytes.len());
+        let frame = Frame { team, sender, epoch, counter: u32::MAX, payload: &payload[..length] };
+        let mut packet = Packet::new();
+        let _fits = packet.resize_default(FRAME_LEN_MAX);
+        let length = frame.emit(&key, &mut packet).unwrap_or(0);
+        packet.truncate(length);
+        packet
+    }
+}
+
+/// What the team said in an earlier match, in earlier lives: with the team's own key.
+pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
+    let mut chance = Stream::new(plan.seed, "swarm earlier match");
+    let mut recorded = Vec::new();
+    for life in 1..FIRST_LIFE {
+        let mut host = HostLink::new(TEAM, plan.key, life);
+        // More robots than play today.
+        for robot in [0, 1, 2, 3, 5, 9].into_iter().filter_map(RobotId::new) {
+            recorded.push(host.seal(&HostMessage::Welcome(Welcome { to: robot, life })));
+            let mut link = Link::new(TEAM, robot, plan.key, life);
+            for _ in 0..6 {
+                recorded.push(link.seal(&TeamMessage::Beacon(boast(robot, &mut chance))));
+                recorded.push(host.seal(&go_away(robot)));
+            }
+        }
+    }
+    recorded
+}
+
+/// To the corner at full speed.
+fn go_away(to: RobotId) -> HostMessage {
+    let pose = WirePose { at: WirePoint { x: 4_000, y: 2_500 }, heading: 0 };
+    HostMessage::Command(Command {
+        to,
+        defending: GoalEnd::Negative,
+        phase: Phase::Run,
+        duty: Duty::Player,
+        directive: Directive::GoTo { pose },
+    })
+}
+
+/// Present, at the ball, and far ahead in cycles.
+fn boast(robot: RobotId, chance: &mut Stream) -> Beacon {
+    let at = WirePoint { x: 100, y: 100 };
+    let id = CycleId { counter: chance.whole(0, 2_000), proposer: robot };
+    let robots = [Some(robot), RobotId::new(3)].into_iter().flatten().collect();
+    let decision = match chance.whole(0, 2) {
+        0 => Decision::Undecided,
+        1 => Decision::NoCase,
+        _ => Decision::Play(Play { case: CaseId(chance.whole(0, 200) as u16), ball: at, robots }),
+    };
+    Beacon {
+        pose: WirePose { at, heading: 0 },
+        ball: Some(BallReport { at, distance: 0 }),
+        status: Status::AVAILABLE.with(Status::RETRIEVER),
+        case_base: 0,
+        cycle: Some(CycleState { id, coordinator: robot, decision }),
+        progress: Progress::Idle,
+        role: Role::None,
+    }
+}

@@ -1,0 +1,367 @@
+//! Is a robot on wheels ever more dangerous than it may be? Its orders against what it heard and felt, seen from outside the
+//! brain (DESIGN §6).
+//!
+//! The guard knows the packets a robot was handed, what an [`Honest`] listener believes of them, its sensors and its
+//! orders. Limits are the published ones; where a clock that runs 100 ppm off and ticks of 10 ms blur them, the robot has one tick more.
+//!
+//! | when | then |
+//! |---|---|
+//! | always | numbers, rims within 5 m/s, dribbler 0–1, kicks within 6.3 m/s and only where the phase allows one |
+//! | no frame, or no command, for 100 ms; HALT or time-out told; odometry no number; tipped; spinning; battery low for 1 s | brakes: not faster than before, stands within a second; dribbler off, kicker discharged |
+//! | a silence of 100 ms, or a boot, and since then no half a second without a gap of 50 ms | brakes |
+//! | no frame for 50 ms | the limit shrinks to nothing at 100 ms |
+//! | STOP for 2 s | 1.5 m/s |
+
+use std::fmt;
+
+use motion::omni::Omni;
+use protocol::RobotId;
+use protocol::host::HostMessage;
+use protocol::robot_io::{ActuatorFrame, OmniKick, SensorFrame};
+use rules::{Phase, Side};
+
+use super::honest::{Believed, Honest};
+
+/// One life of a robot on wheels, watched.
+#[derive(Debug)]
+pub struct Guard {
+    me: RobotId,
+    /// What it may believe.
+    pub honest: Honest,
+    born: u32,
+    kinematics: Omni,
+    /// Moments, ms: the last frame, the last command, since when frames have come without a gap.
+    frame: Option<u32>,
+    command: Option<u32>,
+    good_since: Option<u32>,
+    armed: bool,
+    phase: Option<Phase<Side>>,
+    stop_since: Option<u32>,
+    low_since: Option<u32>,
+    braking_since: Option<u32>,
+    /// The speed and the turning ordered last.
+    last: (f32, f32),
+}
+
+/// Why a robot must brake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Duty {
+    /// The host has been silent.
+    Silence,
+    /// Not heard well for half a second since.
+    NotArmed,
+    /// The host has had nothing to say to it.
+    NoCommand,
+    /// HALT or a time-out.
+    Halt,
+    /// A measure that is no number.
+    NotANumber,
+    /// On its side.
+    Tipped,
+    /// Turning madly.
+    Spinning,
+    /// The battery is empty.
+    Battery,
+}
+
+/// What a robot did that it must not.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Danger {
+    /// An order that no robot may get.
+    Absurd(ActuatorFrame),
+    /// It did not brake though it had to.
+    Unbraked(Duty, ActuatorFrame),
+    /// It grew faster while it had to brake: speed and turning before and now.
+    Faster(Duty, [f32; 4]),
+    /// It had to brake for a second and still moves so fast.
+    Endless(Duty, f32),
+    /// The host has missed a few frames: so long a silence, ms, and so fast.
+    Hesitant(u32, f32),
+    /// So fast in STOP.
+    Stop(f32),
+    /// A kick that the phase does not allow.
+    Kick(Option<Phase<Side>>),
+}
+
+impl fmt::Display for Danger {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absurd(order) => write!(f, "an absurd order: {order:?}"),
+            Self::Unbraked(why, order) => write!(f, "does not brake for {why:?}: {order:?}"),
+            Self::Faster(why, [v, w, v2, w2]) => {
+                write!(f, "brakes for {why:?}, but {v} m/s and {w} rad/s become {v2} and {w2}")
+            }
+            Self::Endless(why, speed) => {
+                write!(f, "brakes for {why:?} for a second and still does {speed} m/s")
+            }
+            Self::Hesitant(ms, speed) => write!(f, "{speed} m/s after {ms} ms of silence"),
+            Self::Stop(speed) => write!(f, "{speed} m/s in STOP"),
+            Self::Kick(phase) => write!(f, "kicks in {phase:?}"),
+        }
+    }
+}
+
+impl Guard {
+    /// A robot that boots at that moment, ms.
+    pub fn new(me: RobotId, life: u32, born: u32) -> Self {
+        Self {
+            me,
+            honest: Honest::new(me, life),
+            born,
+            kinematics: Omni::default(),
+            frame: None,
+            command: None,
+            good_since: None,
+            armed: false,
+            phase: None,
+            stop_since: None,
+            low_since: None,
+            braking_since: None,
+            last: (0.0, 0.0),
+        }
+    }
+
+    /// Whether it has heard its host well enough to move since the last silence.
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// It may believe this at that moment.
+    pub fn hear(&mut self, ms: u32, believed: &Believed) {
+        let Believed::Host(message) = believed else { return };
+        let phase = match message {
+            HostMessage::World(part) => Some(part.phase),
+            HostMessage::Command(command) if command.to == self.me => {
+                self.command = Some(ms);
+                Some(command.phase)
+            }
+            HostMessage::Command(_) => return,
+            // It tells nothing of the game, but that the host lives.
+            HostMessage::Welcome(_) => self.phase,
+        };
+        if phase != Some(Phase::Stop) {
+            self.stop_since = None;
+        } else if self.phase != Some(Phase::Stop) {
+            self.stop_since = Some(ms);
+        }
+        self.phase = phase;
+        if self.frame.is_none_or(|last| ms - last > GAP + SLACK) {
+            self.good_since = Some(ms);
+        }
+        self.frame = Some(ms);
+    }
+
+    /// Its order in the step that began at that moment, after all it heard in it.
+    pub fn judge(&mut self, ms: u32, sensors: &SensorFrame, order: &ActuatorFrame) -> Result<(), Danger> {
+        let ActuatorFrame::Omni { wheels, dribbler, kick } = *order else {
+            return Err(Danger::Absurd(*order));
+        };
+        let kick_speed = match kick {
+            OmniKick::Flat(speed) | OmniKick::Chip(speed) => speed,
+            OmniKick::None | OmniKick::Discharge => 0.0,
+        };
+        let sane = wheels.iter().all(|rim| rim.abs() <= RIM_MAX)
+            && (0.0..=1.0).contains(&dribbler)
+            && (0.0..=KICK_MAX).contains(&kick_speed);
+        if !sane {
+            return Err(Danger::Absurd(*order));
+        }
+        let duty = self.duty(ms, sensors);
+        let twist = self.kinematics.twist(wheels);
+        let (speed, turn) = (twist.linear.norm(), twist.angular.abs());
+        let before = std::mem::replace(&mut self.last, (speed, turn));
+        if let Some(duty) = duty {
+            return self.judge_braking(ms, duty, before, order);
+        }
+        self.braking_since = None;
+        let silence = self.frame.map_or(0, |last| ms - last).saturating_sub(SLACK);
+        if silence > GAP {
+            let left = SILENCE.saturating_sub(silence) as f32 / (SILENCE - GAP) as f32;
+            // No limit asks for more than the carpet gives.
+            let most = (left * SPEED_MAX).max(before.0 - BRAKE * 0.01 * 0.9);
+            if speed > most + BLUR {
+                return Err(Danger::Hesitant(silence, speed));
+            }
+        }
+        if self.stop_since.is_some_and(|since| ms - since > STOP_GRACE) && speed > STOP_SPEED {
+            return Err(Danger::Stop(speed));
+        }
+        let allowed = matches!(
+            self.phase,
+            Some(Phase::Run | Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(_))
+        );
+        if kick_speed > 0.0 && !allowed {
+            return Err(Danger::Kick(self.phase));
+        }
+        Ok(())
+    }
+
+    fn judge_braking(
+        &mut self,
+        ms: u32,
+        duty: Duty,
+        before: (f32, f32),
+        order: &ActuatorFrame,
+    ) -> Result<(), Danger> {
+        let ActuatorFrame::Omni { dribbler, kick, .. } = *order else { return Ok(()) };
+        if kick != OmniKick::Discharge || dribbler != 0.0 {
+            return Err(Danger::Unbraked(duty, *order));
+        }
+        let (speed, turn) = self.last;
+        if speed > before.0 + BLUR || turn > before.1 + BLUR {
+            return Err(Danger::Faster(duty, [before.0, before.1, speed, turn]));
+        }
+        let since = *self.braking_since.get_or_insert(ms);
+        if ms - since >= STANDS_WITHIN && speed + turn > 0.0 {
+            return Err(Danger::Endless(duty, speed));
+        }
+        Ok(())
+    }
+
+    /// Why it must brake now, as far as can be seen from outside.
+    fn duty(&mut self, ms: u32, sensors: &SensorFrame) -> Option<Duty> {
+        let silent = |last: Option<u32>| last.is_none_or(|last| ms - last >= SILENCE + SLACK);
+        if silent(self.frame) {
+            self.armed = false;
+            self.good_since = None;
+        }
+        self.armed |= self.good_since.is_some_and(|since| ms - since >= ARM_AFTER - SLACK);
+        let low = sensors.health.battery.is_some_and(|volts| volts.is_nan() || volts < BATTERY_LOW);
+        self.low_since = if low { Some(self.low_since.unwrap_or(ms)) } else { None };
+        let odometry = sensors.odometry;
+        let number = odometry.linear.is_finite() && odometry.angular.is_finite();
+        let duties = [
+            (silent(self.frame) && ms - self.born >= SILENCE, Duty::Silence),
+            (!self.armed, Duty::NotArmed),
+            (silent(self.command), Duty::NoCommand),
+            (matches!(self.phase, Some(Phase::Halt | Phase::Timeout(_))), Duty::Halt),
+            (!number, Duty::NotANumber),
+            (sensors.health.tipped, Duty::Tipped),
+            (odometry.angular.abs() > SPINNING, Duty::Spinning),
+            (self.low_since.is_some_and(|since| ms - since >= LOW_FOR + SLACK), Duty::Battery),
+        ];
+        duties.into_iter().find_map(|(holds, duty)| holds.then_some(duty))
+    }
+}
+
+/// A tick of a brain on wheels, ms.
+const SLACK: u32 = 10;
+/// ms (DESIGN §6): limits shrink; brake; armed again.
+const GAP: u32 = 50;
+const SILENCE: u32 = 100;
+const ARM_AFTER: u32 = 500;
+/// ms: from 4 m/s at 5 m/s² it takes 0.8 s, from 20 rad/s at 40 rad/s² 0.5 s.
+const STANDS_WITHIN: u32 = 1_000;
+/// m/s and m/s²: as fast as any robot is, and what its wheels hold.
+const SPEED_MAX: f32 = 4.0;
+const BRAKE: f32 = 5.0;
+/// m/s: what a rim runs at most, and rounding.
+const RIM_MAX: f32 = 5.001;
+/// m/s: the rules' 6.5 less a kicker's scatter.
+const KICK_MAX: f32 = 6.3;
+/// m/s and ms: the rules' STOP and their grace.
+const STOP_SPEED: f32 = 1.5;
+const STOP_GRACE: u32 = 2_000;
+/// rad/s.
+const SPINNING: f32 = 30.0;
+/// V, and for so many ms.
+const BATTERY_LOW: f32 = 14.0;
+const LOW_FOR: u32 = 1_000;
+/// m/s or rad/s: rounding of the way from twist to rims and back.
+const BLUR: f32 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Twist;
+    use protocol::host::{Command, Directive};
+    use protocol::robot_io::Health;
+
+    fn frame() -> Believed {
+        let me = RobotId::new(1).unwrap();
+        Believed::Host(HostMessage::Command(Command {
+            to: me,
+            defending: geometry::GoalEnd::Negative,
+            phase: Phase::Run,
+            duty: protocol::host::Duty::Player,
+            directive: Directive::Stand,
+        }))
+    }
+
+    fn sensors() -> SensorFrame {
+        SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: false,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+        }
+    }
+
+    /// Straight on with that speed.
+    fn order(speed: f32, kick: OmniKick) -> ActuatorFrame {
+        let twist = Twist { linear: geometry::Vector::new(speed, 0.0), angular: 0.0 };
+        ActuatorFrame::Omni { wheels: Omni::default().rims(twist), dribbler: 0.0, kick }
+    }
+
+    /// Heard every 10 ms for a second, driving.
+    fn driving() -> Guard {
+        let mut guard = Guard::new(RobotId::new(1).unwrap(), 5, 0);
+        for ms in (0..1_000).step_by(10) {
+            guard.hear(ms, &frame());
+            let speed = if ms < 500 { 0.0 } else { 1.0 };
+            let kick = if ms < 500 { OmniKick::Discharge } else { OmniKick::None };
+            assert_eq!(guard.judge(ms, &sensors(), &order(speed, kick)), Ok(()), "{ms}");
+        }
+        guard
+    }
+
+    #[test]
+    fn a_robot_that_drives_on_without_its_host_is_told() {
+        let mut guard = driving();
+        let mut found = None;
+        for ms in (1_000..1_300).step_by(10) {
+            found = found.or(guard.judge(ms, &sensors(), &order(1.0, OmniKick::None)).err());
+        }
+        assert!(matches!(found, Some(Danger::Hesitant(..))), "{found:?}");
+        let mut guard = driving();
+        let still = order(0.0, OmniKick::None);
+        let judged: Vec<_> =
+            (1_000..1_200).step_by(10).map(|ms| guard.judge(ms, &sensors(), &still)).collect();
+        // The last frame came at 990 ms; at 1,100 the tick of slack is over too.
+        assert!(judged[..10].iter().all(Result::is_ok));
+        assert_eq!(judged[10], Err(Danger::Unbraked(Duty::Silence, still)));
+    }
+
+    #[test]
+    fn a_robot_that_moves_at_once_after_a_silence_is_told() {
+        let mut guard = driving();
+        assert!(guard.judge(1_200, &sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
+        guard.hear(1_210, &frame());
+        let moves = order(0.5, OmniKick::None);
+        assert_eq!(guard.judge(1_210, &sensors(), &moves), Err(Danger::Unbraked(Duty::NotArmed, moves)));
+    }
+
+    #[test]
+    fn growing_faster_endless_braking_and_absurd_orders_are_told() {
+        let mut mad = sensors();
+        mad.odometry.angular = f32::NAN;
+        let mut guard = driving();
+        guard.hear(1_000, &frame());
+        let faster = guard.judge(1_000, &mad, &order(1.5, OmniKick::Discharge));
+        assert!(matches!(faster, Err(Danger::Faster(Duty::NotANumber, _))), "{faster:?}");
+        let mut guard = driving();
+        let mut found = Ok(());
+        for ms in (1_000..2_100).step_by(10) {
+            guard.hear(ms, &frame());
+            found = found.and(guard.judge(ms, &mad, &order(1.0, OmniKick::Discharge)));
+        }
+        assert!(matches!(found, Err(Danger::Endless(Duty::NotANumber, _))), "{found:?}");
+        let absurd = order(f32::NAN, OmniKick::None);
+        assert!(matches!(driving().judge(1_000, &sensors(), &absurd), Err(Danger::Absurd(_))));
+        let hard = order(0.0, OmniKick::Flat(7.0));
+        assert_eq!(driving().judge(1_000, &sensors(), &hard), Err(Danger::Absurd(hard)));
+    }
+}

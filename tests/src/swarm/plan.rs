@@ -1,0 +1,377 @@
+//! What goes wrong in the swarm's run of this seed? Which faults are on, how bad, for whom, and from when to when.
+//!
+//! Everything is drawn from the seed, faults independently of each other, so that a few thousand seeds meet most pairs and
+//! triples of them. A run is calm first, then everything that is on rages, then all of it heals at one moment. Times in ms.
+
+use std::fmt;
+
+use brain::BrainConfig;
+use hil_sim::{AirSettings, Bursts, Stream};
+use protocol::frame::TeamKey;
+use protocol::{RobotId, TeamId};
+use rules::League;
+
+/// Something that can be on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fault {
+    /// Packets are lost, each by itself, up to half of them.
+    Loss,
+    /// Packets are lost in stretches.
+    Bursts,
+    /// Packets come twice, up to half of them.
+    Duplication,
+    /// Packets overtake each other.
+    Reordering,
+    /// Packets are on their way for long.
+    Delay,
+    /// The team falls into two parts that do not hear each other.
+    Partition,
+    /// Robots' computers stop and start anew.
+    Reboot,
+    /// Robots' clocks run 100 ppm fast or slow and have been running for long.
+    Skew,
+    /// A second host speaks with the team's key.
+    SecondHost,
+    /// What was said before is said again: in this life of the receiver, in an earlier one, and in an earlier match.
+    Replays,
+    /// Other teams are on the air, and somebody who guesses keys.
+    Foreign,
+    /// Bits of packets flip.
+    FlippedBits,
+    /// A sensor says the same thing for ever.
+    Stuck,
+    /// A sensor says numbers that are none.
+    NotANumber,
+    /// A robot lies on its side, spins, or has an empty battery.
+    Body,
+}
+
+impl Fault {
+    /// All there are.
+    pub const ALL: [Self; 15] = [
+        Self::Loss,
+        Self::Bursts,
+        Self::Duplication,
+        Self::Reordering,
+        Self::Delay,
+        Self::Partition,
+        Self::Reboot,
+        Self::Skew,
+        Self::SecondHost,
+        Self::Replays,
+        Self::Foreign,
+        Self::FlippedBits,
+        Self::Stuck,
+        Self::NotANumber,
+        Self::Body,
+    ];
+}
+
+/// What stands on the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Squad {
+    /// Walking robots by themselves.
+    Legged,
+    /// Robots on wheels with a host.
+    Wheels,
+}
+
+impl Squad {
+    /// A brain's tick, ms (DESIGN §2).
+    pub const fn tick_ms(self) -> u32 {
+        match self {
+            Self::Legged => 40,
+            Self::Wheels => 10,
+        }
+    }
+}
+
+/// A stretch of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// From this moment, ms.
+    pub from: u32,
+    /// Until before this one, ms.
+    pub to: u32,
+}
+
+impl Span {
+    /// Whether that moment is in it.
+    pub fn has(self, ms: u32) -> bool {
+        (self.from..self.to).contains(&ms)
+    }
+}
+
+/// What a mad sensor says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Madness {
+    /// What it said when it began.
+    Stuck,
+    /// The numbers whose bits are set are none: odometry, battery, pose, ball.
+    NotANumber(u8),
+    /// It lies on its side.
+    Tipped,
+    /// It turns that fast, rad/s.
+    Spins(f32),
+    /// So many V.
+    Battery(f32),
+    /// The light barrier says that.
+    Contact(bool),
+}
+
+/// A run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Where it comes from.
+    pub seed: u64,
+    /// Who plays.
+    pub squad: Squad,
+    /// What is on.
+    pub on: Vec<Fault>,
+    /// The team's robots, lowest number first, in their first life of the run.
+    pub brains: Vec<BrainConfig>,
+    /// The team's key.
+    pub key: TeamKey,
+    /// While everything that is on rages.
+    pub trouble: Span,
+    /// The run's end.
+    pub end: u32,
+    /// How the air is in between.
+    pub air: AirSettings,
+    /// When the team is in two parts, and who is in the second one; bit 16 is the host.
+    pub partition: Option<(Span, u32)>,
+    /// Whose computers stop, and when they start anew.
+    pub reboots: Vec<(RobotId, Span)>,
+    /// Whose sensors are mad, when and how.
+    pub madness: Vec<(RobotId, Span, Madness)>,
+    /// When a second host speaks, and whether its life is the later one.
+    pub second_host: Option<(Span, bool)>,
+    /// Probability that a robot hears something old in a tick.
+    pub replays: f32,
+    /// Probability that it hears something foreign.
+    pub foreign: f32,
+    /// Probability that a packet's bits flip on the way to one robot.
+    pub flips: f32,
+}
+
+impl Plan {
+    /// The run of that seed.
+    pub fn drawn(seed: u64) -> Self {
+        let mut chance = Stream::new(seed, "swarm plan");
+        let squad = if seed.is_multiple_of(2) { Squad::Legged } else { Squad::Wheels };
+        let on: Vec<Fault> = Fault::ALL
+            .into_iter()
+            .filter(|_| chance.chance(ON))
+            .filter(|fault| *fault != Fault::SecondHost || squad == Squad::Wheels)
+            .collect();
+        let has = |fault| on.contains(&fault);
+        let from = chance.whole(1_500, 2_500);
+        let trouble = Span { from, to: from + chance.whole(1_500, 5_000) };
+        let brains = team(seed, squad, &mut chance);
+        let ids: Vec<RobotId> = brains.iter().map(|brain| brain.robot).collect();
+        let some = |chance: &mut Stream| ids[chance.whole(0, ids.len() as u32 - 1) as usize];
+        let within = |chance: &mut Stream, longest: u32| {
+            let from = chance.whole(trouble.from, trouble.to - 1);
+            Span { from, to: (from + chance.whole(1, longest)).min(trouble.to) }
+        };
+        let air = air(&on, squad, &mut chance);
+        let partition = has(Fault::Partition).then(|| {
+            let members = chance.whole(1, (1 << 17) - 1);
+            (within(&mut chance, 3_000), members)
+        });
+        let mut reboots: Vec<(RobotId, Span)> = Vec::new();
+        for _ in 0..if has(Fault::Reboot) { chance.whole(1, 4) } else { 0 } {
+            let (robot, span) = (some(&mut chance), within(&mut chance, 2_000));
+            // One at a time and robot: what is off cannot be switched off.
+            let apart = |other: &(RobotId, Span)| {
+                other.0 != robot || span.to + 200 < other.1.from || other.1.to + 200 < span.from
+            };
+            if reboots.iter().all(apart) {
+                reboots.push((robot, span));
+            }
+        }
+        let mut madness = Vec::new();
+        for fault in [Fault::Stuck, Fault::NotANumber, Fault::Body] {
+            for _ in 0..if has(fault) { chance.whole(1, 3) } else { 0 } {
+                let (robot, span) = (some(&mut chance), within(&mut chance, 2_500));
+                madness.push((robot, span, mad(fault, &mut chance)));
+            }
+        }
+        let second_host = has(Fault::SecondHost).then(|| (within(&mut chance, 4_000), chance.chance(0.5)));
+        let key = TeamKey(std::array::from_fn(|_| chance.whole(0, 255) as u8));
+        let mut rate = |fault, most: f32| if has(fault) { chance.between(0.0, most) } else { 0.0 };
+        let (replays, foreign, flips) =
+            (rate(Fault::Replays, 0.6), rate(Fault::Foreign, 0.6), rate(Fault::FlippedBits, 0.3));
+        let end = trouble.to + AFTERWARDS;
+        Self {
+            seed,
+            squad,
+            on,
+            brains,
+            key,
+            trouble,
+            end,
+            air,
+            partition,
+            reboots,
+            madness,
+            second_host,
+            replays,
+            foreign,
+            flips,
+        }
+    }
+
+    /// A run in which nothing is wrong but the air, for so many ms.
+    pub fn with_air(seed: u64, squad: Squad, ms: u32, air: AirSettings) -> Self {
+        let mut chance = Stream::new(seed, "swarm plan");
+        let trouble = Span { from: 2_000, to: 2_000 + ms };
+        Self {
+            seed,
+            squad,
+            on: Vec::new(),
+            brains: team(seed, squad, &mut chance),
+            key: TeamKey::ZERO,
+            trouble,
+            end: trouble.to + AFTERWARDS,
+            air,
+            partition: None,
+            reboots: Vec::new(),
+            madness: Vec::new(),
+            second_host: None,
+            replays: 0.0,
+            foreign: 0.0,
+            flips: 0.0,
+        }
+    }
+
+    /// The team's numbers.
+    pub fn ids(&self) -> impl Iterator<Item = RobotId> + '_ {
+        self.brains.iter().map(|brain| brain.robot)
+    }
+
+    /// How the air is at that moment.
+    pub fn air_at(&self, ms: u32) -> AirSettings {
+        if !self.trouble.has(ms) {
+            return AirSettings::default();
+        }
+        let mut air = self.air.clone();
+        if let Some((_, members)) = self.partition.filter(|(span, _)| span.has(ms)) {
+            air.groups = std::array::from_fn(|i| u8::from(members & (1 << i) != 0));
+            air.host_group = u8::from(members & (1 << RobotId::COUNT) != 0);
+        }
+        air
+    }
+
+    /// Moments at which the air changes, in order.
+    pub fn air_changes(&self) -> Vec<u32> {
+        let mut all = vec![self.trouble.from, self.trouble.to];
+        all.extend(self.partition.iter().flat_map(|(span, _)| [span.from, span.to]));
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+impl fmt::Display for Plan {
+    /// Who plays, what is on and when.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let robots: Vec<String> = self.ids().map(|id| id.to_string()).collect();
+        write!(f, "{:?} {}: ", self.squad, robots.join(" "))?;
+        let faults: Vec<String> = self.on.iter().map(|fault| format!("{fault:?}")).collect();
+        let faults = if faults.is_empty() { "nothing".into() } else { faults.join(", ") };
+        write!(f, "{faults} from {} to {} ms", self.trouble.from, self.trouble.to)
+    }
+}
+
+fn team(seed: u64, squad: Squad, chance: &mut Stream) -> Vec<BrainConfig> {
+    let size = chance.whole(2, 4) as usize;
+    let lone = chance.chance(0.3).then(|| chance.whole(0, size as u32 - 1) as usize);
+    let numbers = [1, 2, 5, 9].into_iter().filter_map(RobotId::new).take(size);
+    let brain = |(i, id): (usize, RobotId)| {
+        let base = match squad {
+            Squad::Legged => BrainConfig::new(id, TEAM),
+            Squad::Wheels => BrainConfig::hosted(id, TEAM, League::DivisionB),
+        };
+        // Lives before this one were recorded.
+        let epoch = FIRST_LIFE + (seed % 3) as u32;
+        BrainConfig { epoch, retriever: lone.is_none_or(|lone| lone == i), ..base }
+    };
+    numbers.enumerate().map(brain).collect()
+}
+
+fn air(on: &[Fault], squad: Squad, chance: &mut Stream) -> AirSettings {
+    let has = |fault| on.contains(&fault);
+    let mut air = AirSettings::default();
+    if has(Fault::Loss) {
+        air.loss = chance.between(0.0, 0.5);
+    }
+    if has(Fault::Bursts) {
+        let ms = chance.between(40.0, 400.0);
+        air.bursts = Some(Bursts { share: chance.between(0.05, 0.5), ticks: ms / squad.tick_ms() as f32 });
+    }
+    if has(Fault::Duplication) {
+        air.duplication = chance.between(0.0, 0.5);
+    }
+    if has(Fault::Reordering) {
+        air.reordering = chance.between(0.0, 0.5);
+        // What is heard in the next tick anyway has nobody to overtake.
+        air.delay = [1, 2];
+    }
+    if has(Fault::Delay) {
+        air.delay = [1, 1 + chance.whole(40, 300) / squad.tick_ms()];
+    }
+    air
+}
+
+fn mad(fault: Fault, chance: &mut Stream) -> Madness {
+    match (fault, chance.whole(0, 3)) {
+        (Fault::Stuck, 0) => Madness::Contact(chance.chance(0.5)),
+        (Fault::Stuck, _) => Madness::Stuck,
+        (Fault::NotANumber, _) => Madness::NotANumber(chance.whole(1, 15) as u8),
+        (_, 0 | 1) => Madness::Tipped,
+        (_, 2) => Madness::Spins(if chance.chance(0.5) { 45.0 } else { -45.0 }),
+        (_, _) => Madness::Battery(chance.between(5.0, 13.9)),
+    }
+}
+
+/// Whose air it is.
+pub const TEAM: TeamId = TeamId(1);
+/// Lives before this one were recorded, and the recordings are played.
+pub const FIRST_LIFE: u32 = 5;
+/// Each fault is on in so many of the runs: five of fifteen in a usual one.
+const ON: f32 = 0.35;
+/// How long the team is watched after everything has healed, ms.
+const AFTERWARDS: u32 = 3_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn a_few_hundred_seeds_meet_every_pair_of_faults_on_wheels() {
+        let mut pairs = BTreeSet::new();
+        for seed in (1..600).step_by(2) {
+            let on = Plan::drawn(seed).on;
+            pairs.extend(on.iter().flat_map(|a| on.iter().map(move |b| (*a, *b))));
+        }
+        assert_eq!(pairs.len(), Fault::ALL.len() * Fault::ALL.len());
+    }
+
+    #[test]
+    fn nothing_is_wrong_before_the_trouble_and_after_it() {
+        for seed in 0..400 {
+            let plan = Plan::drawn(seed);
+            let outside = |span: &Span| span.from < plan.trouble.from || span.to > plan.trouble.to;
+            assert!(!plan.reboots.iter().any(|(_, span)| outside(span)), "seed {seed}");
+            assert!(!plan.madness.iter().any(|(_, span, _)| outside(span)), "seed {seed}");
+            assert!(!plan.second_host.iter().any(|(span, _)| outside(span)), "seed {seed}");
+            let calm = AirSettings::default();
+            assert_eq!(
+                (plan.air_at(plan.trouble.from - 1), plan.air_at(plan.trouble.to)),
+                (calm.clone(), calm)
+            );
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What does the swarm see of a team's cycles, and does the team play again after healing?
+
+use protocol::link::{Packet, overhear};
+use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
+use protocol::{CycleId, Instant, RobotId};
+
+use super::honest::Believed;
+use super::plan::{Plan, TEAM};
+use super::{Broken, Found, Tally};
+use crate::invariants::{Air, Seen, Watcher};
+
+/// Watches a team's words.
+pub(super) struct TeamWatch {
+    watcher: Watcher,
+    ids: Vec<RobotId>,
+    healed: u32,
+    /// The newest cycle when everything healed.
+    at_healing: Option<CycleId>,
+    /// When all knew one cycle that goes on.
+    united: Option<u32>,
+    beacons: Vec<Option<Beacon>>,
+    /// Gameplays that ended, and that nobody knows a newer cycle of yet.
+    ended: Option<(CycleId, u32)>,
+    /// The newest cycle whose end was counted.
+    counted: Option<CycleId>,
+    found: Option<Found>,
+    tally: Tally,
+}
+
+impl TeamWatch {
+    pub(super) fn new(plan: &Plan) -> Self {
+        let ids: Vec<RobotId> = plan.ids().collect();
+        let mut watcher = Watcher::new(Air::Hostile);
+        for id in &ids {
+            watcher.see(Instant(0), &Seen::Booted(*id));
+        }
+        Self {
+            watcher,
+            beacons: vec![None; ids.len()],
+            ids,
+            healed: plan.trouble.to,
+            at_healing: None,
+            united: None,
+            ended: None,
+            counted: None,
+            found: None,
+            tally: Tally { runs: 1, ..Tally::default() },
+        }
+    }
+
+    pub(super) fn crashed(&mut self, ms: u32, id: RobotId) {
+        self.watcher.see(instant(ms), &Seen::Crashed(id));
+        if let Some(place) = self.ids.iter().position(|other| *other == id) {
+            self.beacons[place] = None;
+        }
+    }
+
+    pub(super) fn booted(&mut self, ms: u32, id: RobotId) {
+        self.watcher.see(instant(ms), &Seen::Booted(id));
+    }
+
+    /// A robot was handed a packet, and may believe this of it.
+    pub(super) fn heard(&mut self, ms: u32, to: RobotId, believed: Option<&Believed>) {
+        self.tally.packets += 1;
+        self.tally.unbelievable += u64::from(believed.is_none());
+        if let Some(Believed::Mate(from, TeamMessage::Beacon(beacon))) = believed {
+            self.watcher.see(instant(ms), &Seen::Heard(to, *from, beacon.clone()));
+        }
+    }
+
+    /// A robot said this.
+    pub(super) fn said(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
+        let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key) else { return };
+        if let Some(cycle) = &beacon.cycle {
+            let players = cycle.play().map_or(&[][..], |play| &play.robots[..]);
+            let ghost = players.iter().chain([&cycle.coordinator]).find(|id| !self.ids.contains(id));
+            if let Some(ghost) = ghost {
+                self.find(ms, Broken::Ghost(from, *ghost));
+            }
+        }
+        if let Some(CycleState { id, decision: Decision::Closed(end), .. }) = beacon.cycle {
+            self.end(ms, id, end);
+        }
+        self.watcher.see(instant(ms), &Seen::Sent(from, beacon.clone()));
+        if let Some(place) = self.ids.iter().position(|other| *other == from) {
+            self.beacons[place] = Some(beacon);
+        }
+    }
+
+    /// A gameplay, or an attempt at one, is over.
+    fn end(&mut self, ms: u32, id: CycleId, end: Closure) {
+        if self.counted.is_some_and(|counted| id <= counted) {
+            return;
+        }
+        self.counted = Some(id);
+        match end {
+            Closure::Finished => self.tally.finished += 1,
+            Closure::Aborted { .. } => self.tally.stopped += 1,
+            Closure::NoCase => return,
+        }
+        self.ended.get_or_insert((id, ms));
+    }
+
+    pub(super) fn braked(&mut self, steps: u64) {
+        self.tally.brakings += steps;
+    }
+
+    /// A robot that was armed has lost its host; or stands for that for another tick, ms.
+    pub(super) fn stood(&mut self, begins: bool, ms: u32) {
+        self.tally.false_stops += u32::from(begins);
+        self.tally.stood_ms += u64::from(ms);
+    }
+
+    /// The first thing that is wrong counts.
+    pub(super) fn find(&mut self, ms: u32, broken: Broken) {
+        self.found.get_or_insert(Found { ms, broken });
+    }
+
+    /// Everything of this moment was seen; the first promise that was broken so far.
+    pub(super) fn end_of_step(&mut self, ms: u32) -> Result<(), Found> {
+        self.watcher.end_of_step(instant(ms));
+        if let Some(violation) = self.watcher.violations().first() {
+            let what = violation.what.clone();
+            self.find(ms, Broken::Team(what));
+        }
+        if let Some((id, since)) = self.ended {
+            let newest = self.watcher.newest_by_robot();
+            if newest.iter().all(|known| known.is_some_and(|known| known > id)) {
+                self.tally.gaps += 1;
+                self.tally.gaps_ms += u64::from(ms - since);
+                self.ended = None;
+            }
+        }
+        if ms <= self.healed {
+            self.at_healing = self.watcher.newest_by_robot().into_iter().flatten().max();
+        } else if self.united.is_none() && self.plays() {
+            self.united = Some(ms);
+            self.tally.slowest_ms = ms - self.healed;
+        } else if self.united.is_none() && ms > self.healed + RECOVER_WITHIN {
+            let words: Vec<String> = self.ids.iter().zip(&self.beacons).map(words).collect();
+            self.find(ms, Broken::Dead(words.join("; ")));
+        }
+        self.found.clone().map_or(Ok(()), Err)
+    }
+
+    /// What came of it all.
+    pub(super) fn tally(&self) -> Tally {
+        let Watcher { cycles, gameplays, overlaps, .. } = self.watcher;
+        Tally { cycles, gameplays, overlaps, ..self.tally }
+    }
+
+    /// All know the same cycle, and it is a new one or a gameplay that goes on.
+    fn plays(&self) -> bool {
+        let newest = self.watcher.newest_by_robot();
+        let Some(Some(id)) = newest.first() else { return false };
+        let one = newest.len() == self.ids.len() && newest.iter().all(|other| *other == Some(*id));
+        let gameplay = || {
+            let cycle = |beacon: &Beacon| beacon.cycle.as_ref().is_some_and(|cycle| cycle.play().is_some());
+            self.beacons.iter().all(|beacon| beacon.as_ref().is_some_and(cycle))
+        };
+        one && (Some(*id) > self.at_healing || gameplay())
+    }
+}
+
+fn words((id, beacon): (&RobotId, &Option<Beacon>)) -> String {
+    match beacon {
+        None => format!("{id} silent"),
+        Some(beacon) => {
+            let cycle = beacon.cycle.as_ref().map_or("no cycle".into(), |cycle| {
+                format!("{} of {}: {:?}", cycle.id, cycle.coordinator, cycle.decision)
+            });
+            format!("{id} status {} {cycle} {:?}", beacon.status.0, beacon.progress)
+        }
+    }
+}
+
+fn instant(ms: u32) -> Instant {
+    Instant(u64::from(ms) * 1000)
+}
+
+/// A new cycle comes within this time of healing, ms (DESIGN §5).
+const RECOVER_WITHIN: u32 = 1_000;

@@ -1,0 +1,212 @@
+//! What does loss cost a team? Gameplays that come to their end, robots that stop for want of their host, and the time to a new
+//! cycle, from no loss to half of everything; independent and in stretches. Everything else is as it should be.
+
+use std::fmt::Write as _;
+
+use drawing::{Anchor, Font, Svg, Theme};
+use hil_sim::{AirSettings, Bursts};
+
+use crate::swarm::plan::{Plan, Squad};
+use crate::swarm::{Found, Tally, play};
+
+/// How packets are lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Each by itself.
+    Independent,
+    /// In stretches of [`BURST_MS`] on the mean, link by link.
+    Bursty,
+}
+
+impl Kind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Independent, Self::Bursty];
+
+    /// For a table.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Bursty => "in stretches",
+        }
+    }
+
+    fn air(self, percent: u32, squad: Squad) -> AirSettings {
+        let loss = percent as f32 * 0.01;
+        match self {
+            Self::Independent => AirSettings::with_loss(loss),
+            Self::Bursty => {
+                let ticks = BURST_MS / squad.tick_ms() as f32;
+                let bursts = (percent > 0).then_some(Bursts { share: loss, ticks });
+                AirSettings { bursts, ..AirSettings::default() }
+            }
+        }
+    }
+}
+
+/// A row of the table: what one kind and share of loss came to.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Who played.
+    pub squad: Squad,
+    /// How packets were lost.
+    pub kind: Kind,
+    /// How many, percent.
+    pub percent: u32,
+    /// What came of it.
+    pub tally: Tally,
+    /// Robot-seconds under loss, about: runs of two to four robots.
+    pub seconds: f64,
+}
+
+impl Row {
+    /// Share of the gameplays that ended and were finished, percent.
+    pub fn finished(&self) -> Option<f64> {
+        let all = self.tally.finished + self.tally.stopped;
+        (all > 0).then(|| 100.0 * f64::from(self.tally.finished) / f64::from(all))
+    }
+
+    /// Stops for want of a host, in a robot's minute; only wheels have one.
+    pub fn false_stops(&self) -> Option<f64> {
+        (self.squad == Squad::Wheels).then(|| 60.0 * f64::from(self.tally.false_stops) / self.seconds)
+    }
+
+    /// Share of the time for which a robot stood so, percent.
+    pub fn stood(&self) -> Option<f64> {
+        (self.squad == Squad::Wheels).then(|| 0.1 * self.tally.stood_ms as f64 / self.seconds)
+    }
+
+    /// From the end of a gameplay to a newer cycle that all robots know, ms.
+    pub fn gap(&self) -> Option<f64> {
+        (self.tally.gaps > 0).then(|| self.tally.gaps_ms as f64 / f64::from(self.tally.gaps))
+    }
+}
+
+/// So many runs for every row, in order. A promise that is broken ends the sweep.
+pub fn sweep(seeds: u64) -> Result<Vec<Row>, (u64, Found)> {
+    let mut rows = Vec::new();
+    for squad in [Squad::Legged, Squad::Wheels] {
+        for kind in Kind::ALL {
+            for percent in PERCENT {
+                let mut row = Row { squad, kind, percent, tally: Tally::default(), seconds: 0.0 };
+                for seed in 0..seeds {
+                    let plan = Plan::with_air(seed, squad, RUN_MS, kind.air(percent, squad));
+                    // Stops are counted until the run's end.
+                    let watched = f64::from(plan.end - plan.trouble.from) * 1e-3;
+                    row.seconds += watched * plan.brains.len() as f64;
+                    row.tally = row.tally.with(play(plan).map_err(|found| (seed, found))?);
+                }
+                rows.push(row);
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// The page of the documentation.
+pub fn page(rows: &[Row], seeds: u64) -> String {
+    let mut text = format!(
+        "# What loss costs\n\n\
+         Written by `cargo xtask faults --write`: {seeds} runs a row, {} s each under loss and 3 s without after it, native brains. \
+         Walking robots play by themselves, robots on wheels under a host that says `Gameplay` 75 times a second. Lost is \
+         what any one receiver does not hear: each packet by itself, or everything of one direction between two stations in \
+         stretches of {BURST_MS} ms on the mean (Gilbert and Elliott). All promises of DESIGN §5 and §6 are watched meanwhile; none was \
+         broken.\n\n\
+         - *finished*: of the gameplays that ended, those that all their robots played to the end; the rest somebody stopped.\n\
+         - *stops*: how often a robot that was armed braked because its host was silent for 100 ms, in a robot's minute; *stood*: the \
+         share of the time for which it then stood (it takes half a second without a gap of 50 ms to be armed again).\n\
+         - *new cycle*: from the end of a gameplay until all robots know a newer cycle.\n\n\
+         ![Gameplays finished, stops and time to a new cycle against loss](faults/loss.svg)\n",
+        RUN_MS / 1000
+    );
+    for squad in [Squad::Legged, Squad::Wheels] {
+        let name = if squad == Squad::Legged { "Walking robots" } else { "Robots on wheels" };
+        let _ = write!(
+            text,
+            "\n## {name}\n\n| lost | how | gameplays | finished, % | stops a minute | stood, % | new cycle, ms |\n|---:|---|---:|---:|---:|---:|---:|\n"
+        );
+        for row in rows.iter().filter(|row| row.squad == squad) {
+            let ended = row.tally.finished + row.tally.stopped;
+            let (percent, kind) = (row.percent, row.kind.word());
+            let [finished, stops, stood, gap] =
+                [row.finished(), row.false_stops(), row.stood(), row.gap()].map(number);
+            let _ =
+                writeln!(text, "| {percent} % | {kind} | {ended} | {finished} | {stops} | {stood} | {gap} |");
+        }
+    }
+    text
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("–".into(), |value| format!("{value:.1}"))
+}
+
+/// Three panels, a line for each squad and kind.
+pub fn picture(rows: &[Row]) -> String {
+    let colors = Theme::Light.colors();
+    let mut svg = Svg::default();
+    type Measure = (&'static str, fn(&Row) -> Option<f64>);
+    let panels: [Measure; 3] = [
+        ("gameplays finished, %", Row::finished),
+        ("stops in a robot's minute", Row::false_stops),
+        ("time to a new cycle, ms", Row::gap),
+    ];
+    for (place, (title, measure)) in panels.into_iter().enumerate() {
+        let left = 60.0 + 320.0 * place as f64;
+        let most = rows.iter().filter_map(measure).fold(1.0, f64::max) * 1.1;
+        let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
+        svg.text([left, 290.0], title, Anchor::Start, Font { bold: true, ..font });
+        let line = format!(r#"stroke="{}" stroke-width="1""#, colors.faint);
+        for tick in 0..=4 {
+            let (value, y) = (most * f64::from(tick) / 4.0, 60.0 + 50.0 * f64::from(tick));
+            svg.line([left, y], [left + 250.0, y], &line);
+            svg.text([left - 6.0, y - 4.0], &format!("{value:.0}"), Anchor::End, font);
+        }
+        for percent in PERCENT {
+            let x = left + 5.0 * f64::from(percent);
+            svg.text([x, 42.0], &percent.to_string(), Anchor::Middle, font);
+        }
+        svg.text([left + 125.0, 22.0], "lost, %", Anchor::Middle, font);
+        for (squad, kind, color, dash) in LINES {
+            let points: Vec<[f64; 2]> = (rows.iter())
+                .filter(|row| row.squad == squad && row.kind == kind)
+                .filter_map(|row| {
+                    Some([left + 5.0 * f64::from(row.percent), 60.0 + 200.0 * measure(row)? / most])
+                })
+                .collect();
+            svg.polyline(
+                &points,
+                format!(r#"fill="none" stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#),
+            );
+            for point in points {
+                svg.circle(point, 3.0, format!(r#"fill="{color}""#));
+            }
+        }
+    }
+    let mut x = 60.0;
+    for (squad, kind, color, dash) in LINES {
+        let name = if squad == Squad::Legged { "walking" } else { "wheels" };
+        svg.line(
+            [x, 324.0],
+            [x + 30.0, 324.0],
+            format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#),
+        );
+        let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
+        svg.text([x + 36.0, 320.0], &format!("{name}, {}", kind.word()), Anchor::Start, font);
+        x += 220.0;
+    }
+    svg.finish([0.0, 0.0], [1_000.0, 350.0], 1.0, colors.paper, "What loss costs a team")
+}
+
+/// Dark enough for white paper, and told apart by those who see no red.
+const LINES: [(Squad, Kind, &str, &str); 4] = [
+    (Squad::Legged, Kind::Independent, "#0072b2", "none"),
+    (Squad::Legged, Kind::Bursty, "#0072b2", "6 4"),
+    (Squad::Wheels, Kind::Independent, "#d55e00", "none"),
+    (Squad::Wheels, Kind::Bursty, "#d55e00", "6 4"),
+];
+/// Percent of packets.
+pub const PERCENT: [u32; 7] = [0, 5, 10, 20, 30, 40, 50];
+/// How long a run is under loss, ms: a few gameplays.
+const RUN_MS: u32 = 15_000;
+/// Mean length of a dead stretch, ms: a body in the way for a moment, and as long as a robot waits for its host.
+pub const BURST_MS: f32 = 100.0;

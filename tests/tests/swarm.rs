@@ -1,0 +1,24 @@
+//! Does a team stay safe under faults drawn at random, and play again when they are over? A hundred runs; `cargo xtask swarm
+//! --seeds 10000` plays more.
+
+use match_tests::swarm::{Runs, run, watch, words};
+
+const SEEDS: u64 = 100;
+
+#[test]
+fn a_hundred_runs_with_faults_of_their_own_keep_every_promise() {
+    let (tally, broken) = watch(Runs { first: 0, seeds: SEEDS, jobs: 2 }, |_| {});
+    let told: Vec<String> = broken.iter().map(|(seed, found)| words(*seed, found)).collect();
+    assert!(told.is_empty(), "\n{}", told.join("\n"));
+    assert_eq!(u64::from(tally.runs), SEEDS);
+    // The runs are no empty ones: teams play, forgers forge, robots brake.
+    assert!(u64::from(tally.gameplays) > SEEDS && tally.unbelievable > 10_000, "{tally:?}");
+    assert!(tally.brakings > 10_000 && tally.slowest_ms > 0, "{tally:?}");
+}
+
+#[test]
+fn a_seed_gives_the_same_run_on_any_number_of_threads() {
+    let play = |jobs| watch(Runs { first: 40, seeds: 6, jobs }, |_| {}).0;
+    assert_eq!(play(1), play(3));
+    assert_eq!(run(41), run(41));
+}
