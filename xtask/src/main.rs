@@ -12,6 +12,7 @@ mod readme;
 mod report;
 mod simulator_cost;
 mod steps;
+mod strategy_cost;
 mod trial_cost;
 
 use std::env;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
             ExitCode::SUCCESS
         }
         Ok(Request::TrialCost) => told(trial_cost::run_bench(&Context::new())),
+        Ok(Request::StrategyCost) => told(strategy_cost::run_bench(&Context::new())),
         Ok(Request::SimulatorCost { write }) => told(simulator_cost::run_bench(&Context::new(), write)),
         Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
@@ -82,6 +84,8 @@ enum Request {
     SimulatorCost {
         write: bool,
     },
+    /// What strategy's decisions cost.
+    StrategyCost,
     /// Retrieval, motion or radio, with these words for the bench.
     Bench(&'static str, Vec<String>),
     /// The swarm, or another of the faults' programs, with these words for it.
@@ -110,12 +114,16 @@ impl Request {
                     Some("radio") => Ok(Self::Bench("radio", words.map(String::from).collect())),
                     Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
+                    Some("strategy") => Ok(Self::StrategyCost),
                     Some("simulator") => match words.next() {
                         None => Ok(Self::SimulatorCost { write: false }),
                         Some("--write") => Ok(Self::SimulatorCost { write: true }),
                         Some(word) => Err(format!("unknown argument `{word}`")),
                     },
-                    _ => Err("bench needs a name: retrieval, motion, radio, trial or simulator".into()),
+                    _ => {
+                        Err("bench needs a name: retrieval, motion, radio, trial, strategy or simulator"
+                            .into())
+                    }
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -160,6 +168,7 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xt
   bench radio [--write]
                  likewise for radio frames on the robot's processor; the table is protocol/README.md's
   bench trial    count the instructions of a simulated second and hold them to the budget
+  bench strategy count the instructions of strategy's decisions and hold them to the budgets
   bench simulator [--write]
                  the same of eleven against eleven on wheels; --write puts the table into hil-sim/README.md";
 
@@ -204,6 +213,7 @@ mod tests {
             matches!(ask("swarm --seeds 9"), Ok(Request::Faults("swarm", words)) if words == ["--seeds", "9"])
         );
         assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
+        assert!(matches!(ask("bench strategy"), Ok(Request::StrategyCost)));
         assert!(matches!(ask("bench simulator --write"), Ok(Request::SimulatorCost { write: true })));
         assert!(ask("bench simulator --fast").unwrap_err().contains("--fast"));
         assert!(ask("bench").unwrap_err().contains("retrieval"));

@@ -35,7 +35,8 @@ pub(crate) fn run_bench(context: &Context, write: bool) -> Result<(), Failure> {
     }
 }
 
-fn counted(program: &Path, part: &str, seconds: u32) -> Result<f64, Failure> {
+/// Instructions of `program` with these two words.
+pub(crate) fn counted(program: &Path, part: &str, seconds: u32) -> Result<f64, Failure> {
     let mut command = Command::new("valgrind");
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program);
     command.args([part, &seconds.to_string()]).stdin(Stdio::null());

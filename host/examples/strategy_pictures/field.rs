@@ -6,7 +6,7 @@ use geometry::{Angle, Attack, Point, Vector};
 use host::strategy::View;
 use host::strategy::view::{Ball, ROBOTS_MAX, Robot, RobotSet};
 use protocol::{Instant, RobotId};
-use rules::{FieldSpec, League, Phase};
+use rules::{AreaForm, FieldSpec, League, Phase};
 
 /// Colours of the pictures.
 pub(crate) fn colors() -> &'static Colors {
@@ -57,6 +57,36 @@ pub(crate) fn in_mm(field: &FieldSpec) -> FieldMm {
         penalty_depth: mm(field.penalty_depth),
         penalty_width: mm(field.penalty_width),
     }
+}
+
+/// Lines and goals over what is there, the defence areas as the rules have them.
+pub(crate) fn lines(svg: &mut Svg, field: &FieldSpec) {
+    let style = r##"fill="none" stroke="#ffffff" stroke-width="25""##;
+    let (x, y) = (f64::from(field.length) * 500.0, f64::from(field.width) * 500.0);
+    let goal = f64::from(field.goal_width) * 500.0;
+    for (sign, fill) in [(-1.0, colors().yellow), (1.0, colors().cyan)] {
+        let deep = x + f64::from(field.goal_depth) * 1000.0;
+        let edge = r##"stroke="#ffffff" stroke-width="25""##;
+        svg.rect([sign * x, -goal], [sign * deep, goal], format_args!(r#"fill="{fill}" {edge}"#));
+        let (depth, half) = (f64::from(field.penalty_depth) * 1000.0, f64::from(field.penalty_width) * 500.0);
+        match field.penalty_form {
+            AreaForm::Box => svg.rect([sign * x, -half], [sign * (x - depth), half], style),
+            AreaForm::QuarterCircles => {
+                let round = |up: f64| {
+                    (0..=12).map(move |i| {
+                        let (s, c) = (f64::from(i) * std::f64::consts::FRAC_PI_2 / 12.0).sin_cos();
+                        [sign * (x - depth * c), up * (half - depth + depth * s)]
+                    })
+                };
+                let below: Vec<At> = round(-1.0).collect();
+                let border: Vec<At> = below.into_iter().rev().chain(round(1.0)).collect();
+                svg.polyline(&border, r##"stroke="#ffffff" stroke-width="25""##);
+            }
+        }
+    }
+    svg.rect([-x, -y], [x, y], style);
+    svg.line([0.0, -y], [0.0, y], style);
+    svg.circle([0.0, 0.0], f64::from(field.center_radius) * 1000.0, style);
 }
 
 /// A map over the field: the value of each square of `cell` m, 0 to 1, in the colour of [`shade`].
@@ -134,7 +164,7 @@ pub(crate) fn legend(svg: &mut Svg, at: At, length: f64, high: f64, from: &str, 
     );
 }
 
-/// Ball and robots; `numbered` are ours by their numbers, theirs without.
+/// Ball and robots.
 pub(crate) fn robots(svg: &mut Svg, view: &View) {
     let colors = colors();
     let edge = r##"stroke="#ffffff" stroke-width="22""##;
@@ -152,12 +182,12 @@ pub(crate) fn robots(svg: &mut Svg, view: &View) {
     }
 }
 
-/// A letter beside a place, readable over anything.
+/// Words above and to the right of a place, readable over anything.
 pub(crate) fn label(svg: &mut Svg, at: Point<Attack>, words: &str) {
     let [x, y] = mm(at);
     let font = Font { size: LETTERS, fill: "#ffffff", bold: true, halo: Some("#1b1b1b") };
     svg.circle([x, y], 45.0, r##"fill="#ffffff" stroke="#1b1b1b" stroke-width="18""##);
-    svg.text([x + 90.0, y + 40.0], words, Anchor::Start, font);
+    svg.text([x + 70.0, y + 110.0], words, Anchor::Start, font);
 }
 
 /// Plain text of a picture.

@@ -1,7 +1,7 @@
 //! Where would a pass arrive, and where would it end in a goal? The paper's Figures 2 and 3, and what is maximised (Biswas et al. 2014
 //! §3.1): c2 for flat passes and for chips, c2', and P(receive) · P(goal) with the place that the search finds.
 
-use drawing::{Anchor, At, Svg, draw_field, field_lines, half_extent};
+use drawing::{Anchor, At, Svg, half_extent};
 use geometry::{Attack, Point};
 use host::strategy::View;
 use host::strategy::pass::{Kicks, PassConstants, Rating, SAMPLES, Scene, Search};
@@ -9,7 +9,7 @@ use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use rules::League;
 
-use super::field::{LETTERS, colors, in_mm, label, legend, map, mm, moment, robots, text};
+use super::field::{LETTERS, colors, in_mm, label, legend, lines, map, mm, moment, robots, text};
 
 /// Draws it: two columns of panels.
 pub(crate) fn draw() -> String {
@@ -25,7 +25,7 @@ pub(crate) fn draw() -> String {
     let most = f64::from(best.value());
     let panels: [Panel<'_>; 4] = [
         ("flat pass: P(c2), not intercepted", Box::new(|at| scene.not_intercepted(at)[0]), 1.0),
-        ("chip: P(c2), half the prior of a flat pass", Box::new(|at| scene.not_intercepted(at)[1]), 1.0),
+        ("chip: P(c2), with its prior", Box::new(|at| scene.not_intercepted(at)[1]), 1.0),
         ("P(c2'), a wide enough open angle on the goal", Box::new(|at| scene.rate(at).goal_factors[1]), 1.0),
         ("P(receive) · P(goal) and the best place found", Box::new(|at| scene.rate(at).value()), most),
     ];
@@ -33,7 +33,8 @@ pub(crate) fn draw() -> String {
     for (i, (title, value, full)) in panels.iter().enumerate() {
         let at = [wide * (i % 2) as f64, -high * (i / 2) as f64];
         let mut panel = Svg::default();
-        draw_field(&mut panel, &in_mm(&view.field), colors());
+        let carpet = format!(r#"fill="{}""#, colors().carpet);
+        panel.rect([-half_x, -half_y], [half_x, half_y], carpet);
         map(&mut panel, &view.field, CELL, |at| value(at) / *full as f32);
         over(&mut panel, &view, (i == 3).then_some(&best));
         if i < 2 {
@@ -43,7 +44,7 @@ pub(crate) fn draw() -> String {
         }
         panel.text([-half_x, half_y + 110.0], title, Anchor::Start, text(LETTERS));
         let to = if *full < 1.0 { format!("{full:.2}") } else { "1".into() };
-        legend(&mut panel, [half_x - 1500.0, half_y + 90.0], 1200.0, 130.0, "0", &to);
+        legend(&mut panel, [half_x - 1700.0, half_y + 90.0], 1200.0, 130.0, "0", &to);
         svg.inset(&panel, at);
     }
     let table = constants(&kicks);
@@ -60,7 +61,7 @@ type Panel<'a> = (&'static str, Box<dyn Fn(Point<Attack>) -> f32 + 'a>, f64);
 
 /// Lines, robots, and the pass that was chosen.
 fn over(svg: &mut Svg, view: &View, best: Option<&Rating>) {
-    field_lines(svg, &in_mm(&view.field), colors(), "#ffffff");
+    lines(svg, &view.field);
     if let (Some(best), Some(ball)) = (best, view.ball) {
         let width = r#"stroke-width="45""#;
         svg.arrow(mm(ball.position), mm(best.at), 160.0, "#ffffff", width);
@@ -95,18 +96,19 @@ fn constants(kicks: &Kicks) -> Vec<String> {
             c.turn_prior,
             c.outside_prior,
         ),
-        "a: far from everybody. b: behind an opponent, flat passes are met. c: a chip goes over him and keeps its prior.".into(),
+        "a: far from everybody. b: just behind an opponent, who meets flat pass and chip. c: farther behind it, where a chip comes down out of its".into(),
+        "reach, at the lower prior of chips. No chip is shorter than 1 m: its arch would not clear a robot.".into(),
     ]
 }
 
-/// The moment: a free kick at the right touch line, as in the paper's Fig. 2.
+/// The moment: a free kick in the own half, an opponent between ball and goal, as in the paper's Fig. 2.
 const BALL: (f32, f32) = (-0.4, -1.2);
 const OURS: [(f32, f32); 4] = [(-2.9, 0.0), (-0.5, -1.25), (0.9, 0.9), (-1.8, -0.6)];
 const THEIRS: [(f32, f32); 5] = [(2.85, -0.05), (2.15, -0.35), (2.1, 0.3), (0.45, -0.75), (0.1, 0.7)];
 /// Places as the paper's figure names them.
-const PLACES: [(&str, (f32, f32)); 3] = [("a", (-1.3, 1.2)), ("b", (1.45, -0.25)), ("c", (0.95, -0.45))];
+const PLACES: [(&str, (f32, f32)); 3] = [("a", (-1.3, 1.2)), ("b", (0.95, -0.45)), ("c", (1.55, -0.3))];
 /// Side of a square of the maps, m.
-const CELL: f32 = 0.04;
+const CELL: f32 = 0.05;
 /// Between panels, and for their titles, mm.
 const GAP: f64 = 120.0;
 const TITLE: f64 = 320.0;

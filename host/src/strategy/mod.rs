@@ -4,7 +4,7 @@
 //! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them
 //! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
 //!
-//! [`threat`] is the second paper's defence and [`coerce`] its planner of free kicks, both for the coach to call.
+//! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its planner of free kicks, all for the coach to call.
 
 mod coach;
 pub mod coerce;

@@ -50,8 +50,13 @@ impl Way {
     /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below −[`SAFE`], which certainly
     /// has the ball.
     pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
+        self.flat_until(kick, opponents, -SAFE)
+    }
+
+    /// … the first one below `enough`: who asks does not care how much.
+    pub fn flat_until(&self, kick: &FlatKick, opponents: &[Opponent], enough: f32) -> Option<Interceptor> {
         let end = kick.at(self.length);
-        self.worst(opponents, end.0, |opponent, worst| {
+        self.worst(opponents, end.0, enough, |opponent, worst| {
             self.stretch(opponent, (0.0, self.length), end, |s| kick.at(s), worst);
         })
     }
@@ -60,7 +65,7 @@ impl Way {
     pub fn chip(&self, kick: &ChipKick, opponents: &[Opponent]) -> Option<Interceptor> {
         let end = kick.at(self.length);
         let (up, down) = kick.over;
-        self.worst(opponents, end.0, |opponent, worst| {
+        self.worst(opponents, end.0, -SAFE, |opponent, worst| {
             self.stretch(opponent, (0.0, up), kick.at(up), |s| kick.at(s), worst);
             self.stretch(opponent, (down, self.length), end, |s| kick.at(s), worst);
         })
@@ -70,6 +75,7 @@ impl Way {
         &self,
         opponents: &[Opponent],
         arrival: f32,
+        enough: f32,
         look: impl Fn(&Opponent, &mut Interceptor),
     ) -> Option<Interceptor> {
         let mut worst = Interceptor { id: RobotId::ZERO, margin: SAFE, along: 0.0 };
@@ -83,7 +89,7 @@ impl Way {
             if beyond * beyond + across * across <= reach * reach {
                 look(opponent, &mut worst);
             }
-            if worst.margin < -SAFE {
+            if worst.margin < enough {
                 break;
             }
         }

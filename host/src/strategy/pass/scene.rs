@@ -208,11 +208,10 @@ impl<'k> Scene<'k> {
                 given::reliable_place(spoiler.1, c),
             ],
             goal_factors: [
-                // No point of the goal is nearer.
-                given::beats_the_keeper(self.shot.at((at.distance(goal) - self.mouth.half).max(0.0)).0, c),
+                self.keeper_at_best(at, c),
                 1.0,
                 1.0,
-                given::not_stolen(self.in_their_area(at), c),
+                given::not_stolen(!c.their_area_forbidden && self.in_their_area(at), c),
             ],
             ball_time: 0.0,
             receiver_time: 0.0,
@@ -221,32 +220,46 @@ impl<'k> Scene<'k> {
             spoiler,
             shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
         };
-        if rating.value() <= floor {
+        // The product so far, a little larger for what rounding takes: what it rules out, the value is not above either.
+        let place = rating.receive_factors[3] * rating.receive_factors[4] * rating.goal_factors[3] * ROUNDING;
+        if place * rating.goal_factors[0] <= floor {
             return rating;
         }
         rating.shot = self.shot(at, along, c);
         rating.goal_factors[0] = given::beats_the_keeper(rating.shot.time, c);
         rating.goal_factors[1] = given::open_goal(rating.shot.angle, c);
         rating.goal_factors[2] = given::shot_in_time(rating.shot.one_touch, c);
-        if rating.value() <= floor {
+        let goal = place * rating.goal_factors[0] * rating.goal_factors[1] * rating.goal_factors[2];
+        if goal <= floor {
             return rating;
         }
         rating.receiver_time = self.receiver.time_to(at);
         rating.rival = self.rival(at, rating.receiver_time);
         let soonest = rating.rival.map_or(rating.receiver_time + SAFE, |(_, time)| time);
         rating.receive_factors[0] = given::first_there(rating.receiver_time, soonest, c);
-        if rating.value() <= floor {
+        let first = goal * rating.receive_factors[0];
+        if first <= floor {
             return rating;
         }
         let flat = self.kicks.flat(length);
         rating.kick = PassKick::Flat { speed: flat.speed };
         rating.ball_time = flat.at(length).0;
-        rating.interceptor = way.flat(&flat, &self.opponents);
+        rating.receive_factors[2] = given::time_to_react(rating.ball_time, c);
+        rating.interceptor =
+            way.flat_until(&flat, &self.opponents, enough(floor, first * rating.receive_factors[2], c));
         let margin = rating.interceptor.map_or(SAFE, |found| found.margin);
         rating.receive_factors[1] = given::not_intercepted(margin, false, c);
-        rating.receive_factors[2] = given::time_to_react(rating.ball_time, c);
         self.chip_if_better(&way, &mut rating, floor, c);
         rating
+    }
+
+    /// c1' for the nearest point that the goal can have, where that tells anything: near the goal it is 1.
+    fn keeper_at_best(&self, at: Point<Attack>, c: &PassConstants) -> f32 {
+        let depth = self.mouth.x - at.x();
+        if depth < KEEPER_MATTERS {
+            return 1.0;
+        }
+        given::beats_the_keeper(self.shot.at(depth).0, c)
     }
 
     /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over opponents (c2), but bounces: no
@@ -338,8 +351,24 @@ impl<'k> Scene<'k> {
     }
 }
 
+/// A margin of time with which a value of `others` (all other factors) is not above `floor` any more, s: nobody needs to know how much
+/// smaller it is. No less than −[`SAFE`].
+fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
+    let p = floor / others;
+    if p > 0.0 && p < 1.0 {
+        // The inverse of the logistic, a little lower for what rounding takes.
+        (c.time_width * geometry::math::ln(p / (1.0 - p)) - 1e-3).max(-SAFE)
+    } else {
+        -SAFE
+    }
+}
+
 /// m; nearer, directions mean nothing.
 const ON_THE_SPOT: f32 = 1e-3;
+/// Farther from the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
+const KEEPER_MATTERS: f32 = 2.8;
+/// Nine factors in another order differ by less than 10⁻⁶.
+const ROUNDING: f32 = 1.0 + 1e-5;
 /// A chip that ends in a goal less often than this is not looked at: one in two hundred.
 const WORTH_A_CHIP: f32 = 0.005;
 
