@@ -5,6 +5,7 @@
 
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
+use geometry::{Field, Point};
 use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 
@@ -24,13 +25,13 @@ pub struct Hosted {
 }
 
 /// Whose touch is it at our restart? (rules 2026: the taker touches the ball once, until another robot has)
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Restart {
     /// Nothing of the kind.
     #[default]
     None,
-    /// This robot has touched the ball as its taker.
-    Touched,
+    /// This robot has touched the ball as its taker; the ball lay here.
+    Touched(Point<Field>),
     /// And the ball has left it: not again before another robot.
     Barred,
 }
@@ -121,27 +122,30 @@ impl Hosted {
         let ours =
             matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours)) && duty == Duty::Taker;
         self.restart = match (phase, self.restart) {
-            (Phase::Run, Restart::Touched) if belief.contact() => Restart::Touched,
-            (Phase::Run, Restart::Touched) => Restart::Barred,
+            (Phase::Run, Restart::Touched(_)) if belief.contact() => self.restart,
+            (Phase::Run, Restart::Touched(_)) => Restart::Barred,
             (Phase::Run, Restart::Barred) if others_touch() => Restart::None,
             (Phase::Run, same) => same,
-            (_, Restart::None) if ours && belief.contact() => Restart::Touched,
-            (_, Restart::Touched) if ours && !belief.contact() && gone(belief) => Restart::Barred,
-            (_, Restart::Touched | Restart::Barred) if ours => self.restart,
+            (_, Restart::None) if ours && belief.contact() => {
+                belief.ball.map_or(Restart::None, |ball| Restart::Touched(ball.position))
+            }
+            // Before the ball is in play it may be touched again: the light barrier alone has sent nothing away.
+            (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => Restart::Barred,
+            (_, Restart::Touched(_) | Restart::Barred) if ours => self.restart,
             _ => Restart::None,
         };
     }
 }
 
-/// The ball has left the mouth.
-fn gone(belief: &Belief) -> bool {
-    belief.ball.is_none_or(|ball| ball.position.distance(belief.mouth()) > LEFT)
+/// The ball has left where it lay.
+fn gone(belief: &Belief, lay: Point<Field>) -> bool {
+    belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }
 
 /// A robot whose centre is this near the ball touches it, m: both radii and the vision's noise.
 const TOUCHES_WITHIN: f32 = 0.125;
-/// The ball has left, m: in play after 0.05 m by the rules.
-const LEFT: f32 = 0.05;
+/// The ball has left, m: in play after 0.05 m by the rules, and the mouth that told where it lay errs by a centimetre.
+const LEFT: f32 = 0.06;
 
 #[cfg(test)]
 mod tests {
@@ -203,7 +207,7 @@ mod tests {
         hosted.watch_touches(free_kick, Duty::Player, &held);
         assert_eq!(hosted.restart, Restart::None, "only the taker's touch counts");
         hosted.watch_touches(free_kick, Duty::Taker, &held);
-        assert_eq!(hosted.restart, Restart::Touched);
+        assert!(matches!(hosted.restart, Restart::Touched(_)));
         hosted.watch_touches(free_kick, Duty::Taker, &with_ball(0.5));
         assert_eq!(hosted.restart, Restart::Barred);
         hosted.watch_touches(Phase::Run, Duty::Player, &with_ball(1.0));

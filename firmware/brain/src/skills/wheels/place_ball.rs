@@ -93,14 +93,16 @@ fn fetch(belief: &Belief, ball: &Ball, at: Point<Field>) -> Intent {
     if ball.velocity.norm() > ROLLING {
         return meet(belief, ball).into();
     }
-    let face = at_wall(belief, ball).unwrap_or_else(|| {
+    let wall = at_wall(belief, ball);
+    let face = wall.unwrap_or_else(|| {
         if ball.position.distance(at) > PLACEMENT_TOLERANCE {
             at.direction_to(ball.position)
         } else {
             facing(belief, ball)
         }
     });
-    match approach(belief, ball, face, GO_IN) {
+    let speed = if wall.is_some() { GO_IN_AT_WALL } else { GO_IN };
+    match approach(belief, ball, face, speed) {
         Approach::Around(drive) => drive.into(),
         Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
     }
@@ -144,6 +146,8 @@ const PULL: f32 = 1.0;
 const LEAVE: f32 = 0.6;
 /// How fast it comes to the ball, m/s.
 const GO_IN: f32 = 0.3;
+/// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of its mouth.
+const GO_IN_AT_WALL: f32 = 0.12;
 /// A faster ball is met, m/s.
 const ROLLING: f32 = 0.3;
 /// A slower ball rests, m/s.

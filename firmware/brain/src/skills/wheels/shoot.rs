@@ -3,6 +3,7 @@
 //! A gap's worth is how far every opponent stays from the ball's way, less how far it can move until the ball passes. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment};
+use motion::ball::BallModel;
 use protocol::robot_io::OmniKick;
 
 use crate::belief::Belief;
@@ -46,7 +47,9 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     });
     let [left, right] = ahead;
     let (at, _) = if left.1 >= right.1 { left } else { right };
-    kick_held(belief, at, OmniKick::Flat(super::pass_speed(me.distance(at)).min(CLEARS_WITH)))
+    // It comes to rest there: what rolls on leaves the field, and is theirs.
+    let speed = BallModel::default().kick_speed(me.distance(at), RESTS).min(CLEARS_WITH);
+    kick_held(belief, at, OmniKick::Flat(speed))
 }
 
 /// What opponents leave free beside a ball's way, m; what no one can reach counts as [`ROOM_ENOUGH`].
@@ -77,6 +80,8 @@ const SHOOTS_FROM: f32 = 4.0;
 const CLEARS_AHEAD: f32 = 2.5;
 /// And with no more than this, m/s: it stays in the field.
 const CLEARS_WITH: f32 = 4.0;
+/// As good as at rest, m/s.
+const RESTS: f32 = 0.2;
 /// From the goal line, m.
 const INSIDE: f32 = 1.2;
 /// From the side line, m.
