@@ -20,7 +20,7 @@ use crate::referee::{self, Listener};
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, View};
 use crate::tracking::{self, Tracker};
-use crate::world::{Ball, World};
+use crate::world::{Ball, Who, World};
 
 /// What is fixed for a host's life.
 #[derive(Clone, Debug)]
@@ -105,6 +105,8 @@ pub struct Host {
     world: World,
     /// The ball as it was when last seen.
     last_ball: Option<Ball>,
+    /// The opponent that hides the ball from all cameras, if one does.
+    hidden_by: Option<Who>,
     orders: Orders,
     planned: Option<Instant>,
     undecodable: Undecodable,
@@ -130,6 +132,7 @@ impl Host {
             robots: Default::default(),
             world: World::default(),
             last_ball: None,
+            hidden_by: None,
             orders: Orders::new(),
             planned: None,
             undecodable: Undecodable::default(),
@@ -278,8 +281,9 @@ impl Host {
     fn plan(&mut self, now: Instant) {
         self.planned = Some(now);
         self.world = self.tracker.world(now);
-        self.remember_ball(now);
+        // Only a ball that is seen can be seen to move: where a hidden one is put is a guess.
         self.listener.tick(now, self.world.ball.map(|ball| ball.position));
+        self.remember_ball(now);
         let us = self.settings.us;
         let game = self.our_game();
         let view = View::of(&self.world, us, &game, self.field(), self.fit(now), self.in_play(now))
@@ -298,23 +302,28 @@ impl Host {
         self.radio.offer(now, &self.world, situation, &commands);
     }
 
-    /// A ball that no camera sees is under a robot: of ours, at the one that feels it; else where it was seen last.
+    /// A ball that no camera sees is under a robot: of ours, at the one that feels it; of theirs, at the one whose front was at it
+    /// when it vanished; else where it was seen last.
     fn remember_ball(&mut self, now: Instant) {
+        let us = self.settings.us;
+        let mouth = |robot: &crate::world::Robot| {
+            robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
+        };
         if let Some(ball) = self.world.ball {
             self.last_ball = Some(ball);
+            let hides = |robot: &&crate::world::Robot| mouth(robot).distance(ball.position) < HIDES;
+            self.hidden_by = self.world.theirs(us).find(hides).map(|robot| robot.who);
             return;
         }
-        let us = self.settings.us;
         let feels = |robot: &&crate::world::Robot| {
             let told = &self.robots[robot.who.id.index()].telemetry;
             told.as_ref().is_some_and(|(at, told)| {
                 now.since(*at) < TELEMETRY_LEASE && told.condition.has(Condition::BALL_CONTACT)
             })
         };
-        let held = self.world.ours(us).find(feels).map(|robot| {
-            let mouth = Point::new(rules::limits::ROBOT_RADIUS, 0.0);
-            (robot.pose.to_field(mouth), robot.velocity)
-        });
+        let theirs = |robot: &&crate::world::Robot| Some(robot.who) == self.hidden_by;
+        let hider = self.world.ours(us).find(feels).or_else(|| self.world.theirs(us).find(theirs));
+        let held = hider.map(|robot| (mouth(robot), robot.velocity));
         let (position, velocity) = match (held, &self.last_ball) {
             (Some(held), _) => held,
             (None, Some(last)) => (last.rest(&self.world.models), Vector::default()),
@@ -399,5 +408,7 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 const PLAN_EVERY: Duration = Duration::millis(5);
 /// What a robot told of itself longer ago is not counted on.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
+/// A ball this near the middle of a robot's front may lie in its mouth, m: a mouth's half width and the vision's noise.
+const HIDES: f32 = 0.06;
 /// As long as robots hold each other for present.
 const BEACON_LEASE: Duration = Duration::millis(400);

@@ -8,8 +8,9 @@ use super::order::{Task, Why};
 use super::support::{self, Target};
 use super::view::{Ball, View};
 
-/// How far everybody stays from a ball that is not in play, m: the rules' 0.5 m, a body, and what robots overshoot by.
-pub const OFF_BALL: f32 = 0.7;
+/// How far everybody stays from a ball that is not in play, m: the rules' 0.5 m, a body, and what robots overshoot by and a ball
+/// kicked at them comes nearer before everybody knows that it is in play (6 m/s for 20 ms).
+pub const OFF_BALL: f32 = 0.78;
 /// How far behind the ball our taker waits, m.
 const TAKER_WAITS: f32 = 0.7;
 /// How far behind the ball everybody but taker and keeper is at a penalty, m: the rules' 1 m, a body and a margin.

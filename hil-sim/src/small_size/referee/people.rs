@@ -90,13 +90,20 @@ impl InternalReferee {
             }
             let since = *self.people.crowded[index].get_or_insert(self.now);
             let running = is_running(self.phase());
-            let time =
-                if running { micros(limits::CARD_REMOVAL_TIME) } else { self.settings.person_delay.0 as i64 };
+            // Who has left the field for it is taken off while the others play on (rules: sanctions, substitution).
+            let has_left = ours().find(|robot| self.may_be_taken(robot.pose.position)).map(|robot| robot.who);
+            let in_the_way = running && has_left.is_none();
+            let time = if in_the_way {
+                micros(limits::CARD_REMOVAL_TIME)
+            } else {
+                self.settings.person_delay.0 as i64
+            };
             if just_changed || (self.now.since(since).0 as i64) < time {
                 continue;
             }
-            let taken = self.whom_to_take(team, ours().map(|robot| (robot.who, robot.pose.position)));
-            if running {
+            let places = ours().map(|robot| (robot.who, robot.pose.position));
+            let taken = has_left.or_else(|| self.whom_to_take(team, places));
+            if in_the_way {
                 let ball = self.ball.position;
                 let what = What::TooManyRobots { allowed, on_field, ball };
                 self.judge(&self.event(Some(team), what));
@@ -107,6 +114,13 @@ impl InternalReferee {
                 self.people.changed[index] = Some(self.now);
             }
         }
+    }
+
+    /// In the centre substitution area, beside the touch line, and the ball is not near.
+    fn may_be_taken(&self, place: Point<Field>) -> bool {
+        place.x().abs() <= limits::SUBSTITUTION_REACH
+            && place.y().abs() > self.field.width * 0.5
+            && place.distance(self.ball.position) >= SUBSTITUTION_OFF_BALL
     }
 
     /// The last offender; else the robot farthest from the ball. The keeper only where there is no other.
@@ -139,6 +153,8 @@ impl InternalReferee {
 
 /// Room a person needs to put the ball down, m from a robot's side: a hand's breadth.
 const ROOM: f32 = 0.1;
+/// A person reaches onto the carpet only while the ball is at least this far away, m (rules: substitution).
+const SUBSTITUTION_OFF_BALL: f32 = 0.5;
 /// Tries after which the game goes on with the ball where it is: three, as nobody carries out the order.
 const PUTS_MAX: u32 = 3;
 /// Time in which a robot is taken off or put back, µs: two seconds, the game controller's tolerance in counting robots.

@@ -127,8 +127,9 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
 
 /// What is planned with, free: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan can be kept.
 pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
-/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4.
-const HOLDING: FreeLimits = FreeLimits { speed: 1.2, acceleration: 1.5, braking: 1.5 };
+/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4: it brakes a ball that it caught on the
+/// run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
+const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
 /// ω² · 95 mm stays below 1.2 m/s².
 const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };

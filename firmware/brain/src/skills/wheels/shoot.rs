@@ -85,7 +85,7 @@ const RESTS: f32 = 0.2;
 /// From the goal line, m.
 const INSIDE: f32 = 1.2;
 /// From the side line, m.
-const WING_INSIDE: f32 = 0.8;
+const WING_INSIDE: f32 = 1.1;
 /// More room than this is no better, m.
 const ROOM_ENOUGH: f32 = 0.5;
 /// Radii of a robot and a ball, m.
