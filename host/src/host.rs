@@ -253,7 +253,7 @@ impl Host {
             return Verdict::Undecodable;
         };
         let before = self.listener.game().phase;
-        let ball = self.tracker.world(now).ball.map(|ball| ball.position);
+        let ball = plainly_seen(now, self.tracker.world(now).ball);
         let verdict = self.listener.hear(&packet, now, ball);
         if self.listener.game().phase != before {
             // A HALT does not wait for the next image.
@@ -282,7 +282,7 @@ impl Host {
         self.planned = Some(now);
         self.world = self.tracker.world(now);
         // Only a ball that is seen can be seen to move: where a hidden one is put is a guess.
-        self.listener.tick(now, self.world.ball.map(|ball| ball.position));
+        self.listener.tick(now, plainly_seen(now, self.world.ball));
         self.remember_ball(now);
         let us = self.settings.us;
         let game = self.our_game();
@@ -347,7 +347,7 @@ impl Host {
         Game {
             phase: if self.halted { Phase::Halt } else { game.phase.seen_by(us) },
             next: game.next.map(|phase| phase.seen_by(us)),
-            placement: game.placement,
+            placement: game.ball_goes_to(),
             defending: game.own_goal(us).unwrap_or(self.settings.defending),
             keeper: game.team(us).keeper.unwrap_or(self.settings.keeper),
             their_keeper: game.team(us.other()).keeper.unwrap_or(self.settings.keeper),
@@ -399,6 +399,11 @@ impl Host {
     }
 }
 
+/// Where a ball is that cameras see; where one that they do not see is taken to be is a guess.
+fn plainly_seen(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
+    ball.filter(|ball| now.since(ball.seen) < PLAINLY && ball.confidence > SURE).map(|ball| ball.position)
+}
+
 /// The limits of a league that has none of its own.
 const LIMITS: Limits = match League::DivisionB.limits() {
     Some(limits) => limits,
@@ -410,5 +415,9 @@ const PLAN_EVERY: Duration = Duration::millis(5);
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
 /// A ball this near the middle of a robot's front may lie in its mouth, m: a mouth's half width and the vision's noise.
 const HIDES: f32 = 0.06;
+/// A ball that was not seen for longer is hidden: the cameras' delay and a few images.
+const PLAINLY: Duration = Duration::millis(120);
+/// The tracker's confidence in a ball that it has followed for a tenth of a second.
+const SURE: f32 = 0.6;
 /// As long as robots hold each other for present.
 const BEACON_LEASE: Duration = Duration::millis(400);

@@ -71,8 +71,10 @@ impl World {
             }
             let pull = pull(robot, &self.ball, [gap, aside], &self.parameters.dribbler);
             self.ball.velocity += pull;
-            // The roller turns the ball as it pleases: leaving, it neither runs away nor comes back by its spin.
-            self.ball.spin = self.ball.velocity;
+            // Held, the roller turns the ball as it pleases: leaving, it neither runs away nor comes back by its spin. But the same
+            // grip turns it: a kicked ball that is through the mouth in 5 ms begins sliding, as any kicked ball does.
+            let turn = SOLID_SPHERE * self.parameters.dribbler.pull * STEP;
+            self.ball.spin += (self.ball.velocity - self.ball.spin).clamped(turn);
             let mass = self.parameters.ball.mass / self.robots[i].body.mass;
             let robot = &mut self.robots[i];
             robot.velocity += pull * -mass;
@@ -144,6 +146,8 @@ fn pull(
     robot.to_field([x.max(-pull), y.clamp(-side, side)])
 }
 
+/// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a push at its surface: m r² / I.
+const SOLID_SPHERE: f32 = 2.5;
 /// m: the plunger meets a ball no higher.
 const KICKABLE_HEIGHT: f32 = 0.02;
 /// m: the roller and the light barrier meet a ball no higher.

@@ -136,6 +136,12 @@ impl Game {
         let next = self.next_command.and_then(words::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
+
+    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick.
+    pub fn ball_goes_to(&self) -> Option<Point<Field>> {
+        let by_hand = self.phase == Phase::Stop && matches!(self.next, Some(Phase::FreeKick(_)));
+        self.designated.filter(|_| by_hand).or(self.placement)
+    }
 }
 
 impl TeamAccount {

@@ -255,7 +255,7 @@ impl Coach {
             return;
         }
         if !started {
-            let at = restart::taker_waits(view, &ball);
+            let at = plan.kept_off(restart::taker_waits(view, view.placement.unwrap_or(ball.position)));
             return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
         }
         let wait = if penalty { Duration(0) } else { MATES_GET_READY };
@@ -407,8 +407,9 @@ const BOUND: f32 = 1.0;
 const TAKER_WORTH: f32 = 1.0;
 /// A robot's centre this near the ball touches it, m: radii of body and ball, and a centimetre and a half.
 const TOUCHING: f32 = 0.126;
-/// Mates are given this long to take their places before a restart is played, of the 5 s (A) that the rules give.
-const MATES_GET_READY: Duration = Duration::millis(600);
+/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules give: they are there since
+/// the ball was placed, and run on while the taker goes around it.
+const MATES_GET_READY: Duration = Duration::millis(200);
 /// A pass is not waited for longer: 5 m take 2.5 s.
 const PASS_LASTS: Duration = Duration::millis(3000);
 /// It has not begun before this: the ball is known to have moved, but not yet how fast.

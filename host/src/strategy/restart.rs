@@ -20,10 +20,10 @@ const TURN_STEP_DEG: f32 = 15.0;
 /// How far from the halfway line field players stand at kick-off, m: as far from an opponent as lets them take a pass.
 const KICKOFF_BACK: f32 = 0.9;
 
-/// Where our taker waits for its restart: behind the ball, as seen from their goal.
-pub fn taker_waits(view: &View, ball: &Ball) -> Point<Attack> {
-    let back = (ball.position - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
-    view.clamp(ball.position + back * TAKER_WAITS, -0.1)
+/// Where our taker waits for its restart from `ball`: behind it, as seen from their goal.
+pub fn taker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
+    let back = (ball - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
+    view.clamp(ball + back * TAKER_WAITS, -0.1)
 }
 
 /// What our taker does with the target it has; nothing yet: it waits behind the ball for its mates to take their places.
@@ -31,7 +31,7 @@ pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
     let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
         None => {
-            let at = taker_waits(view, ball);
+            let at = taker_waits(view, ball.position);
             (Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Referee)
         }
         Some(Target::Shot { at, room }) => (Task::Kick { at, kick: support::SHOT }, Why::BestTarget { room }),

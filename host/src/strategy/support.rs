@@ -56,7 +56,8 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
         .filter(move |at| !view.in_their_area(*at, KEEP_OFF) && !view.in_our_area(*at, KEEP_OFF))
         .filter(move |at| {
             let distance = at.distance(ball);
-            (PASS_SHORTEST..PASS_LONGEST).contains(&distance) && at.x() > ball.x() - BACKWARDS
+            let line = (ball.x() - BACKWARDS).min(MIDDLE);
+            (PASS_SHORTEST..PASS_LONGEST).contains(&distance) && at.x() > line
         })
 }
 
@@ -95,7 +96,7 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
         return Target::Shot { at: shot, room };
     }
     let receivable = |mate: &&Robot| {
-        mate.id != taker && mate.id != view.keeper && {
+        mate.id != taker && mate.id != view.keeper && view.clamp(mate.position, INSIDE) == mate.position && {
             let distance = mate.position.distance(ball);
             mate.position.x() > ball.x() - BACKWARDS && (PASS_SHORTEST..PASS_LONGEST).contains(&distance)
         }
@@ -111,7 +112,14 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
             let room = room_along(view, ball, mate.position);
             Target::Mate { id: mate.id, at: mate.position, room }
         }
-        _ if ball.distance(view.their_goal()) < SHOOT_WITHIN => Target::Shot { at: shot, room },
+        _ if room > ROOM_TO_PASS_BY && ball.distance(view.their_goal()) < SHOOT_WITHIN => {
+            Target::Shot { at: shot, room }
+        }
+        // Into somebody's legs, from beside the touch line, is a ball for them: rather back to whoever is there.
+        Some((mate, _)) if room_along(view, ball, mate.position) > ROOM_TO_PASS_BY => {
+            let room = room_along(view, ball, mate.position);
+            Target::Mate { id: mate.id, at: mate.position, room }
+        }
         _ => {
             let half = view.field.width * 0.5 - 0.6;
             let ahead = [0.0, -half, half]
@@ -173,8 +181,14 @@ const PASS_LONGEST: f32 = 5.0;
 const BACKWARDS: f32 = 1.0;
 /// A gap beside the way of a shot, m: bodies of robot and ball (0.11) and what a keeper covers while it flies.
 const ROOM_TO_SHOOT: f32 = 0.2;
+/// Bodies of robot and ball, m: with less than this beside its way the ball hits somebody.
+const ROOM_TO_PASS_BY: f32 = 0.12;
+/// A mate nearer to a line than this is not passed to, m: what it misses is out.
+const INSIDE: f32 = 0.3;
 /// Farther shots are caught, m.
 const SHOOT_WITHIN: f32 = 4.0;
+/// With the ball far ahead there are always places from here on, m: short of the halfway line.
+const MIDDLE: f32 = -0.5;
 /// Below this a pass is rather not played, 0–1.
 const WORTH_PASSING: f32 = 0.2;
 /// Shots are aimed this far inside the posts, m: twice the ball's radius, and what a kick scatters by.

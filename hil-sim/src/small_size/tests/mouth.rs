@@ -119,6 +119,21 @@ fn a_chip_of_45_degrees_first_lands_where_its_speed_says() {
 }
 
 #[test]
+fn a_ball_kicked_out_of_the_turning_dribbler_slides_first_like_any_other() {
+    let comes_to = |order: Order| {
+        let mut world = with_ball();
+        lead(&mut world, yellow(1), order, 10);
+        run(&mut world, 9_000);
+        assert_eq!(world.ball.velocity.norm(), 0.0);
+        world.ball.position.x()
+    };
+    let (still, turning) = (comes_to(kick(2.0, 0.0)), comes_to(dribble(kick(2.0, 0.0))));
+    // 2 m/s slide to 5/7 of that: (4 - 2.041)/7.8 + 2.041/0.7 = 3.17 m; one that rolled at once would come 5.7 m.
+    assert!((still - 0.0945 - 3.17).abs() < 0.05, "{still}");
+    assert!((still - turning).abs() < 0.15, "{still} {turning}");
+}
+
+#[test]
 fn kicks_scatter_by_their_share_and_never_beyond_its_limit() {
     let mut parameters = exact();
     (parameters.kick.speed_sd, parameters.kick.angle_sd_deg) = (0.02, 1.0);

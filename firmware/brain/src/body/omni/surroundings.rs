@@ -53,9 +53,10 @@ impl Surroundings {
         let radius = 2.0 * BODY + margin;
         for other in &belief.others {
             let at = other.pose.position;
-            let reach = radius + ASIDE + ASIDE_FOR * (other.velocity.x().abs() + other.velocity.y().abs());
+            let speed = other.velocity.x().abs() + other.velocity.y().abs();
+            let reach = radius + ASIDE + ASIDE_FOR * speed;
             if way.distance_to(at) < reach || stops.distance_to(at) < reach {
-                around.add(Obstacle::robot(at, other.velocity, radius));
+                around.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
             }
         }
         around
@@ -124,6 +125,8 @@ const ROBOTS_AT_BALL: f32 = 0.0;
 const ASIDE: f32 = 0.3;
 /// Who moves may come nearer for so long, s.
 const ASIDE_FOR: f32 = 0.4;
+/// Who moves may be elsewhere than it was shown, by this much of its way, s: two images' worth of its velocity's error.
+const STRAYS_FOR: f32 = 0.025;
 /// At 3 m/s and 3.5 m/s² a robot comes to rest in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
 /// Goal walls matter within this distance of the goal line, m.

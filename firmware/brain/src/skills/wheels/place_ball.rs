@@ -6,7 +6,7 @@
 
 use geometry::{Angle, Field, Point, Vector};
 use protocol::{Duration, Instant};
-use rules::limits::PLACEMENT_TOLERANCE;
+use rules::limits::{PLACEMENT_TOLERANCE, ROBOT_RADIUS};
 
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
@@ -57,8 +57,19 @@ pub fn place_ball(now: Instant, placing: &mut Placing, belief: &Belief, at: Poin
         }
         Placing::Letting { .. } => Drive::bold(me, belief.pose.heading).into(),
         Placing::Leaving { facing } => {
-            let to = ball.position - Vector::polar(OFF, facing);
-            Drive { speed: LEAVE, ..Drive::bold(to, facing) }.into()
+            let straight = ball.position - Vector::polar(OFF, facing);
+            let room = belief.league().field().carpet().grown(-ROBOT_RADIUS);
+            if room.contains(straight) {
+                return Drive { speed: LEAVE, ..Drive::bold(straight, facing) }.into();
+            }
+            // A wall is behind it: a little back, and then around the ball into the field.
+            let clear = me.distance(ball.position) - BALL_AT;
+            if clear < STEP_BACK {
+                let back = ball.position - Vector::polar(BALL_AT + 2.0 * STEP_BACK, facing);
+                return Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into();
+            }
+            let inwards = (Point::new(0.0, 0.0) - ball.position).clamped(OFF);
+            Drive::shy(ball.position + inwards, facing).into()
         }
         Placing::Done => Intent::Stand { face: Some(me.direction_to(ball.position)) },
     }
@@ -113,8 +124,9 @@ fn at_wall(belief: &Belief, ball: &Ball) -> Option<Angle> {
     let field = belief.league().field();
     let walls = field.carpet();
     let depth = -walls.distance_to(ball.position);
-    let beyond_goal_line = ball.position.x().abs() > 0.5 * field.length - 0.02;
-    let in_mouth = beyond_goal_line && ball.position.y().abs() < 0.5 * field.goal_width + WALL_ROOM;
+    // Beside a post there is no room for a body either: such a ball is come to from the field as one in the goal is.
+    let at_goal = ball.position.x().abs() > 0.5 * field.length - WALL_ROOM;
+    let in_mouth = at_goal && ball.position.y().abs() < 0.5 * field.goal_width + BESIDE_POST;
     if depth > WALL_ROOM && !in_mouth {
         return None;
     }
@@ -141,7 +153,7 @@ fn facing(belief: &Belief, ball: &Ball) -> Angle {
 }
 
 /// How fast a ball is pulled, m/s.
-const PULL: f32 = 1.0;
+const PULL: f32 = 1.3;
 /// How fast a robot backs off from it, m/s.
 const LEAVE: f32 = 0.6;
 /// How fast it comes to the ball, m/s.
@@ -159,11 +171,15 @@ const THERE: f32 = 0.03;
 /// So much between front and ball, and it is not held, m.
 const GAP: f32 = 0.04;
 /// The dribbler runs out for so long.
-const RUNS_OUT: Duration = Duration::millis(400);
+const RUNS_OUT: Duration = Duration::millis(300);
+/// So far back a robot may turn and go around the ball without touching it, m.
+const STEP_BACK: f32 = 0.06;
 /// How far off the robot goes, centre to ball, m: 0.5 by the rules, its body, and a margin.
 const OFF: f32 = 0.75;
 /// A ball this near a wall leaves no room for a body beside it, m.
 const WALL_ROOM: f32 = 0.16;
+/// The same beyond a post, m: a body across and its way around.
+const BESIDE_POST: f32 = 0.3;
 /// How far it is pulled off a wall before anything else, m.
 const CLEAR_OF_WALL: f32 = 0.3;
 /// Nearer than this to the place the heading stays, m.
