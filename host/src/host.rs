@@ -306,9 +306,8 @@ impl Host {
     /// when it vanished; else where it was seen last.
     fn remember_ball(&mut self, now: Instant) {
         let us = self.settings.us;
-        let mouth = |robot: &crate::world::Robot| {
-            robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
-        };
+        let mouth =
+            |robot: &crate::world::Robot| robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0));
         if let Some(ball) = self.world.ball {
             self.last_ball = Some(ball);
             let hides = |robot: &&crate::world::Robot| mouth(robot).distance(ball.position) < HIDES;

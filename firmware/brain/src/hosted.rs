@@ -3,9 +3,9 @@
 //! A directive is held until the next one, and stale after 100 ms without a command (the governor's
 //! [`SILENCE`]); the phase is the newest that any frame told.
 
+use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
-use geometry::{Field, Point};
 use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 

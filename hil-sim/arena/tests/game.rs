@@ -57,7 +57,7 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
     assert!(conduct.fastest_in_halt < 0.05, "{} m/s in HALT", conduct.fastest_in_halt);
     assert!(conduct.fastest_ball <= 6.5, "a ball of {} m/s", conduct.fastest_ball);
     assert!(
-        conduct.in_play > conduct.ticks / 5,
+        conduct.in_play > conduct.ticks / 2,
         "in play for {} of {} ticks",
         conduct.in_play,
         conduct.ticks
@@ -67,6 +67,26 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
             assert_eq!(fouls.get(never), None, "{fouls:?}");
         }
     }
+}
+
+#[test]
+fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls_are_few() {
+    let matches: Vec<GameReport> = (1..=5).map(|seed| short(seed, 120.0, &mut Nobody)).collect();
+    for report in &matches {
+        // More than half is asked for; what these come to is 0.61 to 0.70.
+        assert!(report.ball_in_play > 0.55, "seed {}: {}", report.seed, report.ball_in_play);
+    }
+    let chances = |of: fn(&GameReport) -> u32| matches.iter().map(of).sum::<u32>();
+    assert!(chances(|report| report.metrics.blue.chances) > 0);
+    assert!(chances(|report| report.metrics.yellow.chances) > 0);
+    let fouls =
+        |report: &GameReport| -> u32 { report.fouls.blue.values().chain(report.fouls.yellow.values()).sum() };
+    let (all, minutes) = (matches.iter().map(fouls).sum::<u32>(), 10);
+    assert!(
+        all <= minutes,
+        "{all} fouls in {minutes} minutes: {:?}",
+        matches.iter().map(|r| &r.fouls).collect::<Vec<_>>()
+    );
 }
 
 #[test]

@@ -286,6 +286,7 @@ impl InternalReferee {
         GameView {
             phase: self.phase(),
             is_break: self.stage.is_break(),
+            before_half: matches!(self.stage, Stage::SecondHalfPre | Stage::ExtraSecondHalfPre),
             since: Instant(self.state.since()),
             ball_at_command: self.ball_at_command,
             target: self.placement,

@@ -29,6 +29,8 @@ pub(super) struct GameView<'a> {
     pub(super) phase: Phase<Colour>,
     /// Teams rest, and may do as they like.
     pub(super) is_break: bool,
+    /// The half has not begun: robots are on their way to their ends.
+    pub(super) before_half: bool,
     /// When the phase began.
     pub(super) since: Instant,
     /// Where the ball was when the last command was given.

@@ -27,7 +27,8 @@ impl Areas {
     }
 
     pub(super) fn look(&mut self, scene: &Scene<'_>, events: &mut Vec<Event>) {
-        if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) {
+        // Teams that change ends walk through each other's areas; on a real field people carry their robots over.
+        if matches!(scene.game.phase, Phase::Stop | Phase::FreeKick(_)) && !scene.game.before_half {
             for (team, told) in COLOURS.into_iter().zip(&mut self.too_close) {
                 events.extend(too_close(scene, team, told));
             }
