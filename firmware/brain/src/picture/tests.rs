@@ -108,7 +108,7 @@ fn a_small_error_is_taken_out_bit_by_bit_and_a_large_one_at_once() {
     let mut picture = Picture::new(me());
     picture.handle_part(Instant(0), &part(1, 0, &[robot(Side::Ours, 3, 0, 0)]));
     picture.handle_part(Instant(16_000), &part(2, 0, &[robot(Side::Ours, 3, 20, 0)]));
-    assert!((picture.own(Instant(16_000)).unwrap().position.x() - 0.008).abs() < 1e-6);
+    assert!((picture.own(Instant(16_000)).unwrap().position.x() - 0.002).abs() < 1e-6);
     picture.handle_part(Instant(32_000), &part(3, 0, &[robot(Side::Ours, 3, 900, 0)]));
     assert!((picture.own(Instant(32_000)).unwrap().position.x() - 0.9).abs() < 1e-6);
 }
