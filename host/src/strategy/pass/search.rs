@@ -1,7 +1,7 @@
 //! Which place is best for a receiver? Random samples near the best of a moment ago, and some anywhere (Biswas et al. 2014 §3.1; D13).
 //!
 //! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not jump. So does this, but
-//! for a tenth of its samples, which look over the whole field; the target jumps only for a place that is better by [`JUMP_GAIN`].
+//! for a tenth of its samples, which look over the whole field; the target jumps only for a place that is better by a quarter.
 //! One seed, one stream: the same moments give the same places.
 
 use geometry::{Attack, Point, Vector};
