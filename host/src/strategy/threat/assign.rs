@@ -187,6 +187,13 @@ impl Giving<'_> {
             |opponent, blocks| holder(opponent, blocks).is_some_and(still_here),
             self.settings,
         );
+        let defenders = self.free.len() + usize::from(spare.is_some());
+        let wanted: heapless::Vec<RobotId, ROBOTS_MAX> = positions
+            .iter()
+            .take(defenders)
+            .filter_map(|position| holder(position.danger.opponent, position.blocks))
+            .take(ROBOTS_MAX)
+            .collect();
         let mut kept: heapless::Vec<Kept, ROBOTS_MAX> = heapless::Vec::new();
         for (rank, position) in positions.iter().enumerate() {
             let (opponent, blocks) = (position.danger.opponent, position.blocks);
@@ -201,7 +208,10 @@ impl Giving<'_> {
             let candidates = self.free.iter().chain(on_edge.as_ref().map(|(robot, _)| robot));
             let chosen = roles::choose(candidates, had, self.settings.worth, |robot| {
                 let place = on_edge.filter(|(spare, _)| spare.id == robot.id).map(|(_, place)| place);
-                robot.position.distance(place.unwrap_or(position.at))
+                let way = robot.position.distance(place.unwrap_or(position.at));
+                // Whoever has another task that is wanted still is left to it, or one new task would move everybody.
+                let has_other = had != Some(robot.id) && wanted.contains(&robot.id);
+                if has_other { way + self.settings.worth } else { way }
             });
             let Some((robot, _)) = chosen else { continue };
             let place = on_edge.filter(|(spare, _)| spare.id == robot).map(|(_, place)| place);
