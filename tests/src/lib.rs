@@ -1,6 +1,8 @@
 //! What tests that cross crates share. Runs on the developer's machine only.
 
 pub mod carpet;
+pub mod hil;
+pub mod hostile;
 pub mod invariants;
 pub mod oracle;
 pub mod random_library;

@@ -155,7 +155,7 @@ impl Table {
             }
             // The host passes on what is for mates.
             for packet in a.packets {
-                if let Ok((_, TeamMessage::Beacon(_))) = self.link.open(&packet) {
+                if let Ok((_, TeamMessage::Beacon(_) | TeamMessage::Greeting(_))) = self.link.open(&packet) {
                     self.air.push((*robot, packet));
                 }
             }

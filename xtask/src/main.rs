@@ -113,6 +113,7 @@ impl Request {
                     Some("retrieval") => Ok(Self::Bench("retrieval", words.map(String::from).collect())),
                     Some("radio") => Ok(Self::Bench("radio", words.map(String::from).collect())),
                     Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
+                    Some("hil") => Ok(Self::Faults("hil", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
                     Some("strategy") => Ok(Self::StrategyCost),
                     Some("simulator") => match words.next() {
@@ -121,7 +122,7 @@ impl Request {
                         Some(word) => Err(format!("unknown argument `{word}`")),
                     },
                     _ => {
-                        Err("bench needs a name: retrieval, motion, radio, trial, strategy or simulator"
+                        Err("bench needs a name: retrieval, motion, radio, hil, trial, strategy or simulator"
                             .into())
                     }
                 };
@@ -167,6 +168,8 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xt
                  --verify holds 10^6 times to the best of all shares between the axes instead
   bench radio [--write]
                  likewise for radio frames on the robot's processor; the table is protocol/README.md's
+  bench hil [--seconds N] [--seed N]
+                 play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed
   bench trial    count the instructions of a simulated second and hold them to the budget
   bench strategy count the instructions of strategy's decisions and hold them to the budgets
   bench simulator [--write]

@@ -3,11 +3,11 @@
 //! `runtime`'s tasks on a board and the native simulator drive this very value, so that both send the same bytes.
 
 use casebase::CaseBase;
-use protocol::Instant;
 use protocol::frame::TeamKey;
 use protocol::link::{Heard, Link, Packet};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
+use protocol::{Duration, Instant};
 
 use crate::{Brain, BrainConfig};
 
@@ -15,6 +15,9 @@ use crate::{Brain, BrainConfig};
 pub struct Station<'a> {
     brain: Brain<'a>,
     link: Link,
+    /// When the brain spoke last, and when mates were greeted last.
+    spoke: Option<Instant>,
+    greeted: Option<Instant>,
 }
 
 impl<'a> Station<'a> {
@@ -28,6 +31,8 @@ impl<'a> Station<'a> {
         Self {
             brain: Brain::new(now, config, base),
             link: Link::new(config.team, config.robot, key, config.epoch),
+            spoke: None,
+            greeted: Some(now),
         }
     }
 
@@ -58,7 +63,17 @@ impl<'a> Station<'a> {
 
     /// The next packet to send. Call after every `handle_…` until `None`.
     pub fn poll_packet(&mut self, now: Instant) -> Option<Packet> {
-        let Some(mut message) = self.brain.poll_message(now) else { return self.link.poll_greeting(now) };
+        let Some(mut message) = self.brain.poll_message(now) else {
+            // One message a step, where steps are short: sealing costs, and the next step is near.
+            let waits =
+                self.spoke == Some(now) && self.greeted.is_some_and(|last| now.since(last) < GREET_WITHIN);
+            let greeting = if waits { None } else { self.link.poll_greeting(now) };
+            if greeting.is_some() {
+                self.greeted = Some(now);
+            }
+            return greeting;
+        };
+        self.spoke = Some(now);
         if let TeamMessage::Telemetry(telemetry) = &mut message {
             self.link.tell(telemetry);
         }
@@ -85,3 +100,6 @@ impl<'a> Station<'a> {
         &self.link
     }
 }
+
+/// Greetings wait for a step without other words, but no longer than this: a walking robot speaks in each.
+const GREET_WITHIN: Duration = Duration::millis(40);

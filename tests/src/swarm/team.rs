@@ -1,7 +1,7 @@
 //! What does the swarm see of a team's cycles, and does the team play again after healing?
 
 use protocol::link::{Packet, overhear};
-use protocol::team::{Beacon, Closure, CycleState, Decision, TeamMessage};
+use protocol::team::{Beacon, Closure, CycleState, Decision, Status, TeamMessage};
 use protocol::{CycleId, Instant, RobotId};
 
 use super::honest::Believed;
@@ -14,6 +14,8 @@ pub(super) struct TeamWatch {
     watcher: Watcher,
     ids: Vec<RobotId>,
     healed: u32,
+    /// Since when the team owes a new cycle.
+    owed_since: u32,
     /// The newest cycle when everything healed.
     at_healing: Option<CycleId>,
     /// When all knew one cycle that goes on.
@@ -39,6 +41,7 @@ impl TeamWatch {
             beacons: vec![None; ids.len()],
             ids,
             healed: plan.trouble.to,
+            owed_since: plan.trouble.to,
             at_healing: None,
             united: None,
             ended: None,
@@ -131,12 +134,16 @@ impl TeamWatch {
                 self.ended = None;
             }
         }
-        if ms <= self.healed {
+        if ms <= self.healed + LAST_TICK || !self.has_retriever() {
+            // Where nobody is left who could be named coordinator, the team's time starts when somebody comes back.
+            self.owed_since = ms;
+        }
+        if ms <= self.healed + LAST_TICK {
             self.at_healing = self.watcher.newest_by_robot().into_iter().flatten().max();
         } else if self.united.is_none() && self.plays() {
             self.united = Some(ms);
             self.tally.slowest_ms = ms - self.healed;
-        } else if self.united.is_none() && ms > self.healed + RECOVER_WITHIN {
+        } else if self.united.is_none() && ms > self.owed_since + RECOVER_WITHIN {
             let words: Vec<String> = self.ids.iter().zip(&self.beacons).map(words).collect();
             self.find(ms, Broken::Dead(words.join("; ")));
         }
@@ -147,6 +154,15 @@ impl TeamWatch {
     pub(super) fn tally(&self) -> Tally {
         let Watcher { cycles, gameplays, overlaps, .. } = self.watcher;
         Tally { cycles, gameplays, overlaps, ..self.tally }
+    }
+
+    /// Somebody present may retrieve, and could be named coordinator.
+    fn has_retriever(&self) -> bool {
+        let both = Status::AVAILABLE.with(Status::RETRIEVER);
+        // Who has not spoken yet in this life listens still.
+        self.beacons.iter().flatten().any(|beacon| beacon.status.has(both))
+            || self.beacons.iter().any(Option::is_none)
+            || self.beacons.iter().flatten().any(|beacon| beacon.cycle.is_none())
     }
 
     /// All know the same cycle, and it is a new one or a gameplay that goes on.
@@ -178,5 +194,7 @@ fn instant(ms: u32) -> Instant {
     Instant(u64::from(ms) * 1000)
 }
 
+/// What the plan has for a moment happens in the next tick, ms: 40 at most.
+const LAST_TICK: u32 = 40;
 /// A new cycle comes within this time of healing, ms (DESIGN §5).
 const RECOVER_WITHIN: u32 = 1_000;

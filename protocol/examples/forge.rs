@@ -1,0 +1,31 @@
+//! How many forged, replayed and foreign frames are believed? `cargo run --release -p protocol --example forge -- --count 1000000
+//! [--seed N]`: none, or it panics with the first.
+
+#[path = "../tests/support/forgery.rs"]
+mod forgery;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let (mut count, mut seed) = (1_000_000, 1);
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        match (word.as_str(), words.next().and_then(|value| value.parse().ok())) {
+            ("--count", Some(value)) => count = value,
+            ("--seed", Some(value)) => seed = value,
+            _ => {
+                eprintln!("usage: forge [--count N] [--seed N]");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    let tally = forgery::tries(count, seed);
+    let [said, flipped, counter, epoch, length, name, made] = tally.kinds;
+    println!(
+        "{count} frames (seed {seed}), none believed: {said} as they were said, {flipped} with flipped bits, {counter} with a newer \
+         counter, {epoch} with a newer epoch, {length} cut or stretched, {name} in another's name, {made} made with guessed keys; \
+         and {} recordings right after {} boots",
+        tally.after_boots, tally.boots
+    );
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,4 @@
+//! Does the host's message bring its reader down, whatever its bytes?
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::host(bytes));

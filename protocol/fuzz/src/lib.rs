@@ -1,0 +1,113 @@
+//! What reads bytes from outside, and what holds whatever they are? The targets of `cargo fuzz`, and of the seeded loop that CI runs.
+//!
+//! A target panics where a reader does, where something without the key is believed, or where a message changes on its way out and
+//! in again.
+
+use std::fmt::Debug;
+
+use protocol::frame::{FRAME_LEN_MAX, Frame, TeamKey};
+use protocol::host::HostMessage;
+use protocol::host_link::HostLink;
+use protocol::link::{Link, overhear, overhear_host};
+use protocol::lockstep::{FromRobot, ToRobot};
+use protocol::serial::{Lines, line as stuffed};
+use protocol::team::TeamMessage;
+use protocol::{RobotId, TeamId};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use ssl::log::{MessageKind, Packet, guess};
+use ssl::stream::FrameReader;
+
+/// A target: its name, which is its corpus' folder too, and what it does.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All of them.
+pub const TARGETS: [Target; 6] = [
+    ("frame", frame),
+    ("line", line),
+    ("team", team),
+    ("host", host),
+    ("lockstep", lockstep),
+    ("ssl", league),
+];
+
+/// A frame of the air.
+pub fn frame(bytes: &[u8]) {
+    let (team, key) = (TeamId(1), TeamKey([0x5a; 16]));
+    if let Ok(frame) = Frame::parse(bytes, team) {
+        let mut out = [0; FRAME_LEN_MAX];
+        let len = frame.emit(&TeamKey::ZERO, &mut out).expect("a frame that was read can be written");
+        assert_eq!(Frame::parse(&out[..len], team), Ok(frame));
+        assert_eq!(out[..len - 8], bytes[..len - 8]);
+    }
+    // The key is nobody's: nothing is believed.
+    let mut robot = Link::new(team, RobotId::ZERO, key, 3);
+    assert!(robot.open(bytes).is_err() && HostLink::new(team, key, 3).open(bytes).is_err());
+    assert_eq!(robot.refused().iter().sum::<u32>(), 1);
+    let _message = overhear(bytes, team, &TeamKey::ZERO);
+    let _message = overhear_host(bytes, team, &TeamKey::ZERO);
+}
+
+/// Bytes of a serial line.
+pub fn line(bytes: &[u8]) {
+    let mut lines = Lines::new();
+    for packet in bytes.iter().filter_map(|byte| lines.push(*byte)) {
+        assert!(packet.len() <= FRAME_LEN_MAX);
+        let mut again = Lines::new();
+        let came: Vec<_> = stuffed(&packet).iter().filter_map(|byte| again.push(*byte)).collect();
+        if !packet.is_empty() {
+            assert_eq!(came, [packet]);
+        }
+    }
+}
+
+/// A robot's message.
+pub fn team(bytes: &[u8]) {
+    same_again::<TeamMessage>(bytes);
+}
+
+/// The host's message.
+pub fn host(bytes: &[u8]) {
+    if let Some(message) = same_again::<HostMessage>(bytes) {
+        let _sound = message.is_sound();
+    }
+}
+
+/// A message between simulator and computer.
+pub fn lockstep(bytes: &[u8]) {
+    let question = postcard::take_from_bytes::<ToRobot<'_>>(bytes);
+    let answer = postcard::take_from_bytes::<FromRobot<'_>>(bytes);
+    assert!(format!("{question:?} {answer:?}").len() > 2);
+}
+
+/// A packet of the league: a datagram, and a stream.
+pub fn league(bytes: &[u8]) {
+    let guessed = guess(bytes);
+    for kind in [
+        MessageKind::Unknown,
+        MessageKind::Vision2010,
+        MessageKind::Vision2014,
+        MessageKind::Refbox2013,
+        MessageKind::Tracker2020,
+    ] {
+        let packet = Packet::decode(kind, bytes);
+        assert!(guessed != Some(kind) || packet.is_ok());
+    }
+    let mut reader = FrameReader::new(4_096);
+    reader.push(bytes);
+    while let Ok(Some(message)) = reader.next_message() {
+        assert!(message.len() <= bytes.len());
+    }
+}
+
+/// If the bytes begin with a message, it is the same after going out and in again.
+fn same_again<T>(bytes: &[u8]) -> Option<T>
+where
+    T: Serialize + DeserializeOwned + PartialEq + Debug,
+{
+    let (message, _) = postcard::take_from_bytes::<T>(bytes).ok()?;
+    let mut out = [0; 512];
+    let again = postcard::to_slice(&message, &mut out).expect("what was read can be written");
+    assert_eq!(postcard::from_bytes::<T>(again).as_ref(), Ok(&message));
+    Some(message)
+}

@@ -1,0 +1,42 @@
+//! How fast do six images in QEMU play, against real time and against native brains? `cargo xtask bench hil [--seconds N] [--seed N]`
+//!
+//! Both matches run in one process, tick by tick in turn, so that whatever slows the machine slows both; hashes are compared.
+
+use std::process::ExitCode;
+
+use match_tests::hil::Pair;
+
+fn main() -> ExitCode {
+    let (mut seconds, mut seed) = (20.0, 1);
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let value = words.next();
+        let parsed: Option<f64> = value.as_deref().and_then(|value| value.parse().ok());
+        match (word.as_str(), parsed.filter(|number| *number > 0.0)) {
+            ("--seconds", Some(number)) => seconds = number,
+            ("--seed", Some(number)) => seed = number as u64,
+            _ => {
+                eprintln!("usage: cargo xtask bench hil [--seconds N] [--seed N]");
+                return ExitCode::from(2);
+            }
+        }
+    }
+    let image = firmware_build::build_image(&firmware_build::workspace_root());
+    let told = match image {
+        Ok(image) => Pair::new(seed, seconds, &image).and_then(|mut pair| pair.play(|_, _| {})),
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    match told {
+        Ok(told) => {
+            println!("{told}");
+            if told.hashes[0] == told.hashes[1] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

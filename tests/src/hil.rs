@@ -1,0 +1,111 @@
+//! One match twice: once with six robots of ours as firmware images under QEMU, once with native brains; both against six native
+//! ones, tick by tick in one run, so that hashes and wall time can be compared.
+
+use std::fmt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use arena::game::{Game, GameConfig, GameError, Nobody};
+use brain::BrainConfig;
+use hil_sim::{Backend, Mcu, McuError, NativeBackend, QemuBackend};
+use protocol::TeamId;
+use rules::{Colour, League};
+
+/// Which of the two matches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// All brains native.
+    Native = 0,
+    /// Ours in images.
+    Emulated = 1,
+}
+
+/// Both matches.
+pub struct Pair {
+    games: Vec<Game<'static>>,
+    ticks: u32,
+}
+
+/// What the two came to.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// Ticks of 10 ms played.
+    pub ticks: u32,
+    /// The hash of each, as far as it went.
+    pub hashes: [String; 2],
+    /// Wall time of each.
+    pub took: [Duration; 2],
+    /// The worst step in guest instructions; 0 where none are counted.
+    pub worst_instructions: [u32; 2],
+}
+
+impl Told {
+    /// How many times faster than real time a side played.
+    pub fn speed(&self, side: Side) -> f64 {
+        f64::from(self.ticks) * 0.01 / self.took[side as usize].as_secs_f64().max(1e-9)
+    }
+}
+
+impl fmt::Display for Told {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = f64::from(self.ticks) * 0.01;
+        let [native, emulated] = &self.hashes;
+        let equal = if native == emulated { "equal" } else { "NOT equal" };
+        write!(f, "{seconds:.2} s of six against six: hashes {native} and {emulated}, {equal}; ")?;
+        write!(f, "native {:.1} x real time, ", self.speed(Side::Native))?;
+        write!(f, "six images in QEMU {:.2} x, ", self.speed(Side::Emulated))?;
+        let ratio = self.speed(Side::Native) / self.speed(Side::Emulated).max(1e-9);
+        write!(f, "{ratio:.0} times slower; worst step {} instructions", self.worst_instructions[1])
+    }
+}
+
+impl Pair {
+    /// Both at kick-off.
+    pub fn new(seed: u64, seconds: f64, image: &Path) -> Result<Self, GameError> {
+        let config = GameConfig::new(League::DivisionB, seed, seconds);
+        let base = case_library::division_b();
+        let mut native = NativeBackend::new(base);
+        let broken = |error: McuError| GameError::League(error.to_string());
+        let qemu = QemuBackend::new(image).with_library(base.bytes()).map_err(broken)?;
+        let mut mixed = Mixed { native: NativeBackend::new(base), qemu };
+        let games = vec![Game::new(&config, &mut native)?, Game::new(&config, &mut mixed)?];
+        Ok(Self { games, ticks: (seconds * 100.0) as u32 })
+    }
+
+    /// Plays both; `look` gets both hashes after every tick.
+    pub fn play(&mut self, mut look: impl FnMut(u32, [&str; 2])) -> Result<Told, GameError> {
+        let mut took = [Duration::ZERO; 2];
+        let mut hashes = [String::new(), String::new()];
+        for tick in 0..self.ticks {
+            for ((game, took), hash) in self.games.iter_mut().zip(&mut took).zip(&mut hashes) {
+                let begin = Instant::now();
+                game.step(&mut Nobody)?;
+                *took += begin.elapsed();
+                *hash = game.trace().digits();
+            }
+            look(tick, [&hashes[0], &hashes[1]]);
+        }
+        let worst_instructions = [0, 1].map(|side: usize| self.games[side].worst_instructions());
+        Ok(Told { ticks: self.ticks, hashes, took, worst_instructions })
+    }
+}
+
+/// Blue robots are images, yellow ones native.
+struct Mixed {
+    native: NativeBackend<'static>,
+    qemu: QemuBackend,
+}
+
+impl Backend<'static> for Mixed {
+    fn name(&self) -> &'static str {
+        "mixed"
+    }
+
+    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'static>, McuError> {
+        if config.team == TeamId::of(Colour::Blue) {
+            self.qemu.boot(config)
+        } else {
+            self.native.boot(config)
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! What do readers do with bytes that nobody of the team, the league or the simulator wrote? Seeded bytes for the very targets that
+//! `cargo fuzz` has (`protocol/fuzz`), and for brains.
+//!
+//! Most are true messages of the corpus with a few breaks, so that readers come far; the rest is noise. A run is its seed.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::{fs, io};
+
+use brain::{Brain, BrainConfig};
+use geometry::Twist;
+use hil_sim::Stream;
+use protocol::host::HostMessage;
+use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
+use protocol::team::TeamMessage;
+use protocol::{Instant, RobotId, TeamId};
+use rules::League;
+
+#[path = "../../protocol/fuzz/src/lib.rs"]
+pub mod targets;
+
+/// True messages by target.
+pub type Corpus = Vec<(targets::Target, Vec<Vec<u8>>)>;
+
+/// What is committed, in the order of names.
+pub fn corpus() -> io::Result<Corpus> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/fuzz/corpus");
+    let of = |target: targets::Target| {
+        let mut files: Vec<_> = fs::read_dir(folder.join(target.0))?
+            .map(|file| file.map(|file| file.path()))
+            .collect::<Result<_, _>>()?;
+        files.sort();
+        Ok((target, files.iter().map(fs::read).collect::<Result<_, _>>()?))
+    };
+    targets::TARGETS.into_iter().map(of).collect()
+}
+
+/// A target that panicked, and the bytes that did it.
+#[derive(Clone, Debug)]
+pub struct Panicked {
+    /// Its name.
+    pub target: &'static str,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// `count` byte strings, spread over all targets; the first that brings one down.
+pub fn run(corpus: &Corpus, seed: u64, count: u64) -> Result<(), Panicked> {
+    let mut chance = Stream::new(seed, "hostile bytes");
+    let mut minds = Minds::new();
+    for number in 0..count {
+        let ((name, target), seeds) = &corpus[number as usize % corpus.len()];
+        let bytes = drawn(seeds, &mut chance);
+        let read = catch_unwind(AssertUnwindSafe(|| {
+            target(&bytes);
+            minds.think(&bytes);
+        }));
+        if read.is_err() {
+            return Err(Panicked { target: name, bytes });
+        }
+    }
+    Ok(())
+}
+
+fn drawn(seeds: &[Vec<u8>], chance: &mut Stream) -> Vec<u8> {
+    let any = |chance: &mut Stream| chance.whole(0, 255) as u8;
+    if seeds.is_empty() || chance.chance(0.2) {
+        let length = chance.whole(0, 160);
+        return (0..length).map(|_| any(chance)).collect();
+    }
+    let mut bytes = seeds[chance.whole(0, seeds.len() as u32 - 1) as usize].clone();
+    for _ in 0..=chance.whole(0, 3) {
+        let place = chance.whole(0, bytes.len() as u32) as usize;
+        match chance.whole(0, 4) {
+            0 if place < bytes.len() => bytes[place] ^= 1 << chance.whole(0, 7),
+            1 if place < bytes.len() => bytes[place] = any(chance),
+            2 => bytes.truncate(place),
+            3 => bytes.insert(place, any(chance)),
+            _ => {
+                let other = &seeds[chance.whole(0, seeds.len() as u32 - 1) as usize];
+                bytes.truncate(place);
+                bytes.extend(&other[other.len().min(place)..]);
+            }
+        }
+    }
+    bytes
+}
+
+/// Brains that are told whatever can be read: somebody with the key may still talk nonsense.
+struct Minds {
+    brain: Brain<'static>,
+    now: Instant,
+    told: u32,
+}
+
+impl Minds {
+    fn new() -> Self {
+        let config = BrainConfig::hosted(RobotId::ZERO, TeamId(1), League::DivisionB);
+        let now = Instant(0);
+        Self { brain: Brain::new(now, &config, case_library::division_b()), now, told: 0 }
+    }
+
+    fn think(&mut self, bytes: &[u8]) {
+        let (brain, now) = (&mut self.brain, self.now);
+        if let Ok(message) = postcard::from_bytes::<HostMessage>(bytes) {
+            brain.handle_host_message(now, &message);
+            self.told += 1;
+        }
+        if let Ok(message) = postcard::from_bytes::<TeamMessage>(bytes) {
+            brain.handle_team_message(
+                now,
+                RobotId::new((now.0 % 16) as u8).unwrap_or(RobotId::ZERO),
+                &message,
+            );
+            self.told += 1;
+        }
+        if self.told < MESSAGES_A_STEP {
+            return;
+        }
+        (self.now, self.told) = (Instant(now.0 + 10_000), 0);
+        let sensors = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: now.0 % 70_000 == 0,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+        };
+        while let Some(due) = brain.poll_timeout().filter(|due| *due <= self.now) {
+            brain.handle_timeout(due);
+        }
+        brain.handle_sensors(self.now, &sensors);
+        while brain.poll_message(self.now).is_some() {}
+        if let Some(ActuatorFrame::Omni { wheels, .. }) = brain.poll_actuators(self.now) {
+            assert!(wheels.iter().all(|rim| rim.abs() < 5.01), "{wheels:?}");
+        }
+    }
+}
+
+/// A brain hears so many words in a step, as in a match.
+const MESSAGES_A_STEP: u32 = 4;

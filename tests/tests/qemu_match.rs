@@ -1,0 +1,25 @@
+//! Do six firmware images play a match as six native brains do? Host, radio, cameras and referee around them are the very same;
+//! the match's hash is compared after every tick (DESIGN §2, §7).
+//!
+//! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
+//! compiler for the target (feature `qemu`).
+
+use match_tests::hil::{Pair, Side};
+
+/// Simulated seconds, unless told otherwise: kick-off and the first duels.
+const SECONDS: f64 = 4.0;
+
+#[test]
+fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
+    let seconds = std::env::var("ONETWO_MATCH_SECONDS").ok().and_then(|word| word.parse().ok());
+    let root = firmware_build::workspace_root();
+    let image = firmware_build::build_image(&root).unwrap_or_else(|error| panic!("{error}"));
+    let mut pair = Pair::new(5, seconds.unwrap_or(SECONDS), &image).unwrap_or_else(|error| panic!("{error}"));
+    let played = pair.play(|tick, hashes| assert_eq!(hashes[0], hashes[1], "tick {tick}"));
+    let told = played.unwrap_or_else(|error| panic!("{error}"));
+    println!("{told}");
+    assert!(told.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{told}");
+    let worst = told.worst_instructions[Side::Emulated as usize];
+    // How many a step may take, `qemu_wheels` says; here they are only counted.
+    assert!(worst > 0, "the worst step took {worst} instructions");
+}

@@ -1,0 +1,192 @@
+//! Does a serial line that drops, delays, doubles and corrupts bytes ever make a robot dangerous, and does the robot play again when the
+//! line is good? The host's radio and a robot's station with COBS between them, over an adversary of single bytes (DESIGN §6).
+
+use std::collections::VecDeque;
+
+use brain::{BrainConfig, Station};
+use geometry::{GoalEnd, Pose, Twist};
+use hil_sim::Stream;
+use host::radio::{Radio, RadioSettings, Situation};
+use host::world::{BallModels, Robot, Who, World};
+use match_tests::swarm::guard::Guard;
+use match_tests::swarm::honest::Sayings;
+use protocol::frame::TeamKey;
+use protocol::host::{Command, Directive, Duty};
+use protocol::quantized::{WirePoint, WirePose};
+use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
+use protocol::serial::{Lines, line};
+use protocol::{Instant, RobotId, TeamId};
+use rules::{Colour, League, Phase};
+
+const KEY: TeamKey = TeamKey([0x3c; 16]);
+const TEAM: TeamId = TeamId(1);
+/// A tick, ms.
+const TICK: u32 = 10;
+
+/// One direction of the line: bytes with the tick in which they come out.
+struct Uart {
+    chance: Stream,
+    bytes: VecDeque<(u32, u8)>,
+    /// Of a thousand bytes so many are dropped, changed in a bit, doubled.
+    bad: [f32; 3],
+    /// Bytes come out so many ticks late at most; none overtakes another.
+    late: u32,
+}
+
+impl Uart {
+    fn new(seed: u64, name: &str) -> Self {
+        Self { chance: Stream::new(seed, name), bytes: VecDeque::new(), bad: [0.0; 3], late: 0 }
+    }
+
+    fn send(&mut self, tick: u32, packet: &[u8]) {
+        let [drop, flip, double] = self.bad.map(|share| share * 1e-3);
+        for byte in line(packet) {
+            if self.chance.chance(drop) {
+                continue;
+            }
+            let mut byte = byte;
+            if self.chance.chance(flip) {
+                byte ^= 1 << self.chance.whole(0, 7);
+            }
+            let due = tick + self.chance.whole(0, self.late);
+            let due = self.bytes.back().map_or(due, |(last, _)| due.max(*last));
+            for _ in 0..=u8::from(self.chance.chance(double)) {
+                self.bytes.push_back((due, byte));
+            }
+        }
+    }
+
+    fn receive(&mut self, tick: u32, lines: &mut Lines) -> Vec<protocol::link::Packet> {
+        let due = self.bytes.iter().take_while(|(due, _)| *due <= tick).count();
+        self.bytes.drain(..due).filter_map(|(_, byte)| lines.push(byte)).collect()
+    }
+}
+
+/// What a run came to.
+#[derive(Debug, Default)]
+struct Told {
+    frames: u32,
+    believed: u32,
+    dropped: u32,
+    drove: u32,
+    braked: u32,
+}
+
+/// Ten seconds: good, bad from the second to the sixth, good.
+fn run(seed: u64, bad: [f32; 3], late: u32) -> Told {
+    let id = RobotId::new(3).unwrap();
+    let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
+    let mut station = Station::with_key(Instant(0), &config, case_library::division_b(), KEY);
+    let mut radio = Radio::new(RadioSettings { key: KEY, ..RadioSettings::new(TEAM, 70) });
+    let (mut down, mut up) = (Uart::new(seed, "uart down"), Uart::new(seed, "uart up"));
+    let (mut robots_lines, mut hosts_lines) = (Lines::new(), Lines::new());
+    let (mut guard, mut sayings) = (Guard::new(id, 7, 0), Sayings::default());
+    let mut told = Told::default();
+    let mut kicks = Vec::new();
+    for tick in 0..1_000 {
+        let (ms, now) = (tick * TICK, Instant(u64::from(tick * TICK) * 1000));
+        let trouble = (2_000..6_000).contains(&ms);
+        for uart in [&mut down, &mut up] {
+            (uart.bad, uart.late) = if trouble { (bad, late) } else { ([0.0; 3], 0) };
+        }
+        for packet in up.receive(tick, &mut hosts_lines) {
+            // What is broken is refused.
+            let _ = radio.handle_packet(now, &packet);
+        }
+        let to = Command {
+            to: id,
+            defending: GoalEnd::Negative,
+            phase: Phase::Run,
+            duty: Duty::Player,
+            // Never there: it drives on.
+            directive: Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } },
+        };
+        let situation = Situation { us: Colour::Blue, phase: Phase::Run, placement: None };
+        radio.offer(now, &field(now, id), situation, &[to]);
+        while let Some((_, packet)) = radio.poll_packet() {
+            sayings.add(&packet);
+            down.send(tick, &packet);
+        }
+        for packet in down.receive(tick, &mut robots_lines) {
+            told.frames += 1;
+            if let Some(believed) = guard.honest.hear(&packet, &sayings) {
+                told.believed += 1;
+                guard.hear(ms, &believed);
+            }
+            station.handle_packet(now, &packet);
+        }
+        let health = Health { battery: Some(16.0), tipped: false, kicker_ready: true };
+        let sensors = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: false,
+            busy: false,
+            odometry: Twist::default(),
+            health,
+        };
+        station.handle_sensors(now, &sensors);
+        while let Some(packet) = station.poll_packet(now) {
+            sayings.add(&packet);
+            up.send(tick, &packet);
+        }
+        let Some(order) = station.poll_actuators(now) else { continue };
+        let judged = guard.judge(ms, &sensors, &order);
+        assert_eq!(judged, Ok(()), "seed {seed}, {ms} ms");
+        let ActuatorFrame::Omni { kick, wheels, .. } = order else { panic!("no wheels: {order:?}") };
+        kicks.push((ms, kick));
+        if trouble {
+            told.braked += u32::from(kick == OmniKick::Discharge);
+            told.drove += u32::from(wheels.iter().any(|rim| rim.abs() > 0.1));
+        }
+    }
+    // Heard again for half a second it is armed, and before the trouble it was.
+    let armed = |from: u32, to: u32| {
+        kicks.iter().filter(|(ms, _)| (from..to).contains(ms)).all(|(_, kick)| *kick != OmniKick::Discharge)
+    };
+    assert!(armed(1_000, 2_000) && armed(7_000, 10_000), "seed {seed}");
+    told.dropped = robots_lines.dropped() + hosts_lines.dropped();
+    told
+}
+
+/// It stands in the middle; nobody else is there.
+fn field(now: Instant, id: RobotId) -> World {
+    let mut world = World::empty(now, BallModels::default());
+    world.put(Robot {
+        who: Who { colour: Colour::Blue, id },
+        pose: Pose::default(),
+        velocity: geometry::Vector::default(),
+        angular: 0.0,
+        confidence: 1.0,
+        seen: now,
+    });
+    world
+}
+
+#[test]
+fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_never_makes_it_dangerous() {
+    for seed in 0..8 {
+        // Each for itself, then all together.
+        for bad in [[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0], [4.0, 4.0, 4.0]] {
+            let told = run(seed, bad, 2);
+            assert!(told.believed < told.frames && told.dropped > 0, "{told:?}");
+            assert!(told.drove > 0, "{told:?}");
+        }
+    }
+}
+
+#[test]
+fn a_line_so_bad_that_hardly_a_frame_survives_makes_it_brake() {
+    for seed in 0..8 {
+        let told = run(seed, [60.0, 60.0, 60.0], 5);
+        assert!(told.braked > 300 && told.drove < 100, "{told:?}");
+    }
+}
+
+#[test]
+fn bytes_that_come_late_but_whole_are_no_trouble_up_to_three_ticks() {
+    for seed in 0..8 {
+        let told = run(seed, [0.0; 3], 3);
+        assert_eq!((told.braked, told.dropped), (0, 0), "{told:?}");
+    }
+}
