@@ -173,10 +173,7 @@ pub fn picture(rows: &[Row]) -> String {
                     Some([left + 5.0 * f64::from(row.percent), 60.0 + 200.0 * measure(row)? / most])
                 })
                 .collect();
-            svg.polyline(
-                &points,
-                format!(r#"fill="none" stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#),
-            );
+            svg.polyline(&points, format!(r#"stroke="{color}" stroke-width="2" stroke-dasharray="{dash}""#));
             for point in points {
                 svg.circle(point, 3.0, format!(r#"fill="{color}""#));
             }
