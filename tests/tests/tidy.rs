@@ -274,7 +274,7 @@ const PURE: [&str; 10] = [
 ];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 26] = [
+const LOWEST_FIRST: [&str; 27] = [
     "geometry",
     "rules",
     "protocol",
@@ -292,6 +292,7 @@ const LOWEST_FIRST: [&str; 26] = [
     "board-mps2",
     "firmware-build",
     "page",
+    "page-browser",
     "hil-sim",
     "virtual-robot",
     "host",

@@ -87,6 +87,8 @@ pub(crate) enum Failure {
     Target(TargetError),
     /// There is no emulator.
     Qemu(QemuError),
+    /// There is no browser to try the page with.
+    Browser,
     /// The firmware image cannot be made.
     Image(BuildError),
     /// Something costs more than DESIGN §9 allows.
@@ -105,6 +107,9 @@ impl fmt::Display for Failure {
             }
             Self::Target(error) => error.fmt(f),
             Self::Qemu(error) => error.fmt(f),
+            Self::Browser => f.write_str(
+                "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
+            ),
             Self::Image(error) => error.fmt(f),
             Self::Budget(what) => write!(f, "over the budget: {what}"),
             Self::Determinism(trials) => {

@@ -7,6 +7,7 @@ mod bench;
 mod context;
 mod determinism;
 mod evaluation;
+mod page;
 mod pictures;
 mod readme;
 mod report;
@@ -35,6 +36,8 @@ fn main() -> ExitCode {
         Ok(Request::StrategyCost) => told(strategy_cost::run_bench(&Context::new())),
         Ok(Request::SimulatorCost { write }) => told(simulator_cost::run_bench(&Context::new(), write)),
         Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
+        Ok(Request::Screenshots) => told(page::pictures(&Context::new())),
+        Ok(Request::PageCost) => told(page::bench(&Context::new())),
         Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
         Ok(Request::Faults(name, words)) => told(bench::start_example(&Context::new(), name, &words)),
         Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
@@ -77,6 +80,10 @@ enum Request {
     Test(Vec<&'static Step>),
     List,
     Pictures,
+    /// Of the page, in a browser.
+    Screenshots,
+    /// What a frame costs the page's script, and viewers the match.
+    PageCost,
     Evaluation,
     /// What a simulated second costs.
     TrialCost,
@@ -101,9 +108,10 @@ impl Request {
             Some("test") => {}
             Some("swarm") => return Ok(Self::Faults("swarm", words.map(String::from).collect())),
             Some("faults") => return Ok(Self::Faults("faults", words.map(String::from).collect())),
-            Some(verb @ ("pictures" | "evaluation")) => {
+            Some(verb @ ("pictures" | "screenshots" | "evaluation")) => {
                 return match words.next() {
                     None if verb == "evaluation" => Ok(Self::Evaluation),
+                    None if verb == "screenshots" => Ok(Self::Screenshots),
                     None => Ok(Self::Pictures),
                     Some(word) => Err(format!("unknown argument `{word}`")),
                 };
@@ -116,15 +124,14 @@ impl Request {
                     Some("hil") => Ok(Self::Faults("hil", words.map(String::from).collect())),
                     Some("trial") => Ok(Self::TrialCost),
                     Some("strategy") => Ok(Self::StrategyCost),
+                    Some("page") => Ok(Self::PageCost),
                     Some("simulator") => match words.next() {
                         None => Ok(Self::SimulatorCost { write: false }),
                         Some("--write") => Ok(Self::SimulatorCost { write: true }),
                         Some(word) => Err(format!("unknown argument `{word}`")),
                     },
-                    _ => {
-                        Err("bench needs a name: retrieval, motion, radio, hil, trial, strategy or simulator"
-                            .into())
-                    }
+                    _ => Err("bench needs a name: retrieval, motion, radio, hil, trial, strategy, page or simulator"
+                        .into()),
                 };
             }
             Some(verb) => return Err(format!("no verb `{verb}`")),
@@ -149,7 +156,7 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xtask faults | cargo xtask pictures | cargo xtask evaluation | cargo xtask bench NAME
+usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xtask faults | cargo xtask pictures | cargo xtask screenshots | cargo xtask evaluation | cargo xtask bench NAME
   test           check everything: style, tests, documentation, firmware, QEMU, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
@@ -158,6 +165,7 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xt
   faults [--seeds N] [--write]
                  what loss costs a team; --write puts table and picture into docs/faults.md
   pictures       draw the documentation's pictures anew
+  screenshots    take the page's pictures anew, in a browser; they lie in docs/page
   evaluation     play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation
   bench retrieval [--write | --guest | --verify]
                  count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
@@ -170,6 +178,7 @@ usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xt
                  likewise for radio frames on the robot's processor; the table is protocol/README.md's
   bench hil [--seconds N] [--seed N]
                  play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed
+  bench page     measure what a frame costs the page's script, full over empty, and count what five viewers cost a match
   bench trial    count the instructions of a simulated second and hold them to the budget
   bench strategy count the instructions of strategy's decisions and hold them to the budgets
   bench simulator [--write]
@@ -206,6 +215,8 @@ mod tests {
         assert!(matches!(ask("test --list"), Ok(Request::List)));
         assert!(matches!(ask("pictures"), Ok(Request::Pictures)));
         assert!(ask("pictures now").is_err());
+        assert!(matches!(ask("screenshots"), Ok(Request::Screenshots)));
+        assert!(matches!(ask("bench page"), Ok(Request::PageCost)));
         assert!(matches!(ask("evaluation"), Ok(Request::Evaluation)));
         assert!(ask("evaluation soon").is_err());
         assert!(

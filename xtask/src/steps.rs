@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{determinism, readme};
+use crate::{determinism, page, readme};
 
 /// One thing that is checked.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 11] = [
+pub(crate) const STEPS: [Step; 12] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
     Step {
@@ -34,6 +34,7 @@ pub(crate) const STEPS: [Step; 11] = [
     Step { name: "image", what: "the firmware image for QEMU links, without an allocator", run: image },
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
+    Step { name: "page", what: page::WHAT, run: page::check },
     Step { name: "readme", what: readme::WHAT, run: readme::check },
 ];
 

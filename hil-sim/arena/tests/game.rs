@@ -2,9 +2,11 @@
 //! and what the hosts sent.
 
 use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
+use geometry::Point;
 use hil_sim::NativeBackend;
+use hil_sim::small_size::Who;
 use host::radio::To;
-use protocol::Instant;
+use protocol::{Instant, RobotId};
 use rules::{Colour, League, Phase};
 
 fn short(seed: u64, seconds: f64, watcher: &mut dyn Watcher) -> GameReport {
@@ -131,4 +133,46 @@ fn watching_changes_nothing_and_frames_keep_their_budgets() {
     // 15 s of about 40 referee packets a second, and at least 60 pictures a second for each team.
     assert!(traffic.referee > 500 && traffic.vision > 600, "{} {}", traffic.referee, traffic.vision);
     assert!(traffic.packets > 2 * 60 * 10, "{}", traffic.packets);
+}
+
+#[test]
+fn a_robot_that_crashes_falls_silent_and_one_that_boots_is_heard_and_led_again() {
+    let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+    let config = GameConfig::new(League::DivisionB, 4, 60.0);
+    let mut backend = NativeBackend::new(base);
+    let mut game = Game::new(&config, &mut backend).unwrap();
+    let who = Who { colour: Colour::Blue, id: RobotId::new(3).unwrap() };
+    let run = |game: &mut Game<'_>, ticks: u32| (0..ticks).for_each(|_| game.step(&mut Nobody).unwrap());
+    let heard =
+        |game: &Game<'_>| game.host(Colour::Blue).quality(who.id).is_some_and(|q| q.is_present(game.now()));
+    let led = |game: &Game<'_>| game.host(Colour::Blue).orders().iter().any(|order| order.robot == who.id);
+    run(&mut game, 300);
+    assert!(heard(&game) && led(&game));
+    assert!(game.power(who, false, &mut backend).unwrap());
+    run(&mut game, 100);
+    assert!(!heard(&game) && !led(&game));
+    assert!(game.power(who, true, &mut backend).unwrap());
+    run(&mut game, 100);
+    assert!(heard(&game) && led(&game));
+    assert_eq!(game.host(Colour::Blue).quality(who.id).unwrap().lives(), 2);
+    let nobody = Who { id: RobotId::new(9).unwrap(), ..who };
+    assert!(!game.power(nobody, false, &mut backend).unwrap());
+}
+
+#[test]
+fn a_hand_moves_ball_and_robots_whether_the_match_runs_or_stands() {
+    let config = GameConfig::new(League::DivisionB, 4, 60.0);
+    let mut backend = NativeBackend::new(casebase::CaseBase::default());
+    let mut game = Game::new(&config, &mut backend).unwrap();
+    let who = Who { colour: Colour::Yellow, id: RobotId::new(2).unwrap() };
+    let (there, elsewhere) = (Point::new(1.0, 2.0), Point::new(-2.0, 1.0));
+    game.move_ball(there, true);
+    game.move_robot(who, elsewhere, true);
+    assert!(game.world().ball.position.distance(there) < 1e-6);
+    assert!(game.world().robot(who).unwrap().pose.position.distance(elsewhere) < 1e-6);
+    for _ in 0..200 {
+        game.move_ball(elsewhere, false);
+        game.step(&mut Nobody).unwrap();
+    }
+    assert!(game.world().ball.position.distance(elsewhere) < 0.3, "{:?}", game.world().ball.position);
 }

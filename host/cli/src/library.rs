@@ -87,6 +87,13 @@ impl Shelf {
         }
     }
 
+    /// The same for as long as the program runs: built in, or kept until its end.
+    pub(crate) const fn lasting_base(&self) -> CaseBase<'static> {
+        match self {
+            Self::BuiltIn(_, base) | Self::Folder(_, base) => *base,
+        }
+    }
+
     /// The league's name.
     pub(crate) fn league(&self) -> &str {
         match self {

@@ -10,6 +10,7 @@ mod control;
 mod evaluate;
 mod failure;
 mod library;
+mod live;
 mod net;
 mod output;
 mod picture;

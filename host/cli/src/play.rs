@@ -1,4 +1,5 @@
-//! `onetwo play`: a whole match in the simulator, both teams ours (DESIGN §8). Told line by line, or as one JSON object.
+//! `onetwo play`: a whole match in the simulator, both teams ours (DESIGN §8). Shown on the page at the clock's pace; `--headless` as
+//! fast as the machine plays it, told line by line, or as one JSON object.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -10,11 +11,14 @@ use clap::Args;
 use hil_sim::NativeBackend;
 use host::shell::Recorder;
 use indicatif::{ProgressBar, ProgressStyle};
-use rules::League;
+use page::Powers;
+use protocol::Instant;
+use rules::{Colour, League};
 
 use crate::Failure;
 use crate::args::{FolderArgs, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 
 /// What decides a match.
 #[derive(Debug, Args)]
@@ -22,6 +26,11 @@ pub(crate) struct PlayArgs {
     /// Without the page: a match is told on the terminal, as fast as the machine plays it.
     #[arg(long)]
     headless: bool,
+    #[command(flatten)]
+    page: PageArgs,
+    /// Simulated seconds a second, with the page; its viewers can change it.
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed, conflicts_with = "headless")]
+    speed: f32,
     /// Length of the match, simulated seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     duration: f64,
@@ -37,7 +46,7 @@ pub(crate) struct PlayArgs {
     /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
-    /// Print the report as JSON, and nothing else.
+    /// Print the report as JSON, and nothing else; implies --headless.
     #[arg(long)]
     json: bool,
     #[command(flatten)]
@@ -49,6 +58,13 @@ pub(crate) struct PlayArgs {
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 600".to_owned())?;
     if (0.0..=36_000.0).contains(&seconds) { Ok(seconds) } else { Err("0 to 36000 seconds".to_owned()) }
+}
+
+fn speed(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|x| (0.05..=20.0).contains(x))
+        .ok_or_else(|| "expected 0.05 to 20, such as 2".to_owned())
 }
 
 pub(crate) fn league(name: &str) -> Result<League, String> {
@@ -71,6 +87,9 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
+    if !args.headless && !args.json {
+        return on_page(args, config, shelf.as_ref(), Watched { teller, recording });
+    }
     let report = {
         let mut crowd = Crowd(vec![&mut teller]);
         if let Some(recording) = &mut recording {
@@ -90,6 +109,72 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         tell(&mut out, args, &report).map_err(Failure::Output)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// At the clock's pace, with the page; it stays open when the match is over.
+fn on_page(
+    args: &PlayArgs,
+    config: GameConfig,
+    shelf: Option<&Shelf>,
+    mut watched: Watched,
+) -> Result<ExitCode, Failure> {
+    let settings = args.settings.choose()?.settings;
+    let oracle = CaseOracle::new(shelf_of(args.league, args.folder.library.as_deref())?, settings);
+    let title = format!("{}, seed {}", args.league.name(), args.seed);
+    let page = args.page.open(title, false, Powers::Simulation, oracle)?;
+    eprintln!("playing  {}; Ctrl-C ends it", args.league.name());
+    let mut theatre = Theatre::new(config, shelf, page, args.speed, args.record.is_some());
+    loop {
+        let (report, over) = match theatre.play(&mut watched)? {
+            End::Over(report) => (report, true),
+            End::ByHand(report) => (report, false),
+        };
+        if let Some(recording) = watched.recording.take() {
+            recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
+        }
+        tell(&mut io::stdout().lock(), args, &report).map_err(Failure::Output)?;
+        if !over {
+            return Ok(ExitCode::SUCCESS);
+        }
+        eprintln!("the match is over; the page stays until Ctrl-C");
+        let Some(seed) = theatre.linger() else { return Ok(ExitCode::SUCCESS) };
+        theatre.anew(seed);
+        watched.anew();
+    }
+}
+
+/// Teller and recorder of a match on the page.
+struct Watched {
+    teller: Teller,
+    recording: Option<Recorder>,
+}
+
+impl AnewWatcher for Watched {
+    fn watcher(&mut self) -> &mut dyn Watcher {
+        self
+    }
+
+    fn anew(&mut self) {
+        self.teller.story = self.teller.story.is_some().then(GameStory::default);
+    }
+}
+
+impl Watcher for Watched {
+    fn vision(&mut self, now: Instant, bytes: &[u8]) {
+        self.recording.iter_mut().for_each(|recording| recording.vision(now, bytes));
+    }
+    fn referee(&mut self, now: Instant, bytes: &[u8]) {
+        self.recording.iter_mut().for_each(|recording| recording.referee(now, bytes));
+    }
+    fn input(&mut self, now: Instant, host: Colour, input: host::Input<'_>) {
+        self.recording.iter_mut().for_each(|recording| recording.input(now, host, input));
+    }
+    fn sent(&mut self, now: Instant, host: Colour, to: host::radio::To, packet: &[u8]) {
+        self.recording.iter_mut().for_each(|recording| recording.sent(now, host, to, packet));
+    }
+    fn tick(&mut self, game: &Game<'_>) {
+        self.teller.tick(game);
+    }
 }
 
 /// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.

@@ -11,9 +11,11 @@ use brain::Approach;
 use clap::{Args, ValueEnum};
 use firmware_build::Install;
 use hil_sim::{Backend, Configuration, NativeBackend, QemuBackend, Scenario};
+use page::Powers;
 
 use crate::Failure;
 use crate::library::Shelf;
+use crate::live::{CaseOracle, Legged, PageArgs, stay};
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// What decides a trial.
@@ -42,6 +44,11 @@ pub(crate) struct TrialArgs {
     robots: u8,
     #[command(flatten)]
     setup: SetupArgs,
+    /// Show it on the page, every moment of it, until Ctrl-C.
+    #[arg(long, conflicts_with = "json")]
+    watch: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// Print the report as JSON, and nothing else.
     #[arg(long)]
     json: bool,
@@ -74,7 +81,10 @@ enum BackendWord {
 pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     let svg = args.svg.as_deref();
     let (mut recording, mut story) = (Recording::default(), Story::default());
-    let report = play(args, &mut [&mut recording, &mut story])?;
+    let mut legged = args.watch.then(|| on_page(args)).transpose()?;
+    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut recording, &mut story];
+    watchers.extend(legged.as_mut().map(|legged| legged as &mut dyn Watcher));
+    let report = play(args, &mut watchers)?;
     if let Some(file) = svg {
         fs::write(file, arena::picture(&recording))
             .map_err(|error| Failure::Picture { file: file.to_owned(), words: error.to_string() })?;
@@ -92,7 +102,21 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = svg {
         writeln!(out, "picture: {}", file.display()).map_err(Failure::Output)?;
     }
+    drop(out);
+    if let Some(legged) = legged {
+        stay(legged.into_page(), "the trial is over");
+    }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The page that keeps the trial's course.
+fn on_page(args: &TrialArgs) -> Result<Legged, Failure> {
+    let setup = args.setup.choose(usize::from(args.robots))?;
+    let shelf = args.setup.open(&setup)?;
+    let base = shelf.lasting_base();
+    let oracle = CaseOracle::new(Some(shelf), setup.settings.clone());
+    let title = format!("trial, scenario {}, seed {}", args.scenario.word(), args.seed);
+    Ok(Legged::new(args.page.open(title, true, Powers::None, oracle)?, base))
 }
 
 /// Plays it.

@@ -9,6 +9,7 @@
 //! is told to a [`Watcher`], which changes nothing.
 
 mod config;
+mod hand;
 mod recording;
 mod report;
 mod side;
@@ -59,6 +60,7 @@ pub struct Game<'a> {
     trace: TraceHash,
     tick: u32,
     events: Vec<Event>,
+    config: GameConfig,
 }
 
 /// Why a match cannot be played.
@@ -102,7 +104,16 @@ impl<'a> Game<'a> {
         }
         let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
         let cameras = Cameras::of(Profile::Ours, 0.0, &world, config.seed);
-        Ok(Self { world, cameras, referee, teams, trace: TraceHash::default(), tick: 0, events: Vec::new() })
+        Ok(Self {
+            world,
+            cameras,
+            referee,
+            teams,
+            trace: TraceHash::default(),
+            tick: 0,
+            events: Vec::new(),
+            config: config.clone(),
+        })
     }
 
     /// Seconds since the beginning.

@@ -2,7 +2,7 @@
 
 use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::{Who, World};
-use hil_sim::{Air, Backend, Mcu, TraceHash};
+use hil_sim::{Air, AirSettings, Backend, Mcu, TraceHash};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
@@ -10,7 +10,7 @@ use protocol::{Instant, RobotId};
 use rules::Colour;
 use rules::restart::kickoff_places;
 
-use super::{GameConfig, GameError, TeamSetup, Watcher, numbers};
+use super::{GameConfig, GameError, TICK_US, TeamSetup, Watcher, numbers};
 
 /// A team under way.
 pub(super) struct Team<'a> {
@@ -23,7 +23,11 @@ pub(super) struct Team<'a> {
 /// A robot led by a brain.
 struct Player<'a> {
     who: Who,
-    computer: Box<dyn Mcu + 'a>,
+    /// None while it is off.
+    computer: Option<Box<dyn Mcu + 'a>>,
+    /// The tick in which it booted: its clock's zero.
+    booted: u32,
+    epoch: u32,
     worst_instructions: u32,
 }
 
@@ -47,7 +51,8 @@ impl<'a> Team<'a> {
             world.put(who, Pose { position, heading });
             let brain = brain::BrainConfig { defending: own, ..setup.brain(config.league, *id) };
             let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
-            players.push(Player { who, computer, worst_instructions: 0 });
+            let epoch = brain.epoch;
+            players.push(Player { who, computer: Some(computer), booted: 0, epoch, worst_instructions: 0 });
         }
         let settings = host_settings(config, colour);
         let seed = config.seed ^ colour as u64;
@@ -83,6 +88,39 @@ impl<'a> Team<'a> {
         }
     }
 
+    /// Its air loses this share of packets from now on.
+    pub(super) fn lose(&mut self, share: f32) {
+        let settings = AirSettings { loss: share, ..self.air.settings().clone() };
+        self.air.set(settings);
+    }
+
+    /// A robot's computer ends, or boots into its next life; false where no such robot plays.
+    pub(super) fn power(
+        &mut self,
+        config: &GameConfig,
+        who: Who,
+        on: bool,
+        tick: u32,
+        backend: &mut dyn Backend<'a>,
+    ) -> Result<bool, GameError> {
+        let Some(player) = self.players.iter_mut().find(|player| player.who == who) else { return Ok(false) };
+        if !on {
+            player.computer = None;
+            return Ok(true);
+        }
+        if player.computer.is_some() {
+            return Ok(true);
+        }
+        player.epoch = player.epoch.wrapping_add(1);
+        let setup = &config.teams[who.colour as usize];
+        let defending = self.host.game().own_goal(who.colour).unwrap_or(own_goal(config, who.colour));
+        let brain =
+            brain::BrainConfig { defending, epoch: player.epoch, ..setup.brain(config.league, who.id) };
+        let computer = backend.boot(&brain).map_err(|error| GameError::Computer { who, error })?;
+        (player.computer, player.booted) = (Some(computer), tick);
+        Ok(true)
+    }
+
     /// All its robots think at once; bodies are told, words go on the air.
     pub(super) fn think(
         &mut self,
@@ -100,19 +138,25 @@ impl<'a> Team<'a> {
                 air.discard(tick, who.id);
                 continue;
             };
+            let Some(computer) = &mut player.computer else {
+                air.discard(tick, who.id);
+                continue;
+            };
             let packets = air.deliver(tick, who.id);
             for packet in &packets {
                 trace.small_size_packet(who, packet);
             }
-            let input =
-                TickIn { seq: tick, now, air: packets.iter().map(|packet| &packet[..]).collect(), sensors };
-            player.computer.post(&input).map_err(|error| GameError::Computer { who, error })?;
+            let own = Instant(now.0 - u64::from(player.booted) * TICK_US);
+            let air = packets.iter().map(|packet| &packet[..]).collect();
+            let input = TickIn { seq: tick, now: own, air, sensors };
+            computer.post(&input).map_err(|error| GameError::Computer { who, error })?;
             thinking.push(i);
         }
         for i in thinking {
             let player = &mut players[i];
             let who = player.who;
-            let reply = player.computer.collect().map_err(|error| GameError::Computer { who, error })?;
+            let Some(computer) = &mut player.computer else { continue };
+            let reply = computer.collect().map_err(|error| GameError::Computer { who, error })?;
             player.worst_instructions = player.worst_instructions.max(reply.instructions);
             if let Some(order) = reply.actuators {
                 trace.small_size_order(who, &order);

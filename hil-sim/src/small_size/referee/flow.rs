@@ -22,7 +22,7 @@ enum Placer {
 
 impl InternalReferee {
     pub(super) fn go_on(&mut self, robots: &[RobotSeen]) {
-        if self.end_stage() {
+        if self.end_stage() || self.held {
             return;
         }
         let age = self.now.since(Instant(self.state.since()));

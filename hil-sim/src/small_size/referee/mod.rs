@@ -15,6 +15,7 @@
 //! rules again and again are taken off by cards.
 
 mod account;
+mod desk;
 mod event;
 mod flow;
 mod judge;
@@ -110,6 +111,8 @@ pub struct InternalReferee {
     packets: VecDeque<ssl::referee::Referee>,
     next_packet: Instant,
     off_graph: u32,
+    /// Somebody stopped it by hand: nothing goes on until somebody says so.
+    held: bool,
 }
 
 impl InternalReferee {
@@ -150,6 +153,7 @@ impl InternalReferee {
             packets: VecDeque::new(),
             next_packet: Instant(0),
             off_graph: 0,
+            held: false,
             settings,
         })
     }

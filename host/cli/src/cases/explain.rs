@@ -86,6 +86,13 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The explanation of a problem as `--json` gives it; else what is wrong with the problem.
+pub(crate) fn explained(shelf: &Shelf, chosen: &Chosen, line: &str) -> Result<String, String> {
+    let problem = super::problem::parse(line).map_err(|malformed| malformed.to_string())?;
+    let explanation = Explanation::new(shelf, &shelf.base(), &problem, chosen);
+    serde_json::to_string(&explanation).map_err(|error| error.to_string())
+}
+
 /// Every case's verdict on one problem.
 #[derive(Debug, Serialize)]
 struct Explanation<'a> {

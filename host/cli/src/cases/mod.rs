@@ -18,6 +18,8 @@ mod stats;
 mod survey;
 mod whatif;
 
+pub(crate) use explain::explained;
+
 use std::process::ExitCode;
 
 use clap::Subcommand;

@@ -26,10 +26,12 @@ use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::Interfaces;
 
+use super::board::Board;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
 use super::{port_for_teams, simulator};
 use crate::Failure;
+use crate::live::PageArgs;
 use crate::net::Mouth;
 use crate::stop::stopped_by_hand;
 
@@ -46,6 +48,7 @@ pub(super) fn run(
     robots: &[RobotId],
     record: Option<&Path>,
     duration: Option<f64>,
+    page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
     let key = team_key(config)?;
@@ -69,6 +72,9 @@ pub(super) fn run(
         config.colour.word(),
         config.league.name()
     );
+
+    let title = format!("{}, {}", config.name, config.colour.word());
+    let board = page.and_then(|args| Board::open(args, title, config.league));
 
     let (mail, inbox) = mpsc::channel();
     let (out, frames) = mpsc::channel();
@@ -101,12 +107,14 @@ pub(super) fn run(
         mouth: Mouth::new(config.tracker, speaks_by.as_deref()),
         counts: Counts::default(),
         words: Vec::new(),
+        board,
     };
     let bar = ProgressBar::new_spinner();
     let mut looked = Instant::now();
     while !stopped.load(Ordering::Relaxed) && duration.is_none_or(|s| desk.began.elapsed().as_secs_f64() < s)
     {
         desk.wait(&inbox);
+        desk.show();
         if looked.elapsed() >= LOOK {
             looked = Instant::now();
             let now = desk.now();
@@ -204,6 +212,7 @@ struct Desk {
     mouth: Mouth,
     counts: Counts,
     words: Vec<String>,
+    board: Option<Board>,
 }
 
 impl Desk {
@@ -269,7 +278,16 @@ impl Desk {
             }
             recorder.input(now, self.us, input);
         }
+        let began = Instant::now();
         let verdict = self.host.handle(now, input);
+        if let Some(board) = &mut self.board {
+            board.took(began.elapsed());
+            match input {
+                Input::Vision(bytes) => board.vision(bytes),
+                Input::Referee(bytes) => board.referee(bytes, now),
+                Input::Robot(_) | Input::Timeout => {}
+            }
+        }
         self.send(now);
         verdict
     }
@@ -281,6 +299,17 @@ impl Desk {
             }
             self.counts.sent += 1;
             let _ = self.out.send((to, packet));
+        }
+    }
+
+    /// The moment on the page, and HALT if somebody there asks for it.
+    fn show(&mut self) {
+        let now = self.now();
+        let Some(board) = &mut self.board else { return };
+        if board.look(now, &self.host) {
+            self.words.push("HALT was asked for on the page: the robots stand until the end".to_owned());
+            self.host.halt(now);
+            self.send(now);
         }
     }
 

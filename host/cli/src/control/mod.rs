@@ -3,6 +3,7 @@
 //! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
 //! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.
 
+mod board;
 mod desk;
 mod port_for_teams;
 mod threads;
@@ -20,6 +21,7 @@ use rules::Colour;
 use ssl::net::addresses;
 
 use crate::Failure;
+use crate::live::PageArgs;
 use crate::simulate::seconds;
 
 /// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
@@ -71,6 +73,11 @@ pub(crate) struct ControlArgs {
     /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
+    /// Without the page.
+    #[arg(long)]
+    headless: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// End after so many seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
@@ -88,7 +95,8 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         Some(Ids(ids)) => ids.clone(),
         None => (0..usual).filter_map(RobotId::new).collect(),
     };
-    desk::run(&config, &robots, args.record.as_deref(), args.duration)
+    let page = (!args.headless).then_some(&args.page);
+    desk::run(&config, &robots, args.record.as_deref(), args.duration, page)
 }
 
 /// Flags over the file over what is usual.

@@ -9,22 +9,22 @@ use ssl::referee::{Command, Referee, Stage};
 
 /// Something the referee said for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Happening {
+pub(crate) struct Happening {
     /// Seconds since the file's begin.
-    pub(super) at_s: f64,
+    pub(crate) at_s: f64,
     /// What kind of thing.
-    pub(super) kind: Kind,
+    pub(crate) kind: Kind,
     /// Its name, as the league writes it.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Whose, or by whom, and with what number.
     #[serde(skip_serializing_if = "String::is_empty")]
-    pub(super) words: String,
+    pub(crate) words: String,
 }
 
 /// Kinds of happenings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Command,
     Stage,
     Goal,
@@ -33,7 +33,7 @@ pub(super) enum Kind {
 
 /// Finds what is new in each packet of the referee.
 #[derive(Debug, Default)]
-pub(super) struct Finder {
+pub(crate) struct Finder {
     last: Option<Last>,
     events: BTreeSet<Vec<u8>>,
 }
@@ -49,7 +49,7 @@ struct Last {
 
 impl Finder {
     /// What is new in a packet that came at `at_s`.
-    pub(super) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<Happening>) {
+    pub(crate) fn read(&mut self, packet: &Referee, at_s: f64, into: &mut Vec<Happening>) {
         let now = Last {
             command: packet.command,
             counter: packet.command_counter,
@@ -104,7 +104,7 @@ fn screaming(name: &str) -> String {
 }
 
 /// Is a happening meant by a word? The begin of its name, whatever case and dashes.
-pub(super) fn is_meant(happening: &Happening, word: &str) -> bool {
+pub(crate) fn is_meant(happening: &Happening, word: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
     happening.name.starts_with(&plain(word))
 }

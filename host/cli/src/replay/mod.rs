@@ -2,10 +2,11 @@
 //!
 //! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
 
-mod happening;
+pub(crate) mod happening;
 mod league_log;
 mod moment;
 mod report;
+mod show;
 mod trace;
 
 use std::fs::File;
@@ -20,6 +21,7 @@ use rules::{Colour, League};
 pub(crate) use moment::phase_words;
 
 use crate::Failure;
+use crate::live::PageArgs;
 
 /// Which file, and what of it.
 #[derive(Debug, Args)]
@@ -29,6 +31,11 @@ pub(crate) struct ReplayArgs {
     /// Print what is told as JSON, and nothing else.
     #[arg(long)]
     json: bool,
+    /// Show it on the page, every moment of it, until Ctrl-C.
+    #[arg(long, conflicts_with_all = ["json", "at", "event", "check"])]
+    watch: bool,
+    #[command(flatten)]
+    page: PageArgs,
     /// Show the field and the referee so many seconds after the file's begin.
     #[arg(long, value_name = "SECONDS", value_parser = moment_in_seconds, conflicts_with = "event")]
     at: Option<f64>,
@@ -56,6 +63,9 @@ pub(crate) struct ReplayArgs {
 
 /// `onetwo replay`.
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    if args.watch {
+        return show::run(args, &args.page);
+    }
     if begins(&args.file)?.starts_with(TRACE) {
         return trace::run(args);
     }

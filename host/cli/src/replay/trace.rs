@@ -152,7 +152,7 @@ fn show(
 }
 
 /// The key that hosts sealed with, where one did.
-fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
+pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey, Failure> {
     match &args.key_file {
         Some(file) => {
             let read = host::shell::key::read(file).map_err(|error| failed(file, &error))?;

@@ -19,9 +19,11 @@ use ssl::net::{Interfaces, LoopbackProbe, probe_loopback};
 use ssl::simulation::{SimulatorCommand, SimulatorControl};
 use ssl::vision::WrapperPacket;
 
+use super::board::Board;
 use super::ports::Ports;
 use super::{SimulateArgs, Whistle};
 use crate::Failure;
+use crate::live::PageArgs;
 use crate::net::{Ear, Mouth};
 use crate::stop::stopped_by_hand;
 
@@ -62,6 +64,9 @@ pub(super) fn run(
     if let Some(tracked) = &tracker {
         eprintln!("tracker  to {}", tracked.mouth.to());
     }
+    let page = PageArgs::at(args.page, "--page");
+    let mut board =
+        (!args.headless).then(|| Board::open(&page, args.league, args.seed, args.speed)).flatten();
     words.extend(multicast_advice(args.vision));
     set_pace(&mut server, args.speed);
 
@@ -74,10 +79,20 @@ pub(super) fn run(
         }
         ports.listen(&mut server, &mut words);
         advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words);
+        if let Some(board) = &mut board {
+            whistle.said.drain(..).for_each(|bytes| board.referee(&bytes, running));
+            if let Some(pace) = board.look(running, &mut server, whistle.ours()) {
+                set_pace(&mut server, pace);
+            }
+        }
+        whistle.said.clear();
         while let Some(transmit) = server.poll_transmit() {
             match transmit.to {
                 Destination::Reply { from, to } => ports.answer(from, to, &transmit.bytes),
                 Destination::Vision(port) => {
+                    if let Some(board) = &mut board {
+                        board.vision(&transmit.bytes, running);
+                    }
                     vision.set_port(port);
                     words.extend(vision.send(&transmit.bytes));
                     if let Some(tracked) = &mut tracker {
@@ -144,6 +159,8 @@ struct Referee {
     looked: u64,
     /// How far the world has followed, µs.
     advanced: u64,
+    /// What it said since the page last heard it.
+    said: Vec<Vec<u8>>,
 }
 
 enum Blower {
@@ -174,7 +191,7 @@ impl Referee {
             }
         };
         let mouth = Mouth::new(args.referee_to, args.interface.as_deref());
-        Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0 })
+        Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0, said: Vec::new() })
     }
 
     fn words(&self) -> String {
@@ -182,6 +199,13 @@ impl Referee {
             Blower::Ours(_) => format!("internal, to {}", self.mouth.to()),
             Blower::Nobody => "none".to_owned(),
             Blower::Heard { from, .. } => format!("heard at {from}"),
+        }
+    }
+
+    fn ours(&mut self) -> Option<&mut InternalReferee> {
+        match &mut self.who {
+            Blower::Ours(ours) => Some(ours),
+            Blower::Nobody | Blower::Heard { .. } => None,
         }
     }
 
@@ -208,7 +232,9 @@ impl Referee {
                 order.carry_out(world);
             }
             while let Some(packet) = ours.poll_packet() {
-                words = self.mouth.send(&packet.encode_to_vec()).or(words);
+                let bytes = packet.encode_to_vec();
+                words = self.mouth.send(&bytes).or(words);
+                self.said.push(bytes);
             }
         }
         self.events.clear();

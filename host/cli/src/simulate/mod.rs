@@ -3,6 +3,7 @@
 //! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
 //! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.
 
+mod board;
 mod hall;
 mod ports;
 
@@ -65,6 +66,12 @@ pub(crate) struct SimulateArgs {
     /// Send what our own tracker makes of the vision, too: the league's address is 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
+    /// Without the page.
+    #[arg(long)]
+    headless: bool,
+    /// Where the page is served; others than this machine see it only where an address of this machine is told.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    page: SocketAddr,
     /// End after so many seconds; else Ctrl-C ends it.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,

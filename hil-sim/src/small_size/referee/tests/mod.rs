@@ -5,6 +5,7 @@
 
 mod areas;
 mod calm;
+mod desk;
 mod goals;
 mod metrics;
 mod penalties;

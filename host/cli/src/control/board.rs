@@ -1,0 +1,66 @@
+//! The page beside a real field: shows what the host knows, and takes HALT, nothing else.
+
+use std::time::{Duration, Instant};
+
+use host::Host;
+use page::{Page, Powers, Request};
+use rules::League;
+
+use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_of, tick};
+
+/// A page and what fills it.
+pub(super) struct Board {
+    page: Page,
+    composer: Composer,
+    shown: Option<Instant>,
+    /// What an input takes, as a sliding mean.
+    took: Duration,
+}
+
+impl Board {
+    /// Opens it. Without a page the robots are led all the same: what is wrong with it is said.
+    pub(super) fn open(args: &PageArgs, title: String, league: League) -> Option<Self> {
+        let open = || {
+            let shelf = shelf_of(league, None)?;
+            let composer = Composer::new(shelf.as_ref());
+            let page =
+                args.open(title, false, Powers::Halt, CaseOracle::new(shelf, casebase::Settings::default()))?;
+            Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
+        };
+        open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()
+    }
+
+    pub(super) fn vision(&mut self, bytes: &[u8]) {
+        self.composer.vision(bytes);
+    }
+
+    pub(super) fn referee(&mut self, bytes: &[u8], now: protocol::Instant) {
+        self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
+    }
+
+    /// An input took so long.
+    pub(super) fn took(&mut self, time: Duration) {
+        self.took = (self.took * 15 + time) / 16;
+    }
+
+    /// Shows the moment, if it is time; true: a viewer asks for HALT.
+    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host) -> bool {
+        let every = Duration::from_secs_f64(SCENE_EVERY_S);
+        if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
+            self.shown = Some(Instant::now());
+            let t = now.0 as f64 * 1e-6;
+            let gauges = vec![tick(self.took)];
+            let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
+            let scene = self.composer.compose(moment);
+            for happening in self.composer.take_happenings() {
+                self.page.tell(happening);
+            }
+            self.page.show(scene);
+        }
+        let mut halt = false;
+        while let Some(request) = self.page.next_request() {
+            halt |= request == Request::Halt {};
+        }
+        halt
+    }
+}

@@ -1,0 +1,333 @@
+//! What does the page show now? One scene from hosts and whatever else is at hand; it remembers only what has to be told over time.
+
+use std::collections::VecDeque;
+
+use casebase::CaseBase;
+use hil_sim::small_size::World as Truth;
+use hil_sim::small_size::referee::InternalReferee;
+use host::Host;
+use host::referee::Game;
+use host::world::{Ball, World};
+use page::{Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, TeamSheet, milli};
+use protocol::{CaseId, Instant};
+use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
+use rules::{AreaForm, Colour, FieldSpec};
+
+use super::cycles::TeamCycles;
+use super::gauges::{self, Rate};
+use super::happenings::News;
+use super::layers;
+use super::minds::{self, Clocks, Faults};
+use super::possession::Possession;
+use super::raw::Images;
+use super::tactics::Tactics;
+use super::{spaced, team};
+use crate::library::Shelf;
+use crate::replay::phase_words;
+
+/// The ball's trail reaches back so far, s.
+const TRAIL_S: f64 = 1.5;
+/// Its prediction reaches ahead so far in steps of a tenth, and ends where it rests.
+const AHEAD: usize = 15;
+
+/// What cases are called, and what they mean.
+#[derive(Debug, Default)]
+pub(crate) struct Names {
+    names: Vec<String>,
+    meant: Vec<String>,
+}
+
+impl Names {
+    fn new(shelf: Option<&Shelf>) -> Self {
+        let Some(shelf) = shelf else { return Self::default() };
+        let names = shelf.names();
+        let meant =
+            (0..names.len()).map(|i| shelf.intent(CaseId(i as u16 * 4)).unwrap_or_default()).collect();
+        Self { names, meant }
+    }
+
+    /// `region/name` of a stored case.
+    pub(super) fn of(&self, case: CaseId) -> String {
+        let name = self.names.get(usize::from(case.0 / 4));
+        name.cloned().unwrap_or_else(|| format!("case {}", case.0))
+    }
+
+    pub(super) fn meant(&self, case: CaseId) -> String {
+        self.meant.get(usize::from(case.0 / 4)).cloned().unwrap_or_default()
+    }
+}
+
+/// What there is to look at.
+pub(crate) struct Moment<'a> {
+    /// Seconds since the beginning.
+    pub(crate) t: f64,
+    /// On the hosts' clock.
+    pub(crate) now: Instant,
+    /// Through whose eyes the field is seen.
+    pub(crate) eyes: &'a Host,
+    /// Whose robots tell what they think.
+    pub(crate) hosts: &'a [&'a Host],
+    /// What truly is, in a simulation.
+    pub(crate) truth: Option<&'a Truth>,
+    /// The simulation's own referee.
+    pub(crate) referee: Option<&'a InternalReferee>,
+    /// What the loop measures of itself.
+    pub(crate) gauges: Vec<Gauge>,
+}
+
+/// Fills scenes.
+pub(crate) struct Composer {
+    base: Option<CaseBase<'static>>,
+    names: Names,
+    images: Images,
+    rate: Rate,
+    trail: VecDeque<(f64, [f32; 2])>,
+    news: News,
+    cycles: [TeamCycles; 2],
+    clocks: Clocks,
+    faults: Faults,
+    possession: Possession,
+    tactics: Tactics,
+    happenings: Vec<Happening>,
+}
+
+impl Composer {
+    /// For matches with these cases.
+    pub(crate) fn new(shelf: Option<&Shelf>) -> Self {
+        Self {
+            base: shelf.map(Shelf::lasting_base),
+            names: Names::new(shelf),
+            images: Images::default(),
+            rate: Rate::default(),
+            trail: VecDeque::new(),
+            news: News::default(),
+            cycles: Default::default(),
+            clocks: Clocks::default(),
+            faults: Faults::default(),
+            possession: Possession::default(),
+            tactics: Tactics::default(),
+            happenings: Vec::new(),
+        }
+    }
+
+    /// A datagram of the vision.
+    pub(crate) fn vision(&mut self, bytes: &[u8]) {
+        self.images.hear(bytes);
+    }
+
+    /// A datagram of the referee; `own` where the simulation's referee is shown in the moment too.
+    pub(crate) fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
+        self.news.packet(bytes, t, own, &mut self.happenings);
+    }
+
+    /// What happened since the last call.
+    pub(crate) fn take_happenings(&mut self) -> Vec<Happening> {
+        std::mem::take(&mut self.happenings)
+    }
+
+    /// The scene of a moment.
+    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Scene {
+        let Moment { t, now, eyes, .. } = moment;
+        let (world, game, field) = (eyes.world(), eyes.game(), eyes.field());
+        for host in moment.hosts {
+            self.cycles[host.settings().us as usize].hear(host, t, &self.names, &mut self.happenings);
+            for words in self.faults.look(host, now) {
+                let team = Some(team(host.settings().us));
+                self.happenings.push(Happening {
+                    t,
+                    kind: Kind::Fault,
+                    team,
+                    words,
+                    at: None,
+                    problem: None,
+                });
+            }
+        }
+        if let Some(referee) = moment.referee {
+            self.news.referee(referee, t, &mut self.happenings);
+        }
+        self.news.kick(world.ball.and_then(|ball| ball.kicked), t, &mut self.happenings);
+        let defends = |team: Colour| game.own_goal(team).map(|goal| goal.sign() as i8);
+        self.possession.look(t, world, game.phase, defends(Colour::Blue));
+
+        let Self { base, names, cycles, clocks, tactics, .. } = self;
+        let played = |team: Colour| cycles[team as usize].played(base.as_ref(), names);
+        let plays: Vec<_> = [Colour::Yellow, Colour::Blue]
+            .into_iter()
+            .filter_map(|team| Some((team, played(team)?)))
+            .collect();
+        let robots = world
+            .robots()
+            .map(|robot| {
+                let colour = robot.who.colour;
+                let host = moment.hosts.iter().find(|host| host.settings().us == colour);
+                let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
+                let at = robot.pose.position;
+                Robot {
+                    team: team(colour),
+                    id: robot.who.id.number(),
+                    at: [milli(at.x()), milli(at.y())],
+                    heading: milli(robot.pose.heading.radians()),
+                    velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
+                    confidence: milli(robot.confidence),
+                    mind: host.and_then(|host| minds::mind(host, robot, played, names, clocks, t)),
+                    vitals: host.and_then(|host| minds::vitals(host, robot, now)),
+                }
+            })
+            .collect();
+        let mut layers = Vec::from(layers::of_cases(&plays));
+        let ball = world.ball.map(|ball| ball.position);
+        layers.push(layers::keep_outs(&field, game.phase, ball, game.placement, game.own_goal(Colour::Blue)));
+        layers.extend(tactics.layers(t, eyes, world, &field));
+        layers.extend(moment.truth.map(truth));
+        let shown = |host: &&Host| {
+            let us = host.settings().us;
+            cycles[us as usize].shown(us, t, base.as_ref(), names)
+        };
+        let cycles = moment.hosts.iter().filter_map(shown).collect();
+        let mut gauges = gauges::of_hosts(
+            if moment.hosts.is_empty() { std::slice::from_ref(&eyes) } else { moment.hosts },
+            now,
+            self.rate.of(t, self.images.count),
+        );
+        gauges.extend(moment.gauges);
+        Scene {
+            t,
+            field: field_of(&field),
+            ball: world.ball.map(|ball| self.ball(t, &ball, world)),
+            robots,
+            raw: self.images.seen(),
+            game: sheet(game, moment.referee, &self.possession),
+            cycles,
+            layers,
+            gauges,
+            ..Scene::default()
+        }
+    }
+
+    fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::Ball {
+        let at = [milli(ball.position.x()), milli(ball.position.y())];
+        if self.trail.back().is_some_and(|(last, _)| *last > t) {
+            self.trail.clear();
+        }
+        if self.trail.back().is_none_or(|(last, _)| *last < t) {
+            self.trail.push_back((t, at));
+        }
+        while self.trail.front().is_some_and(|(first, _)| t - first > TRAIL_S) {
+            self.trail.pop_front();
+        }
+        let rests = ball.rests_in(&world.models);
+        let moves = ball.velocity.norm() > 0.05 || ball.height > 0.0;
+        let steps = if moves { AHEAD.min((rests * 10.0).ceil().max(0.0) as usize) } else { 0 };
+        let ahead = (0..=steps).map(|step| {
+            let later = ball.after((step as f32 * 0.1).min(rests), &world.models).position;
+            [milli(later.x()), milli(later.y())]
+        });
+        page::Ball {
+            at,
+            height: milli(ball.height),
+            velocity: [milli(ball.velocity.x()), milli(ball.velocity.y())],
+            confidence: milli(ball.confidence),
+            trail: self.trail.iter().map(|(_, at)| *at).collect(),
+            ahead: ahead.collect(),
+        }
+    }
+}
+
+/// A field in the page's words.
+pub(crate) fn field_of(field: &FieldSpec) -> Field {
+    Field {
+        length: milli(field.length),
+        width: milli(field.width),
+        margin: milli(field.margin.max(field.goal_line_margin)),
+        goal_width: milli(field.goal_width),
+        goal_depth: milli(field.goal_depth),
+        area_depth: milli(field.penalty_depth),
+        area_width: milli(match field.penalty_form {
+            AreaForm::Box => field.penalty_width,
+            AreaForm::QuarterCircles => field.penalty_width - 2.0 * field.penalty_depth,
+        }),
+        area_radius: (field.penalty_form == AreaForm::QuarterCircles).then(|| milli(field.penalty_depth)),
+        centre_radius: milli(field.center_radius),
+        robot_radius: milli(ROBOT_RADIUS),
+        ball_radius: milli(BALL_RADIUS),
+    }
+}
+
+fn sheet(game: &Game, referee: Option<&InternalReferee>, seen: &Possession) -> Match {
+    let mut out = Match {
+        phase: phase_words(game.phase),
+        next: game.next.map(phase_words).unwrap_or_default(),
+        stage: spaced(&format!("{:?}", game.stage)),
+        stage_left: game.stage_time_left.map(milli),
+        action_left: game.action_time_left.map(milli),
+        placement: game.placement.map(|at| [milli(at.x()), milli(at.y())]),
+        in_play: referee.map(|referee| milli(referee.metrics().ball_in_play())),
+        ..Match::default()
+    };
+    let all: f32 = referee.map_or(0.0, |referee| {
+        [Colour::Blue, Colour::Yellow].map(|team| referee.metrics().team(team).possession_s).iter().sum()
+    });
+    for colour in [Colour::Blue, Colour::Yellow] {
+        let account = game.team(colour);
+        let counted = referee.map(InternalReferee::metrics);
+        let own = counted.map(|metrics| metrics.team(colour));
+        *out.teams.of_mut(team(colour)) = TeamSheet {
+            name: if account.name.is_empty() { colour.word().to_owned() } else { account.name.clone() },
+            score: account.score,
+            defends: game.own_goal(colour).map_or(0, |goal| goal.sign() as i8),
+            keeper: account.keeper.map(protocol::RobotId::number),
+            allowed: account.robots_allowed,
+            yellow_cards: account.yellow_card_times.iter().map(|left| milli(*left)).collect(),
+            red_cards: account.red_cards,
+            fouls: account.fouls,
+            timeouts: account.timeouts,
+            possession: match own {
+                Some(own) => (all > 0.0).then(|| milli(own.possession_s / all)),
+                None => seen.share(colour).map(milli),
+            },
+            offence_ratio: match counted {
+                Some(metrics) => metrics.offence_ratio(colour).map(milli),
+                None => seen.offence_ratio(colour).map(milli),
+            },
+            attack_ratio: counted.and_then(|metrics| metrics.attack_ratio(colour)).map(milli),
+            counts: own.map_or_else(Vec::new, |own| {
+                [
+                    ("shots", own.shots),
+                    ("chances", own.chances),
+                    ("passes", own.passes),
+                    ("balls lost", own.losses),
+                ]
+                .map(|(name, n)| (name.to_owned(), n))
+                .into()
+            }),
+        };
+    }
+    out
+}
+
+/// Where everything truly is, to be held against what is believed.
+fn truth(world: &Truth) -> Layer {
+    let radius = milli(ROBOT_RADIUS);
+    let mut shapes: Vec<Shape> = world
+        .robots()
+        .iter()
+        .filter(|robot| robot.present)
+        .map(|robot| Shape::Ellipse {
+            at: [milli(robot.pose.position.x()), milli(robot.pose.position.y())],
+            radii: [radius; 2],
+            tone: layers::tone(robot.who.colour),
+            fill: false,
+            note: format!("{} {}, as it truly stands", robot.who.colour.word(), robot.who.id.number()),
+        })
+        .collect();
+    let ball = world.ball.position;
+    shapes.push(Shape::Ellipse {
+        at: [milli(ball.x()), milli(ball.y())],
+        radii: [milli(BALL_RADIUS * 2.0); 2],
+        tone: page::Tone::Ball,
+        fill: false,
+        note: "the ball, as it truly lies".to_owned(),
+    });
+    Layer { name: "truth".to_owned(), label: "the simulation's truth".to_owned(), on: false, shapes }
+}

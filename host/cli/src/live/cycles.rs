@@ -1,0 +1,138 @@
+//! Which cycle does a team go through, and what is told of it? From its robots' own beacons, by arena's log.
+
+use arena::{CycleLog, News};
+use casebase::CaseBase;
+use host::Host;
+use page::{Cycle, Happening, Kind};
+use protocol::team::{CycleState, Status};
+use protocol::{Instant, RobotId};
+use rules::Colour;
+use serde_json::{Value, json};
+
+use super::composer::Names;
+use super::layers::Played;
+use super::{team, words};
+
+/// Cycles of one team.
+#[derive(Debug, Default)]
+pub(super) struct TeamCycles {
+    log: CycleLog,
+    newest: Option<(CycleState, f64)>,
+    /// In open play a team without a fitting case tries again and again: told once until a case is played.
+    told_none: bool,
+}
+
+impl TeamCycles {
+    /// Hears what robots last said; what is new goes to `into`.
+    pub(super) fn hear(&mut self, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+        for robot in RobotId::all() {
+            let Some(state) = host.beacon(robot).and_then(|beacon| beacon.cycle.as_ref()) else { continue };
+            if state.is_newer_than(self.newest.as_ref().map(|(state, _)| state)) {
+                let same = self.newest.as_ref().filter(|(known, _)| known.id == state.id);
+                let began = same.map_or(t, |(_, began)| *began);
+                self.newest = Some((state.clone(), began));
+            }
+            let news = self.log.hear(t as f32, state);
+            self.tell(news, host, t, names, into);
+        }
+    }
+
+    fn tell(&mut self, news: News, host: &Host, t: f64, names: &Names, into: &mut Vec<Happening>) {
+        let us = host.settings().us;
+        let mut say = |kind, words: String, at, problem| {
+            into.push(Happening { t, kind, team: Some(team(us)), words, at, problem });
+        };
+        let of = |i: usize| self.log.cycles().get(i);
+        match news {
+            News::Decided(i) => {
+                let Some(cycle) = of(i) else { return };
+                if let Some(play) = &cycle.play {
+                    self.told_none = false;
+                    let players: Vec<_> = play.robots.iter().map(|id| id.number().to_string()).collect();
+                    let words = format!("{}: {} by {}", us.word(), names.of(play.case), players.join(", "));
+                    let ball: geometry::Point<geometry::Field> = play.ball.into();
+                    say(Kind::Case, words, Some([ball.x(), ball.y()]), Some(problem(host, play.ball.into())));
+                } else if cycle.no_case && !self.told_none {
+                    self.told_none = true;
+                    let ball = host.world().ball.map(|ball| ball.position);
+                    let problem =
+                        ball.map(|ball| problem(host, protocol::quantized::WirePoint::from(ball).into()));
+                    say(Kind::Cycle, format!("{}: no case fits", us.word()), None, problem);
+                }
+            }
+            News::Ended(i) => {
+                let Some(cycle) = of(i).filter(|cycle| cycle.play.is_some()) else { return };
+                if let Some((_, end)) = cycle.end {
+                    say(
+                        Kind::Cycle,
+                        format!("{}: case {}", us.word(), end.word().replace('-', " ")),
+                        None,
+                        None,
+                    );
+                }
+            }
+            News::Nothing | News::Began(_) => {}
+        }
+    }
+
+    /// The newest cycle, to be shown.
+    pub(super) fn shown(
+        &self,
+        us: Colour,
+        t: f64,
+        base: Option<&CaseBase<'_>>,
+        names: &Names,
+    ) -> Option<Cycle> {
+        let (state, began) = self.newest.as_ref()?;
+        // What was played stays told while its end is.
+        let seen = self.log.cycles().iter().rev().find(|cycle| cycle.id == state.id);
+        let play = seen.and_then(|cycle| cycle.play.as_ref());
+        let case = play.and_then(|play| base?.case(play.case));
+        Some(Cycle {
+            team: Some(team(us)),
+            number: state.id.counter,
+            coordinator: state.coordinator.number(),
+            state: words::decision(&state.decision),
+            case: play.map(|play| names.of(play.case)).unwrap_or_default(),
+            symmetry: case.map(|case| case.symmetry().word().to_owned()).unwrap_or_default(),
+            meant: play.map(|play| names.meant(play.case)).unwrap_or_default(),
+            players: play.map(|play| play.robots.iter().map(|id| id.number()).collect()).unwrap_or_default(),
+            seconds: (t - began) as f32,
+        })
+    }
+
+    /// What is played right now, if something is.
+    pub(super) fn played<'b>(&'b self, base: Option<&CaseBase<'b>>, names: &Names) -> Option<Played<'b>> {
+        let (state, _) = self.newest.as_ref()?;
+        Played::of(base?, |case| names.of(case), state.play()?)
+    }
+}
+
+/// The situation that a team retrieves in, as `cases explain` takes it: robots that offer themselves, and the ball that is told.
+fn problem(host: &Host, ball: casebase::PointMm) -> Value {
+    let us = host.settings().us;
+    let mm = |at: geometry::Point<geometry::Field>| {
+        let at: protocol::quantized::WirePoint = at.into();
+        [at.x, at.y]
+    };
+    let world = host.world();
+    let now: Instant = world.time;
+    let offers = |id: RobotId| {
+        let heard = host.quality(id).is_some_and(|quality| quality.is_present(now));
+        heard && host.beacon(id).is_some_and(|beacon| beacon.status.has(Status::AVAILABLE))
+    };
+    let mates: serde_json::Map<String, Value> = world
+        .ours(us)
+        .filter(|robot| offers(robot.who.id))
+        .map(|robot| (robot.who.id.number().to_string(), json!(mm(robot.pose.position))))
+        .collect();
+    let opponents: Vec<_> = world.theirs(us).map(|robot| mm(robot.pose.position)).take(11).collect();
+    let game = host.game();
+    let own = game.own_goal(us).unwrap_or(host.settings().defending);
+    json!({
+        "ball": [ball.x, ball.y],
+        "defending": own.word(),
+        "teammates": mates,
+        "opponents": opponents,
+    })
+}

@@ -1,0 +1,139 @@
+//! What does the referee's packet tell that is new? Happenings for the time line; the referee of a simulation tells more.
+
+use arena::game::sentence;
+use hil_sim::small_size::referee::InternalReferee;
+use host::world::Kick;
+use page::{Happening, Kind, Team, milli};
+use ssl::Message;
+use ssl::referee::Referee;
+
+use crate::replay::happening::{self, Finder};
+
+/// Finds what is new.
+#[derive(Debug, Default)]
+pub(super) struct News {
+    finder: Finder,
+    events: usize,
+    kick: Option<Kick>,
+}
+
+impl News {
+    /// A packet of the referee. Where our own referee tells its events itself, the packet's are left out.
+    pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<Happening>) {
+        let Ok(packet) = Referee::decode(bytes) else { return };
+        let mut found = Vec::new();
+        self.finder.read(&packet, t, &mut found);
+        for found in found {
+            let name = found.name.replace('_', " ").to_lowercase();
+            let kind = match found.kind {
+                happening::Kind::Command => Kind::Command,
+                happening::Kind::Stage => Kind::Stage,
+                happening::Kind::Goal => Kind::Goal,
+                happening::Kind::GameEvent if own => continue,
+                happening::Kind::GameEvent => foul_or_event(&found.name),
+            };
+            // A number is for the record, not for the eye.
+            let words = match found.kind {
+                happening::Kind::Goal => format!("goal, {}", found.words),
+                happening::Kind::GameEvent if !found.words.is_empty() => format!("{name} ({})", found.words),
+                _ => name,
+            };
+            let team = whose(&words);
+            into.push(Happening { t, kind, team, words, at: None, problem: None });
+        }
+    }
+
+    /// What the simulation's own referee noted since the last call.
+    pub(super) fn referee(&mut self, referee: &InternalReferee, t: f64, into: &mut Vec<Happening>) {
+        for event in referee.events().iter().skip(self.events) {
+            let kind = event.what.kind();
+            into.push(Happening {
+                t,
+                kind: if kind.is_offence() { Kind::Foul } else { Kind::Event },
+                team: event.by.map(super::team),
+                words: sentence(event),
+                at: Some([milli(event.place.x()), milli(event.place.y())]),
+                problem: None,
+            });
+        }
+        self.events = referee.events().len();
+    }
+
+    /// A kick that was noticed.
+    pub(super) fn kick(&mut self, kick: Option<Kick>, t: f64, into: &mut Vec<Happening>) {
+        let Some(kick) = kick else { return };
+        let same =
+            self.kick.is_some_and(|known| known.at == kick.at || kick.at.since(known.at).0 < SAME_KICK_US);
+        self.kick = Some(kick);
+        let Some(by) = kick.by.filter(|_| !same) else { return };
+        let how = if kick.is_chip() { "chips" } else { "kicks" };
+        into.push(Happening {
+            t,
+            kind: Kind::Kick,
+            team: Some(super::team(by.colour)),
+            words: format!(
+                "{} {} {how} at {:.1} m/s",
+                by.colour.word(),
+                by.id.number(),
+                kick.velocity.norm()
+            ),
+            at: Some([milli(kick.from.x()), milli(kick.from.y())]),
+            problem: None,
+        });
+    }
+}
+
+/// The tracker fits a kick anew as it sees more of it; within this time it is the same one, µs.
+const SAME_KICK_US: u64 = 200_000;
+
+/// A game event of the league by its name: what a team did wrong, or anything else.
+pub(crate) fn foul_or_event(name: &str) -> Kind {
+    let foul = [
+        "BOT_",
+        "ATTACKER_",
+        "DEFENDER_",
+        "KEEPER_HELD",
+        "BOUNDARY",
+        "TOO_MANY",
+        "UNSPORTING",
+        "MULTIPLE_FOULS",
+    ];
+    if foul.iter().any(|begin| name.starts_with(begin)) && name != "BOT_SUBSTITUTION" {
+        Kind::Foul
+    } else {
+        Kind::Event
+    }
+}
+
+fn whose(words: &str) -> Option<Team> {
+    let has = |colour: &str| words.split(|c: char| !c.is_alphabetic()).any(|word| word == colour);
+    match (has("blue"), has("yellow")) {
+        (true, false) => Some(Team::Blue),
+        (false, true) => Some(Team::Yellow),
+        // "goal, yellow, blue 0 : 1 yellow" is the first one's.
+        (true, true) => words.split(", ").find_map(|part| match part {
+            "blue" => Some(Team::Blue),
+            "yellow" => Some(Team::Yellow),
+            _ => None,
+        }),
+        (false, false) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_goal_is_the_scorers_and_a_command_its_teams() {
+        assert_eq!(whose("goal, yellow, blue 0 : 1 yellow"), Some(Team::Yellow));
+        assert_eq!(whose("direct free blue"), Some(Team::Blue));
+        assert_eq!(whose("halt"), None);
+    }
+
+    #[test]
+    fn offences_are_told_from_other_events() {
+        assert_eq!(foul_or_event("BOT_CRASH_UNIQUE"), Kind::Foul);
+        assert_eq!(foul_or_event("PLACEMENT_SUCCEEDED"), Kind::Event);
+    }
+}

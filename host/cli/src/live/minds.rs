@@ -1,0 +1,145 @@
+//! What does a robot think, and how is it? From what its host told it last and what it said of itself.
+
+use std::collections::BTreeMap;
+
+use host::Host;
+use host::world::Robot;
+use page::{Intent, Mind, Timer, Vitals, milli};
+use protocol::host::Condition;
+use protocol::team::{Progress, Role};
+use protocol::{Instant, RobotId};
+use rules::Colour;
+
+use super::composer::Names;
+use super::layers::Played;
+use super::words;
+
+/// Since when robots are in their states: reuse, and what they are told.
+#[derive(Debug, Default)]
+pub(super) struct Clocks {
+    states: BTreeMap<(bool, u8), (String, f64)>,
+    roles: BTreeMap<(bool, u8), (String, f64)>,
+}
+
+/// Seconds since that was first so.
+fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &str, t: f64) -> f32 {
+    let entry = of.entry(who).or_insert_with(|| (words.to_owned(), t));
+    if entry.0 != words || t < entry.1 {
+        *entry = (words.to_owned(), t);
+    }
+    (t - entry.1) as f32
+}
+
+/// The mind of a robot of that host's team.
+pub(super) fn mind(
+    host: &Host,
+    robot: &Robot,
+    played: Option<&Played<'_>>,
+    names: &Names,
+    clocks: &mut Clocks,
+    t: f64,
+) -> Option<Mind> {
+    let id = robot.who.id;
+    let order = host.orders().iter().find(|order| order.robot == id)?;
+    let directive = order.task.directive(words::flip(host));
+    let beacon = host.beacon(id);
+    let part = played.and_then(|played| Some((played, played.place_of(id)?)));
+    let progress = beacon.map_or(Progress::Idle, |beacon| beacon.progress);
+    let bound = part.is_some() && matches!(progress, Progress::Adapt { .. } | Progress::Execute { .. });
+    let in_case = part.as_ref().filter(|_| bound || matches!(progress, Progress::WaitEnd { .. }));
+    let (state, step) =
+        words::progress(progress, part.as_ref().map(|(played, (robot, _))| (&played.case, *robot)));
+    let here = [milli(robot.pose.position.x()), milli(robot.pose.position.y())];
+    let (to, ball_to) = words::aims(&directive);
+    let place = part.as_ref().filter(|_| matches!(progress, Progress::Adapt { .. })).map(|(_, (_, at))| *at);
+    let who = (host.settings().us == Colour::Blue, id.number());
+    let role = words::role(order.role);
+    let timers = vec![
+        Timer { name: format!("as {role}"), seconds: since(&mut clocks.roles, who, &role, t) },
+        Timer { name: format!("in {state}"), seconds: since(&mut clocks.states, who, &state, t) },
+    ];
+    Some(Mind {
+        role,
+        directive: words::directive(&directive),
+        why: words::why(&order.why),
+        state,
+        step,
+        part: in_case.map_or_else(String::new, |(played, (robot, _))| {
+            format!("case robot {} of {}", robot.number(), names.of(played.play.case))
+        }),
+        reactive: match beacon.map(|beacon| beacon.role) {
+            Some(Role::Attacker) => "attacks".to_owned(),
+            Some(Role::Supporter) => "backs up".to_owned(),
+            Some(Role::None) | None => String::new(),
+        },
+        intent: Intent { path: place.or(to).map_or_else(Vec::new, |to| vec![here, to]), ball_to },
+        timers,
+    })
+}
+
+/// How a robot and its link are.
+pub(super) fn vitals(host: &Host, robot: &Robot, now: Instant) -> Option<Vitals> {
+    let quality = host.quality(robot.who.id)?;
+    let heard = quality.heard_at()?;
+    let condition = quality.condition();
+    let ms = |us: u64| milli(us as f32 * 1e-3);
+    let mut faults = Vec::new();
+    for (bit, words) in [
+        (Condition::TIPPED, "tipped over"),
+        (Condition::BATTERY_LOW, "battery low"),
+        (Condition::LINK_LOST, "link lost"),
+    ] {
+        if condition.has(bit) {
+            faults.push(words.to_owned());
+        }
+    }
+    if !quality.is_present(now) {
+        faults.push("silent".to_owned());
+    }
+    let tally = |value: Option<f64>| value.map(|value| milli(value as f32));
+    Some(Vitals {
+        battery: quality.battery().map(milli),
+        silence_ms: Some(ms(now.since(heard).0)),
+        trip_ms: tally(quality.round_trip().mean()),
+        loss_down: tally(quality.loss_down()),
+        loss_up: tally(quality.loss_up()),
+        frames: tally(quality.frame_rate().mean()),
+        refused: quality.refused(),
+        lives: quality.lives(),
+        unseen_ms: ms(now.since(robot.seen).0),
+        faults,
+        ball: condition.has(Condition::BALL_CONTACT),
+        kicker: condition.has(Condition::KICKER_READY),
+    })
+}
+
+/// Robots that booted again or fell silent since the last look, in words.
+#[derive(Debug, Default)]
+pub(super) struct Faults {
+    lives: BTreeMap<(bool, u8), u32>,
+    present: BTreeMap<(bool, u8), bool>,
+}
+
+impl Faults {
+    pub(super) fn look(&mut self, host: &Host, now: Instant) -> Vec<String> {
+        let us = host.settings().us;
+        let mut told = Vec::new();
+        for id in RobotId::all() {
+            let Some(quality) = host.quality(id).filter(|quality| quality.heard_at().is_some()) else {
+                continue;
+            };
+            let who = (us == Colour::Blue, id.number());
+            let name = format!("{} {}", us.word(), id.number());
+            let (lives, here) = (quality.lives(), quality.is_present(now));
+            if self.lives.insert(who, lives).is_some_and(|before| lives > before) {
+                told.push(format!("{name} booted again"));
+            }
+            match self.present.insert(who, here) {
+                Some(true) if !here => told.push(format!("{name} is silent")),
+                Some(false) if here => told.push(format!("{name} is heard again")),
+                _ => {}
+            }
+        }
+        told
+    }
+}

@@ -1,0 +1,119 @@
+//! How does what runs here come onto the page? A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
+//!
+//! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why a case was chosen.
+//! Everything here looks on: nothing decides.
+
+mod composer;
+mod cycles;
+mod gauges;
+mod happenings;
+mod layers;
+mod legged;
+mod minds;
+mod oracle;
+mod possession;
+mod raw;
+mod tactics;
+#[cfg(test)]
+mod tests;
+mod theatre;
+mod words;
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+use page::{Page, Powers, Team};
+use rules::{Colour, League};
+
+use crate::Failure;
+use crate::args::{FolderArgs, LibraryArgs};
+use crate::library::Shelf;
+use crate::stop::stopped_by_hand;
+
+pub(crate) use composer::{Composer, Moment};
+pub(crate) use gauges::tick;
+pub(crate) use legged::Legged;
+pub(crate) use oracle::CaseOracle;
+pub(crate) use theatre::{AnewWatcher, End, Theatre, command_of};
+use words::spaced;
+
+/// Scenes a second: what an eye takes for motion, with the page filling in between.
+pub(crate) const SCENE_EVERY_S: f64 = 0.04;
+
+/// Where the page is served.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct PageArgs {
+    /// Where the page is served; others than this machine see it only where an address of this machine is told.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// What this verb calls that, for words.
+    #[arg(skip = LISTEN)]
+    flag: &'static str,
+}
+
+/// Its usual name.
+const LISTEN: &str = "--listen";
+
+impl PageArgs {
+    /// Served there, by a verb that has another name for it.
+    pub(crate) fn at(listen: SocketAddr, flag: &'static str) -> Self {
+        Self { listen, flag }
+    }
+
+    /// Opens the page and says where.
+    pub(crate) fn open(
+        &self,
+        title: String,
+        recorded: bool,
+        powers: Powers,
+        oracle: CaseOracle,
+    ) -> Result<Page, Failure> {
+        let settings = page::Settings { listen: self.listen, title, recorded, powers };
+        let page = Page::open(settings, Arc::new(oracle))
+            .map_err(|error| Failure::Network(format!("{error} ({})", self.flag)))?;
+        eprintln!("page     http://{}", page.address());
+        if !self.listen.ip().is_loopback() {
+            eprintln!("page     whoever reaches this machine can look on and ask what the page can ask");
+        }
+        Ok(page)
+    }
+}
+
+/// Everything is shown: the page stays to be looked at, until somebody ends the program.
+pub(crate) fn stay(page: Page, words: &str) {
+    eprintln!("{words}; the page stays until Ctrl-C");
+    while !stopped_by_hand().load(Ordering::Relaxed) {
+        thread::sleep(Duration::from_millis(50));
+    }
+    drop(page);
+}
+
+/// The cases that come with a league, or a folder's; none where neither is there.
+pub(crate) fn shelf_of(league: League, folder: Option<&std::path::Path>) -> Result<Option<Shelf>, Failure> {
+    let known = case_library::LEAGUES.iter().any(|known| known.name == league.name());
+    if folder.is_none() && !known {
+        return Ok(None);
+    }
+    let folder = FolderArgs { library: folder.map(std::path::Path::to_owned) };
+    Shelf::open(&LibraryArgs { folder, league: league.name().to_owned() }).map(Some)
+}
+
+/// A colour in the page's words.
+pub(crate) const fn team(colour: Colour) -> Team {
+    match colour {
+        Colour::Blue => Team::Blue,
+        Colour::Yellow => Team::Yellow,
+    }
+}
+
+/// And back.
+pub(crate) const fn colour(team: Team) -> Colour {
+    match team {
+        Team::Blue => Colour::Blue,
+        Team::Yellow => Colour::Yellow,
+    }
+}

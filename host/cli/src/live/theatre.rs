@@ -1,0 +1,312 @@
+//! How is a match played for people to see? At the clock's pace, with the page beside it, and with hands on it.
+//!
+//! The match itself is [`arena::game::Game`], tick by tick as without a page: looking on changes nothing. Where the machine is too
+//! slow for the speed asked for, the match goes slower and the page says so.
+
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use arena::game::{Crowd, Game, GameConfig, GameReport, TICK_US, Watcher};
+use casebase::CaseBase;
+use geometry::Point;
+use hil_sim::NativeBackend;
+use hil_sim::small_size::Who;
+use page::{Happening, Kind, Page, Request, Scene};
+use protocol::RobotId;
+use rules::Colour;
+use rules::state::Command;
+
+use super::gauges::{gauge, tick};
+use super::{Composer, Moment, SCENE_EVERY_S, colour};
+use crate::Failure;
+use crate::library::Shelf;
+use crate::stop::stopped_by_hand;
+
+/// Farther behind the clock than this, s, and the clock is set anew: nobody wants a match that runs to catch up.
+const BEHIND_MAX_S: f64 = 0.25;
+/// However fast it goes, who looks back sees a scene so often, simulated s.
+const SCENE_EVERY_MAX_S: f64 = 0.2;
+/// What stands still looks for requests so often.
+const IDLE: Duration = Duration::from_millis(10);
+
+/// A match and its page.
+pub(crate) struct Theatre<'s> {
+    config: GameConfig,
+    shelf: Option<&'s Shelf>,
+    page: Page,
+    speed: f32,
+    /// It is recorded: it cannot begin anew.
+    recorded: bool,
+}
+
+/// How the hands of viewers stand.
+struct Hands {
+    paused: bool,
+    steps: u32,
+    speed: f32,
+    anew: Option<u64>,
+    /// The clock, and the match at that time.
+    clock: (Instant, f64),
+    took: Duration,
+    /// Simulated seconds a second, as reached.
+    reached: f32,
+}
+
+/// How an evening ends.
+pub(crate) enum End {
+    /// The match is over; its report.
+    Over(GameReport),
+    /// Somebody ended the program.
+    ByHand(GameReport),
+}
+
+impl<'s> Theatre<'s> {
+    pub(crate) fn new(
+        config: GameConfig,
+        shelf: Option<&'s Shelf>,
+        page: Page,
+        speed: f32,
+        recorded: bool,
+    ) -> Self {
+        Self { config, shelf, page, speed, recorded }
+    }
+
+    /// Plays until the match is over; `watch` gives the watchers of a match that begins.
+    pub(crate) fn play(&mut self, watcher: &mut dyn AnewWatcher) -> Result<End, Failure> {
+        loop {
+            let mut hands = Hands {
+                paused: false,
+                steps: 0,
+                speed: self.speed,
+                anew: None,
+                clock: (Instant::now(), 0.0),
+                took: Duration::ZERO,
+                reached: self.speed,
+            };
+            let report = self.one(&mut hands, watcher)?;
+            self.speed = hands.speed;
+            match hands.anew {
+                Some(seed) => {
+                    self.config.seed = seed;
+                    self.page.clear();
+                    watcher.anew();
+                }
+                None if stopped_by_hand().load(Ordering::Relaxed) => return Ok(End::ByHand(report)),
+                None => return Ok(End::Over(report)),
+            }
+        }
+    }
+
+    /// The page stays when the match is over, until somebody ends the program; true where another match is asked for.
+    pub(crate) fn linger(&mut self) -> Option<u64> {
+        while !stopped_by_hand().load(Ordering::Relaxed) {
+            if let Some(Request::Restart { seed }) = self.page.next_request()
+                && !self.recorded
+            {
+                return Some(seed.unwrap_or(self.config.seed));
+            }
+            thread::sleep(IDLE);
+        }
+        None
+    }
+
+    /// Another match from that seed.
+    pub(crate) fn anew(&mut self, seed: u64) {
+        self.config.seed = seed;
+        self.page.clear();
+    }
+
+    fn one(&mut self, hands: &mut Hands, watcher: &mut dyn AnewWatcher) -> Result<GameReport, Failure> {
+        let failed = |error: arena::game::GameError| Failure::Game(error.to_string());
+        let config = self.config.clone();
+        let base = self.shelf.map_or_else(CaseBase::default, Shelf::lasting_base);
+        let mut backend = NativeBackend::new(base);
+        let mut game = Game::new(&config, &mut backend).map_err(failed)?;
+        let mut eyes = Eyes { composer: Composer::new(self.shelf), t: 0.0 };
+        let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u64;
+        let mut shown = f64::NEG_INFINITY;
+        let stopped = stopped_by_hand();
+        while game.now().0 / TICK_US < ticks && !game.is_over() && !stopped.load(Ordering::Relaxed) {
+            while let Some(request) = self.page.next_request() {
+                self.obey(&request, hands, &mut game, &mut backend).map_err(failed)?;
+            }
+            if hands.anew.is_some() {
+                break;
+            }
+            if hands.paused && hands.steps == 0 {
+                self.show(&game, &mut eyes, hands);
+                thread::sleep(Duration::from_secs_f64(SCENE_EVERY_S));
+                continue;
+            }
+            hands.steps = hands.steps.saturating_sub(1);
+            let begun = Instant::now();
+            eyes.t = game.time();
+            game.step(&mut Crowd(vec![&mut eyes, watcher.watcher()])).map_err(failed)?;
+            hands.took = (hands.took * 15 + begun.elapsed()) / 16;
+            let every = (SCENE_EVERY_S * f64::from(hands.speed)).min(SCENE_EVERY_MAX_S);
+            if game.time() - shown >= every - 1e-6 || hands.paused {
+                shown = game.time();
+                self.show(&game, &mut eyes, hands);
+            }
+            if !hands.paused {
+                hands.wait(game.time());
+            }
+        }
+        self.show(&game, &mut eyes, hands);
+        Ok(GameReport::of(&config, &game))
+    }
+
+    fn show(&mut self, game: &Game<'_>, eyes: &mut Eyes, hands: &Hands) {
+        let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
+        let gauges = vec![tick(hands.took), gauge("program", "speed reached", hands.reached, "×", None)];
+        let scene = eyes.composer.compose(Moment {
+            t: game.time(),
+            now: game.now(),
+            eyes: hosts[0],
+            hosts: &hosts,
+            truth: Some(game.world()),
+            referee: Some(game.referee()),
+            gauges,
+        });
+        for happening in eyes.composer.take_happenings() {
+            self.page.tell(happening);
+        }
+        self.page.show(Scene {
+            paused: hands.paused,
+            speed: hands.speed,
+            seed: Some(self.config.seed),
+            ..scene
+        });
+    }
+
+    fn obey<'b>(
+        &mut self,
+        request: &Request,
+        hands: &mut Hands,
+        game: &mut Game<'b>,
+        backend: &mut NativeBackend<'b>,
+    ) -> Result<(), arena::game::GameError> {
+        let t = game.time();
+        let mut note = |words: String| {
+            self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+        };
+        let who = |team, id| RobotId::new(id).map(|id| Who { colour: colour(team), id });
+        match request {
+            Request::Pause { on } => {
+                (hands.paused, hands.steps) = (*on, 0);
+                hands.clock = (Instant::now(), t);
+            }
+            Request::Step { ticks } => (hands.paused, hands.steps) = (true, *ticks),
+            Request::Speed { factor } => {
+                hands.speed = *factor;
+                hands.clock = (Instant::now(), t);
+            }
+            Request::Restart { .. } if self.recorded => {
+                note("a match that is recorded cannot begin anew".into());
+            }
+            Request::Restart { seed } => hands.anew = Some(seed.unwrap_or(self.config.seed)),
+            Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), hands.paused),
+            Request::Robot { team, id, at } => {
+                if let Some(who) = who(*team, *id) {
+                    game.move_robot(who, Point::new(at[0], at[1]), hands.paused);
+                }
+            }
+            Request::Power { team, id, on } => {
+                if let Some(who) = who(*team, *id)
+                    && game.power(who, *on, backend)?
+                {
+                    let what = if *on { "boots, by hand" } else { "crashes, by hand" };
+                    note(format!("{} {} {what}", who.colour.word(), who.id.number()));
+                }
+            }
+            Request::Loss { share } => {
+                game.lose(*share);
+                note(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+            }
+            Request::Halt {} => {
+                game.command(Command::Halt);
+            }
+            Request::Referee { command } => {
+                let done = command_of(command).is_some_and(|command| game.command(command));
+                if !done {
+                    note(format!("{} makes no sense now", command.to_lowercase().replace('_', " ")));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Hands {
+    /// Until the clock is where the match is.
+    fn wait(&mut self, t: f64) {
+        let (began, from) = self.clock;
+        let due = (t - from) / f64::from(self.speed);
+        let passed = began.elapsed().as_secs_f64();
+        if due > passed {
+            thread::sleep(Duration::from_secs_f64(due - passed));
+        }
+        let passed = began.elapsed().as_secs_f64();
+        if passed > 1.0 || passed - due > BEHIND_MAX_S {
+            self.reached = ((t - from) / passed.max(1e-6)) as f32;
+            self.clock = (Instant::now(), t);
+        }
+    }
+}
+
+/// Who watches a match, and begins anew with it.
+pub(crate) trait AnewWatcher {
+    /// For the match under way.
+    fn watcher(&mut self) -> &mut dyn Watcher;
+    /// Another match begins.
+    fn anew(&mut self);
+}
+
+/// Takes what both teams hear.
+struct Eyes {
+    composer: Composer,
+    t: f64,
+}
+
+impl Watcher for Eyes {
+    fn vision(&mut self, _now: protocol::Instant, bytes: &[u8]) {
+        self.composer.vision(bytes);
+    }
+    fn referee(&mut self, _now: protocol::Instant, bytes: &[u8]) {
+        self.composer.referee(bytes, self.t, true);
+    }
+}
+
+/// A command by its name in the league.
+pub(crate) fn command_of(name: &str) -> Option<Command> {
+    let of = |begin: &str| match name.strip_prefix(begin)? {
+        "BLUE" => Some(Colour::Blue),
+        "YELLOW" => Some(Colour::Yellow),
+        _ => None,
+    };
+    Some(match name {
+        "HALT" => Command::Halt,
+        "STOP" => Command::Stop,
+        "NORMAL_START" => Command::NormalStart,
+        "FORCE_START" => Command::ForceStart,
+        _ => of("PREPARE_KICKOFF_")
+            .map(Command::PrepareKickoff)
+            .or_else(|| of("PREPARE_PENALTY_").map(Command::PreparePenalty))
+            .or_else(|| of("DIRECT_FREE_").map(Command::FreeKick))?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_go_by_their_names_in_the_league() {
+        assert_eq!(command_of("HALT"), Some(Command::Halt));
+        assert_eq!(command_of("DIRECT_FREE_BLUE"), Some(Command::FreeKick(Colour::Blue)));
+        assert_eq!(command_of("PREPARE_KICKOFF_YELLOW"), Some(Command::PrepareKickoff(Colour::Yellow)));
+        assert_eq!(command_of("PREPARE_KICKOFF_RED"), None);
+        assert_eq!(command_of("GOAL_BLUE"), None);
+    }
+}

@@ -1,0 +1,139 @@
+//! A recording on the page: every moment of it, for each viewer to look through at its own pace.
+//!
+//! A trace gives back what its hosts thought: they are built from its header and decide again. A league's log file gives what was on
+//! the field and what the referee said; with `--team` a host of ours is fed with it too.
+
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+
+use host::recheck::Recheck;
+use host::recording::RecordingHeader;
+use host::trace::{Kind, Reader};
+use host::{Host, HostSettings, Input};
+use page::{Page, Powers};
+use protocol::Instant;
+use rules::{Colour, League};
+use ssl::log::MessageKind;
+
+use super::{ReplayArgs, TRACE, begins, failed, open, trace};
+use crate::Failure;
+use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_of, stay};
+use crate::stop::stopped_by_hand;
+
+/// Shows the file until Ctrl-C.
+pub(super) fn run(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
+    if begins(&args.file)?.starts_with(TRACE) { show_trace(args, page) } else { show_log(args, page) }
+}
+
+/// The page, and what fills it.
+struct Projector {
+    page: Page,
+    composer: Composer,
+    due: f64,
+}
+
+impl Projector {
+    fn new(args: &ReplayArgs, page: &PageArgs, league: League) -> Result<Self, Failure> {
+        let shelf = shelf_of(league, None)?;
+        let composer = Composer::new(shelf.as_ref());
+        let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
+        let oracle = CaseOracle::new(shelf, casebase::Settings::default());
+        let page = page.open(name.unwrap_or_default(), true, Powers::None, oracle)?;
+        Ok(Self { page, composer, due: f64::NEG_INFINITY })
+    }
+
+    /// The moment after a message, if the last one shown is long enough ago.
+    fn look(&mut self, now: Instant, eyes: &Host, hosts: &[&Host]) {
+        let t = now.0 as f64 * 1e-6;
+        if t < self.due {
+            return;
+        }
+        self.due = t + SCENE_EVERY_S;
+        let moment = Moment { t, now, eyes, hosts, truth: None, referee: None, gauges: Vec::new() };
+        let scene = self.composer.compose(moment);
+        for happening in self.composer.take_happenings() {
+            self.page.tell(happening);
+        }
+        self.page.keep(scene);
+    }
+
+    /// All is read: it stays to be looked at.
+    fn stay(self, words: &str) -> ExitCode {
+        stay(self.page, words);
+        ExitCode::SUCCESS
+    }
+}
+
+fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
+    let file = &args.file;
+    let mut reader = Reader::new(open(file)?).map_err(|error| failed(file, &error))?;
+    let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
+    let league = header.league().map_err(|error| failed(file, &error))?;
+    let key = trace::key(args, &header)?;
+    let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
+    let mut projector = Projector::new(args, page, league)?;
+    let stopped = stopped_by_hand();
+    let mut now = Instant(0);
+    for record in reader.by_ref() {
+        if stopped.load(Ordering::Relaxed) {
+            return Ok(ExitCode::SUCCESS);
+        }
+        now = now.max(record.at);
+        // Every host hears the same: the first one's ears are enough.
+        match record.kind {
+            Kind::Vision if record.host == 0 => projector.composer.vision(&record.bytes),
+            Kind::Referee if record.host == 0 => {
+                projector.composer.referee(&record.bytes, now.0 as f64 * 1e-6, false);
+            }
+            _ => {}
+        }
+        recheck.feed(&record);
+        let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
+        if let Some(eyes) = hosts.first() {
+            projector.look(now, eyes, &hosts);
+        }
+    }
+    recheck.finish(true);
+    let same = recheck.results().all(|(_, difference)| difference.is_none());
+    let words = if same {
+        "every decision was taken again as recorded"
+    } else {
+        "hosts decide otherwise than recorded: see the summary"
+    };
+    Ok(projector.stay(words))
+}
+
+fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
+    let mut reader = ssl::log::open(&args.file).map_err(|error| failed(&args.file, &error))?;
+    let settings = HostSettings::new(args.team.unwrap_or(Colour::Blue), args.league, 1);
+    let mut host = Host::new(settings, Instant(0));
+    let mut projector = Projector::new(args, page, args.league)?;
+    let stopped = stopped_by_hand();
+    let (mut began, mut now) = (None, Instant(0));
+    for record in reader.by_ref() {
+        if stopped.load(Ordering::Relaxed) {
+            return Ok(ExitCode::SUCCESS);
+        }
+        let first = *began.get_or_insert(record.timestamp_ns);
+        let micros = u64::try_from(record.timestamp_ns.saturating_sub(first) / 1000).unwrap_or(0);
+        now = now.max(Instant(micros));
+        match record.kind {
+            MessageKind::Vision2014 => {
+                projector.composer.vision(&record.payload);
+                host.handle(now, Input::Vision(&record.payload));
+            }
+            MessageKind::Refbox2013 => {
+                projector.composer.referee(&record.payload, now.0 as f64 * 1e-6, false);
+                host.handle(now, Input::Referee(&record.payload));
+            }
+            _ => continue,
+        }
+        while host.poll_packet().is_some() {}
+        let hosts = [&host];
+        projector.look(now, &host, if args.team.is_some() { &hosts } else { &[] });
+    }
+    if began.is_none() {
+        return Err(failed(&args.file, &"holds no message"));
+    }
+    Ok(projector.stay("the whole file is there"))
+}

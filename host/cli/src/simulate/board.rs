@@ -1,0 +1,130 @@
+//! The page beside a simulated field that others play on: the truth, what a tracker of ours makes of the vision, and hands on the ball.
+
+use std::time::{Duration, Instant};
+
+use geometry::Point;
+use hil_sim::small_size::Who;
+use hil_sim::small_size::referee::InternalReferee;
+use hil_sim::small_size::server::Server;
+use host::{Host, HostSettings, Input};
+use page::{Happening, Kind, Page, Powers, Request, Scene};
+use protocol::RobotId;
+use rules::{Colour, League};
+
+use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};
+
+/// A page, what fills it, and the eyes it sees through: a host that commands nobody.
+pub(super) struct Board {
+    page: Page,
+    composer: Composer,
+    eyes: Host,
+    shown: Option<Instant>,
+    /// The speed to go on with after a pause.
+    speed: f32,
+    seed: u64,
+    /// Simulated seconds.
+    t: f64,
+}
+
+impl Board {
+    /// Opens it. Without a page the field is simulated all the same: what is wrong with it is said.
+    pub(super) fn open(args: &PageArgs, league: League, seed: u64, speed: f32) -> Option<Self> {
+        let open = || {
+            let oracle = CaseOracle::new(shelf_of(league, None)?, casebase::Settings::default());
+            let page =
+                args.open(format!("simulate, {}", league.name()), false, Powers::Simulation, oracle)?;
+            let eyes = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
+            Ok::<_, crate::Failure>(Self {
+                page,
+                composer: Composer::new(None),
+                eyes,
+                shown: None,
+                speed,
+                seed,
+                t: 0.0,
+            })
+        };
+        open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()
+    }
+
+    pub(super) fn vision(&mut self, bytes: &[u8], running: Duration) {
+        self.composer.vision(bytes);
+        self.eyes.handle(protocol::Instant(running.as_micros() as u64), Input::Vision(bytes));
+        while self.eyes.poll_packet().is_some() {}
+    }
+
+    pub(super) fn referee(&mut self, bytes: &[u8], running: Duration) {
+        let now = protocol::Instant(running.as_micros() as u64);
+        self.composer.referee(bytes, self.t, true);
+        self.eyes.handle(now, Input::Referee(bytes));
+    }
+
+    /// Shows the moment, if it is time, and does what viewers ask for; a new pace, if they ask for one.
+    pub(super) fn look(
+        &mut self,
+        running: Duration,
+        server: &mut Server,
+        mut referee: Option<&mut InternalReferee>,
+    ) -> Option<f32> {
+        let mut pace = None;
+        self.t = server.world().time();
+        while let Some(request) = self.page.next_request() {
+            match request {
+                Request::Pause { on } => pace = Some(if on { 0.0 } else { self.speed }),
+                Request::Speed { factor } => {
+                    self.speed = factor;
+                    pace = Some(factor);
+                }
+                Request::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
+                Request::Robot { team, id, at } => {
+                    if let Some(id) = RobotId::new(id) {
+                        let who = Who { colour: colour(team), id };
+                        server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None);
+                    }
+                }
+                Request::Referee { command } => {
+                    let done = command_of(&command)
+                        .zip(referee.as_deref_mut())
+                        .is_some_and(|(command, referee)| referee.command_by_hand(command));
+                    if !done {
+                        self.note(format!("{} makes no sense now", command.to_lowercase().replace('_', " ")));
+                    }
+                }
+                Request::Halt {}
+                | Request::Step { .. }
+                | Request::Restart { .. }
+                | Request::Power { .. }
+                | Request::Loss { .. } => {
+                    self.note(
+                        "that can be asked of `onetwo play`; here others command the robots".to_owned(),
+                    );
+                }
+            }
+        }
+        let every = Duration::from_secs_f64(SCENE_EVERY_S);
+        if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
+            self.shown = Some(Instant::now());
+            let moment = Moment {
+                t: self.t,
+                now: protocol::Instant(running.as_micros() as u64),
+                eyes: &self.eyes,
+                hosts: &[],
+                truth: Some(server.world()),
+                referee: referee.as_deref(),
+                gauges: Vec::new(),
+            };
+            let scene = self.composer.compose(moment);
+            for happening in self.composer.take_happenings() {
+                self.page.tell(happening);
+            }
+            let speed = pace.unwrap_or(server.pace());
+            self.page.show(Scene { paused: speed == 0.0, speed: self.speed, seed: Some(self.seed), ..scene });
+        }
+        pace
+    }
+
+    fn note(&mut self, words: String) {
+        let t = self.t;
+        self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+    }
+}

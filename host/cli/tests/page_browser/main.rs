@@ -1,0 +1,152 @@
+//! Does the page work for a person with a browser? A real Chromium on the built program: it loads, robots move, layers switch, an
+//! explanation opens, a hand drags, a recording seeks to its goal, a lost connection is shown and heals, no error on the console.
+//!
+//! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does without.
+
+mod program;
+
+use std::time::Duration;
+
+use page_browser::{Browser, Tab};
+use program::Program;
+
+/// Nothing went wrong where a person would never look.
+fn no_errors(tab: &mut Tab<'_>) {
+    assert_eq!(tab.errors(), Vec::<String>::new());
+}
+
+fn number(tab: &mut Tab<'_>, script: &str) -> f64 {
+    tab.eval(script).unwrap().as_f64().unwrap_or_else(|| panic!("{script} is no number"))
+}
+
+#[test]
+fn a_match_is_watched_asked_and_touched() {
+    let program = Program::start(&[
+        "play",
+        "--duration",
+        "600",
+        "--seed",
+        "2",
+        "--listen",
+        "127.0.0.1:0",
+        "--speed",
+        "2",
+    ]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?theme=dark"), 1400, 900).unwrap();
+    tab.wait("window.onetwo?.store.scene?.robots.length === 12", 60).unwrap();
+    tab.wait("document.getElementById('connection').dataset.state === 'live'", 10).unwrap();
+
+    // Robots move, and the field with them.
+    tab.wait("onetwo.store.scene.game.phase !== 'halt' && onetwo.store.scene.robots.some((r) => Math.hypot(...r.velocity) > 0.3)", 60).unwrap();
+    let before = number(&mut tab, "onetwo.frames()");
+    std::thread::sleep(Duration::from_secs(1));
+    assert!(number(&mut tab, "onetwo.frames()") > before + 2.0, "frames are drawn");
+    tab.eval("(() => { const c = document.getElementById('field'); return c.getContext('2d').getImageData(c.width / 2, c.height / 2, 1, 1).data[3] })()")
+        .map(|alpha| assert_eq!(alpha, 255, "the carpet is painted"))
+        .unwrap();
+
+    // Why: a card for each robot, and the explanation of this moment.
+    tab.wait("document.querySelectorAll('#tab-why .card').length === 12", 20).unwrap();
+    tab.click("[data-robot=blue2]").unwrap();
+    tab.wait("onetwo.store.chosen?.id === 2", 5).unwrap();
+    tab.click("[data-explain=blue]").unwrap();
+    tab.wait("document.getElementById('dialog').open && document.querySelectorAll('#explanation tbody tr').length > 5", 20).unwrap();
+    tab.click("#dialog button").unwrap();
+    tab.wait("!document.getElementById('dialog').open", 5).unwrap();
+
+    // Layers switch, and a layer that is off draws nothing.
+    tab.click("#layers-open").unwrap();
+    tab.wait("document.querySelector('[data-layer=truth]')", 10).unwrap();
+    tab.click("[data-layer=truth]").unwrap();
+    tab.wait("onetwo.layers().find((l) => l.name === 'truth').shown", 5).unwrap();
+    tab.click("[data-layer=keep-out]").unwrap();
+    tab.wait("!onetwo.layers().find((l) => l.name === 'keep-out').shown", 5).unwrap();
+
+    control(&mut tab);
+    look_back(&mut tab);
+    no_errors(&mut tab);
+}
+
+/// Stand still, step, drag the ball, begin anew.
+fn control(tab: &mut Tab<'_>) {
+    tab.key("4").unwrap();
+    tab.wait("!document.getElementById('tab-control').hidden", 5).unwrap();
+    tab.click("#pause").unwrap();
+    tab.wait("onetwo.store.latest.paused", 10).unwrap();
+    let still = number(tab, "onetwo.store.latest.t");
+    tab.click("#step").unwrap();
+    tab.wait(&format!("Math.abs(onetwo.store.latest.t - {still} - 0.01) < 0.002"), 10).unwrap();
+    let at = tab.eval("onetwo.camera.to(onetwo.store.latest.ball.at)").unwrap();
+    let stage = tab.eval("(() => { const b = document.getElementById('field').getBoundingClientRect(); return [b.x, b.y] })()").unwrap();
+    let spot = [0, 1].map(|i: usize| at[i].as_f64().unwrap() + stage[i].as_f64().unwrap());
+    tab.click("#layers-open").unwrap();
+    tab.drag(spot, [spot[0] + 120.0, spot[1] - 60.0]).unwrap();
+    // A ball that is put stands where the truth says, at once; the host sees it with the next image.
+    tab.eval("onetwo.setLayer('truth', true)").unwrap();
+    tab.wait(
+        &format!("(() => {{ const s = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; const p = onetwo.camera.to(s); return Math.hypot(p[0] - {} - 120, p[1] - {} + 60) < 12 }})()", at[0], at[1]),
+        10,
+    )
+    .unwrap();
+    tab.click("#pause").unwrap();
+    tab.wait("!onetwo.store.latest.paused", 10).unwrap();
+    tab.click("[data-command=HALT]").unwrap();
+    tab.wait("onetwo.store.latest.game.phase === 'halt'", 10).unwrap();
+    tab.click("[data-command=FORCE_START]").unwrap();
+    tab.wait("onetwo.store.latest.game.phase !== 'halt'", 10).unwrap();
+}
+
+/// Back in time while the match goes on, and to its newest moment again.
+fn look_back(tab: &mut Tab<'_>) {
+    tab.eval("location.hash = '#t=1.00'").unwrap();
+    tab.wait("!onetwo.time.live && Math.abs(onetwo.store.scene.t - 1) < 0.1", 20).unwrap();
+    tab.key("l").unwrap();
+    tab.wait("onetwo.time.live && onetwo.store.scene.t > 2", 10).unwrap();
+}
+
+#[test]
+fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
+    // One of the third of all trials that end in a goal.
+    let program = Program::start(&["trial", "--seed", "65", "--watch", "--listen", "127.0.0.1:0"]);
+    let mut browser = Browser::start().unwrap();
+    let mut tab = browser.open(&program.url("?tab=match#t=2.00"), 1200, 800).unwrap();
+    tab.wait("window.onetwo?.store.scene && Math.abs(onetwo.store.scene.t - 2) < 0.1", 60).unwrap();
+    tab.wait("onetwo.store.happenings.some((h) => h.kind === 'goal')", 30).unwrap();
+    tab.key("g").unwrap();
+    tab.wait(
+        "Math.abs(onetwo.store.scene.t - onetwo.store.happenings.find((h) => h.kind === 'goal').t) < 0.2",
+        20,
+    )
+    .unwrap();
+    assert!(number(&mut tab, "Math.abs(onetwo.store.scene.ball.at[0])") > 2.5, "the ball is in the goal");
+    tab.wait("/#t=/.test(location.hash)", 5).unwrap();
+    // What a moment becomes is a problem that retrieval takes.
+    let line = tab
+        .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue', what: 'problem' }) }).then((a) => a.text())")
+        .unwrap();
+    let answer = program::onetwo(&["cases", "retrieve"], line.as_str().unwrap());
+    assert!(answer.contains("\"candidates\""), "{answer}");
+    no_errors(&mut tab);
+}
+
+#[test]
+fn a_lost_connection_is_shown_and_heals() {
+    let words = ["play", "--duration", "600", "--seed", "3", "--listen"];
+    let first = Program::start(&[&words[..], &["127.0.0.1:0"]].concat());
+    let mut browser = Browser::start().unwrap();
+    // A telephone's width: everything is within it.
+    let mut tab = browser.open(&first.url(""), 390, 844).unwrap();
+    tab.resize(390, 844, true).unwrap();
+    tab.wait("window.onetwo?.store.scene", 60).unwrap();
+    assert!(number(&mut tab, "document.documentElement.scrollWidth") <= 390.0, "nothing hangs over");
+    let address = first.address().to_owned();
+    drop(first);
+    tab.wait("!document.getElementById('lost').hidden", 20).unwrap();
+    let _second = Program::start(&[&words[..], &[&address]].concat());
+    tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
+    tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
+    // A socket that nobody answers is told by the browser itself; anything else would be ours.
+    let told: Vec<_> = tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
+    assert_eq!(told, Vec::<String>::new());
+}

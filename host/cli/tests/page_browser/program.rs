@@ -1,0 +1,86 @@
+//! The built program with its page: started, found, and ended with the test.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::Duration;
+
+/// A verb that serves a page.
+pub(crate) struct Program {
+    child: Child,
+    address: String,
+    lines: Receiver<String>,
+}
+
+impl Program {
+    /// Starts it and waits for the page's address.
+    pub(crate) fn start(words: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+            .args(words)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        let mut told = Vec::new();
+        let address = loop {
+            match lines.next() {
+                Some(Ok(line)) => match line.strip_prefix("page     http://") {
+                    Some(address) => break address.to_owned(),
+                    None => told.push(line),
+                },
+                _ => panic!("no page: {told:?}"),
+            }
+        };
+        // A full pipe would hold it up.
+        let (send, later) = channel();
+        thread::spawn(move || {
+            for line in lines.map_while(Result::ok) {
+                let _ = send.send(line);
+            }
+        });
+        Self { child, address, lines: later }
+    }
+
+    pub(crate) fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Waits for a line with these words on stderr.
+    #[allow(dead_code, reason = "one of the two tests that share this file listens")]
+    pub(crate) fn says(&self, words: &str) {
+        while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {
+            if line.contains(words) {
+                return;
+            }
+        }
+        panic!("`{words}` is not said");
+    }
+
+    #[allow(dead_code, reason = "the browser's tests ask for it")]
+    pub(crate) fn url(&self, more: &str) -> String {
+        format!("http://{}/{more}", self.address)
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[allow(dead_code, reason = "the browser's tests run it")]
+/// Runs the program with that input, to its end.
+pub(crate) fn onetwo(words: &[&str], input: &str) -> String {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(words)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    String::from_utf8(child.wait_with_output().unwrap().stdout).unwrap()
+}

@@ -1,0 +1,134 @@
+//! Do the verbs serve their page, and take from it what they may? Seen by a viewer that is no browser.
+
+#[path = "page_browser/program.rs"]
+mod program;
+
+use std::net::TcpStream;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use program::Program;
+use serde_json::Value;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+/// Generous: a loaded machine is no failure.
+const PATIENCE: Duration = Duration::from_secs(40);
+
+struct Viewer(WebSocket<MaybeTlsStream<TcpStream>>);
+
+impl Viewer {
+    fn of(program: &Program) -> Self {
+        let (socket, _) = tungstenite::connect(format!("ws://{}/socket", program.address())).unwrap();
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        }
+        Self(socket)
+    }
+
+    fn ask(&mut self, words: &str) {
+        self.0.send(Message::text(words)).unwrap();
+    }
+
+    /// The first word for which that holds.
+    fn until(&mut self, holds: impl Fn(&Value) -> bool) -> Value {
+        let begun = Instant::now();
+        while begun.elapsed() < PATIENCE {
+            if let Message::Text(text) = self.0.read().unwrap() {
+                self.ask(".");
+                let word: Value = serde_json::from_str(&text).unwrap();
+                if holds(&word) {
+                    return word;
+                }
+            }
+        }
+        panic!("waited in vain");
+    }
+}
+
+fn robots(scene: &Value) -> usize {
+    scene["robots"].as_array().map_or(0, Vec::len)
+}
+
+#[test]
+fn a_match_is_shown_stopped_and_begun_anew() {
+    let play = Program::start(&[
+        "play",
+        "--duration",
+        "600",
+        "--seed",
+        "5",
+        "--listen",
+        "127.0.0.1:0",
+        "--speed",
+        "4",
+    ]);
+    let mut viewer = Viewer::of(&play);
+    viewer.until(|scene| robots(scene) == 12 && scene["seed"] == 5);
+    viewer.ask(r#"{"ask":"pause","on":true}"#);
+    let still = viewer.until(|scene| scene["paused"] == true);
+    viewer.ask(r#"{"ask":"step","ticks":10}"#);
+    let t = still["t"].as_f64().unwrap();
+    let later = viewer.until(|scene| scene["t"].as_f64().is_some_and(|now| now > t + 0.095));
+    assert!((later["t"].as_f64().unwrap() - t - 0.1).abs() < 1e-6, "ten ticks, no more");
+    viewer.ask(r#"{"ask":"restart","seed":6}"#);
+    let anew = viewer.until(|scene| scene["seed"] == 6);
+    assert!(anew["t"].as_f64().unwrap() < t.max(3.0));
+    viewer.ask(r#"{"ask":"fly"}"#);
+    let refused = viewer.until(|word| word.get("refused").is_some());
+    assert!(refused["refused"].as_str().unwrap().contains("no request"), "{refused}");
+}
+
+#[test]
+fn a_taken_port_ends_a_match_with_a_word_about_what_to_do() {
+    let first = Program::start(&["play", "--duration", "600", "--listen", "127.0.0.1:0"]);
+    let second = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(["play", "--listen", first.address()])
+        .output()
+        .unwrap();
+    let words = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(second.status.code(), Some(1), "{words}");
+    assert!(words.contains("another program") && words.contains("--listen"), "{words}");
+}
+
+#[test]
+fn a_real_field_is_halted_from_the_page_and_nothing_else() {
+    let nobody = ["--vision", "127.0.0.1:0", "--referee", "127.0.0.1:0"];
+    let control = ["control", "--robots", "udp://127.0.0.1:9", "--duration", "60", "--listen", "127.0.0.1:0"];
+    let control = Program::start(&[&control[..], &nobody[..]].concat());
+    let mut viewer = Viewer::of(&control);
+    viewer.until(|scene| scene["t"].is_number());
+    viewer.ask(r#"{"ask":"speed","factor":2}"#);
+    let refused = viewer.until(|word| word.get("refused").is_some());
+    assert!(refused["refused"].as_str().unwrap().contains("nothing but HALT"), "{refused}");
+    viewer.ask(r#"{"ask":"halt"}"#);
+    control.says("HALT was asked for on the page");
+}
+
+#[test]
+fn a_simulated_field_for_others_is_shown_with_its_truth() {
+    let quiet = ["--vision", "127.0.0.1:9", "--referee-to", "127.0.0.1:9", "--ports", "0"];
+    let simulate = ["simulate", "--page", "127.0.0.1:0", "--duration", "60"];
+    let simulate = Program::start(&[&simulate[..], &quiet[..]].concat());
+    let mut viewer = Viewer::of(&simulate);
+    let scene = viewer.until(|scene| robots(scene) == 12);
+    let layers = scene["layers"].as_array().unwrap();
+    assert!(layers.iter().any(|layer| layer["name"] == "truth"));
+    viewer.ask(r#"{"ask":"referee","command":"HALT"}"#);
+    viewer.until(|scene| scene["game"]["phase"] == "halt");
+    viewer.ask(r#"{"ask":"pause","on":true}"#);
+    viewer.until(|scene| scene["paused"] == true);
+}
+
+#[test]
+fn a_recording_is_kept_whole_for_who_looks_through_it() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../protocol/ssl/tests/data/grsim_divB_22s.log.gz");
+    let replay = Program::start(&["replay", log, "--watch", "--listen", "127.0.0.1:0"]);
+    let mut viewer = Viewer::of(&replay);
+    // 22 seconds of it.
+    let last = viewer.until(|scene| scene["t"].as_f64().is_some_and(|t| t > 20.0));
+    assert!(robots(&last) > 0);
+    viewer.ask(r#"{"ask":"halt"}"#);
+    let refused = viewer.until(|word| word.get("refused").is_some());
+    assert!(refused["refused"].as_str().unwrap().contains("recording"), "{refused}");
+}

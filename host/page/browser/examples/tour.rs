@@ -1,0 +1,176 @@
+//! Walks through the page in a real browser: `tour PROGRAM pictures FOLDER` takes the documentation's pictures, `tour PROGRAM frames`
+//! tells what a frame costs the page's script, full and empty, in the same run.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, ExitCode, Stdio};
+use std::thread;
+
+use page_browser::{Browser, BrowserError, Tab};
+
+type Told<T> = Result<T, BrowserError>;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let done = match words[..] {
+        [program, "pictures", folder] => pictures(program, Path::new(folder)),
+        [program, "frames"] => frames(program),
+        _ => {
+            eprintln!("usage: tour PROGRAM pictures FOLDER | tour PROGRAM frames");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("tour: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The program with its page.
+struct Shown {
+    child: Child,
+    address: String,
+}
+
+impl Shown {
+    fn start(program: &str, words: &[&str]) -> Told<Self> {
+        let failed = |words: String| BrowserError::Start(format!("{program}: {words}"));
+        let mut child = Command::new(program)
+            .args(words)
+            .args(["--listen", "127.0.0.1:0"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(|error| failed(error.to_string()))?;
+        let Some(stderr) = child.stderr.take() else { return Err(failed("says nothing".to_owned())) };
+        let mut lines = BufReader::new(stderr).lines();
+        let mut told = Vec::new();
+        for line in lines.by_ref().map_while(Result::ok) {
+            if let Some(address) = line.strip_prefix("page     http://") {
+                let address = address.to_owned();
+                thread::spawn(move || lines.for_each(drop));
+                return Ok(Self { child, address });
+            }
+            told.push(line);
+        }
+        Err(failed(told.join("\n")))
+    }
+
+    fn url(&self, more: &str) -> String {
+        format!("http://{}/{more}", self.address)
+    }
+}
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The match that the pictures are of: its seed, and how long it is played before, s.
+const SEED: &str = "1";
+const PLAYED_S: u32 = 90;
+
+fn pictures(program: &str, folder: &Path) -> Told<()> {
+    std::fs::create_dir_all(folder).map_err(|error| BrowserError::Answer(error.to_string()))?;
+    let shown = Shown::start(program, &["play", "--seed", SEED, "--speed", "20"])?;
+    let mut browser = Browser::start()?;
+    let mut tab = browser.open(&shown.url("?theme=dark&tab=why"), 1440, 900)?;
+    tab.wait(&format!("window.onetwo?.store.latest?.t > {PLAYED_S}"), 240)?;
+    tab.eval("fetch('/api/state')")?;
+    // A moment in which a case is executed and something moves: the middle of the first such play.
+    tab.wait("onetwo.store.happenings.some((h) => h.kind === 'case')", 60)?;
+    let at = tab.eval(BUSY)?.as_f64().unwrap_or(30.0);
+    let here = |tab: &mut Tab<'_>, at: f64| -> Told<()> {
+        tab.eval(&format!("location.hash = '#t={at:.2}'"))?;
+        tab.wait(&format!("Math.abs(onetwo.store.scene.t - {at}) < 0.25"), 30)?;
+        thread::sleep(std::time::Duration::from_millis(400));
+        Ok(())
+    };
+    here(&mut tab, at)?;
+    take(&mut tab, &folder.join("field.png"))?;
+    tab.click("#layers-open")?;
+    tab.wait("document.querySelector('[data-layer=truth]')", 10)?;
+    tab.click("#layers-all")?;
+    take(&mut tab, &folder.join("layers.png"))?;
+    tab.eval("['raw', 'truth', 'pass-value', 'threats'].forEach((name) => onetwo.setLayer(name, false))")?;
+    tab.click("#layers-open")?;
+    tab.eval(
+        "(document.querySelector('[data-retrieval]') ?? document.querySelector('[data-explain]')).click()",
+    )?;
+    tab.wait("document.querySelectorAll('#explanation tbody tr').length > 0", 20)?;
+    take(&mut tab, &folder.join("why.png"))?;
+    tab.click("#dialog button")?;
+    for (key, name) in [("2", "match.png"), ("3", "health.png"), ("4", "control.png")] {
+        tab.key(key)?;
+        take(&mut tab, &folder.join(name))?;
+    }
+    tab.key("1")?;
+    tab.key("t")?;
+    take(&mut tab, &folder.join("light.png"))?;
+    tab.key("t")?;
+    tab.resize(390, 844, true)?;
+    take(&mut tab, &folder.join("phone.png"))
+}
+
+/// The time of a play in the shown match that was not over at once: a third of its way.
+const BUSY: &str = "(async () => {
+  const all = onetwo.store.happenings;
+  const plays = all.filter((h) => h.kind === 'case').map((h) => {
+    const end = all.find((e) => e.kind === 'cycle' && e.team === h.team && e.t > h.t);
+    return [h.t, end ? end.t - h.t : 0];
+  });
+  // Not so long that the game was stopped in between.
+  const long = plays.filter(([t, s]) => t > 8 && s < 4).sort((a, b) => b[1] - a[1])[0] ?? plays[0];
+  return long[0] + long[1] * 0.4;
+})()";
+
+fn take(tab: &mut Tab<'_>, file: &Path) -> Told<()> {
+    thread::sleep(std::time::Duration::from_millis(700));
+    tab.picture(file)?;
+    println!("{}", file.display());
+    Ok(())
+}
+
+fn frames(program: &str) -> Told<()> {
+    // Eleven a side, so that there are 22 robots.
+    let shown = Shown::start(program, &["play", "--seed", SEED, "--league", "division-a", "--speed", "20"])?;
+    let mut browser = Browser::start()?;
+    let mut tab = browser.open(&shown.url(""), 1440, 900)?;
+    tab.wait("window.onetwo?.store.latest?.robots.length === 22 && onetwo.store.latest.t > 20", 300)?;
+    tab.eval("fetch('/api/state')")?;
+    tab.eval(&format!("({FILL})()"))?;
+    let told = tab.eval("onetwo.bench(onetwo.full)")?;
+    let number = |key: &str| told[key].as_f64().unwrap_or_default();
+    println!(
+        "a frame with {} robots, {} layers of {} shapes and a heat map costs {:.1} times an empty field's: {:.3} ms and {:.3} ms here, median of 15 rounds",
+        number("robots"),
+        number("layers"),
+        number("shapes"),
+        number("times"),
+        number("full_ms"),
+        number("empty_ms")
+    );
+    Ok(())
+}
+
+/// The scene as it is, with everything that strategy may ever add: a heat map, threats, a case of each team.
+const FILL: &str = "() => {
+  const scene = structuredClone(onetwo.store.latest);
+  const named = (name) => scene.layers.find((l) => l.name === name) ?? scene.layers[scene.layers.push({ name, label: name, on: true, shapes: [] }) - 1];
+  const cells = Array.from({ length: 45 * 30 }, (_, i) => (i * 37) % 256);
+  named('heat').shapes.push({ is: 'heat', low: [-6, -4.5], high: [6, 4.5], columns: 45, cells });
+  for (const robot of scene.robots) {
+    named('threats').shapes.push({ is: 'polygon', points: [robot.at, [6, -0.9], [6, 0.9]], tone: 'forbidden', fill: true });
+    named('case-scopes').shapes.push({ is: 'ellipse', at: robot.at, radii: [0.45, 0.25], tone: 'case', fill: true });
+    named('ball-path').shapes.push({ is: 'polygon', points: [[0, 0], robot.at, [1, 1]], tone: 'case', fill: true });
+    named('adapted').shapes.push({ is: 'text', at: robot.at, text: 'adapted', tone: 'case' });
+  }
+  onetwo.full = scene;
+}";

@@ -1,0 +1,172 @@
+//! What can be done on a page? Ask its script, click, press keys, wait until something is so, take a picture, hear its errors.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+
+use crate::browser::{Browser, BrowserError};
+
+/// A page in the browser.
+pub struct Tab<'b> {
+    browser: &'b mut Browser,
+    session: String,
+}
+
+impl<'b> Tab<'b> {
+    pub(crate) fn new(
+        browser: &'b mut Browser,
+        session: String,
+        url: &str,
+        width: u32,
+        height: u32,
+    ) -> Result<Self, BrowserError> {
+        let mut tab = Self { browser, session };
+        for domain in ["Page.enable", "Runtime.enable", "Log.enable", "Network.enable"] {
+            tab.ask(domain, &json!({}))?;
+        }
+        tab.resize(width, height, false)?;
+        tab.go(url)?;
+        Ok(tab)
+    }
+
+    fn ask(&mut self, method: &str, what: &Value) -> Result<Value, BrowserError> {
+        self.browser.ask(Some(&self.session), method, what)
+    }
+
+    /// Loads an address.
+    pub fn go(&mut self, url: &str) -> Result<(), BrowserError> {
+        self.ask("Page.navigate", &json!({ "url": url })).map(drop)
+    }
+
+    /// Another size, CSS pixels; as a telephone has it, or as a screen.
+    pub fn resize(&mut self, width: u32, height: u32, telephone: bool) -> Result<(), BrowserError> {
+        let scale = if telephone { 2 } else { 1 };
+        let what =
+            json!({ "width": width, "height": height, "deviceScaleFactor": scale, "mobile": telephone });
+        self.ask("Emulation.setDeviceMetricsOverride", &what).map(drop)
+    }
+
+    /// What a piece of script comes to.
+    pub fn eval(&mut self, script: &str) -> Result<Value, BrowserError> {
+        let what = json!({ "expression": script, "returnByValue": true, "awaitPromise": true });
+        let answer = self.ask("Runtime.evaluate", &what)?;
+        match answer.get("exceptionDetails") {
+            Some(details) => Err(BrowserError::Answer(format!("{script}: {details}"))),
+            None => Ok(answer["result"]["value"].clone()),
+        }
+    }
+
+    /// Waits until a piece of script is true.
+    pub fn wait(&mut self, script: &str, seconds: u64) -> Result<(), BrowserError> {
+        let begun = Instant::now();
+        loop {
+            // A page that is not there yet throws: that is no answer either.
+            let last = self.eval(&format!("Boolean({script})"));
+            if matches!(last, Ok(Value::Bool(true))) {
+                return Ok(());
+            }
+            if begun.elapsed() > Duration::from_secs(seconds) {
+                return Err(BrowserError::Answer(format!(
+                    "`{script}` is not so after {seconds} s: {last:?}"
+                )));
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// Clicks on the middle of the first element of that selector, as a mouse does.
+    pub fn click(&mut self, selector: &str) -> Result<(), BrowserError> {
+        let script = format!(
+            "(() => {{ const e = document.querySelector({selector:?}); e.scrollIntoView({{ block: 'nearest' }}); const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }})()"
+        );
+        let at = self.eval(&script)?;
+        self.mouse("mousePressed", &at[0], &at[1], 1)?;
+        self.mouse("mouseReleased", &at[0], &at[1], 1)
+    }
+
+    /// Pulls from one place to another, CSS pixels.
+    pub fn drag(&mut self, from: [f64; 2], to: [f64; 2]) -> Result<(), BrowserError> {
+        self.mouse("mousePressed", &json!(from[0]), &json!(from[1]), 1)?;
+        for step in 1..=8 {
+            let share = f64::from(step) / 8.0;
+            let at = [0, 1].map(|i| from[i] + (to[i] - from[i]) * share);
+            self.mouse("mouseMoved", &json!(at[0]), &json!(at[1]), 1)?;
+            std::thread::sleep(Duration::from_millis(60));
+        }
+        self.mouse("mouseReleased", &json!(to[0]), &json!(to[1]), 1)
+    }
+
+    fn mouse(&mut self, kind: &str, x: &Value, y: &Value, buttons: u8) -> Result<(), BrowserError> {
+        let what =
+            json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
+        self.ask("Input.dispatchMouseEvent", &what).map(drop)
+    }
+
+    /// Presses a key of one letter.
+    pub fn key(&mut self, key: &str) -> Result<(), BrowserError> {
+        for kind in ["keyDown", "keyUp"] {
+            let text = if kind == "keyDown" { key } else { "" };
+            self.ask("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key, "text": text }))?;
+        }
+        Ok(())
+    }
+
+    /// Writes a PNG of what is seen.
+    pub fn picture(&mut self, file: &Path) -> Result<(), BrowserError> {
+        let answer = self.ask("Page.captureScreenshot", &json!({ "format": "png" }))?;
+        let bytes = decode(answer["data"].as_str().unwrap_or_default());
+        std::fs::write(file, bytes)
+            .map_err(|error| BrowserError::Answer(format!("{}: {error}", file.display())))
+    }
+
+    /// Errors that the page has told on its console so far: exceptions, `console.error`, what could not be loaded.
+    pub fn errors(&mut self) -> Vec<String> {
+        let mine = self.browser.events.iter().filter(|(session, ..)| *session == self.session);
+        let told = |(_, method, what): &(String, String, Value)| match method.as_str() {
+            "Runtime.exceptionThrown" => Some(what["exceptionDetails"].to_string()),
+            "Runtime.consoleAPICalled" if what["type"] == "error" => Some(what["args"].to_string()),
+            "Log.entryAdded" if what["entry"]["level"] == "error" => Some(what["entry"].to_string()),
+            _ => None,
+        };
+        mine.filter_map(told).collect()
+    }
+}
+
+/// Base64, as the protocol has pictures.
+fn decode(text: &str) -> Vec<u8> {
+    let value = |letter: u8| match letter {
+        b'A'..=b'Z' => Some(letter - b'A'),
+        b'a'..=b'z' => Some(letter - b'a' + 26),
+        b'0'..=b'9' => Some(letter - b'0' + 52),
+        b'+' => Some(62),
+        b'/' => Some(63),
+        _ => None,
+    };
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut have) = (0_u32, 0);
+    for six in text.bytes().filter_map(value) {
+        bits = bits << 6 | u32::from(six);
+        have += 6;
+        if have >= 8 {
+            have -= 8;
+            out.push((bits >> have) as u8);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_read_as_its_standard_has_it() {
+        // RFC 4648, section 10.
+        for (text, bytes) in
+            [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9vYmFy", "foobar")]
+        {
+            assert_eq!(decode(text), bytes.as_bytes(), "{text}");
+        }
+    }
+}

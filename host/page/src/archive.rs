@@ -1,0 +1,261 @@
+//! What was shown before? Scenes are encoded here, once each, off the match's own thread: the newest for viewers, whole seconds
+//! gzipped for those who look back, one sample a second for plots.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use axum::body::Bytes;
+use axum::extract::ws::Utf8Bytes;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use serde::Serialize;
+use tokio::sync::watch;
+
+use crate::happening::Happening;
+use crate::scene::Scene;
+
+/// More scenes than this wait for their encoding: the next one is left out, for they are worth nothing once they are old.
+const WAITING_MAX: usize = 4;
+/// So many seconds are kept, an hour: some 25 kB each.
+const SECONDS_MAX: usize = 3_600;
+/// Of happenings, the newest so many: a match has some thousand.
+const HAPPENINGS_MAX: usize = 100_000;
+
+/// Numbers at a second, for plots.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Sample {
+    /// Seconds since the beginning.
+    pub t: f64,
+    /// `group/name` and value.
+    pub values: BTreeMap<String, f32>,
+}
+
+/// All that is kept.
+#[derive(Debug, Default)]
+pub(crate) struct Kept {
+    seconds: BTreeMap<u32, Bytes>,
+    open: Option<(u32, Vec<(f64, Utf8Bytes)>)>,
+    pub(crate) happenings: Vec<Happening>,
+    pub(crate) samples: Vec<Sample>,
+    /// From the first to the last scene, s.
+    pub(crate) span: Option<(f64, f64)>,
+    /// How often it was begun anew.
+    pub(crate) life: u32,
+}
+
+/// What comes to the archive.
+enum Mail {
+    Scene(Box<Scene>),
+    Happening(Box<Happening>),
+    Clear,
+}
+
+/// The match's end of it.
+#[derive(Debug)]
+pub(crate) struct Archive {
+    mail: Sender<Mail>,
+    waiting: Arc<AtomicUsize>,
+    kept: Arc<Mutex<Kept>>,
+}
+
+impl Archive {
+    /// Begins; every newest scene goes to `newest`.
+    pub(crate) fn begin(newest: watch::Sender<Utf8Bytes>) -> Self {
+        let (mail, inbox) = channel();
+        let (waiting, kept) = (Arc::new(AtomicUsize::new(0)), Arc::new(Mutex::new(Kept::default())));
+        let worker = Worker { inbox, waiting: waiting.clone(), kept: kept.clone(), newest };
+        thread::spawn(move || worker.work());
+        Self { mail, waiting, kept }
+    }
+
+    /// Takes a scene, unless it is behind. Never waits.
+    pub(crate) fn show(&self, scene: Scene) -> bool {
+        if self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
+            return false;
+        }
+        self.push(scene);
+        true
+    }
+
+    /// Takes a scene in any case, and waits for that.
+    pub(crate) fn keep(&self, scene: Scene) {
+        while self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.push(scene);
+    }
+
+    fn push(&self, scene: Scene) {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        // Nobody hears only while the program ends.
+        let _ = self.mail.send(Mail::Scene(Box::new(scene)));
+    }
+
+    /// Takes a happening.
+    pub(crate) fn tell(&self, happening: Happening) {
+        let _ = self.mail.send(Mail::Happening(Box::new(happening)));
+    }
+
+    /// Forgets everything: another match begins.
+    pub(crate) fn clear(&self) {
+        let _ = self.mail.send(Mail::Clear);
+    }
+
+    pub(crate) fn kept(&self) -> Arc<Mutex<Kept>> {
+        self.kept.clone()
+    }
+}
+
+/// Looks at what is kept; what a thread that failed left there is whole.
+pub(crate) fn look<T>(kept: &Mutex<Kept>, at: impl FnOnce(&mut Kept) -> T) -> T {
+    at(&mut kept.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+struct Worker {
+    inbox: Receiver<Mail>,
+    waiting: Arc<AtomicUsize>,
+    kept: Arc<Mutex<Kept>>,
+    newest: watch::Sender<Utf8Bytes>,
+}
+
+impl Worker {
+    fn work(self) {
+        while let Ok(mail) = self.inbox.recv() {
+            match mail {
+                Mail::Scene(scene) => {
+                    // Strings, numbers and lists of them: nothing that JSON cannot say.
+                    let text = Utf8Bytes::from(serde_json::to_string(&*scene).unwrap_or_default());
+                    look(&self.kept, |kept| kept.add(&scene, text.clone()));
+                    self.newest.send_replace(text);
+                    self.waiting.fetch_sub(1, Ordering::Relaxed);
+                }
+                Mail::Happening(happening) => look(&self.kept, |kept| {
+                    if kept.happenings.len() < HAPPENINGS_MAX {
+                        kept.happenings.push(*happening);
+                    }
+                }),
+                Mail::Clear => {
+                    look(&self.kept, |kept| *kept = Kept { life: kept.life + 1, ..Kept::default() });
+                }
+            }
+        }
+    }
+}
+
+impl Kept {
+    fn add(&mut self, scene: &Scene, text: Utf8Bytes) {
+        let second = scene.t.max(0.0) as u32;
+        let same = matches!(&self.open, Some((open, _)) if *open == second);
+        if same {
+            if let Some((_, texts)) = &mut self.open {
+                // What stands still is one moment, however often it is shown.
+                if texts.last().is_some_and(|(t, _)| *t == scene.t) {
+                    texts.pop();
+                }
+                texts.push((scene.t, text));
+            }
+        } else {
+            self.close();
+            self.samples.push(sample(scene));
+            if self.samples.len() > SECONDS_MAX {
+                self.samples.remove(0);
+            }
+            self.open = Some((second, vec![(scene.t, text)]));
+        }
+        let (first, _) = self.span.get_or_insert((scene.t, scene.t));
+        self.span = Some((*first, scene.t));
+    }
+
+    fn close(&mut self) {
+        let Some((second, texts)) = self.open.take() else { return };
+        self.seconds.insert(second, gzip(&texts));
+        while self.seconds.len() > SECONDS_MAX
+            && let Some((dropped, _)) = self.seconds.pop_first()
+        {
+            self.span = self.span.map(|(_, last)| (f64::from(dropped + 1), last));
+        }
+    }
+
+    /// The scenes of a second as a JSON list, gzipped.
+    pub(crate) fn second(&self, second: u32) -> Option<Bytes> {
+        let open = self.open.as_ref().filter(|(open, _)| *open == second);
+        open.map(|(_, texts)| gzip(texts)).or_else(|| self.seconds.get(&second).cloned())
+    }
+
+    /// The last scene that was shown by `t`.
+    pub(crate) fn scene_at(&self, t: f64) -> Option<Scene> {
+        let mut text = String::new();
+        std::io::Read::read_to_string(
+            &mut flate2::read::GzDecoder::new(&self.second(t as u32)?[..]),
+            &mut text,
+        )
+        .ok()?;
+        let scenes: Vec<Scene> = serde_json::from_str(&text).ok()?;
+        let after = scenes.partition_point(|scene| scene.t <= t + 1e-6);
+        scenes.into_iter().nth(after.saturating_sub(1))
+    }
+}
+
+fn sample(scene: &Scene) -> Sample {
+    let values = scene.gauges.iter().map(|gauge| (format!("{}/{}", gauge.group, gauge.name), gauge.value));
+    Sample { t: scene.t, values: values.collect() }
+}
+
+fn gzip(texts: &[(f64, Utf8Bytes)]) -> Bytes {
+    let mut out = GzEncoder::new(Vec::new(), Compression::fast());
+    let mut write = || -> std::io::Result<()> {
+        out.write_all(b"[")?;
+        for (i, (_, text)) in texts.iter().enumerate() {
+            out.write_all(if i == 0 { b"" } else { b"," })?;
+            out.write_all(text.as_bytes())?;
+        }
+        out.write_all(b"]")
+    };
+    // Memory takes everything.
+    let _ = write();
+    out.finish().unwrap_or_default().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(t: f64) -> (Scene, Utf8Bytes) {
+        let scene = Scene { t, ..Scene::default() };
+        let text = serde_json::to_string(&scene).unwrap().into();
+        (scene, text)
+    }
+
+    #[test]
+    fn a_moment_that_has_passed_is_found_again_in_open_and_closed_seconds() {
+        let mut kept = Kept::default();
+        for i in 0..60 {
+            let (scene, text) = scene(f64::from(i) * 0.04);
+            kept.add(&scene, text);
+        }
+        assert_eq!(kept.span.map(|(first, last)| (first, (last * 100.0) as u32)), Some((0.0, 236)));
+        for (asked, found) in [(0.0, 0.0), (0.5, 0.48), (1.99, 1.96), (2.3, 2.28)] {
+            assert!((kept.scene_at(asked).unwrap().t - found).abs() < 1e-9, "{asked}");
+        }
+        assert_eq!(kept.scene_at(7.0), None);
+        assert_eq!(kept.samples.len(), 3, "one a second");
+    }
+
+    #[test]
+    fn the_oldest_second_goes_where_no_more_fit() {
+        let mut kept = Kept::default();
+        for i in 0..SECONDS_MAX as u32 + 10 {
+            let (scene, text) = scene(f64::from(i));
+            kept.add(&scene, text);
+        }
+        assert_eq!(kept.seconds.len(), SECONDS_MAX);
+        assert!(kept.second(0).is_none());
+        let (first, _) = kept.span.unwrap();
+        assert!(kept.second(first as u32).is_some());
+    }
+}

@@ -1,0 +1,109 @@
+//! Who may speak to this page? Its own viewers, and no page of somebody else's that runs in the same browser.
+//!
+//! - **DNS rebinding**: a foreign name is made to point at this machine, so that the browser takes the foreign page for ours. The
+//!   name then stands in `Host`. Only addresses and `localhost` are answered, which nobody can make point anywhere.
+//! - **Cross-origin**: a foreign page opens our WebSocket or posts to us. Browsers put the page's own origin into `Origin`; it has
+//!   to be ours to the letter. Programs that are no browsers send none.
+
+use std::net::IpAddr;
+
+use axum::http::HeaderMap;
+use axum::http::header::{HOST, ORIGIN};
+
+/// Why somebody is not answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Foreign {
+    /// `Host` is none of ours.
+    Host,
+    /// `Origin` is another page.
+    Origin,
+}
+
+impl Foreign {
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Host => {
+                "this page answers to its address or to localhost, with its own port, and to no other name"
+            }
+            Self::Origin => "another page asks: only this page itself may",
+        }
+    }
+}
+
+/// Whether a request to the page on `port` is its own viewer's.
+pub(crate) fn check(headers: &HeaderMap, port: u16) -> Result<(), Foreign> {
+    let mut hosts = headers.get_all(HOST).iter();
+    let host = hosts.next().and_then(|host| host.to_str().ok()).ok_or(Foreign::Host)?;
+    if hosts.next().is_some() || !is_ours(host, port) {
+        return Err(Foreign::Host);
+    }
+    let mut origins = headers.get_all(ORIGIN).iter();
+    let Some(origin) = origins.next() else { return Ok(()) };
+    let same = origin.to_str().ok().and_then(|origin| origin.strip_prefix("http://"));
+    let same = same.is_some_and(|origin| origin.eq_ignore_ascii_case(host));
+    if same && origins.next().is_none() { Ok(()) } else { Err(Foreign::Origin) }
+}
+
+fn is_ours(host: &str, port: u16) -> bool {
+    // Browsers leave port 80 out.
+    let (name, asked) = match host.rsplit_once(':') {
+        Some((name, digits)) if !digits.ends_with(']') => (name, digits.parse().ok()),
+        _ => (host, Some(80)),
+    };
+    let bare = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
+    asked == Some(port) && (name.eq_ignore_ascii_case("localhost") || bare.parse::<IpAddr>().is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(host: &str, origin: Option<&str>) -> Result<(), Foreign> {
+        let mut headers = HeaderMap::new();
+        headers.insert(HOST, host.parse().unwrap());
+        if let Some(origin) = origin {
+            headers.insert(ORIGIN, origin.parse().unwrap());
+        }
+        check(&headers, 8080)
+    }
+
+    #[test]
+    fn addresses_and_localhost_are_answered_on_the_own_port() {
+        for host in ["127.0.0.1:8080", "localhost:8080", "LOCALHOST:8080", "[::1]:8080", "192.168.1.7:8080"] {
+            assert_eq!(asked(host, None), Ok(()), "{host}");
+            assert_eq!(asked(host, Some(&format!("http://{host}"))), Ok(()), "{host}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_somebody_made_point_here_is_not_answered() {
+        for host in [
+            "evil.example:8080",
+            "localhost.evil.example:8080",
+            "127.0.0.1.evil.example:8080",
+            "127.0.0.1:8081",
+            "127.0.0.1",
+            "localhost",
+            "",
+            ":8080",
+        ] {
+            assert_eq!(asked(host, None), Err(Foreign::Host), "{host}");
+            assert_eq!(asked(host, Some(&format!("http://{host}"))), Err(Foreign::Host), "{host}");
+        }
+        assert_eq!(check(&HeaderMap::new(), 8080), Err(Foreign::Host));
+    }
+
+    #[test]
+    fn another_page_is_not_answered() {
+        for origin in [
+            "http://evil.example",
+            "http://localhost:8080",
+            "http://127.0.0.1:8081",
+            "https://127.0.0.1:8080",
+            "null",
+            "",
+        ] {
+            assert_eq!(asked("127.0.0.1:8080", Some(origin)), Err(Foreign::Origin), "{origin}");
+        }
+    }
+}

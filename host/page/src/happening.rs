@@ -1,0 +1,49 @@
+//! What happened, and when? One entry of the time line, told once and kept.
+
+use serde::{Deserialize, Serialize};
+
+use crate::request::Team;
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Happening {
+    /// Seconds since the beginning.
+    pub t: f64,
+    /// What kind of thing.
+    pub kind: Kind,
+    /// Whose, where it is somebody's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub team: Option<Team>,
+    /// In a few words.
+    pub words: String,
+    /// Where.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f32; 2]>,
+    /// The situation that was retrieved with, as `onetwo cases explain` takes it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<serde_json::Value>,
+}
+
+/// Kinds of happenings; the time line has a row for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A goal.
+    Goal,
+    /// The referee's command.
+    Command,
+    /// A part of the match began.
+    Stage,
+    /// An offence.
+    Foul,
+    /// Something else that the referee noted.
+    Event,
+    /// A cycle began or ended without a case.
+    Cycle,
+    /// A case was chosen.
+    Case,
+    /// A pass or a shot.
+    Kick,
+    /// Something went wrong with a robot or the radio.
+    Fault,
+}

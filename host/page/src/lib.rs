@@ -1,0 +1,40 @@
+//! What is happening on the field, and why? A web page, served by the program itself (runs on the PC).
+//!
+//! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits. Viewers get
+//! the newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can look back for itself. What
+//! viewers ask for comes back as [`Request`]s, which the driver takes when it has time ([`Page::next_request`]).
+//!
+//! ```text
+//! match ── Scene ─► archive: encoded once ─┬─► newest ─► every viewer at its own pace
+//!   ▲                                     └─► seconds, happenings, plots ─► HTTP, on demand
+//!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
+//! ```
+//! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and lines are named layers of
+//! plain shapes. A viewer that is slow, gone or many costs the match nothing. SI units, field frame.
+
+mod archive;
+mod files;
+mod guard;
+mod happening;
+mod page;
+mod problem;
+mod request;
+mod scene;
+mod server;
+mod shape;
+
+pub use archive::Sample;
+pub use happening::{Happening, Kind};
+pub use page::{Oracle, Page, PageError, Settings};
+pub use problem::{Freeze, problem, skeleton};
+pub use request::{Powers, Refused, Request, Team};
+pub use scene::{
+    Ball, Cycle, Field, Gauge, Intent, Match, Mind, PerTeam, Raw, Robot, Scene, TeamSheet, Timer, Vitals,
+};
+pub use shape::{Heat, Layer, Shape, Tone};
+
+/// To a thousandth: what travels needs no more than millimetres, and JSON is shorter for it.
+pub fn milli(x: f32) -> f32 {
+    // Away from zero as decimals are; what is no number travels as 0.
+    if x.is_finite() { (x * 1000.0).round() / 1000.0 } else { 0.0 }
+}

@@ -1,0 +1,155 @@
+//! How does a match get its page? [`Page::open`] takes the port; from then on the match shows and tells, and never waits.
+
+use std::fmt;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, sync_channel};
+
+use axum::extract::ws::Utf8Bytes;
+use tokio::sync::watch;
+
+use crate::archive::Archive;
+use crate::happening::Happening;
+use crate::request::{Powers, Request};
+use crate::scene::Scene;
+use crate::server::{self, Shared};
+
+/// More requests than this wait for the match: viewers are told that it is busy.
+const REQUESTS_MAX: usize = 256;
+
+/// What a page is opened with.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Where it is served; port 0: any that is free.
+    pub listen: SocketAddr,
+    /// What stands in its head.
+    pub title: String,
+    /// It shows what was recorded: viewers begin at its beginning, not at its newest moment.
+    pub recorded: bool,
+    /// What viewers may ask for.
+    pub powers: Powers,
+}
+
+/// Answers viewers' questions, beside the match and never in its way.
+pub trait Oracle: Send + Sync {
+    /// Why that case? A problem as `onetwo cases explain` takes it; the answer as it gives it with `--json`.
+    fn explain(&self, problem: &str) -> Result<String, String>;
+}
+
+/// Why there is no page.
+#[derive(Debug)]
+pub enum PageError {
+    /// Somebody else has the port.
+    Taken(SocketAddr),
+    /// The address cannot be served.
+    Listen(SocketAddr, io::Error),
+}
+
+impl fmt::Display for PageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Taken(at) => write!(
+                f,
+                "{at} belongs to another program, perhaps another match: end that, or choose another port, such as {}:{}",
+                at.ip(),
+                at.port().checked_add(1).unwrap_or(0)
+            ),
+            Self::Listen(at, error) => {
+                write!(
+                    f,
+                    "{at} cannot be served ({error}): choose an address of this machine, such as 127.0.0.1:8080"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for PageError {}
+
+/// A page that is served as long as this lives.
+pub struct Page {
+    address: SocketAddr,
+    archive: Archive,
+    requests: Receiver<Request>,
+    viewers: Arc<AtomicUsize>,
+    told: u64,
+    left_out: u64,
+    _ends: tokio::sync::oneshot::Sender<()>,
+}
+
+impl Page {
+    /// Takes the port and serves.
+    pub fn open(settings: Settings, oracle: Arc<dyn Oracle>) -> Result<Self, PageError> {
+        let listen = settings.listen;
+        let failed = |error: io::Error| match error.kind() {
+            io::ErrorKind::AddrInUse => PageError::Taken(listen),
+            _ => PageError::Listen(listen, error),
+        };
+        let listener = TcpListener::bind(listen).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
+        let (newest, news) = watch::channel(Utf8Bytes::default());
+        let archive = Archive::begin(newest);
+        let (asks, requests) = sync_channel(REQUESTS_MAX);
+        let (ends, ended) = tokio::sync::oneshot::channel();
+        let viewers = Arc::new(AtomicUsize::new(0));
+        let shared = Shared {
+            port: address.port(),
+            settings,
+            oracle,
+            news,
+            kept: archive.kept(),
+            asks,
+            viewers: viewers.clone(),
+        };
+        server::serve(listener, shared, ended).map_err(failed)?;
+        Ok(Self { address, archive, requests, viewers, told: 0, left_out: 0, _ends: ends })
+    }
+
+    /// Where it is served.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Shows a moment; where encoding is behind it is left out. Never waits.
+    pub fn show(&mut self, scene: Scene) {
+        let scene = Scene { happened: self.told, ..scene };
+        if !self.archive.show(scene) {
+            self.left_out += 1;
+        }
+    }
+
+    /// Keeps a moment in any case, and waits for that: for recordings.
+    pub fn keep(&mut self, scene: Scene) {
+        self.archive.keep(Scene { happened: self.told, ..scene });
+    }
+
+    /// Tells of something that happened. Never waits.
+    pub fn tell(&mut self, happening: Happening) {
+        self.told += 1;
+        self.archive.tell(happening);
+    }
+
+    /// Forgets what was: another match begins.
+    pub fn clear(&mut self) {
+        self.told = 0;
+        self.archive.clear();
+    }
+
+    /// The next thing that a viewer asks for.
+    pub fn next_request(&self) -> Option<Request> {
+        self.requests.try_recv().ok()
+    }
+
+    /// How many look on now.
+    pub fn viewers(&self) -> usize {
+        self.viewers.load(Ordering::Relaxed)
+    }
+
+    /// Scenes that were left out because encoding was behind.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+}

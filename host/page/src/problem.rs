@@ -1,0 +1,182 @@
+//! How does a moment become something to work with? As a problem line for `onetwo cases retrieve` and `explain`, or as the
+//! beginnings of a case file. mm, field frame (DESIGN §4.1, §8).
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use serde::{Deserialize, Serialize};
+
+use crate::request::Team;
+use crate::scene::{Robot, Scene};
+
+/// What a moment becomes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Freeze {
+    /// One line of JSON.
+    Problem,
+    /// A case file to be finished by its author.
+    Case,
+}
+
+/// Most robots of a team in a case file (DESIGN §4.1).
+const CASE_ROBOTS_MAX: usize = 4;
+/// Most of a team in a problem.
+const PROBLEM_ROBOTS_MAX: usize = 11;
+/// The ball's scope to begin with, mm: as DESIGN's example.
+const BALL_SCOPE: &str = "[450, 250]";
+/// An opponent's, mm.
+const OPPONENT_SCOPE: &str = "[300, 300]";
+
+#[derive(Serialize)]
+struct Problem {
+    ball: [i32; 2],
+    defending: &'static str,
+    teammates: BTreeMap<u8, [i32; 2]>,
+    opponents: Vec<[i32; 2]>,
+}
+
+/// The moment as that team's problem; none where no ball is known. Its keeper stays out: it plays no cases.
+pub fn problem(scene: &Scene, team: Team) -> Option<String> {
+    let ball = scene.ball.as_ref()?;
+    let mates = field_players(scene, team).take(PROBLEM_ROBOTS_MAX);
+    let opponents = scene.robots.iter().filter(|robot| robot.team != team).take(PROBLEM_ROBOTS_MAX);
+    let problem = Problem {
+        ball: mm(ball.at),
+        defending: defending(scene, team),
+        teammates: mates.map(|robot| (robot.id, mm(robot.at))).collect(),
+        opponents: opponents.map(|robot| mm(robot.at)).collect(),
+    };
+    serde_json::to_string(&problem).ok()
+}
+
+/// The moment as a case file of that team: those nearest to the ball, the first of them gets it and passes to the second.
+pub fn skeleton(scene: &Scene, team: Team) -> Option<String> {
+    let ball = scene.ball.as_ref()?;
+    let far = |robot: &Robot| {
+        let (x, y) = (robot.at[0] - ball.at[0], robot.at[1] - ball.at[1]);
+        x * x + y * y
+    };
+    let nearest = |mut robots: Vec<Robot>| {
+        robots.sort_by(|a, b| far(a).total_cmp(&far(b)).then(a.id.cmp(&b.id)));
+        robots.truncate(CASE_ROBOTS_MAX);
+        robots
+    };
+    let mates = nearest(field_players(scene, team).cloned().collect());
+    let opponents = nearest(scene.robots.iter().filter(|robot| robot.team != team).cloned().collect());
+    if mates.is_empty() {
+        return None;
+    }
+    let place = |at: [f32; 2]| {
+        let [x, y] = mm(inside(scene, at));
+        format!("[{x}, {y}]")
+    };
+    let mut out = format!(
+        "intent = \"A moment at {:.2} s: say what these robots shall do with it.\"\ndefending = \"{}\"\nball = {{ at = {}, scope = {BALL_SCOPE} }}\n",
+        scene.t,
+        defending(scene, team),
+        place(ball.at)
+    );
+    for (i, robot) in mates.iter().enumerate() {
+        let plan = match (i, mates.len()) {
+            (0, 1) => "\"get_ball\"",
+            (0, _) => "\"get_ball\", { pass_ball = 2 }",
+            (1, _) => "\"wait\", { receive_ball = 1 }",
+            _ => "\"wait\"",
+        };
+        let _ = write!(
+            out,
+            "\n[[teammates]] # robot {} of {}\nat = {}\ngameplay = [{plan}]\n",
+            robot.id,
+            word(team),
+            place(robot.at)
+        );
+    }
+    for robot in &opponents {
+        let _ = write!(out, "\n[[opponents]]\nat = {}\nscope = {OPPONENT_SCOPE}\n", place(robot.at));
+    }
+    Some(out)
+}
+
+fn field_players(scene: &Scene, team: Team) -> impl Iterator<Item = &Robot> {
+    let keeper = scene.game.teams.of(team).keeper;
+    scene.robots.iter().filter(move |robot| robot.team == team && Some(robot.id) != keeper)
+}
+
+/// The paper's names: yellow is the goal at −x.
+fn defending(scene: &Scene, team: Team) -> &'static str {
+    match scene.game.teams.of(team).defends {
+        0 if team == Team::Blue => "cyan",
+        1 => "cyan",
+        _ => "yellow",
+    }
+}
+
+fn word(team: Team) -> &'static str {
+    match team {
+        Team::Blue => "blue",
+        Team::Yellow => "yellow",
+    }
+}
+
+fn inside(scene: &Scene, [x, y]: [f32; 2]) -> [f32; 2] {
+    let (half, side) = (scene.field.length / 2.0, scene.field.width / 2.0);
+    [x.clamp(-half, half), y.clamp(-side, side)]
+}
+
+fn mm(at: [f32; 2]) -> [i32; 2] {
+    at.map(|x| (x * 1000.0).round() as i32)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::scene::{Ball, Field};
+
+    /// Three of each team, robot 0 their keepers, blue defends +x.
+    pub(crate) fn scene() -> Scene {
+        let mut scene = Scene {
+            t: 12.5,
+            field: Field { length: 9.0, width: 6.0, ..Field::default() },
+            ball: Some(Ball { at: [0.5, -0.25], ..Ball::default() }),
+            ..Scene::default()
+        };
+        for (team, sign) in [(Team::Blue, 1.0), (Team::Yellow, -1.0)] {
+            *scene.game.teams.of_mut(team) =
+                crate::TeamSheet { keeper: Some(0), defends: sign as i8, ..crate::TeamSheet::default() };
+            for (id, x) in [(0, 4.4), (3, 1.0), (5, 0.5)] {
+                scene.robots.push(Robot {
+                    team,
+                    id,
+                    at: [x * sign, 0.1 * f32::from(id)],
+                    heading: 0.0,
+                    velocity: [0.0; 2],
+                    confidence: 1.0,
+                    mind: None,
+                    vitals: None,
+                });
+            }
+        }
+        scene
+    }
+
+    #[test]
+    fn a_moment_becomes_the_problem_of_a_team_in_mm_without_its_keeper() {
+        assert_eq!(
+            problem(&scene(), Team::Blue).unwrap(),
+            r#"{"ball":[500,-250],"defending":"cyan","teammates":{"3":[1000,300],"5":[500,500]},"opponents":[[-4400,0],[-1000,300],[-500,500]]}"#
+        );
+        let no_ball = Scene { ball: None, ..scene() };
+        assert_eq!(problem(&no_ball, Team::Blue), None);
+    }
+
+    #[test]
+    fn a_skeleton_has_the_nearest_robots_and_one_that_gets_the_ball() {
+        let text = skeleton(&scene(), Team::Yellow).unwrap();
+        assert_eq!(text.matches("get_ball").count(), 1);
+        assert_eq!((text.matches("[[teammates]]").count(), text.matches("[[opponents]]").count()), (2, 3));
+        assert!(text.contains("defending = \"yellow\"\nball = { at = [500, -250]"), "{text}");
+        let first = text.split("[[teammates]]").nth(1).unwrap();
+        assert!(first.starts_with(" # robot 5 of yellow\nat = [-500, 500]"), "{text}");
+    }
+}

@@ -1,0 +1,193 @@
+//! What may a viewer ask of the match, and when is it refused?
+
+use serde::{Deserialize, Serialize};
+
+/// A team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Team {
+    /// Blue.
+    Blue,
+    /// Yellow.
+    Yellow,
+}
+
+/// What is asked; the driver does it or does not. Field frame, m, rad.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "ask", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Request {
+    /// Our robots halt, until the program ends: the one thing that may be asked of a real field.
+    Halt {},
+    /// Stand still, or go on.
+    Pause {
+        /// Stand still.
+        on: bool,
+    },
+    /// Go on by so many ticks, and stand still again.
+    Step {
+        /// 1 to 100.
+        ticks: u32,
+    },
+    /// Simulated seconds a second.
+    Speed {
+        /// 0.05 to 20.
+        factor: f32,
+    },
+    /// Begin anew.
+    Restart {
+        /// Where chance comes from; none: as before.
+        seed: Option<u64>,
+    },
+    /// Put or pull the ball there.
+    Ball {
+        /// Where to.
+        at: [f32; 2],
+    },
+    /// Put or pull a robot there.
+    Robot {
+        /// Whose.
+        team: Team,
+        /// Which.
+        id: u8,
+        /// Where to.
+        at: [f32; 2],
+    },
+    /// A robot's computer ends, or boots again.
+    Power {
+        /// Whose.
+        team: Team,
+        /// Which.
+        id: u8,
+        /// Boots.
+        on: bool,
+    },
+    /// The air loses this share of packets.
+    Loss {
+        /// 0 to 1.
+        share: f32,
+    },
+    /// The referee's command, by its name in the league: `HALT`, `FORCE_START`, `DIRECT_FREE_BLUE`.
+    Referee {
+        /// The name.
+        command: String,
+    },
+}
+
+/// What a driver lets viewers ask.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Powers {
+    /// Nothing: a recording.
+    None,
+    /// HALT: a real field.
+    Halt,
+    /// Everything: a simulation.
+    Simulation,
+}
+
+/// Why something is not done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// It is no request.
+    Malformed(String),
+    /// Not here.
+    NotHere(Powers),
+    /// A number out of its range.
+    Range(&'static str),
+}
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Malformed(words) => write!(f, "no request: {words}"),
+            Self::NotHere(Powers::Halt) => f.write_str("a real field takes nothing but HALT from the page"),
+            Self::NotHere(_) => f.write_str("a recording cannot be changed"),
+            Self::Range(words) => f.write_str(words),
+        }
+    }
+}
+
+impl Request {
+    /// From a viewer's words, where such a thing may be asked here.
+    pub fn read(text: &str, powers: Powers) -> Result<Self, Refused> {
+        let request: Self =
+            serde_json::from_str(text).map_err(|error| Refused::Malformed(error.to_string()))?;
+        let allowed = match powers {
+            Powers::Simulation => true,
+            Powers::Halt => matches!(request, Self::Halt {}),
+            Powers::None => false,
+        };
+        if !allowed {
+            return Err(Refused::NotHere(powers));
+        }
+        request.in_range()
+    }
+
+    fn in_range(self) -> Result<Self, Refused> {
+        let wrong = match &self {
+            Self::Step { ticks } => (!(1..=100).contains(ticks)).then_some("ticks: 1 to 100"),
+            Self::Speed { factor } => {
+                (!(SPEED_MIN..=SPEED_MAX).contains(factor)).then_some("speed: 0.05 to 20")
+            }
+            Self::Loss { share } => (!(0.0..=1.0).contains(share)).then_some("loss: 0 to 1"),
+            Self::Ball { at } | Self::Robot { at, .. } => {
+                let far = at.iter().any(|x| !(-FARTHEST..=FARTHEST).contains(x));
+                far.then_some("a place: within 20 m of the middle")
+            }
+            _ => None,
+        };
+        let id = match &self {
+            Self::Robot { id, .. } | Self::Power { id, .. } if *id > 15 => Some("robots: 0 to 15"),
+            _ => None,
+        };
+        wrong.or(id).map_or(Ok(self), |words| Err(Refused::Range(words)))
+    }
+}
+
+/// Slower is standing still.
+const SPEED_MIN: f32 = 0.05;
+/// A full match of two teams plays at no more than this on one core, whatever is asked.
+const SPEED_MAX: f32 = 20.0;
+/// No field reaches farther from its middle, m.
+const FARTHEST: f32 = 20.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_real_field_takes_halt_and_nothing_else() {
+        assert_eq!(Request::read(r#"{"ask":"halt"}"#, Powers::Halt), Ok(Request::Halt {}));
+        for other in [
+            r#"{"ask":"pause","on":true}"#,
+            r#"{"ask":"referee","command":"FORCE_START"}"#,
+            r#"{"ask":"ball","at":[0,0]}"#,
+            r#"{"ask":"power","team":"blue","id":1,"on":false}"#,
+        ] {
+            assert_eq!(Request::read(other, Powers::Halt), Err(Refused::NotHere(Powers::Halt)), "{other}");
+            assert!(Request::read(other, Powers::Simulation).is_ok(), "{other}");
+            assert!(Request::read(other, Powers::None).is_err(), "{other}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_range_or_no_request_is_refused() {
+        for wrong in [
+            r#"{"ask":"speed","factor":0}"#,
+            r#"{"ask":"step","ticks":0}"#,
+            r#"{"ask":"loss","share":1.5}"#,
+            r#"{"ask":"ball","at":[1e9,0]}"#,
+            r#"{"ask":"robot","team":"blue","id":16,"at":[0,0]}"#,
+        ] {
+            assert!(matches!(Request::read(wrong, Powers::Simulation), Err(Refused::Range(_))), "{wrong}");
+        }
+        for wrong in
+            ["", "[]", r#"{"ask":"fly"}"#, r#"{"ask":"halt","now":1}"#, r#"{"ask":"ball","at":[null,0]}"#]
+        {
+            assert!(
+                matches!(Request::read(wrong, Powers::Simulation), Err(Refused::Malformed(_))),
+                "{wrong}"
+            );
+        }
+    }
+}

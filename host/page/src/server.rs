@@ -1,0 +1,244 @@
+//! How do viewers get the page, its scenes and its answers? HTTP and WebSocket on one thread of its own.
+//!
+//! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it says so with a dot. So a slow viewer
+//! sees fewer scenes, none of them old, and one that is gone holds nothing up.
+
+use std::io;
+use std::net::TcpListener;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::ws::{Message, Utf8Bytes, WebSocket, WebSocketUpgrade};
+use axum::extract::{Path, Query, Request as HttpRequest, State};
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use serde::Deserialize;
+use serde_json::json;
+use tokio::sync::{oneshot, watch};
+use tokio::time::timeout;
+
+use crate::archive::{Kept, look};
+use crate::page::{Oracle, Settings};
+use crate::problem::{Freeze, problem, skeleton};
+use crate::request::{Request, Team};
+use crate::{files, guard};
+
+/// Scenes on their way to a viewer that has not yet taken them.
+const UNTAKEN_MAX: u32 = 2;
+/// A viewer that takes nothing for so long is gone.
+const GONE: Duration = Duration::from_secs(30);
+/// More look on at once: the next is turned away. A team and its guests.
+const VIEWERS_MAX: usize = 64;
+/// The longest word of a viewer, bytes: a request, a problem.
+const WORD_MAX: usize = 16 * 1024;
+/// Happenings in one answer.
+const HAPPENINGS_A_TIME: usize = 5_000;
+
+/// What every answer is made from.
+pub(crate) struct Shared {
+    pub(crate) port: u16,
+    pub(crate) settings: Settings,
+    pub(crate) oracle: Arc<dyn Oracle>,
+    pub(crate) news: watch::Receiver<Utf8Bytes>,
+    pub(crate) kept: Arc<Mutex<Kept>>,
+    pub(crate) asks: SyncSender<Request>,
+    pub(crate) viewers: Arc<AtomicUsize>,
+}
+
+/// Serves on a thread of its own until `ended` says so or is dropped.
+pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Receiver<()>) -> io::Result<()> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    thread::spawn(move || {
+        runtime.block_on(async move {
+            let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
+            let shared = Arc::new(shared);
+            let routes = Router::new()
+                .route("/socket", get(socket))
+                .route("/api/state", get(state))
+                .route("/api/second/{second}", get(second))
+                .route("/api/happenings", get(happenings))
+                .route("/api/plots", get(plots))
+                .route("/api/explain", post(explain))
+                .route("/api/freeze", post(freeze))
+                .fallback(get(file))
+                .layer(axum::extract::DefaultBodyLimit::max(WORD_MAX))
+                .layer(from_fn_with_state(shared.clone(), guarded))
+                .with_state(shared);
+            tokio::select! {
+                _ = axum::serve(listener, routes) => {}
+                _ = ended => {}
+            }
+        });
+    });
+    Ok(())
+}
+
+/// Turns foreign pages away, and tells browsers what this page may do.
+async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: Next) -> Response {
+    if let Err(foreign) = guard::check(request.headers(), shared.port) {
+        return (StatusCode::FORBIDDEN, foreign.words()).into_response();
+    }
+    let mut response = next.run(request).await;
+    for (name, value) in HEADERS {
+        response.headers_mut().insert(HeaderName::from_static(name), HeaderValue::from_static(value));
+    }
+    response
+}
+
+/// Nothing from elsewhere, in nobody's frame, nothing kept by the browser: another version may be served tomorrow.
+const HEADERS: [(&str, &str); 5] = [
+    (
+        "content-security-policy",
+        "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    ),
+    ("x-content-type-options", "nosniff"),
+    ("x-frame-options", "DENY"),
+    ("referrer-policy", "no-referrer"),
+    ("cache-control", "no-store"),
+];
+
+const JSON: (HeaderName, &str) = (header::CONTENT_TYPE, "application/json");
+
+async fn file(request: HttpRequest) -> Response {
+    match files::find(request.uri().path()) {
+        Some(file) => ([(header::CONTENT_TYPE, file.kind)], file.text).into_response(),
+        None => (StatusCode::NOT_FOUND, "nothing here").into_response(),
+    }
+}
+
+async fn state(State(shared): State<Arc<Shared>>) -> Response {
+    let (span, life) = look(&shared.kept, |kept| (kept.span, kept.life));
+    let settings = &shared.settings;
+    let state = json!({
+        "title": settings.title,
+        "recorded": settings.recorded,
+        "powers": settings.powers,
+        "span": span,
+        "life": life,
+    });
+    ([JSON], state.to_string()).into_response()
+}
+
+async fn second(State(shared): State<Arc<Shared>>, Path(second): Path<u32>) -> Response {
+    match look(&shared.kept, |kept| kept.second(second)) {
+        Some(bytes) => ([JSON, (header::CONTENT_ENCODING, "gzip")], bytes).into_response(),
+        None => (StatusCode::NOT_FOUND, "not kept").into_response(),
+    }
+}
+
+#[derive(Deserialize)]
+struct From {
+    #[serde(default)]
+    from: usize,
+}
+
+async fn happenings(State(shared): State<Arc<Shared>>, Query(From { from }): Query<From>) -> Response {
+    let text = look(&shared.kept, |kept| {
+        let all = &kept.happenings;
+        let until = all.len().min(from.saturating_add(HAPPENINGS_A_TIME));
+        serde_json::to_string(&all[from.min(until)..until]).unwrap_or_default()
+    });
+    ([JSON], text).into_response()
+}
+
+async fn plots(State(shared): State<Arc<Shared>>) -> Response {
+    let text = look(&shared.kept, |kept| serde_json::to_string(&kept.samples).unwrap_or_default());
+    ([JSON], text).into_response()
+}
+
+async fn explain(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
+    let oracle = shared.oracle.clone();
+    let answer = tokio::task::spawn_blocking(move || match std::str::from_utf8(&body) {
+        Ok(problem) => oracle.explain(problem),
+        Err(_) => Err("a problem is text".to_owned()),
+    });
+    match answer.await {
+        Ok(Ok(text)) => ([JSON], text).into_response(),
+        Ok(Err(words)) => (StatusCode::UNPROCESSABLE_ENTITY, words).into_response(),
+        Err(_) => (StatusCode::INTERNAL_SERVER_ERROR, "no answer").into_response(),
+    }
+}
+
+#[derive(Deserialize)]
+struct Frozen {
+    t: f64,
+    team: Team,
+    what: Freeze,
+}
+
+async fn freeze(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
+    let Ok(asked) = serde_json::from_slice::<Frozen>(&body) else {
+        return (StatusCode::UNPROCESSABLE_ENTITY, "expected t, team and what").into_response();
+    };
+    let scene = look(&shared.kept, |kept| kept.scene_at(asked.t));
+    let text = scene.and_then(|scene| match asked.what {
+        Freeze::Problem => problem(&scene, asked.team).map(|line| line + "\n"),
+        Freeze::Case => skeleton(&scene, asked.team),
+    });
+    match text {
+        Some(text) => ([(header::CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response(),
+        None => (StatusCode::UNPROCESSABLE_ENTITY, "no ball or no such team at that moment").into_response(),
+    }
+}
+
+async fn socket(State(shared): State<Arc<Shared>>, upgrade: WebSocketUpgrade) -> Response {
+    if shared.viewers.load(Ordering::Relaxed) >= VIEWERS_MAX {
+        return (StatusCode::SERVICE_UNAVAILABLE, "too many look on").into_response();
+    }
+    let upgrade = upgrade.max_message_size(WORD_MAX).max_frame_size(WORD_MAX);
+    upgrade.on_upgrade(move |socket| async move {
+        shared.viewers.fetch_add(1, Ordering::Relaxed);
+        look_on(socket, &shared).await;
+        shared.viewers.fetch_sub(1, Ordering::Relaxed);
+    })
+}
+
+/// One viewer, until it goes.
+async fn look_on(mut socket: WebSocket, shared: &Shared) {
+    let mut news = shared.news.clone();
+    news.mark_changed();
+    let mut untaken = 0;
+    loop {
+        let sends = untaken < UNTAKEN_MAX;
+        tokio::select! {
+            changed = news.changed(), if sends => {
+                let scene = news.borrow_and_update().clone();
+                // The match is over with its page: the socket closes, and viewers say so.
+                if changed.is_err() { return; }
+                if scene.is_empty() { continue; }
+                if !sent(&mut socket, scene).await { return; }
+                untaken += 1;
+            }
+            word = timeout(GONE, socket.recv()) => match word {
+                Ok(Some(Ok(Message::Text(word)))) if word.as_str() == "." => untaken = untaken.saturating_sub(1),
+                // A viewer of something that stands still says that it is there.
+                Ok(Some(Ok(Message::Text(word)))) if word.is_empty() => {}
+                Ok(Some(Ok(Message::Text(word)))) => {
+                    if let Err(words) = ask(shared, &word)
+                        && !sent(&mut socket, json!({ "refused": words }).to_string().into()).await
+                    {
+                        return;
+                    }
+                }
+                Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => {}
+                _ => return,
+            },
+        }
+    }
+}
+
+fn ask(shared: &Shared, word: &str) -> Result<(), String> {
+    let request = Request::read(word, shared.settings.powers).map_err(|refused| refused.to_string())?;
+    shared.asks.try_send(request).map_err(|_| "the match is busy: ask again".to_owned())
+}
+
+async fn sent(socket: &mut WebSocket, text: Utf8Bytes) -> bool {
+    matches!(timeout(GONE, socket.send(Message::Text(text))).await, Ok(Ok(())))
+}

@@ -1,0 +1,118 @@
+//! What else is drawn on the field? Named layers of plain shapes: whoever fills a scene can show anything, and the page need not
+//! know what it means. m, field frame.
+
+use serde::{Deserialize, Serialize};
+
+/// A layer that viewers switch on and off.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    /// Its name in addresses and settings: `case-scopes`.
+    pub name: String,
+    /// What people read.
+    pub label: String,
+    /// Shown unless somebody switches it off.
+    pub on: bool,
+    /// Drawn in this order.
+    pub shapes: Vec<Shape>,
+}
+
+/// What a shape means; the page has a colour for each, by day and by night.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Tone {
+    /// Of the blue team.
+    Blue,
+    /// Of the yellow team.
+    Yellow,
+    /// The ball's.
+    Ball,
+    /// A case's.
+    Case,
+    /// To be kept out of.
+    Forbidden,
+    /// Good.
+    Good,
+    /// Neither.
+    Plain,
+}
+
+/// A shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "is", rename_all = "lowercase")]
+pub enum Shape {
+    /// An ellipse along the axes.
+    Ellipse {
+        /// Its middle.
+        at: [f32; 2],
+        /// Half axes along x and y.
+        radii: [f32; 2],
+        /// Its meaning.
+        tone: Tone,
+        /// Filled, thinly; else its outline alone.
+        fill: bool,
+        /// Told where somebody points at it.
+        #[serde(default, skip_serializing_if = "String::is_empty")]
+        note: String,
+    },
+    /// A closed region.
+    Polygon {
+        /// Its corners.
+        points: Vec<[f32; 2]>,
+        /// Its meaning.
+        tone: Tone,
+        /// Filled, thinly.
+        fill: bool,
+        /// Told where somebody points at it.
+        #[serde(default, skip_serializing_if = "String::is_empty")]
+        note: String,
+    },
+    /// All points within `radius` of a stretch.
+    Capsule {
+        /// One end.
+        from: [f32; 2],
+        /// The other end.
+        to: [f32; 2],
+        /// Around it.
+        radius: f32,
+        /// Its meaning.
+        tone: Tone,
+        /// Told where somebody points at it.
+        #[serde(default, skip_serializing_if = "String::is_empty")]
+        note: String,
+    },
+    /// A way.
+    Line {
+        /// Its points.
+        points: Vec<[f32; 2]>,
+        /// Its meaning.
+        tone: Tone,
+        /// With a head at its end.
+        arrow: bool,
+        /// Dashed.
+        dashed: bool,
+    },
+    /// A word.
+    Text {
+        /// Its middle.
+        at: [f32; 2],
+        /// What it says.
+        text: String,
+        /// Its meaning.
+        tone: Tone,
+    },
+    /// A map of values.
+    Heat(Heat),
+}
+
+/// Values over a grid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heat {
+    /// The corner with the least x and y.
+    pub low: [f32; 2],
+    /// The corner with the largest x and y.
+    pub high: [f32; 2],
+    /// Cells along x.
+    pub columns: u32,
+    /// Row by row, least y first, 0 (nothing, not drawn) to 255.
+    pub cells: Vec<u8>,
+}

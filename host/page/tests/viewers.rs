@@ -1,0 +1,262 @@
+//! Do viewers get what is newest, and nobody else anything? Real sockets; viewers that read, that do not, that vanish, and pages of
+//! others that try.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use page::{Happening, Kind, Oracle, Page, PageError, Powers, Request, Scene, Settings, Team};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
+
+struct Echo;
+
+impl Oracle for Echo {
+    fn explain(&self, problem: &str) -> Result<String, String> {
+        if problem.starts_with('{') {
+            Ok(format!("{{\"asked\":{problem}}}"))
+        } else {
+            Err("no problem".to_owned())
+        }
+    }
+}
+
+fn open(powers: Powers) -> Page {
+    let listen = SocketAddr::from(([127, 0, 0, 1], 0));
+    let settings = Settings { listen, title: "a test".to_owned(), recorded: false, powers };
+    Page::open(settings, Arc::new(Echo)).unwrap()
+}
+
+fn scene(t: f64) -> Scene {
+    Scene { t, ..Scene::default() }
+}
+
+fn viewer(page: &Page) -> Viewer {
+    let (viewer, _) = tungstenite::connect(format!("ws://{}/socket", page.address())).unwrap();
+    if let MaybeTlsStream::Plain(stream) = viewer.get_ref() {
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    }
+    viewer
+}
+
+/// The next scene's time; it is taken, so that another may come.
+fn next(viewer: &mut Viewer) -> f64 {
+    let Message::Text(text) = viewer.read().unwrap() else { panic!("no text") };
+    viewer.send(Message::text(".")).unwrap();
+    serde_json::from_str::<Scene>(&text).unwrap().t
+}
+
+fn wait_for(what: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !what() {
+        assert!(begun.elapsed() < Duration::from_secs(20), "waited in vain");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Shows a scene and waits until it is encoded.
+fn shown(page: &mut Page, t: f64) {
+    page.keep(scene(t));
+    wait_for(|| get(page.address(), "/api/state", "").1.contains(&format!(",{t:?}]")));
+}
+
+/// An answer: status and body.
+fn get(at: SocketAddr, path: &str, more: &str) -> (u16, String) {
+    let host = if more.contains("Host:") { String::new() } else { format!("Host: {at}\r\n") };
+    ask(at, &format!("GET {path} HTTP/1.1\r\n{host}{more}Connection: close\r\n\r\n"))
+}
+
+fn post(at: SocketAddr, path: &str, body: &str, more: &str) -> (u16, String) {
+    let length = body.len();
+    ask(
+        at,
+        &format!(
+            "POST {path} HTTP/1.1\r\nHost: {at}\r\n{more}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
+        ),
+    )
+}
+
+fn ask(at: SocketAddr, words: &str) -> (u16, String) {
+    let mut stream = TcpStream::connect(at).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+    stream.write_all(words.as_bytes()).unwrap();
+    let mut bytes = Vec::new();
+    let _ = stream.read_to_end(&mut bytes);
+    let answer = String::from_utf8_lossy(&bytes).into_owned();
+    let status = answer.split(' ').nth(1).and_then(|word| word.parse().ok()).unwrap_or(0);
+    (status, answer.split_once("\r\n\r\n").map(|(_, body)| body.to_owned()).unwrap_or_default())
+}
+
+#[test]
+fn the_page_and_its_files_are_served_from_the_program() {
+    let page = open(Powers::None);
+    let (status, body) = get(page.address(), "/", "");
+    assert_eq!(status, 200);
+    assert!(body.contains("<canvas id=\"field\""), "{body}");
+    for path in ["/main.js", "/page.css", "/icon.svg"] {
+        assert_eq!(get(page.address(), path, "").0, 200, "{path}");
+    }
+    for path in ["/nothing.js", "/../Cargo.toml", "/%2e%2e/Cargo.toml", "/api/second/9"] {
+        assert_eq!(get(page.address(), path, "").0, 404, "{path}");
+    }
+}
+
+#[test]
+fn a_viewer_that_comes_late_has_the_newest_scene_at_once() {
+    let mut page = open(Powers::None);
+    shown(&mut page, 1.5);
+    shown(&mut page, 2.5);
+    assert!((next(&mut viewer(&page)) - 2.5).abs() < 1e-9);
+}
+
+#[test]
+fn a_viewer_that_takes_nothing_for_a_while_goes_on_with_what_is_newest_then() {
+    let mut page = open(Powers::None);
+    let mut slow = viewer(&page);
+    wait_for(|| page.viewers() == 1);
+    for i in 0..500 {
+        page.keep(scene(f64::from(i)));
+    }
+    shown(&mut page, 777.5);
+    // Two may have been on their way; what comes after those is the newest.
+    let seen: Vec<f64> = (0..3).map(|_| next(&mut slow)).collect();
+    assert!((seen[2] - 777.5).abs() < 1e-9, "{seen:?}");
+}
+
+#[test]
+fn showing_never_waits_whoever_looks_on() {
+    let mut page = open(Powers::None);
+    // None of them ever reads, and one is gone without a word.
+    let deaf: Vec<Viewer> = (0..4).map(|_| viewer(&page)).collect();
+    let gone = viewer(&page);
+    wait_for(|| page.viewers() == 5);
+    if let MaybeTlsStream::Plain(stream) = gone.get_ref() {
+        stream.shutdown(std::net::Shutdown::Both).unwrap();
+    }
+    let mut reader = viewer(&page);
+    for i in 0..20_000 {
+        page.show(scene(f64::from(i)));
+    }
+    // Far more was shown than anybody took: it was left out, not waited for.
+    assert!(page.left_out() > 0, "{}", page.left_out());
+    shown(&mut page, 30_000.5);
+    wait_for(|| page.viewers() == 5);
+    let last = (0..5).map(|_| next(&mut reader)).find(|t| (t - 30_000.5).abs() < 1e-9);
+    assert!(last.is_some());
+    drop(deaf);
+}
+
+#[test]
+fn what_has_passed_is_asked_for_by_the_second() {
+    let mut page = open(Powers::None);
+    page.tell(Happening {
+        t: 0.2,
+        kind: Kind::Goal,
+        team: Some(Team::Blue),
+        words: "goal".into(),
+        at: None,
+        problem: None,
+    });
+    for i in 0..50 {
+        page.keep(scene(f64::from(i) * 0.04));
+    }
+    shown(&mut page, 2.5);
+    assert!(get(page.address(), "/api/happenings?from=0", "").1.contains("\"kind\":\"goal\""));
+    assert!(get(page.address(), "/api/happenings?from=1", "").1.contains("[]"));
+    assert_eq!(get(page.address(), "/api/second/0", "").0, 200);
+    page.clear();
+    wait_for(|| get(page.address(), "/api/second/0", "").0 == 404);
+}
+
+#[test]
+fn foreign_pages_and_foreign_names_are_refused() {
+    let page = open(Powers::Simulation);
+    let at = page.address();
+    let port = at.port();
+    for path in ["/", "/api/state", "/socket"] {
+        let (status, words) = get(at, path, &format!("Host: evil.example:{port}\r\n"));
+        assert_eq!(status, 403, "{path}");
+        assert!(words.contains("no other name"), "{words}");
+        assert_eq!(get(at, path, "Origin: http://evil.example\r\n").0, 403, "{path}");
+    }
+    assert_eq!(post(at, "/api/explain", "{}", "Origin: http://evil.example\r\n").0, 403);
+    for origin in ["http://evil.example", "null", "https://127.0.0.1", &format!("http://localhost:{port}")] {
+        let mut request = format!("ws://{at}/socket").into_client_request().unwrap();
+        request.headers_mut().insert("origin", origin.parse().unwrap());
+        let refused = tungstenite::connect(request).unwrap_err();
+        assert!(
+            matches!(&refused, tungstenite::Error::Http(answer) if answer.status() == 403),
+            "{origin}: {refused}"
+        );
+    }
+    let mut request = format!("ws://{at}/socket").into_client_request().unwrap();
+    request.headers_mut().insert("origin", format!("http://{at}").parse().unwrap());
+    let (mut own, _) = tungstenite::connect(request).unwrap();
+    own.send(Message::text(r#"{"ask":"pause","on":true}"#)).unwrap();
+    let mut asked = None;
+    wait_for_some(&mut asked, || page.next_request());
+    assert_eq!(asked, Some(Request::Pause { on: true }), "and the foreign ones asked nothing");
+}
+
+fn wait_for_some<T>(into: &mut Option<T>, what: impl Fn() -> Option<T>) {
+    let begun = Instant::now();
+    while into.is_none() {
+        assert!(begun.elapsed() < Duration::from_secs(20), "waited in vain");
+        *into = what();
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn a_real_field_is_only_ever_halted() {
+    let page = open(Powers::Halt);
+    let mut viewer = viewer(&page);
+    viewer.send(Message::text(r#"{"ask":"ball","at":[0,0]}"#)).unwrap();
+    let Message::Text(words) = viewer.read().unwrap() else { panic!("no text") };
+    assert!(words.contains("nothing but HALT"), "{words}");
+    viewer.send(Message::text(r#"{"ask":"halt"}"#)).unwrap();
+    let mut asked = None;
+    wait_for_some(&mut asked, || page.next_request());
+    assert_eq!(asked, Some(Request::Halt {}));
+}
+
+#[test]
+fn a_problem_is_explained_and_a_moment_frozen() {
+    let mut page = open(Powers::None);
+    let ball = page::Ball { at: [0.5, -0.25], ..page::Ball::default() };
+    page.keep(Scene { ball: Some(ball), ..scene(3.0) });
+    shown(&mut page, 4.0);
+    let at = page.address();
+    assert_eq!(post(at, "/api/explain", "{\"ball\":[0,0]}", "").1, r#"{"asked":{"ball":[0,0]}}"#);
+    assert_eq!(post(at, "/api/explain", "x", "").0, 422);
+    let (status, line) = post(at, "/api/freeze", r#"{"t":3.5,"team":"yellow","what":"problem"}"#, "");
+    assert_eq!(status, 200);
+    assert!(line.contains("\"ball\":[500,-250]"), "{line}");
+    assert_eq!(post(at, "/api/freeze", r#"{"t":99,"team":"yellow","what":"problem"}"#, "").0, 422);
+    assert_eq!(post(at, "/api/explain", &"x".repeat(20_000), "").0, 413);
+}
+
+#[test]
+fn a_taken_port_is_told_with_what_to_do() {
+    let page = open(Powers::None);
+    let settings =
+        Settings { listen: page.address(), title: String::new(), recorded: false, powers: Powers::None };
+    let Err(error) = Page::open(settings, Arc::new(Echo)) else { panic!("the port is taken") };
+    assert!(matches!(error, PageError::Taken(_)));
+    assert!(error.to_string().contains("such as 127.0.0.1:"), "{error}");
+}
+
+#[test]
+fn the_page_ends_with_the_match() {
+    let mut page = open(Powers::None);
+    shown(&mut page, 1.0);
+    let mut viewer = viewer(&page);
+    next(&mut viewer);
+    drop(page);
+    assert!(matches!(viewer.read(), Err(_) | Ok(Message::Close(_))));
+}

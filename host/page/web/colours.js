@@ -1,0 +1,47 @@
+// Which colour means what, by day and by night? They stand in page.css; pictures read them from there. Pairs that have to be told
+// apart differ in lightness as well as in hue, and never by colour alone.
+
+import { byId } from "./dom.js";
+import { changed, recall, remember } from "./store.js";
+
+const NAMES = ["back", "panel", "raised", "edge", "text", "dim", "carpet", "margin", "line", "mark", "blue", "blue-ink", "yellow",
+  "yellow-ink", "ball", "case", "forbidden", "good", "plain", "accent", "warn", "bad"];
+
+export const colours = {};
+const thin = new Map();
+
+function read() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of NAMES) colours[name] = style.getPropertyValue(`--${name}`).trim();
+  thin.clear();
+}
+
+/** The colour, let through by so much. */
+export function faint(name, share) {
+  const key = `${name} ${share}`;
+  if (!thin.has(key)) {
+    const value = colours[name] ?? colours.plain;
+    const part = (at) => parseInt(value.slice(at, at + 2), 16);
+    thin.set(key, `rgba(${part(1)},${part(3)},${part(5)},${share})`);
+  }
+  return thin.get(key);
+}
+
+function take(theme) {
+  document.documentElement.dataset.theme = theme;
+  read();
+  changed("colours");
+}
+
+export function toggleTheme() {
+  const theme = document.documentElement.dataset.theme === "light" ? "dark" : "light";
+  remember("theme", theme);
+  take(theme);
+}
+
+export function startColours() {
+  const asked = new URLSearchParams(location.search).get("theme");
+  const system = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+  take(asked ?? recall("theme", system));
+  byId("theme").addEventListener("click", toggleTheme);
+}

@@ -1,0 +1,65 @@
+// What may be asked of the match? Everything of a simulation, HALT of a real field, nothing of a recording.
+
+import { byId, el, fill, say } from "./dom.js";
+import { ask } from "./link.js";
+import { on, store } from "./store.js";
+
+const COMMANDS = [
+  ["HALT", "Halt"], ["STOP", "Stop"], ["FORCE_START", "Force start"], ["NORMAL_START", "Normal start"],
+  ["PREPARE_KICKOFF_BLUE", "Kick-off, blue"], ["PREPARE_KICKOFF_YELLOW", "Kick-off, yellow"],
+  ["DIRECT_FREE_BLUE", "Free kick, blue"], ["DIRECT_FREE_YELLOW", "Free kick, yellow"],
+  ["PREPARE_PENALTY_BLUE", "Penalty, blue"], ["PREPARE_PENALTY_YELLOW", "Penalty, yellow"],
+];
+
+export function showControl() {
+  const tab = byId("tab-control");
+  if (tab.hidden || !store.scene) return;
+  fill(tab, `${store.state.powers} ${store.state.life}`, () => ({ simulation, halt, none })[store.state.powers]());
+  if (store.state.powers !== "simulation") return;
+  say(byId("pause"), store.latest?.paused ? "Go on" : "Stand still");
+  const speed = byId("speed-now");
+  if (speed && store.latest) say(speed, `${store.latest.speed} ×`);
+  const robots = store.scene.robots.map((robot) => `${robot.team} ${robot.id}`);
+  const select = byId("who");
+  const all = [...new Set([...[...select.options].map((option) => option.value), ...robots])].sort();
+  if (all.length !== select.options.length) select.replaceChildren(...all.map((name) => el("option", {}, name)));
+}
+
+const none = () => el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment.");
+
+const halt = () => [
+  el("p", {}, "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),
+  el("button", { class: "danger", id: "halt", onclick: () => ask({ ask: "halt" }) }, "HALT our robots"),
+];
+
+function simulation() {
+  const press = (words, request, more = {}) => el("button", { onclick: () => ask(request()), ...more }, words);
+  const set = (...children) => el("div", { class: "field-set" }, ...children);
+  const who = () => {
+    const [team, id] = byId("who").value.split(" ");
+    return { team, id: Number(id) };
+  };
+  const speed = el("input", { type: "range", min: "-4.3", max: "4.3", step: "0.1", value: String(Math.log2(store.latest?.speed || 1)), "aria-label": "Speed",
+    oninput: (event) => ask({ ask: "speed", factor: Math.round(2 ** event.target.value * 20) / 20 || 0.05 }) });
+  const seed = el("input", { type: "number", min: "0", id: "seed", value: String(store.scene.seed ?? 1), "aria-label": "Seed" });
+  const loss = el("input", { type: "range", min: "0", max: "60", value: "0", "aria-label": "Radio loss", oninput: (event) => {
+    say(byId("loss-now"), `${event.target.value} %`);
+    ask({ ask: "loss", share: event.target.value / 100 });
+  } });
+  return [
+    el("h2", {}, "Time"),
+    set(press("Stand still", () => ({ ask: "pause", on: !store.latest?.paused }), { id: "pause" }), press("One tick", () => ({ ask: "step", ticks: 1 }), { id: "step" }), press("Ten", () => ({ ask: "step", ticks: 10 }))),
+    set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("1 ×", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
+    set(el("label", {}, "Seed"), seed, press("Begin anew", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
+    el("h2", {}, "Referee"),
+    set(...COMMANDS.map(([command, words]) => press(words, () => ({ ask: "referee", command }), { "data-command": command }))),
+    el("h2", {}, "Faults"),
+    set(el("label", {}, "Radio loses"), loss, el("span", { id: "loss-now" }, "0 %")),
+    set(el("select", { id: "who", "aria-label": "Robot" }), press("Crash its computer", () => ({ ask: "power", ...who(), on: false }), { id: "crash" }), press("Boot it", () => ({ ask: "power", ...who(), on: true }), { id: "boot" })),
+    el("p", { class: "muted" }, "Ball and robots can be dragged on the field."),
+  ];
+}
+
+export function startControl() {
+  on("newest", () => showControl());
+}

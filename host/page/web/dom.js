@@ -1,0 +1,48 @@
+// How is a piece of the page made? Elements from data; words are always text, never markup.
+
+export const byId = (id) => document.getElementById(id);
+
+/** An element: `el("p", { class: "why" }, "words", child)`; names that begin with `on` are listeners. */
+export function el(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value != null) made.setAttribute(name, value);
+  }
+  made.append(...children.flat().filter((child) => child != null && child !== false));
+  return made;
+}
+
+/** Sets words only where they differ: the browser lays out nothing that stays. */
+export function say(target, words) {
+  if (target.textContent !== words) target.textContent = words;
+}
+
+/** Replaces what is in `target` where `key` differs from last time. */
+export function fill(target, key, make) {
+  if (target.dataset.key === key) return false;
+  target.dataset.key = key;
+  target.replaceChildren(...[make()].flat().filter(Boolean));
+  return true;
+}
+
+/** 75.4 as 1:15.4. */
+export function clock(seconds, digits = 1) {
+  const whole = Math.max(0, seconds);
+  const minutes = Math.floor(whole / 60);
+  return `${minutes}:${(whole - minutes * 60).toFixed(digits).padStart(digits ? 3 + digits : 2, "0")}`;
+}
+
+export const number = (x, digits = 1) => (x == null || !Number.isFinite(x) ? "–" : x.toFixed(digits));
+
+/** A table: heads and rows of cells; a cell is words or `[words, class]`. */
+export function table(heads, rows) {
+  const cell = (tag) => (content) => {
+    const [words, kind] = Array.isArray(content) ? content : [content];
+    return el(tag, kind ? { class: kind } : {}, words);
+  };
+  return el("div", { class: "scroll" }, el("table", {},
+    el("thead", {}, el("tr", {}, heads.map(cell("th")))),
+    el("tbody", {}, rows.map((row) => el("tr", {}, row.map(cell("td")))))));
+}

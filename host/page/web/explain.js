@@ -1,0 +1,86 @@
+// Why that case and none of the others? The candidates by rank, then those that missed by the least, each with its margin.
+
+import { byId, clock, el, number, table } from "./dom.js";
+import { post } from "./link.js";
+import { changed, store } from "./store.js";
+import { time } from "./transport.js";
+
+/** Cases that are no candidates, but are told at first. */
+const NEAREST = 12;
+
+export function dialog(title, ...body) {
+  byId("dialog-title").textContent = title;
+  byId("dialog-body").replaceChildren(...body);
+  if (!byId("dialog").open) byId("dialog").showModal();
+}
+
+export const explainHappening = (happening) => open(JSON.stringify(happening.problem), `${happening.words}, at ${clock(happening.t)}`);
+
+export async function explainNow(team) {
+  try {
+    const problem = await post("/api/freeze", JSON.stringify({ t: time.at, team, what: "problem" }));
+    await open(problem, `${team} at ${clock(time.at)}`);
+  } catch (error) {
+    changed("refused", error.message);
+  }
+}
+
+async function open(problem, title) {
+  try {
+    const answer = JSON.parse(await post("/api/explain", problem));
+    if (answer.error) throw new Error(answer.error);
+    dialog(title, body(answer, problem, false));
+  } catch (error) {
+    changed("refused", `no explanation: ${error.message}`);
+  }
+}
+
+/** How near a case that is none was to be one: the later the check, the nearer; then by its margin. */
+const ORDER = { candidate: 0, path: 1, thr_c: 2, robots: 3, ball: 4 };
+const margin = (row) => row.inside_mm ?? row.over_mm ?? row.outside_mm ?? 0;
+
+function body(answer, problem, every) {
+  const rows = [...answer.cases].sort((a, b) => ORDER[a.verdict] - ORDER[b.verdict] || (a.rank ?? 0) - (b.rank ?? 0) || margin(a) - margin(b));
+  const shown = every ? rows : rows.slice(0, answer.candidates + NEAREST);
+  const cells = shown.map((row) => [
+    row.rank ? String(row.rank) : "", `${row.case}${row.symmetry === "identity" ? "" : ` · ${row.symmetry}`}`,
+    [WORDS[row.verdict] ?? row.verdict, row.verdict === "candidate" ? "fine" : "bad"], told(row),
+  ]);
+  const winner = rows.find((row) => row.id === answer.winner);
+  const rest = rows.length - shown.length;
+  return el("div", { id: "explanation" },
+    el("p", {}, winner ? `${winner.case} is the best of ${answer.candidates} that fit.` : "No case fits; the robots play without one."),
+    table(["rank", "case", "verdict", "why"], cells),
+    el("p", { class: "field-set" },
+      rest > 0 ? el("button", { onclick: (event) => event.target.closest("#explanation").replaceWith(body(answer, problem, true)) }, `${rest} more`) : null,
+      el("button", { onclick: () => navigator.clipboard?.writeText(problem).then(() => changed("told", "the problem is copied")) }, "Copy the problem")),
+    el("p", { class: "muted" }, "The same on a terminal: paste the problem into onetwo cases explain --league LEAGUE."));
+}
+
+const WORDS = { candidate: "fits", path: "way blocked", thr_c: "too far", robots: "too few robots", ball: "other ball" };
+
+function told(row) {
+  switch (row.verdict) {
+    case "candidate":
+      return `${row.conditions} conditions, ${row.teammates} teammates, similarity ${number(row.similarity, 2)}, ${number(row.cost / 1000, 2)} m to walk`;
+    case "path":
+      return `opponent ${row.opponent} stands ${number(row.inside_mm, 0)} mm inside leg ${row.leg}`;
+    case "thr_c":
+      return row.distance_mm === undefined ? "a place outside the field"
+        : `robot ${row.robot} is ${number(row.distance_mm / 1000, 2)} m from its place, ${number(row.over_mm, 0)} mm too far`;
+    case "robots":
+      return `${row.needed} are needed, ${row.present} are there`;
+    case "ball":
+      return `the ball lies ${number(row.outside_mm, 0)} mm outside its scope`;
+    default:
+      return "";
+  }
+}
+
+/** The keys' list, and whatever else has words alone. */
+export function showKeys(keys) {
+  dialog("Keys", table(["key", "does"], keys.map(([key, words]) => [key, words])));
+}
+
+export const closeDialog = () => byId("dialog").open && byId("dialog").close();
+export const hasScene = () => store.scene !== null;

@@ -1,0 +1,46 @@
+// What does a key do? All of them, and their list for people.
+
+import { toggleTheme } from "./colours.js";
+import { byId } from "./dom.js";
+import { closeDialog, showKeys } from "./explain.js";
+import { toggleLayers } from "./layers.js";
+import { ask } from "./link.js";
+import { changed, store } from "./store.js";
+import { goLive, jump, mark, seek, time, toggle } from "./transport.js";
+
+const TABS = ["why", "match", "health", "control"];
+
+export function startKeys(camera, showTab) {
+  const flip = () => { camera.flipped = !camera.flipped; changed("frame"); };
+  const fit = () => { camera.reset(); changed("frame"); };
+  const zoom = (factor) => { camera.zoomAt([camera.size[0] / 2, camera.size[1] / 2], factor); changed("frame"); };
+  const step = () => {
+    if (time.live && store.state.powers === "simulation") ask({ ask: "step", ticks: 1 });
+    else seek(time.at + 0.04, false);
+  };
+  const keys = {
+    " ": ["space", "go on, or stand still", toggle], ".": [".", "one tick on", step], l: ["l", "to the newest moment", goLive],
+    ArrowLeft: ["← →", "a second back and on; with shift ten", (far) => seek(time.at - (far ? 10 : 1))], ArrowRight: ["", "", (far) => seek(time.at + (far ? 10 : 1))],
+    "[": ["[ ]", "event before and after", () => jump(-1)], "]": ["", "", () => jump(1)],
+    g: ["g", "next goal; with shift the one before", () => jump(1, "goal")], G: ["", "", () => jump(-1, "goal")],
+    b: ["b", "bookmark this moment", mark], c: ["c", "copy this moment's address", () => byId("link").click()],
+    y: ["y", "layers", toggleLayers], f: ["f", "turn the field round", flip], 0: ["0", "whole field", fit], "+": ["+ −", "zoom", () => zoom(1.25)], "-": ["", "", () => zoom(0.8)],
+    1: ["1 – 4", "why, match, health, control", () => showTab(TABS[0])], 2: ["", "", () => showTab(TABS[1])], 3: ["", "", () => showTab(TABS[2])], 4: ["", "", () => showTab(TABS[3])],
+    t: ["t", "light or dark", toggleTheme], "?": ["?", "this list", () => help()],
+  };
+  const help = () => showKeys(Object.values(keys).filter(([name]) => name));
+  byId("help").addEventListener("click", help);
+  byId("flip").addEventListener("click", flip);
+  byId("fit").addEventListener("click", fit);
+  addEventListener("keydown", (event) => {
+    if (event.key === "Escape") return closeDialog();
+    const typing = event.target.matches?.("input, select, textarea");
+    if (typing || event.ctrlKey || event.metaKey || event.altKey || byId("dialog").open) return;
+    // A button takes the space itself.
+    if (event.key === " " && event.target.matches?.("button")) return;
+    const found = keys[event.key];
+    if (!found) return;
+    event.preventDefault();
+    found[2](event.shiftKey);
+  });
+}

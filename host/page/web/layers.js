@@ -1,0 +1,72 @@
+// Which layers are shown? Those of the page and those that the program names; a viewer's choice is kept.
+
+import { byId, el, fill } from "./dom.js";
+import { changed, on, recall, remember, store } from "./store.js";
+
+/** The page's own: name, label, shown at first. */
+const OWN = [
+  ["raw", "raw vision", false],
+  ["trail", "ball's trail", true],
+  ["ahead", "ball's prediction", true],
+  ["velocities", "velocities", true],
+  ["paths", "ways and targets", true],
+  ["roles", "roles", true],
+];
+
+let chosen = {};
+
+/** Whether that layer is drawn. */
+export const shows = (name, otherwise) => chosen[name] ?? otherwise;
+
+export function setLayer(name, shown) {
+  chosen = { ...chosen, [name]: shown };
+  remember("layers", chosen);
+  changed("layers");
+}
+
+/** All that there are now: name, label, shown, how many shapes. */
+export function all() {
+  const own = OWN.map(([name, label, first]) => ({ name, label, shown: shows(name, first), own: true }));
+  const named = (store.scene?.layers ?? []).map((layer) => ({
+    name: layer.name, label: layer.label, shown: shows(layer.name, layer.on), count: layer.shapes.length,
+  }));
+  return [...own, ...named];
+}
+
+export function toggleLayers() {
+  const panel = byId("layers");
+  panel.hidden = !panel.hidden;
+  byId("layers-open").setAttribute("aria-expanded", String(!panel.hidden));
+  show();
+}
+
+function show() {
+  const panel = byId("layers");
+  if (panel.hidden) return;
+  const list = all();
+  const key = list.map((layer) => `${layer.name}${layer.shown ? 1 : 0}`).join();
+  fill(panel, key, () => {
+    const row = (layer) => {
+      const box = el("input", { type: "checkbox", "data-layer": layer.name, onchange: (event) => setLayer(layer.name, event.target.checked) });
+      box.checked = layer.shown;
+      return el("label", {}, box, layer.label);
+    };
+    const part = (words, layers) => (layers.length ? [el("h3", {}, words), ...layers.map(row)] : []);
+    const every = (shown) => () => list.forEach((layer) => setLayer(layer.name, shown));
+    return [
+      ...part("Field", list.filter((layer) => layer.own)),
+      ...part("Thinking", list.filter((layer) => !layer.own)),
+      el("div", { class: "field-set", style: "margin: 8px 0 0" },
+        el("button", { onclick: every(true), id: "layers-all" }, "all"), el("button", { onclick: every(false), id: "layers-none" }, "none")),
+    ];
+  });
+}
+
+export function startLayers() {
+  chosen = recall("layers", {});
+  const asked = new URLSearchParams(location.search).get("layers");
+  if (asked) for (const name of asked.split(",")) chosen[name.replace(/^-/, "")] = !name.startsWith("-");
+  byId("layers-open").addEventListener("click", toggleLayers);
+  on("layers", show);
+  on("panels", show);
+}

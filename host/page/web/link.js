@@ -1,0 +1,118 @@
+// How do scenes come, and what when they do not? A socket that heals itself; whoever asks for something speaks through it.
+
+import { byId, say } from "./dom.js";
+import { changed, store } from "./store.js";
+
+/** A match that is silent for so long is told of, ms. */
+const SILENT = 3000;
+/** Tries again after so long, ms; twice as long each time up to the last. */
+const AGAIN = [300, 600, 1200, 2500];
+
+let socket = null;
+let tries = 0;
+let heard = 0;
+
+/** Asks the match for something; false where nobody hears. */
+export function ask(request) {
+  if (socket?.readyState !== WebSocket.OPEN) return false;
+  socket.send(JSON.stringify(request));
+  return true;
+}
+
+export const isOpen = () => socket?.readyState === WebSocket.OPEN;
+
+export async function getJson(path) {
+  const answer = await fetch(path);
+  if (!answer.ok) throw new Error(await answer.text());
+  return answer.json();
+}
+
+export async function post(path, body) {
+  const answer = await fetch(path, { method: "POST", body });
+  const text = await answer.text();
+  if (!answer.ok) throw new Error(text);
+  return text;
+}
+
+async function refresh() {
+  const state = await getJson("/api/state");
+  const anew = state.life !== store.state.life;
+  store.state = state;
+  if (anew) {
+    store.happenings = [];
+    store.samples = [];
+  }
+  store.samples = await getJson("/api/plots");
+  await catchUp();
+  changed("state");
+}
+
+let fetching = false;
+
+/** Fetches what happened since. */
+async function catchUp() {
+  if (fetching) return;
+  fetching = true;
+  try {
+    for (;;) {
+      const more = await getJson(`/api/happenings?from=${store.happenings.length}`);
+      if (more.length === 0) break;
+      store.happenings.push(...more);
+    }
+    changed("happenings");
+  } finally {
+    fetching = false;
+  }
+}
+
+function take(text) {
+  heard = performance.now();
+  const scene = JSON.parse(text);
+  if (scene.refused !== undefined) {
+    changed("refused", scene.refused);
+    return;
+  }
+  // What comes after an earlier moment is another match.
+  if (store.newest && scene.t < store.newest.t - 0.001) refresh().catch(() => {});
+  else if (scene.happened !== store.happenings.length) catchUp().catch(() => {});
+  store.newest = scene;
+  changed("newest", scene);
+}
+
+function connect() {
+  socket = new WebSocket(`ws://${location.host}/socket`);
+  socket.onopen = () => {
+    tries = 0;
+    heard = performance.now();
+    refresh().catch(() => {});
+    tell();
+  };
+  socket.onmessage = (event) => {
+    take(event.data);
+    // Taken: the next one may come.
+    requestAnimationFrame(() => socket?.readyState === WebSocket.OPEN && socket.send("."));
+  };
+  socket.onclose = () => {
+    socket = null;
+    tell();
+    setTimeout(connect, AGAIN[Math.min(tries++, AGAIN.length - 1)]);
+  };
+}
+
+function tell() {
+  const open = isOpen();
+  const silent = open && !store.state.recorded && store.newest && performance.now() - heard > SILENT;
+  const state = !open ? (store.newest ? "lost" : "waiting") : silent ? "lost" : "live";
+  const words = { lost: open ? "silent" : "lost", waiting: "connecting", live: store.state.recorded ? "recording" : "connected" }[state];
+  const badge = byId("connection");
+  badge.dataset.state = state;
+  say(badge, words);
+  byId("lost").hidden = state !== "lost";
+}
+
+export function startLink() {
+  connect();
+  setInterval(tell, 500);
+  // A page in the background draws no frames, and a match that stands still sends none: we are here all the same.
+  setInterval(() => isOpen() && socket.send(document.hidden ? "." : ""), 5000);
+}

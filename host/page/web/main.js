@@ -1,0 +1,104 @@
+// How does the page live? Scenes come, frames are drawn when something moved, panels follow ten times a second.
+
+import { bench } from "./bench.js";
+import { Camera } from "./camera.js";
+import { startColours } from "./colours.js";
+import { startControl, showControl } from "./control.js";
+import { byId } from "./dom.js";
+import { startDrag } from "./drag.js";
+import { drawFrame } from "./field.js";
+import { showHealth } from "./health.js";
+import { startKeys } from "./keys.js";
+import { all, setLayer, startLayers } from "./layers.js";
+import { startLink } from "./link.js";
+import { showBoard, showMatch } from "./match.js";
+import { changed, on, recall, remember, store } from "./store.js";
+import { startTimeline } from "./timeline.js";
+import { advance, startTransport, time } from "./transport.js";
+import { showWhy } from "./why.js";
+
+/** Panels follow so often, ms: nobody reads faster. */
+const PANELS_EVERY = 100;
+
+const camera = new Camera();
+const canvas = byId("field");
+let frames = 0;
+let wanted = false;
+let drawnAt = performance.now();
+let panelsAt = 0;
+
+function want() {
+  if (wanted) return;
+  wanted = true;
+  requestAnimationFrame(frame);
+}
+
+function frame(now) {
+  wanted = false;
+  const more = advance(now, Math.min(0.1, Math.max(0, now - drawnAt) / 1000));
+  drawnAt = now;
+  if (store.scene) draw();
+  if (now - panelsAt >= PANELS_EVERY) {
+    panelsAt = now;
+    changed("panels");
+  }
+  if (more) want();
+}
+
+function draw() {
+  const ratio = devicePixelRatio || 1;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (width === 0 || height === 0) return;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  camera.look(width, height, store.scene.field);
+  drawFrame(canvas.getContext("2d"), camera, ratio, store.scene, store.next, store.share);
+  frames += 1;
+}
+
+function showTab(name) {
+  store.tab = name;
+  remember("tab", name);
+  for (const button of document.querySelectorAll("#tabs button")) button.setAttribute("aria-selected", String(button.dataset.tab === name));
+  for (const tab of document.querySelectorAll(".tab")) tab.hidden = tab.id !== `tab-${name}`;
+  changed("panels");
+}
+
+let noted = 0;
+
+/** A word for a few seconds. */
+function tell(words) {
+  const note = byId("note");
+  note.textContent = words;
+  Object.assign(note.style, { display: "block", left: "50%", top: "12px" });
+  clearTimeout(noted);
+  noted = setTimeout(() => (note.style.display = "none"), 4000);
+}
+
+on("frame", want);
+on("layers", want);
+on("colours", want);
+on("chosen", () => { want(); changed("panels"); });
+on("state", () => { want(); changed("panels"); });
+on("panels", () => { showBoard(); showWhy(); showMatch(); showHealth(); showControl(); });
+on("refused", tell);
+on("told", tell);
+new ResizeObserver(want).observe(canvas);
+document.querySelectorAll("#tabs button").forEach((button) => button.addEventListener("click", () => showTab(button.dataset.tab)));
+
+startColours();
+startLayers();
+startTransport();
+startTimeline();
+startControl();
+startDrag(canvas, camera);
+startKeys(camera, showTab);
+showTab(new URLSearchParams(location.search).get("tab") ?? recall("tab", "why"));
+startLink();
+// Nothing moves while nothing comes, but clocks and the state of the link are looked at all the same.
+setInterval(() => changed("panels"), 1000);
+
+/** For tests, benches and the curious: what is shown now. */
+window.onetwo = { store, time, camera, bench, layers: all, setLayer, frames: () => frames };

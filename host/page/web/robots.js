@@ -1,0 +1,150 @@
+// How is a robot drawn? Hull with a flat front, number, velocity, where it wants to be, what it is.
+
+import { colours, faint } from "./colours.js";
+import { shows } from "./layers.js";
+import { isChosen } from "./store.js";
+
+export const lerp = (a, b, share) => [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
+
+/** The flat front stands at this half angle: 0.6 of a robot's width is its mouth's side. */
+const FRONT = 0.61;
+
+const turn = (a, b, share) => a + Math.atan2(Math.sin(b - a), Math.cos(b - a)) * share;
+
+/** Where a robot is between two scenes. */
+export function between(robot, next, share) {
+  const later = next?.robots.find((other) => other.team === robot.team && other.id === robot.id);
+  if (!later) return [robot.at, robot.heading];
+  return [lerp(robot.at, later.at, share), turn(robot.heading, later.heading, share)];
+}
+
+export function drawRobots(pen, scene, next, share) {
+  const { context, pixel } = pen;
+  const radius = Math.max(scene.field.robot_radius, 7 * pixel);
+  const paths = shows("paths", true);
+  for (const robot of scene.robots) if (paths && robot.mind) drawIntent(pen, robot, radius);
+  const velocities = shows("velocities", true);
+  for (const robot of scene.robots) {
+    const [at, heading] = between(robot, next, share);
+    if (velocities) drawVelocity(pen, robot, at, radius);
+    context.globalAlpha = robot.confidence > 0.3 ? 1 : 0.45;
+    context.fillStyle = colours[robot.team];
+    context.beginPath();
+    context.arc(at[0], at[1], radius, heading + FRONT, heading - FRONT + 2 * Math.PI);
+    context.closePath();
+    context.fill();
+    context.lineWidth = 1.2 * pixel;
+    context.strokeStyle = colours.back;
+    context.stroke();
+    if (robot.vitals?.faults.length) {
+      context.strokeStyle = colours.bad;
+      context.lineWidth = 2.5 * pixel;
+      context.setLineDash([3 * pixel, 3 * pixel]);
+      ring(context, at, radius + 4 * pixel);
+      context.setLineDash([]);
+    }
+    if (isChosen(robot)) {
+      context.strokeStyle = colours.accent;
+      context.lineWidth = 2.5 * pixel;
+      ring(context, at, radius + 3.5 * pixel);
+    }
+    context.globalAlpha = 1;
+  }
+  drawWords(pen, scene, next, share, radius);
+}
+
+function drawIntent({ context, pixel }, robot, radius) {
+  const { path, ball_to: target } = robot.mind.intent;
+  if (path.length > 1) {
+    context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.8);
+    context.lineWidth = (isChosen(robot) ? 2.4 : 1.4) * pixel;
+    context.setLineDash([6 * pixel, 4 * pixel]);
+    context.beginPath();
+    context.moveTo(path[0][0], path[0][1]);
+    for (const [x, y] of path.slice(1)) context.lineTo(x, y);
+    context.stroke();
+    context.setLineDash([]);
+    ring(context, path[path.length - 1], radius * 0.45);
+  }
+  if (target) {
+    const [x, y] = target;
+    const r = 6 * pixel;
+    context.strokeStyle = colours.ball;
+    context.lineWidth = 1.4 * pixel;
+    context.setLineDash([2 * pixel, 4 * pixel]);
+    context.beginPath();
+    context.moveTo(robot.at[0], robot.at[1]);
+    context.lineTo(x, y);
+    context.stroke();
+    context.setLineDash([]);
+    context.beginPath();
+    context.moveTo(x - r, y);
+    context.lineTo(x, y + r);
+    context.lineTo(x + r, y);
+    context.lineTo(x, y - r);
+    context.closePath();
+    context.stroke();
+  }
+}
+
+function drawVelocity({ context, pixel }, robot, at, radius) {
+  const [vx, vy] = robot.velocity;
+  const speed = Math.hypot(vx, vy);
+  if (speed < 0.1) return;
+  // As far as it goes in a quarter of a second, from its hull on.
+  const [ux, uy] = [vx / speed, vy / speed];
+  const [from, to] = [radius, radius + speed * 0.25];
+  const [x, y] = [at[0] + ux * to, at[1] + uy * to];
+  const head = 4.5 * pixel;
+  context.strokeStyle = colours[robot.team];
+  context.lineWidth = 1.8 * pixel;
+  context.beginPath();
+  context.moveTo(at[0] + ux * from, at[1] + uy * from);
+  context.lineTo(x, y);
+  context.moveTo(x - head * (ux - uy), y - head * (uy + ux));
+  context.lineTo(x, y);
+  context.lineTo(x - head * (ux + uy), y - head * (uy - ux));
+  context.stroke();
+}
+
+function drawWords({ context, camera, ratio }, scene, next, share, radius) {
+  // Letters stand upright whichever way the field lies: in pixels.
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  const size = Math.max(9, Math.min(22, radius * camera.scale * 1.15));
+  context.font = `700 ${size}px system-ui, "DejaVu Sans", sans-serif`;
+  const roles = shows("roles", true) && camera.scale > 40;
+  const spots = scene.robots.map((robot) => camera.to(between(robot, next, share)[0]));
+  scene.robots.forEach((robot, i) => {
+    context.fillStyle = colours[`${robot.team}-ink`];
+    context.fillText(robot.id, spots[i][0], spots[i][1] + size * 0.04);
+  });
+  if (roles) {
+    context.font = `500 11px system-ui, "DejaVu Sans", sans-serif`;
+    context.fillStyle = colours.text;
+    context.strokeStyle = faint("back", 0.75);
+    context.lineWidth = 3;
+    context.lineJoin = "round";
+    scene.robots.forEach((robot, i) => {
+      if (!robot.mind) return;
+      const words = label(robot.mind);
+      const y = spots[i][1] + radius * camera.scale + 9;
+      context.strokeText(words, spots[i][0], y);
+      context.fillText(words, spots[i][0], y);
+    });
+  }
+  const m = camera.matrix().map((x) => x * ratio);
+  context.setTransform(m[0], m[1], m[2], m[3], m[4], m[5]);
+}
+
+/** What people read under a robot: its role, and the state where a case binds it. */
+export function label(mind) {
+  return mind.part ? `${mind.role} · ${mind.state}` : mind.role;
+}
+
+function ring(context, at, radius) {
+  context.beginPath();
+  context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
+  context.stroke();
+}

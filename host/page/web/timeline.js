@@ -1,0 +1,116 @@
+// What happened when? A row for each kind of happening under the ruler; a click goes there.
+
+import { colours, faint } from "./colours.js";
+import { byId, clock } from "./dom.js";
+import { on, store } from "./store.js";
+import { seek, span, time } from "./transport.js";
+
+/** Rows from above, and the kinds in each. */
+const ROWS = [["referee", ["command", "stage", "event"]], ["fouls", ["foul", "fault"]], ["cases", ["case", "cycle"]], ["ball", ["kick"]]];
+const LEFT = 52;
+
+let drawn = "";
+
+const x = (t, width) => LEFT + ((t - span()[0]) / Math.max(1, span()[1] - span()[0])) * (width - LEFT - 8);
+
+export function tone(happening) {
+  if (happening.kind === "goal") return colours.ball;
+  if (happening.kind === "foul" || happening.kind === "fault") return colours.forbidden;
+  if (happening.kind === "case") return colours.case;
+  return happening.team ? colours[happening.team] : colours.plain;
+}
+
+export function drawTimeline(force = false) {
+  const canvas = byId("timeline");
+  const ratio = devicePixelRatio || 1;
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  if (width === 0) return;
+  const key = [width, height, ratio, store.happenings.length, store.marks.length, Math.round(x(time.at, width) * 2), Math.round(span()[1])].join();
+  if (!force && key === drawn) return;
+  drawn = key;
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+    canvas.width = Math.round(width * ratio);
+    canvas.height = Math.round(height * ratio);
+  }
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  ruler(context, width, height);
+  const step = (height - 15) / ROWS.length;
+  context.font = `10px system-ui, "DejaVu Sans", sans-serif`;
+  context.textBaseline = "middle";
+  ROWS.forEach(([name, kinds], row) => {
+    const y = 14 + row * step;
+    context.textAlign = "left";
+    if (step > 9) {
+      context.fillStyle = colours.dim;
+      context.fillText(name, 2, y + step / 2);
+    }
+    context.fillStyle = faint("plain", 0.07);
+    context.fillRect(LEFT, y + 1, width - LEFT - 8, step - 2);
+    for (const happening of store.happenings) {
+      if (!kinds.includes(happening.kind)) continue;
+      context.fillStyle = tone(happening);
+      context.globalAlpha = happening.kind === "cycle" ? 0.45 : 1;
+      // Yellow stands in the lower half of a row, blue in the upper one.
+      const half = happening.team ? step / 2 - 1.5 : step - 3;
+      const top = y + 1.5 + (happening.team === "yellow" ? step / 2 : 0);
+      context.fillRect(x(happening.t, width) - 1, top, happening.kind === "cycle" ? 1 : 2.2, half);
+    }
+    context.globalAlpha = 1;
+  });
+  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), height, colours.ball, "goal");
+  for (const mark of store.marks) flag(context, x(mark.t, width), height, colours.accent, "");
+  context.fillStyle = colours.text;
+  context.fillRect(x(time.at, width) - 1, 0, 2, height);
+}
+
+function ruler(context, width) {
+  const [first, last] = span();
+  const room = (last - first) / Math.max(1, (width - LEFT) / 70);
+  const step = [1, 2, 5, 10, 30, 60, 120, 300, 600].find((s) => s >= room) ?? 1200;
+  context.fillStyle = colours.dim;
+  context.font = `10px system-ui, "DejaVu Sans", sans-serif`;
+  context.textAlign = "center";
+  context.textBaseline = "top";
+  for (let t = Math.ceil(first / step) * step; t <= last; t += step) context.fillText(clock(t, 0), x(t, width), 1);
+}
+
+function flag(context, at, height, colour, words) {
+  context.fillStyle = colour;
+  context.fillRect(at - 1, 12, 2, height - 12);
+  context.beginPath();
+  context.moveTo(at, 11);
+  context.lineTo(at + 9, 15);
+  context.lineTo(at, 19);
+  context.fill();
+  if (words) {
+    context.textAlign = "left";
+    context.textBaseline = "top";
+    context.font = `600 10px system-ui, "DejaVu Sans", sans-serif`;
+    context.fillText(words, at + 11, 10);
+  }
+}
+
+export function startTimeline() {
+  const canvas = byId("timeline");
+  const to = (event) => {
+    const box = canvas.getBoundingClientRect();
+    const share = (event.clientX - box.left - LEFT) / Math.max(1, box.width - LEFT - 8);
+    const [first, last] = span();
+    seek(first + Math.min(1, Math.max(0, share)) * (last - first));
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    to(event);
+  });
+  canvas.addEventListener("pointermove", (event) => event.buttons && to(event));
+  canvas.addEventListener("mousemove", (event) => {
+    const width = canvas.clientWidth;
+    const near = store.happenings.filter((h) => Math.abs(x(h.t, width) - event.offsetX) < 4).slice(-3);
+    canvas.title = near.map((h) => `${clock(h.t)}  ${h.words}`).join("\n");
+  });
+  on("happenings", () => drawTimeline(true));
+  on("colours", () => drawTimeline(true));
+  on("panels", () => drawTimeline());
+}

@@ -1,0 +1,192 @@
+// Which moment is shown? The newest one, or any that was kept; with speed, bookmarks and an address for each moment.
+
+import { byId, clock, el, fill, say } from "./dom.js";
+import { ask, getJson, post } from "./link.js";
+import { changed, on, recall, remember, store } from "./store.js";
+
+/** Seconds that were fetched, by number: a list of scenes each, or a promise of one. */
+const seconds = new Map();
+const SECONDS_MAX = 120;
+
+export const time = { live: true, playing: true, at: 0, pace: 1 };
+
+let before = null;
+let arrived = 0;
+let interval = 40;
+
+on("newest", (scene) => {
+  const now = performance.now();
+  if (before) interval = Math.min(200, Math.max(10, 0.8 * interval + 0.2 * (now - arrived)));
+  arrived = now;
+  before = store.latest ?? scene;
+  store.latest = scene;
+  seconds.delete(Math.floor(scene.t));
+  changed("frame");
+});
+
+on("state", () => {
+  seconds.clear();
+  if (store.state.recorded && time.live && store.state.span) {
+    time.live = false;
+    time.at = store.state.span[0];
+    time.playing = true;
+  }
+});
+
+export const span = () => {
+  const kept = store.state.span ?? [0, 0];
+  return [kept[0], Math.max(kept[1], store.latest?.t ?? 0)];
+};
+
+async function load(second) {
+  const [first, last] = span();
+  if (seconds.has(second) || second < Math.floor(first) || second > Math.floor(last)) return;
+  if (seconds.size > SECONDS_MAX) seconds.delete(seconds.keys().next().value);
+  seconds.set(second, null);
+  try {
+    seconds.set(second, await getJson(`/api/second/${second}`));
+  } catch {
+    seconds.set(second, []);
+  }
+  changed("frame");
+}
+
+/** The scenes around a moment: the one by then, the next, and the share of the way. */
+function around(t) {
+  const second = Math.floor(t);
+  load(second);
+  if (t - second > 0.5) load(second + 1);
+  const list = [...(seconds.get(second - 1) ?? []).slice(-1), ...(seconds.get(second) ?? []), ...(seconds.get(second + 1) ?? []).slice(0, 1)];
+  if (list.length === 0) return null;
+  let i = list.findIndex((scene) => scene.t > t + 1e-6);
+  i = i < 0 ? list.length - 1 : Math.max(0, i - 1);
+  const [scene, next] = [list[i], list[i + 1] ?? null];
+  const share = next ? Math.min(1, Math.max(0, (t - scene.t) / (next.t - scene.t))) : 0;
+  return [scene, next, share];
+}
+
+/** Brings `store.scene` to the moment; true where there is more to draw in the next frame. */
+export function advance(now, passed) {
+  if (time.live) {
+    if (!store.latest) return false;
+    const share = Math.min(1, (now - arrived) / interval);
+    [store.scene, store.next, store.share] = [before, store.latest, share];
+    time.at = store.latest.t;
+    return share < 1;
+  }
+  const [first, last] = span();
+  if (time.playing) {
+    // What is still on its way is waited for.
+    const ready = seconds.get(Math.floor(time.at));
+    if (ready) time.at = Math.min(last, time.at + passed * time.pace);
+    if (time.at >= last && store.state.recorded) time.playing = false;
+    if (time.at >= last && !store.state.recorded) goLive();
+  }
+  time.at = Math.max(first, time.at);
+  const found = around(time.at);
+  if (found) [store.scene, store.next, store.share] = found;
+  return time.playing;
+}
+
+export function seek(t, play = time.playing) {
+  const [first, last] = span();
+  time.live = false;
+  time.playing = play;
+  time.at = Math.min(last, Math.max(first, t));
+  address();
+  changed("frame");
+  changed("panels");
+}
+
+export function goLive() {
+  if (store.state.recorded) return seek(span()[1], false);
+  time.live = true;
+  time.playing = true;
+  history.replaceState(null, "", location.pathname + location.search);
+  changed("frame");
+}
+
+/** Space: a simulation stands still for everybody, what was kept for this viewer alone. */
+export function toggle() {
+  if (time.live) {
+    if (store.state.powers === "simulation") ask({ ask: "pause", on: !store.latest?.paused });
+    else seek(time.at, false);
+  } else {
+    if (!time.playing && time.at >= span()[1] - 0.01) time.at = span()[0];
+    time.playing = !time.playing;
+    address();
+    changed("frame");
+  }
+}
+
+function address() {
+  history.replaceState(null, "", `${location.pathname}${location.search}#t=${time.at.toFixed(2)}`);
+}
+
+/** To the happening before or after this moment. */
+export function jump(direction, only = null) {
+  const list = [...store.happenings, ...store.marks].filter((h) => !only || h.kind === only).map((h) => h.t).sort((a, b) => a - b);
+  const to = direction > 0 ? list.find((t) => t > time.at + 0.05) : list.findLast((t) => t < time.at - 0.6);
+  if (to !== undefined) seek(to);
+}
+
+export function mark() {
+  store.marks = [...store.marks, { t: time.at, words: `mark ${store.marks.length + 1}`, kind: "mark" }];
+  remember(`marks.${store.state.title}`, store.marks);
+  changed("happenings");
+}
+
+async function freeze(choice) {
+  const [what, team] = choice.split(" ");
+  try {
+    const text = await post("/api/freeze", JSON.stringify({ t: time.at, team, what }));
+    const name = `${what}-${team}-${time.at.toFixed(2)}.${what === "case" ? "toml" : "json"}`;
+    const link = el("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
+    link.click();
+    URL.revokeObjectURL(link.href);
+    changed("told", `${name} is saved`);
+  } catch (error) {
+    changed("refused", error.message);
+  }
+}
+
+function show() {
+  const paused = time.live ? Boolean(store.latest?.paused) : !time.playing;
+  say(byId("play"), paused ? "▶" : "❚❚");
+  byId("live").classList.toggle("on", time.live);
+  byId("live").hidden = store.state.recorded;
+  byId("pace").disabled = time.live;
+  const words = [clock(time.at), ` of ${clock(span()[1], 0)}`];
+  fill(byId("clock"), words.join(), () => [document.createTextNode(words[0]), el("small", {}, words[1])]);
+}
+
+export function startTransport() {
+  const asked = /(?:^|[#&])t=([\d.]+)/.exec(location.hash);
+  if (asked) [time.live, time.playing, time.at] = [false, false, Number(asked[1])];
+  const press = (id, action) => byId(id).addEventListener("click", action);
+  press("play", toggle);
+  press("live", goLive);
+  press("before", () => jump(-1));
+  press("after", () => jump(1));
+  press("mark", mark);
+  press("link", async () => {
+    address();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      changed("told", "the address of this moment is copied");
+    } catch {
+      changed("told", location.href);
+    }
+  });
+  byId("pace").addEventListener("change", (event) => (time.pace = Number(event.target.value)));
+  byId("freeze").addEventListener("change", (event) => {
+    if (event.target.value) freeze(event.target.value);
+    event.target.value = "";
+  });
+  addEventListener("hashchange", () => {
+    const moment = /t=([\d.]+)/.exec(location.hash);
+    if (moment) seek(Number(moment[1]), false);
+  });
+  on("state", () => (store.marks = recall(`marks.${store.state.title}`, [])));
+  on("panels", show);
+}

@@ -1,0 +1,60 @@
+// What is every robot thinking? Its role, what it is told and why, the state of its case; and each team's cycle.
+
+import { byId, el, fill, number } from "./dom.js";
+import { explainHappening, explainNow } from "./explain.js";
+import { choose, isChosen, store } from "./store.js";
+
+export function showWhy() {
+  const tab = byId("tab-why");
+  const scene = store.scene;
+  if (tab.hidden || !scene) return;
+  const minds = scene.robots.filter((robot) => robot.mind);
+  const key = JSON.stringify([minds.map((r) => [r.team, r.id, r.mind.role, r.mind.directive, r.mind.why, r.mind.state, r.mind.step,
+    r.mind.part, r.mind.reactive, isChosen(r) && r.mind.timers.map((t) => t.seconds.toFixed(1))]), scene.cycles.map((c) => [c.team, c.number, c.state, c.case, c.coordinator]), store.state.life]);
+  const top = tab.scrollTop;
+  const anew = fill(tab, key, () => {
+    if (minds.length === 0) return el("p", { class: "muted" }, "Nobody here tells what it thinks: no host of ours is at work, or its robots are not seen yet.");
+    return ["blue", "yellow"].flatMap((team) => teamPart(scene, team, minds.filter((robot) => robot.team === team)));
+  });
+  if (anew) tab.scrollTop = top;
+  for (const cycle of scene.cycles) {
+    const slot = tab.querySelector(`[data-cycle="${cycle.team}"]`);
+    if (slot) slot.textContent = `${number(cycle.seconds)} s`;
+  }
+}
+
+function teamPart(scene, team, robots) {
+  if (robots.length === 0) return [];
+  const cycle = scene.cycles.find((one) => one.team === team);
+  return [
+    el("h2", {}, el("span", { class: `chip ${team}` }, team), el("button", { onclick: () => explainNow(team), "data-explain": team, title: "Which case would fit this moment, and why" }, "Explain this moment")),
+    cycle ? cycleBox(cycle) : null,
+    ...robots.map(card),
+  ];
+}
+
+function cycleBox(cycle) {
+  const last = store.happenings.findLast((h) => h.kind === "case" && h.team === cycle.team && h.t <= store.scene.t + 0.05);
+  const words = cycle.case ? `${cycle.case}${cycle.symmetry && cycle.symmetry !== "identity" ? ` · ${cycle.symmetry}` : ""}` : "no case";
+  return el("div", { class: "cycle" },
+    el("div", { class: "name" }, words),
+    cycle.meant ? el("div", { class: "muted" }, cycle.meant) : null,
+    el("div", { class: "row" },
+      el("span", {}, cycle.state), el("span", { class: "muted", "data-cycle": cycle.team }, ""),
+      el("span", { class: "muted" }, `cycle ${cycle.number}, led by ${cycle.coordinator}`)),
+    el("div", { class: "row" },
+      ...cycle.players.map((id, i) => el("span", { class: `chip ${cycle.team}`, title: `case robot ${i + 1}` }, String(id))),
+      cycle.case && last?.problem ? el("button", { onclick: () => explainHappening(last), "data-retrieval": cycle.team }, "Why this case?") : null));
+}
+
+function card(robot) {
+  const { mind } = robot;
+  const chosen = isChosen(robot);
+  const state = mind.part ? `${mind.state}${mind.step ? `, ${mind.step}` : ""}` : mind.reactive;
+  return el("div", { class: `card ${robot.team}${chosen ? " chosen" : ""}`, "data-robot": `${robot.team}${robot.id}`, onclick: () => choose(robot.team, robot.id) },
+    el("div", { class: "top" }, el("b", {}, String(robot.id)), el("span", {}, mind.role), el("span", { class: "state" }, state)),
+    el("p", {}, mind.directive),
+    mind.why ? el("p", { class: "why" }, mind.why) : null,
+    mind.part ? el("p", { class: "why" }, mind.part) : null,
+    chosen && mind.timers.length ? el("p", { class: "why" }, mind.timers.map((timer) => `${timer.name} ${number(timer.seconds)} s`).join(" · ")) : null);
+}
