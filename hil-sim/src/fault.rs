@@ -45,6 +45,8 @@ pub(crate) fn flipped(order: ActuatorFrame, bit: u8) -> ActuatorFrame {
             let [a, b, c] = others;
             ActuatorFrame::Omni { wheels: [flip(first), a, b, c], dribbler, kick }
         }
+        // No number, no bit.
+        ActuatorFrame::Released => order,
     }
 }
 

@@ -219,8 +219,9 @@ impl<'a> Frame<'a> {
     /// Writes the frame; gives its length, or `None` if `out` is too short for it.
     pub fn emit(&self, key: &TeamKey, out: &mut [u8]) -> Option<usize> {
         let covered = HEADER_LEN + self.payload.len();
-        let out = out.get_mut(..covered + TAG_LEN)?;
-        let (head, rest) = out.split_first_chunk_mut::<HEADER_LEN>()?;
+        let (covered, rest) = out.split_at_mut_checked(covered)?;
+        let tag = rest.first_chunk_mut::<TAG_LEN>()?;
+        let (head, rest) = covered.split_first_chunk_mut::<HEADER_LEN>()?;
         let (epoch, counter) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
         *head = [
             VERSION,
@@ -236,7 +237,6 @@ impl<'a> Frame<'a> {
             counter[3],
         ];
         rest.get_mut(..self.payload.len())?.copy_from_slice(self.payload);
-        let (covered, tag) = out.split_last_chunk_mut::<TAG_LEN>()?;
         *tag = key.tag(covered);
         Some(covered.len() + TAG_LEN)
     }

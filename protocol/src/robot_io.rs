@@ -71,6 +71,9 @@ pub enum ActuatorFrame {
         /// What the kicker shall do.
         kick: OmniKick,
     },
+    /// A robot on wheels that stands and that nobody commands: no current in the motors, dribbler off, kicker discharged
+    /// (DESIGN §6).
+    Released,
 }
 
 /// A short motion of the whole body of a walking robot.

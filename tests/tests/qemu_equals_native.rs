@@ -155,7 +155,8 @@ fn paper() -> impl Iterator<Item = (Scenario, Configuration)> {
 
 /// The image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
-    firmware_build::build_image(&firmware_build::workspace_root()).unwrap_or_else(|error| panic!("{error}"))
+    let root = firmware_build::workspace_root();
+    firmware_build::build_image(&root, firmware_build::Body::Legged).unwrap_or_else(|error| panic!("{error}"))
 });
 
 /// A folder with some files of the built-in library; gone with this value.

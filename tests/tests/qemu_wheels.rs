@@ -220,5 +220,6 @@ fn theirs(number: u8) -> Who {
 
 /// The image, built where it is missing or old.
 static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
-    firmware_build::build_image(&firmware_build::workspace_root()).unwrap_or_else(|error| panic!("{error}"))
+    let root = firmware_build::workspace_root();
+    firmware_build::build_image(&root, firmware_build::Body::Omni).unwrap_or_else(|error| panic!("{error}"))
 });

@@ -91,6 +91,8 @@ pub(crate) enum Failure {
     Browser,
     /// The firmware image cannot be made.
     Image(BuildError),
+    /// An image is too large, or may panic where it must not.
+    Firmware(Vec<String>),
     /// Something costs more than DESIGN §9 allows.
     Budget(String),
     /// The same trial gave different traces, or none.
@@ -111,6 +113,10 @@ impl fmt::Display for Failure {
                 "no Chromium is found: install it (Debian: apt-get install chromium), or name one in ONETWO_BROWSER",
             ),
             Self::Image(error) => error.fmt(f),
+            Self::Firmware(faults) => {
+                write!(f, "the firmware")?;
+                faults.iter().try_for_each(|fault| write!(f, "\n  {fault}"))
+            }
             Self::Budget(what) => write!(f, "over the budget: {what}"),
             Self::Determinism(trials) => {
                 write!(f, "{} trials differ or fail", trials.len())?;

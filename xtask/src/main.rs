@@ -7,6 +7,7 @@ mod bench;
 mod context;
 mod determinism;
 mod evaluation;
+mod images;
 mod page;
 mod pictures;
 mod readme;

@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{determinism, page, readme};
+use crate::{determinism, images, page, readme};
 
 /// One thing that is checked.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ pub(crate) const STEPS: [Step; 12] = [
     Step { name: "thumb", what: "the robot's crates build for its processor", run: thumb },
     Step { name: "clippy-thumb", what: "the linter has no warning, on the robot's side", run: clippy_thumb },
     Step { name: "doc-thumb", what: "the boards' documentation builds likewise", run: doc_thumb },
-    Step { name: "image", what: "the firmware image for QEMU links, without an allocator", run: image },
+    Step { name: "image", what: images::WHAT, run: images::check },
     Step { name: "qemu", what: "the tests that run the image on QEMU pass", run: qemu },
     Step { name: "determinism", what: determinism::WHAT, run: determinism::run },
     Step { name: "page", what: page::WHAT, run: page::check },
@@ -75,16 +75,8 @@ fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)
 }
 
-fn image(context: &Context) -> Result<(), Failure> {
-    // First in the more generous way: `build_image` itself installs nothing system-wide.
-    context.ensure_target()?;
-    let image = firmware_build::build_image(context.root()).map_err(Failure::Image)?;
-    println!("xtask: the image is {}", image.display());
-    Ok(())
-}
-
 fn qemu(context: &Context) -> Result<(), Failure> {
-    image(context)?;
+    images::check(context)?;
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
     let line = "test --release --no-fail-fast --features match-tests/qemu --test qemu_*";
     run(&mut context.cargo(line))

@@ -6,7 +6,7 @@
 
 pub mod shown;
 
-use geometry::{Field, GoalEnd, Point, Pose, Vector};
+use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
 use protocol::host::Duty;
 use protocol::robot_io::{OPPONENTS_MAX, SensorFrame};
@@ -174,8 +174,9 @@ impl Belief {
         self.busy = sensors.busy;
         self.opponents.clear();
         // Same capacity: every finite one fits.
-        let seen = sensors.opponents.iter().filter(|p| p.is_finite());
-        self.opponents.extend(seen.copied());
+        for seen in sensors.opponents.iter().filter(|p| p.is_finite()) {
+            let _room = self.opponents.push(*seen);
+        }
         if let Some(ball) = sensors.ball.filter(|b| b.position.is_finite()) {
             self.see(now - ball.age, ball.position, ball.sigma);
         }
@@ -236,7 +237,7 @@ impl Belief {
         let first = self.opponents.iter().filter(|o| stops(o)).map(|o| way.share_of(*o)).reduce(f32::min);
         if let Some(share) = first {
             let length = way.vector().norm();
-            let free = (share * length - within).clamp(0.0, length);
+            let free = math::clamp(share * length - within, 0.0, length);
             ball.rest = ball.position + way.vector() * (free / length.max(f32::MIN_POSITIVE));
         }
         Some(ball)

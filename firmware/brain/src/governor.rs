@@ -7,10 +7,11 @@
 //! | STOP | 1.3 m/s, the rules' 1.5 less the noise of wheels |
 //! | a kick that is too fast, or that the phase does not allow | a kick of 6.3 m/s (7.8 in 2013), or none |
 //!
-//! Motors are never released: a robot that nobody commands holds its place at zero speed. A robot that expects no host
-//! (`BrainConfig::hosted`) is held to everything but the host's silence. Body frame, SI.
+//! Motors are released only by a robot that stands: after half a second without command (host silent), tipped or with an empty
+//! battery ([`Governor::has_let_go`]). Pushed then, it brakes again; told to go, it goes. In HALT it holds its place. A robot
+//! that expects no host (`BrainConfig::hosted`) is held to everything but the host's silence. Body frame, SI.
 
-use geometry::{Body, Twist, Vector};
+use geometry::{Body, Twist, Vector, math};
 use protocol::robot_io::{Health, OmniKick};
 use protocol::{Duration, Instant};
 use rules::{League, Phase, Side};
@@ -108,6 +109,11 @@ impl Reasons {
         self.0 == 0
     }
 
+    /// Whether any of `these` is one of them.
+    fn has_any(self, these: &[Why]) -> bool {
+        these.iter().any(|why| self.has(*why))
+    }
+
     fn add_if(&mut self, holds: bool, why: Why) {
         if holds {
             self.0 |= why as u16;
@@ -139,6 +145,9 @@ pub struct Governor {
     /// A silence (or a boot) that good hearing has not made up for yet.
     disarmed: bool,
     low_since: Option<Instant>,
+    /// Since when it has stood still with nobody to command it.
+    left_since: Option<Instant>,
+    let_go: bool,
 }
 
 impl Governor {
@@ -152,6 +161,8 @@ impl Governor {
             last_frame: None,
             disarmed: true,
             low_since: None,
+            left_since: None,
+            let_go: false,
         }
     }
 
@@ -175,7 +186,15 @@ impl Governor {
             (self.braked(at, step), Ruling::Braking(braking))
         };
         self.last = given.twist;
+        let left = braking.has_any(&LETS_GO) && given.twist == Twist::default() && stands(at.odometry);
+        self.left_since = if left { Some(self.left_since.unwrap_or(at.now)) } else { None };
+        self.let_go = self.left_since.is_some_and(|since| at.now.since(since) >= LET_GO_AFTER);
         (given, ruling)
+    }
+
+    /// Whether the motors may be without current: it stands, and nobody commands it.
+    pub fn has_let_go(&self) -> bool {
+        self.let_go
     }
 
     /// What it let through last.
@@ -214,7 +233,7 @@ impl Governor {
         });
         let angular = measured.map_or(self.last.angular, |twist| {
             let limit = self.last.angular.abs();
-            twist.angular.clamp(-limit, limit)
+            math::clamp(twist.angular, -limit, limit)
         });
         let speed = (linear.norm() - BRAKE * step).max(0.0);
         let turn = BRAKE_TURN * step;
@@ -289,6 +308,11 @@ fn is_finite(twist: Twist<Body>) -> bool {
     twist.linear.is_finite() && twist.angular.is_finite()
 }
 
+/// As far as wheels and gyroscope can tell; not where they say something that is no number.
+fn stands(odometry: Twist<Body>) -> bool {
+    odometry.linear.norm() < STANDS && odometry.angular.abs() < STANDS_TURN
+}
+
 fn is_kick(kick: OmniKick) -> bool {
     match kick {
         OmniKick::Flat(speed) | OmniKick::Chip(speed) => speed.is_finite(),
@@ -318,6 +342,13 @@ const SPINNING: f32 = 30.0;
 const BATTERY_LOW: f32 = 14.0;
 /// For so long: a voltage sinks for a moment when the motors pull.
 const LOW_FOR: Duration = Duration::millis(1000);
+/// Reasons to brake that may last: nobody commands, or it cannot go on.
+const LETS_GO: [Why; 3] = [Why::Silence, Why::Tipped, Why::Battery];
+/// It has stood for so long when its motors are released: ten times the host's shortest silence that counts.
+const LET_GO_AFTER: Duration = Duration::millis(500);
+/// Slower than this it stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
+const STANDS: f32 = 0.05;
+const STANDS_TURN: f32 = 0.2;
 /// No step is longer: after a gap a robot brakes as in one of these.
 const STEP_MAX: Duration = Duration::millis(50);
 

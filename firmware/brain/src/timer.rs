@@ -33,6 +33,8 @@ impl Timer {
 #[derive(Clone, Debug, Default)]
 pub struct TimerTable {
     slots: [Slot; Timer::COUNT],
+    /// The first deadline of those that run: asked for after every packet, changed far more rarely.
+    first: Option<Instant>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +48,7 @@ enum Slot {
 impl TimerTable {
     /// Starts `timer` anew.
     pub fn set(&mut self, timer: Timer, deadline: Instant) {
-        self.slots[timer as usize] = Slot::Running(deadline);
+        self.put(timer, Slot::Running(deadline));
     }
 
     /// Starts `timer` unless it runs or has fired already.
@@ -58,7 +60,7 @@ impl TimerTable {
 
     /// Makes `timer` idle.
     pub fn clear(&mut self, timer: Timer) {
-        self.slots[timer as usize] = Slot::Idle;
+        self.put(timer, Slot::Idle);
     }
 
     /// Whether its deadline has come since it was set.
@@ -73,22 +75,35 @@ impl TimerTable {
 
     /// Fires what is due.
     pub fn advance(&mut self, now: Instant) {
+        if self.first.is_none_or(|first| first > now) {
+            return;
+        }
         for slot in &mut self.slots {
             if matches!(slot, Slot::Running(deadline) if *deadline <= now) {
                 *slot = Slot::Fired;
             }
         }
+        self.find_first();
     }
 
     /// The next deadline, if any timer runs.
     pub fn next(&self) -> Option<Instant> {
-        self.slots
-            .iter()
-            .filter_map(|slot| match slot {
-                Slot::Running(deadline) => Some(*deadline),
-                _ => None,
-            })
-            .min()
+        self.first
+    }
+
+    fn put(&mut self, timer: Timer, slot: Slot) {
+        let before = core::mem::replace(&mut self.slots[timer as usize], slot);
+        if before != slot {
+            self.find_first();
+        }
+    }
+
+    fn find_first(&mut self) {
+        let running = self.slots.iter().filter_map(|slot| match slot {
+            Slot::Running(deadline) => Some(*deadline),
+            Slot::Idle | Slot::Fired => None,
+        });
+        self.first = running.min();
     }
 }
 
@@ -107,6 +122,30 @@ mod tests {
         assert_eq!(timers.next(), Some(Instant(20)));
         timers.clear(Timer::Boot);
         assert!(timers.is_idle(Timer::Boot));
+    }
+
+    #[test]
+    fn the_next_deadline_is_the_least_of_those_that_run_whatever_was_done() {
+        const ALL: [Timer; 4] = [Timer::Boot, Timer::Retry, Timer::Action, Timer::OpponentHolds];
+        let (mut timers, mut state, mut now) = (TimerTable::default(), 9_u64, 0);
+        for _ in 0..10_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (timer, time) = (ALL[(state >> 60) as usize & 3], (state >> 40) & 63);
+            match (state >> 57) & 3 {
+                0 => timers.set(timer, Instant(now + time)),
+                1 => timers.set_if_idle(timer, Instant(now), Duration(time)),
+                2 => timers.clear(timer),
+                _ => {
+                    now += time / 8;
+                    timers.advance(Instant(now));
+                }
+            }
+            let running = timers.slots.iter().filter_map(|slot| match slot {
+                Slot::Running(deadline) => Some(*deadline),
+                _ => None,
+            });
+            assert_eq!(timers.next(), running.min());
+        }
     }
 
     #[test]

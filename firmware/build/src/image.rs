@@ -12,11 +12,11 @@ use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
 use crate::{Install, TARGET, TargetError, ensure_target};
 
-/// The robot's image for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
+/// The image of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
 ///
 /// Where the sources or cargo are gone (an installed program), an image that is already there will do.
-pub fn build_image(root: &Path) -> Result<PathBuf, BuildError> {
-    build_program(root, Program::Robot)
+pub fn build_image(root: &Path, body: Body) -> Result<PathBuf, BuildError> {
+    build_program(root, Program::Robot(body))
 }
 
 /// As [`build_image`], for any program of the board.
@@ -34,6 +34,9 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     build
         .args(["--package", PACKAGE, "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
         .arg(target_dir);
+    if let Program::Robot(body) = program {
+        build.args(["--no-default-features", "--features", body.word()]);
+    }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
@@ -41,8 +44,8 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
 /// What can be built for the emulated board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
-    /// A whole robot: the brain, its library and its tasks.
-    Robot,
+    /// A whole robot: the brain for its body, its library and its tasks.
+    Robot(Body),
     /// Ends well where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Counts the instructions of retrievals.
@@ -57,11 +60,34 @@ impl Program {
     /// The name of the binary.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Robot => "onetwo-mps2",
+            Self::Robot(Body::Legged) => "onetwo-mps2-legged",
+            Self::Robot(Body::Omni) => "onetwo-mps2-omni",
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",
             Self::RadioBench => "radio-bench",
+        }
+    }
+}
+
+/// Whose brain an image carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Body {
+    /// A robot on four legs.
+    Legged,
+    /// A robot on omnidirectional wheels.
+    Omni,
+}
+
+impl Body {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
+
+    /// Its word in options, which is the feature's name.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Legged => "legged",
+            Self::Omni => "omni",
         }
     }
 }
@@ -180,10 +206,12 @@ mod tests {
     use super::*;
     use std::fs;
 
+    const ROBOT: Program = Program::Robot(Body::Omni);
+
     #[test]
     fn the_board_is_where_we_look_for_it() {
         let manifest = fs::read_to_string(crate::workspace_root().join(MANIFEST)).unwrap();
-        for name in [PACKAGE, Program::Robot.name(), Program::MathHash.name()] {
+        for name in [PACKAGE, ROBOT.name(), Program::Robot(Body::Legged).name(), Program::MathHash.name()] {
             assert!(manifest.contains(&format!("name = \"{name}\"")), "{name}");
         }
         let workspace = fs::read_to_string(crate::workspace_root().join("Cargo.toml")).unwrap();
@@ -194,13 +222,13 @@ mod tests {
     fn without_sources_an_image_that_is_there_will_do() {
         let root = env::temp_dir().join(format!("onetwo-no-sources-{}", std::process::id()));
         let target = root.join("target");
-        let Err(error) = build_into(&target, &root, Program::Robot) else { panic!("built from nothing") };
+        let Err(error) = build_into(&target, &root, ROBOT) else { panic!("built from nothing") };
         let BuildError::NothingToBuild { image, .. } = &error else { panic!("{error}") };
         let (image, error) = (image.clone(), error.to_string());
         assert!(error.contains("its sources are not here") && error.contains("install rustup"), "{error}");
         fs::create_dir_all(image.parent().unwrap()).unwrap();
         fs::write(&image, b"an image").unwrap();
-        assert_eq!(build_into(&target, &root, Program::Robot).unwrap(), image);
+        assert_eq!(build_into(&target, &root, ROBOT).unwrap(), image);
         fs::remove_dir_all(&root).unwrap();
     }
 

@@ -7,18 +7,21 @@
 //! * [`ensure_qemu`]: where is the emulator?
 //! * [`build_image`]: give me the image, fresh.
 //!
+//! [`inspect`] looks into an image: sizes, budgets, places that can panic.
+//!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
 //! done that takes time is told on stderr.
 
 mod debian;
 mod image;
+pub mod inspect;
 mod process;
 mod qemu;
 mod target;
 
 use std::path::{Path, PathBuf};
 
-pub use image::{BuildError, Program, build_image, build_program, target_dir};
+pub use image::{Body, BuildError, Program, build_image, build_program, target_dir};
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
 

@@ -17,7 +17,7 @@
 mod item;
 mod route;
 
-use geometry::{Point, Shape, Vector};
+use geometry::{Point, Shape, Vector, math};
 
 use self::item::Scene;
 use self::route::Route;
@@ -195,7 +195,7 @@ fn straightened<F: Copy>(course: &Course<'_, F>, towards: Point<F>) -> State<F> 
     let across = Vector::new(-along.y(), along.x());
     let (ahead, side) = (velocity.dot(along), velocity.dot(across));
     let loss = limits.braking * step;
-    let lost = side.clamp(-loss, loss);
+    let lost = math::clamp(side, -loss, loss);
     // Nothing is left for speeding up where all of it is needed; a robot that goes back brakes that first.
     let left = (1.0 - lost.abs() / loss.max(f32::MIN_POSITIVE)).max(0.0);
     let gain = limits.acceleration * step * left;

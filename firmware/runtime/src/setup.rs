@@ -3,10 +3,13 @@
 use core::fmt;
 
 use brain::BrainConfig;
+use brain::body::Kind;
+use rules::League;
 
 /// Reads a configuration (postcard), to its last byte.
 pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
-    match postcard::take_from_bytes(bytes) {
+    match postcard::take_from_bytes::<BrainConfig>(bytes) {
+        Ok((config, [])) if !Kind::is_built(config.league) => Err(SetupError::Body(config.league)),
         Ok((config, [])) => Ok(config),
         Ok((_, rest)) => Err(SetupError::Rest(rest.len())),
         Err(_) => Err(SetupError::Unreadable),
@@ -20,6 +23,8 @@ pub enum SetupError {
     Unreadable,
     /// This many bytes are left over behind it.
     Rest(usize),
+    /// The image has no brain for the body of that league's robots.
+    Body(League),
 }
 
 impl fmt::Display for SetupError {
@@ -27,6 +32,9 @@ impl fmt::Display for SetupError {
         match self {
             Self::Unreadable => f.write_str("the bytes are no configuration of this firmware's version"),
             Self::Rest(n) => write!(f, "{n} bytes are left over behind the configuration"),
+            Self::Body(league) => {
+                write!(f, "this image leads no robot of the league {league:?}; take the other body's")
+            }
         }
     }
 }

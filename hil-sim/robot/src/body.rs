@@ -66,6 +66,9 @@ impl SimulatedBody {
     pub fn obey(&mut self, order: ActuatorFrame) {
         let ActuatorFrame::Omni { wheels, dribbler, kick } = order else {
             (self.motion, self.dribbler, self.kick) = (Twist::default(), 0.0, OmniKick::None);
+            if order == ActuatorFrame::Released {
+                self.kick = OmniKick::Discharge;
+            }
             return;
         };
         let Twist { linear, angular } = self.wheels.twist(wheels);

@@ -59,8 +59,12 @@ pub struct Order {
 }
 
 impl Order {
-    /// What a brain wants; a robot on wheels has nothing to do for legs.
+    /// What a brain wants; a robot on wheels has nothing to do for legs. Released wheels are modelled as standing ones: they
+    /// are released only where the robot stands.
     pub fn from_actuators(frame: &ActuatorFrame, parameters: &Parameters) -> Self {
+        if *frame == ActuatorFrame::Released {
+            return Self { discharge: true, ..Self::default() };
+        }
         let ActuatorFrame::Omni { wheels, dribbler, kick } = frame else { return Self::default() };
         let kick = match *kick {
             OmniKick::None | OmniKick::Discharge => None,

@@ -144,7 +144,7 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
 /// QEMU with a fresh image; a library of one's own goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
     firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
-    let image = firmware_build::build_image(&firmware_build::workspace_root())
+    let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Legged)
         .map_err(|error| Failure::Firmware(error.to_string()))?;
     let backend = QemuBackend::new(image);
     if args.setup.is_built_in() {

@@ -58,6 +58,14 @@ pub fn floor(x: f32) -> f32 {
     micromath::F32(x).floor().0
 }
 
+/// `x` within `[low, high]`; NaN stays NaN. Never panics, unlike `f32::clamp`: bounds that contradict each other, or are NaN,
+/// give `high`, or are no bounds.
+#[inline]
+pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
+    let x = if x < low { low } else { x };
+    if x > high { high } else { x }
+}
+
 /// Nearest whole number, halves away from zero, as `i32`; saturates, NaN gives 0.
 #[inline]
 pub fn round_to_i32(x: f32) -> i32 {
@@ -146,6 +154,18 @@ unsafe extern "C" {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_clamp_is_the_standards_where_that_has_an_answer_and_never_panics() {
+        for x in [-3.0, -1.0, -0.0, 0.0, 0.5, 1.0, 2.0, f32::INFINITY, f32::NEG_INFINITY] {
+            for (low, high) in [(-1.0, 1.0), (0.0, 0.0), (-0.0, 0.0), (0.25, 0.75)] {
+                assert_eq!(clamp(x, low, high).to_bits(), x.clamp(low, high).to_bits(), "{x} {low} {high}");
+            }
+        }
+        assert!(clamp(f32::NAN, -1.0, 1.0).is_nan());
+        assert_eq!(clamp(0.5, 1.0, -1.0), -1.0);
+        assert_eq!(clamp(7.0, f32::NAN, f32::NAN), 7.0);
+    }
 
     #[test]
     fn sine_and_cosine_are_within_two_parts_in_ten_million() {

@@ -3,7 +3,7 @@
 //! Lines are measured between their centres (rules 2026, playing environment), so a line's outer edge lies half a line's
 //! width further out.
 
-use geometry::{Field, GoalEnd, Point, Segment, Shape};
+use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
 use heapless::Vec;
 
 /// Shapes that one defence area is made of, at most.
@@ -179,7 +179,7 @@ impl FieldSpec {
     /// The nearest point at least `inside` within the lines (or beyond them by −`inside`).
     pub fn clamp(&self, p: Point<Field>, inside: f32) -> Point<Field> {
         let (x, y) = (self.length * 0.5 - inside, self.width * 0.5 - inside);
-        Point::new(p.x().clamp(-x, x), p.y().clamp(-y, y))
+        Point::new(math::clamp(p.x(), -x, x), math::clamp(p.y(), -y, y))
     }
 }
 

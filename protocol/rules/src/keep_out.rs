@@ -222,14 +222,14 @@ impl List {
 
     fn own_area(&mut self, s: &Situation) {
         if s.duty != Duty::Keeper {
-            for shape in s.field.defence_area(s.own) {
+            for shape in &s.field.defence_area(s.own) {
                 self.add(Why::OwnArea, shape.grown(s.field.line_width * 0.5));
             }
         }
     }
 
     fn opponent_area(&mut self, s: &Situation, by: f32) {
-        for shape in s.field.defence_area(s.own.opposite()) {
+        for shape in &s.field.defence_area(s.own.opposite()) {
             self.add(Why::OpponentArea, shape.grown(by + s.field.line_width * 0.5));
         }
     }

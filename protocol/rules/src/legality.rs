@@ -3,7 +3,7 @@
 //! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
 //! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.
 
-use geometry::{Field, GoalEnd, Point, Segment, Vector};
+use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 
 use crate::limits::{
     BALL_DISTANCE, BALL_RADIUS, CRASH_DRAWN, CRASH_SPEED, GOAL_BALL_HEIGHT, IN_PLAY_DISTANCE,
@@ -136,7 +136,7 @@ pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea 
     } else {
         // Within a robot's width of the goal line a robot hangs over it, but the part on the field may all be inside.
         let on_field = Point::new(
-            robot.x().clamp(-field.length * 0.5 + ROBOT_RADIUS, field.length * 0.5 - ROBOT_RADIUS),
+            math::clamp(robot.x(), -field.length * 0.5 + ROBOT_RADIUS, field.length * 0.5 - ROBOT_RADIUS),
             robot.y(),
         );
         let rest = field.distance_to_area(goal, on_field) - edge;

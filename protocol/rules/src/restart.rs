@@ -1,7 +1,7 @@
 //! Where does the ball go, and where do robots stand, when the game begins again? Rules of 2026, chapters "referee commands" and
 //! "ball leaves the field". Field frame, m.
 
-use geometry::{Field, GoalEnd, Point};
+use geometry::{Field, GoalEnd, Point, math};
 use heapless::Vec;
 
 use crate::legality::{Crossing, Line};
@@ -86,7 +86,8 @@ fn pushed_out(
             }
             Capsule { .. } => {}
             Box { low, high } => {
-                let core = Point::new(p.x().clamp(low.x(), high.x()), p.y().clamp(low.y(), high.y()));
+                let core =
+                    Point::new(math::clamp(p.x(), low.x(), high.x()), math::clamp(p.y(), low.y(), high.y()));
                 match (p - core).unit() {
                     Some(to) => spots.extend([core + to * away]),
                     None => spots.extend([
@@ -117,7 +118,7 @@ fn border_spots(
         let at = |t: f32| if along_x { Point::new(t, fixed) } else { Point::new(fixed, t) };
         for sign in [-1.0_f32, 1.0] {
             let steps = ((end * 2.0) / SPOT_STEP) as u32 + 1;
-            let place = |i: u32| (start + sign * SPOT_STEP * i as f32).clamp(-end, end);
+            let place = |i: u32| math::clamp(start + sign * SPOT_STEP * i as f32, -end, end);
             let Some(first) = (0..=steps).find(|i| valid(&at(place(*i)))) else { continue };
             let (mut bad, mut good) = (place(first.saturating_sub(1)), place(first));
             for _ in 0..SPOT_HALVINGS {
@@ -166,7 +167,7 @@ pub fn after_out(
     let touch_line = |at: f32| if at < 0.0 { -y } else { y };
     match crossing.line {
         Line::Touch { positive } => {
-            let spot = Point::new(crossing.at.x().clamp(-x, x), if positive { y } else { -y });
+            let spot = Point::new(math::clamp(crossing.at.x(), -x, x), if positive { y } else { -y });
             AfterOut { kind: OutKind::ThrowIn, spot }
         }
         Line::Goal(goal) | Line::Mouth(goal) if goal == own => {

@@ -1,11 +1,13 @@
 //! Who turns an intent into an order for the body? Legs as they are, wheels through drivetrain, governor and kinematics.
 
+use geometry::Twist;
 use motion::omni::Omni;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::{Duration, Instant};
 use rules::League;
 
 use crate::belief::Belief;
+use crate::body::kind::{self, Kind};
 use crate::body::omni::Drivetrain;
 use crate::body::{Intent, legged};
 use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
@@ -17,9 +19,9 @@ use crate::mates::Mates;
 #[derive(Clone, Debug)]
 pub enum Limbs {
     /// Four legs.
-    Legs,
+    Legs(kind::Legs),
     /// Four wheels.
-    Wheels(Wheels),
+    Wheels(kind::Wheels, Wheels),
 }
 
 /// Wheels and who watches over them.
@@ -34,42 +36,45 @@ pub struct Wheels {
 impl Limbs {
     /// Of that league's robots.
     pub fn of(league: League) -> Self {
-        match league {
-            League::FourLegged => Self::Legs,
-            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Wheels(Wheels {
-                drivetrain: Drivetrain::default(),
-                governor: Governor::new(league),
-                kinematics: Omni::default(),
-                ruling: Ruling::Allowed,
-            }),
+        match Kind::of(league) {
+            Kind::Legged(built) => Self::Legs(built),
+            Kind::Wheeled(built) => {
+                let wheels = Wheels {
+                    drivetrain: Drivetrain::default(),
+                    governor: Governor::new(league),
+                    kinematics: Omni::default(),
+                    ruling: Ruling::Allowed,
+                };
+                Self::Wheels(built, wheels)
+            }
         }
     }
 
     /// A frame of the host came.
     pub fn hear_host(&mut self, now: Instant) {
-        if let Self::Wheels(wheels) = self {
+        if let Self::Wheels(_, wheels) = self {
             wheels.governor.hear_host(now);
         }
     }
 
     /// Whether its steps are short (10 ms, DESIGN §2), so that not everything need happen in each.
     pub fn has_short_steps(&self) -> bool {
-        matches!(self, Self::Wheels(_))
+        matches!(self, Self::Wheels(..))
     }
 
     /// How often this body's robots tell their mates of themselves; `None`: every step (DESIGN §5).
     pub fn beacon_period(&self) -> Option<Duration> {
         match self {
-            Self::Legs => None,
-            Self::Wheels(_) => Some(BEACON_PERIOD),
+            Self::Legs(_) => None,
+            Self::Wheels(..) => Some(BEACON_PERIOD),
         }
     }
 
     /// What the governor made of the last step's wish.
     pub fn ruling(&self) -> Ruling {
         match self {
-            Self::Legs => Ruling::Allowed,
-            Self::Wheels(wheels) => wheels.ruling,
+            Self::Legs(_) => Ruling::Allowed,
+            Self::Wheels(_, wheels) => wheels.ruling,
         }
     }
 
@@ -97,8 +102,8 @@ impl Limbs {
         intent: Intent,
     ) -> ActuatorFrame {
         let wheels = match self {
-            Self::Legs => return legged::actuate(now, belief, mates, intent),
-            Self::Wheels(wheels) => wheels,
+            Self::Legs(_) => return legged::actuate(now, belief, mates, intent),
+            Self::Wheels(_, wheels) => wheels,
         };
         let wanted = wheels.drivetrain.actuate(now, belief, intent);
         let circumstances = Circumstances {
@@ -111,6 +116,10 @@ impl Limbs {
         };
         let (mut given, ruling) = wheels.governor.rule(&circumstances, &wanted);
         wheels.ruling = ruling;
+        if wheels.governor.has_let_go() {
+            wheels.drivetrain.told(belief, Twist::default());
+            return ActuatorFrame::Released;
+        }
         given.twist = wheels.kinematics.saturated(given.twist, RIM_MAX).0;
         wheels.drivetrain.told(belief, given.twist);
         ActuatorFrame::Omni {

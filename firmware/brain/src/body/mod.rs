@@ -1,6 +1,7 @@
 //! What can a brain want of its body, and what may it expect of it, whatever the body is? Intents, a sheet of numbers, and
 //! the skills of the case language behind one face ([`Body`]); a module per body turns intents into actuators.
 
+pub mod kind;
 pub mod legged;
 mod limbs;
 pub mod omni;
@@ -13,6 +14,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::skills::{Reception, Step};
+pub use kind::Kind;
 pub use limbs::Limbs;
 
 /// What the robot wants of its body for the coming step. Points and angles of the field.
@@ -128,8 +130,8 @@ pub trait Body: Sync {
 
 /// The body of that league's robots.
 pub fn of(league: League) -> &'static dyn Body {
-    match league {
-        League::FourLegged => &legged::Legged,
-        League::Ssl2013 | League::DivisionB | League::DivisionA => &omni::Wheeled,
+    match Kind::of(league) {
+        Kind::Legged(_) => &legged::Legged,
+        Kind::Wheeled(_) => &omni::Wheeled,
     }
 }

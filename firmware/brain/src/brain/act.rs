@@ -15,7 +15,9 @@ use crate::timer::Timer;
 impl Brain<'_> {
     /// What the body shall do in this step.
     pub(super) fn act(&mut self, now: Instant) -> Intent {
-        if let Some(host) = &self.host {
+        if cfg!(feature = "omni")
+            && let Some(host) = &self.host
+        {
             let Some(directive) = host.directive(now) else { return Intent::Stand { face: None } };
             if let Some(intent) = self.errand.step(now, &self.belief, directive) {
                 self.reactive.rest();
@@ -27,7 +29,11 @@ impl Brain<'_> {
             }
         }
         let intent = self.play(now);
-        if self.host.is_some() { wheels::let_go_in_time(&self.belief, intent) } else { intent }
+        if cfg!(feature = "omni") && self.host.is_some() {
+            wheels::let_go_in_time(&self.belief, intent)
+        } else {
+            intent
+        }
     }
 
     /// Cases, or what it does by itself.

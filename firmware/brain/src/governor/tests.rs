@@ -1,5 +1,9 @@
 //! Every reason to brake and to limit, one by one, and the table of what passes in which phase.
 
+extern crate std;
+
+use std::boxed::Box;
+
 use super::*;
 
 const HEALTHY: Health = Health { battery: Some(16.0), tipped: false, kicker_ready: true };
@@ -276,4 +280,69 @@ fn an_absurd_motion_is_cut_to_what_robots_do() {
     let (given, ruling) = governor.rule(&at(610, Phase::Run), &Wanted { twist, ..go(0.0) });
     assert!(matches!(ruling, Ruling::Limited(r) if r.has(Why::Reach)));
     assert!((given.twist.linear.norm() - 4.0).abs() < 1e-5 && given.twist.angular == -20.0);
+}
+
+/// Steps of 10 ms from `from` ms on in which `at` holds and the wheels do as they are told, until the motors are released;
+/// `None` after 3 s.
+fn released_after(
+    governor: &mut Governor,
+    from: u64,
+    at: impl Fn(u64) -> Circumstances<'static>,
+) -> Option<u64> {
+    (from..from + 3000).step_by(10).find(|t| {
+        let odometry = governor.last();
+        governor.rule(&Circumstances { odometry, ..at(*t) }, &go(3.0));
+        governor.has_let_go()
+    })
+}
+
+#[test]
+fn motors_are_released_half_a_second_after_a_silent_robot_stands_and_never_before() {
+    let heard = Some(Instant(600_000));
+    let silent =
+        |t| Circumstances { host: Some(Hearing { frame: heard, command: heard }), ..at(t, Phase::Run) };
+    let released = released_after(&mut driving(600, Phase::Run), 610, silent);
+    // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than the brake's 5 m/s²:
+    // 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
+    let after = released.expect("released in the end") - 600;
+    assert!((1150..=1200).contains(&after), "{after} ms");
+}
+
+#[test]
+fn only_lasting_reasons_release_the_motors_and_a_push_or_the_host_takes_them_back() {
+    let silent =
+        |t| Circumstances { host: Some(Hearing { frame: None, command: None }), ..at(t, Phase::Run) };
+    let tipped = Health { tipped: true, ..HEALTHY };
+    let tipped: &'static Health = Box::leak(Box::new(tipped));
+    let lies = |t| Circumstances { health: tipped, ..at(t, Phase::Run) };
+    let lost = |t| Circumstances { placed: false, ..at(t, Phase::Run) };
+    assert_eq!(released_after(&mut Governor::new(League::DivisionB), 0, silent), Some(500));
+    assert!(released_after(&mut driving(600, Phase::Run), 610, lies).is_some());
+    assert_eq!(released_after(&mut driving(600, Phase::Run), 610, lost), None, "it may be seen again soon");
+    assert_eq!(released_after(&mut driving(600, Phase::Halt), 610, |t| at(t, Phase::Halt)), None);
+
+    let mut governor = Governor::new(League::DivisionB);
+    released_after(&mut governor, 0, silent);
+    let pushed = Twist { linear: Vector::new(0.3, 0.0), angular: 0.0 };
+    governor.rule(&Circumstances { odometry: pushed, ..silent(510) }, &go(1.0));
+    assert!(!governor.has_let_go(), "it brakes");
+    released_after(&mut governor, 520, silent);
+    assert!(governor.has_let_go());
+    for t in (2000..2510).step_by(10) {
+        governor.hear_host(Instant(t * 1000));
+        governor.rule(&at(t, Phase::Run), &go(1.0));
+    }
+    assert!(!governor.has_let_go(), "it goes");
+}
+
+#[test]
+fn a_robot_whose_odometry_is_no_number_is_not_released() {
+    let silent =
+        |t| Circumstances { host: Some(Hearing { frame: None, command: None }), ..at(t, Phase::Run) };
+    let mut governor = Governor::new(League::DivisionB);
+    for t in (0..2000).step_by(10) {
+        let odometry = Twist { linear: Vector::new(f32::NAN, 0.0), angular: 0.0 };
+        governor.rule(&Circumstances { odometry, ..silent(t) }, &go(1.0));
+        assert!(!governor.has_let_go());
+    }
 }

@@ -10,6 +10,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::Intent;
+use crate::body::kind::{self, Kind};
 use crate::mates::Mates;
 
 /// How much of the behaviour is wanted.
@@ -27,35 +28,33 @@ pub enum Freedom {
 #[derive(Clone, Debug)]
 pub enum Reactive {
     /// The paper's, on legs.
-    Legged(legged::Reactive),
+    Legged(kind::Legs, legged::Reactive),
     /// Simple and lawful, on wheels.
-    Wheels(wheels::Reactive),
+    Wheels(kind::Wheels, wheels::Reactive),
 }
 
 impl Reactive {
     /// The one of that league's robots.
     pub fn of(league: League) -> Self {
-        match league {
-            League::FourLegged => Self::Legged(legged::Reactive::default()),
-            League::Ssl2013 | League::DivisionB | League::DivisionA => {
-                Self::Wheels(wheels::Reactive::default())
-            }
+        match Kind::of(league) {
+            Kind::Legged(built) => Self::Legged(built, legged::Reactive::default()),
+            Kind::Wheeled(built) => Self::Wheels(built, wheels::Reactive::default()),
         }
     }
 
     /// What this robot presently is to its team.
     pub fn role(&self) -> Role {
         match self {
-            Self::Legged(legs) => legs.role(),
-            Self::Wheels(wheels) => wheels.role(),
+            Self::Legged(_, legs) => legs.role(),
+            Self::Wheels(_, wheels) => wheels.role(),
         }
     }
 
     /// Bound by a case: forget what it was about.
     pub fn rest(&mut self) {
         match self {
-            Self::Legged(legs) => legs.rest(),
-            Self::Wheels(wheels) => wheels.rest(),
+            Self::Legged(_, legs) => legs.rest(),
+            Self::Wheels(_, wheels) => wheels.rest(),
         }
     }
 
@@ -70,8 +69,8 @@ impl Reactive {
         freedom: Freedom,
     ) -> Intent {
         match self {
-            Self::Legged(legs) => legs.step(now, me, belief, mates, attacked, freedom),
-            Self::Wheels(wheels) => wheels.step(now, me, belief, mates, attacked, freedom),
+            Self::Legged(_, legs) => legs.step(now, me, belief, mates, attacked, freedom),
+            Self::Wheels(_, wheels) => wheels.step(now, me, belief, mates, attacked, freedom),
         }
     }
 }

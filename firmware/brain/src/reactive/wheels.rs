@@ -4,7 +4,7 @@
 //! rules let it, else kicks it up the freer wing. The others take places ahead of the ball and behind it, one each. SI,
 //! field frame.
 
-use geometry::{Field, GoalEnd, Point, Segment, Vector};
+use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 use protocol::robot_io::OmniKick;
 use protocol::team::{Role, Status};
 use protocol::{Duration, Instant, RobotId};
@@ -131,8 +131,8 @@ fn place(
         [[1.5, 1.5 * side], [1.2, -1.5 * side], [-1.2, 0.0], [-0.8, 1.8 * side], [-0.8, -1.8 * side]];
     let [along, across] = offsets[before % offsets.len()];
     let farthest = 0.5 * field.length - field.penalty_depth - BEFORE_AREA;
-    let x = (sign * ball.rest.x() + along).clamp(-farthest, farthest) * sign;
-    let y = (ball.rest.y() + across).clamp(INSIDE - 0.5 * field.width, 0.5 * field.width - INSIDE);
+    let x = math::clamp(sign * ball.rest.x() + along, -farthest, farthest) * sign;
+    let y = math::clamp(ball.rest.y() + across, INSIDE - 0.5 * field.width, 0.5 * field.width - INSIDE);
     Point::new(x, y)
 }
 

@@ -39,7 +39,9 @@ fn before_touch(scene: &Scene<'_>, settings: &Settings) -> Option<AbortReason> {
     }
     let mut opponents: heapless::Vec<PointMm, { protocol::robot_io::OPPONENTS_MAX }> = heapless::Vec::new();
     // Same capacity as the belief's.
-    opponents.extend(scene.belief.opponents.iter().copied().map(PointMm::from));
+    for opponent in &scene.belief.opponents {
+        let _room = opponents.push(PointMm::from(*opponent));
+    }
     casebase::blocked_leg(&scene.case, scene.base, scene.ball_used(), &opponents, settings)
         .map(|_| AbortReason::PathBlocked)
 }

@@ -76,9 +76,10 @@ pub fn decide(
     if holder.is_some() && holder != getter {
         return Decision::NoCase;
     }
-    Decision::Play(Play {
-        case: best.case,
-        ball: problem.ball.into(),
-        robots: best.correspondence.into_iter().collect(),
-    })
+    let mut robots = heapless::Vec::new();
+    for robot in &best.correspondence {
+        // As many as a case may have, in both.
+        let _room = robots.push(*robot);
+    }
+    Decision::Play(Play { case: best.case, ball: problem.ball.into(), robots })
 }

@@ -56,7 +56,7 @@ impl<F: Copy> Route<F> {
         let length = from.distance(goal);
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
-        let speed = velocity.dot(towards).clamp(0.0, limits.speed);
+        let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
         let mut search =
             Search { scene, goal, velocity, limits, nodes: [start; _], count: 1, checks: 0, speed };
         match search.run() {

@@ -65,7 +65,7 @@ fn primitive(primitive: LeggedPrimitive) -> ActuatorFrame {
 }
 
 fn turn(pose: Pose<Field>, heading: Angle, limit: f32) -> f32 {
-    ((heading - pose.heading).radians() * TURN_GAIN).clamp(-limit, limit)
+    math::clamp((heading - pose.heading).radians() * TURN_GAIN, -limit, limit)
 }
 
 /// Velocity towards `way_point`, within what the gait can do in that direction, slowing down before `end`.

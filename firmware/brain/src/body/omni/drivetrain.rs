@@ -3,7 +3,7 @@
 //! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
 //! they do not, from the measured one). SI, body frame out.
 
-use geometry::{Angle, Body, Field, Twist, Vector};
+use geometry::{Angle, Body, Field, Twist, Vector, math};
 use motion::avoid::{self, Course};
 use motion::trajectory::{FreeLimits, TurnLimits};
 use protocol::robot_io::OmniKick;
@@ -103,7 +103,7 @@ impl Drivetrain {
             Some(_) => 0.0,
             None => {
                 let loss = turning.acceleration * step;
-                self.angular - self.angular.clamp(-loss, loss)
+                self.angular - math::clamp(self.angular, -loss, loss)
             }
         };
         // The body turns while it moves: the velocity as seen from the heading half a step on.

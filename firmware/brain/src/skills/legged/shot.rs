@@ -155,7 +155,7 @@ impl Fan {
 
     /// The share of kicks aimed along ray `aim` that run along free rays.
     fn chance(&self, free: &[bool; RAYS], aim: usize) -> f32 {
-        let density = |index: usize| self.density[index.abs_diff(aim)];
+        let density = |index: usize| self.density.get(index.abs_diff(aim)).copied().unwrap_or(0.0);
         let sum: f32 = (0..RAYS).filter(|&index| free[index]).map(density).sum();
         sum * self.step / (KICK_ANGLE_SPREAD * ROOT_TWO_PI)
     }

@@ -19,9 +19,9 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use runtime::ports::{Body, RadioReceiver, RadioSender, Senses};
 use runtime::{BrainConfig, Mailboxes, setup, tasks};
 
-use crate::clock::Clock;
-use crate::eth::{self, Inlet, Outlet};
-use crate::{instructions, library};
+use super::clock::Clock;
+use super::eth::{self, Inlet, Outlet};
+use super::{instructions, library};
 
 /// The board's life.
 pub(crate) fn run() -> ! {

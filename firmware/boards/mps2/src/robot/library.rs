@@ -1,4 +1,4 @@
-//! Which cases does this robot know? Those put into the slot, or else the four-legged league's, built in.
+//! Which cases does this robot know? Those put into the slot, or else the ones of its league that are built in.
 
 use casebase::{CaseBase, TableError};
 
@@ -6,7 +6,12 @@ use protocol::slot;
 
 /// The case base to play with; a table in the slot is checked first.
 pub(crate) fn case_base() -> Result<CaseBase<'static>, TableError> {
-    table_in_slot().map_or_else(|| Ok(case_library::four_legged()), CaseBase::from_bytes)
+    table_in_slot().map_or_else(|| Ok(built_in()), CaseBase::from_bytes)
+}
+
+/// Of the league this body plays in.
+fn built_in() -> CaseBase<'static> {
+    if cfg!(feature = "legged") { case_library::four_legged() } else { case_library::division_b() }
 }
 
 /// What lies in the slot, if its header says that something does.

@@ -1,0 +1,10 @@
+//! How does the firmware of a robot on wheels run under QEMU? As the walking robot's (`src/main.rs`), with the other body's
+//! brain and cases. Built with the feature `omni` alone.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[path = "../robot/mod.rs"]
+mod robot;
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,55 @@
+//! Which bodies can this build lead? An image carries the one body its robot has (features `legged` and `omni`); on the PC
+//! both are there.
+//!
+//! Everything that depends on the body asks [`Kind::of`] once and keeps its answer, with the proof that the body is built
+//! in. Without the feature there is no such proof, so the compiler drops whatever would be done with it.
+
+#[cfg(not(all(feature = "legged", feature = "omni")))]
+use core::convert::Infallible;
+
+use rules::League;
+
+/// A kind of body that is built in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Four legs.
+    Legged(Legs),
+    /// Four omnidirectional wheels.
+    Wheeled(Wheels),
+}
+
+/// Proof that the brain of a robot on legs is built in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Legs(#[cfg(not(feature = "legged"))] Infallible);
+
+/// Proof that the brain of a robot on wheels is built in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wheels(#[cfg(not(feature = "omni"))] Infallible);
+
+#[cfg(not(any(feature = "legged", feature = "omni")))]
+compile_error!("a brain needs a body: turn on the feature `legged` or `omni`");
+
+impl Kind {
+    /// The kind of that league's robots. Where it is not built in ([`Kind::is_built`]), the one that is: whoever takes a
+    /// configuration from outside asks first.
+    pub fn of(league: League) -> Self {
+        match league {
+            #[cfg(feature = "legged")]
+            League::FourLegged => Self::Legged(Legs()),
+            #[cfg(feature = "omni")]
+            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Wheeled(Wheels()),
+            #[cfg(all(feature = "omni", not(feature = "legged")))]
+            League::FourLegged => Self::Wheeled(Wheels()),
+            #[cfg(all(feature = "legged", not(feature = "omni")))]
+            League::Ssl2013 | League::DivisionB | League::DivisionA => Self::Legged(Legs()),
+        }
+    }
+
+    /// Whether this build can lead that league's robots.
+    pub fn is_built(league: League) -> bool {
+        match league {
+            League::FourLegged => cfg!(feature = "legged"),
+            League::Ssl2013 | League::DivisionB | League::DivisionA => cfg!(feature = "omni"),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! May an image be as large as it is? The budget of DESIGN §9, and the computers it is compared with.
+
+use std::fmt;
+
+use super::Sizes;
+
+/// What an image may take, bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Flash.
+    pub flash: u64,
+    /// RAM that is taken before the program begins.
+    pub ram: u64,
+}
+
+impl Budget {
+    /// Of a robot's image with its cases (DESIGN §9).
+    pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
+
+    /// Whether `sizes` keep to it.
+    pub fn check(self, sizes: &Sizes) -> Result<(), OverBudget> {
+        if sizes.flash <= self.flash && sizes.ram <= self.ram {
+            return Ok(());
+        }
+        let largest =
+            sizes.symbols.iter().take(LARGEST).map(|part| (part.name.clone(), part.flash + part.ram));
+        Err(OverBudget { budget: self, flash: sizes.flash, ram: sizes.ram, largest: largest.collect() })
+    }
+}
+
+/// An image that takes more than it may.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OverBudget {
+    /// What it may take.
+    pub budget: Budget,
+    /// What it takes of flash.
+    pub flash: u64,
+    /// What it takes of RAM.
+    pub ram: u64,
+    /// Its largest symbols, and their bytes.
+    pub largest: Vec<(String, u64)>,
+}
+
+impl fmt::Display for OverBudget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { budget, flash, ram, .. } = self;
+        write!(f, "{flash} of {} B flash, {ram} of {} B RAM; the largest:", budget.flash, budget.ram)?;
+        self.largest.iter().try_for_each(|(name, bytes)| write!(f, "\n  {bytes:6} {name}"))
+    }
+}
+
+impl std::error::Error for OverBudget {}
+
+/// A computer that a robot may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chip {
+    /// Its name.
+    pub name: &'static str,
+    /// Flash, bytes; `None` where programs are loaded into RAM.
+    pub flash: Option<u64>,
+    /// RAM, bytes.
+    pub ram: u64,
+    /// Clock, Hz.
+    pub clock: u64,
+}
+
+impl Chip {
+    /// What reports compare with: the first paper's robot, a credible floor, and what today's teams use.
+    pub const ALL: [Self; 3] = [
+        // Sony AIBO ERS-7: MIPS R7000 at 576 MHz, 64 MB (its data sheet); programs run from RAM.
+        Self { name: "AIBO ERS-7", flash: None, ram: 64 << 20, clock: 576_000_000 },
+        // RM0090: 1 MiB flash, 128 KiB SRAM besides the 64 KiB that are tied to the core.
+        Self { name: "STM32F405", flash: Some(1 << 20), ram: 192 << 10, clock: 168_000_000 },
+        // RM0433: 2 MiB flash, 1 MiB RAM in all banks.
+        Self { name: "STM32H743", flash: Some(2 << 20), ram: 1 << 20, clock: 480_000_000 },
+    ];
+}
+
+/// Symbols named where a budget breaks.
+const LARGEST: usize = 12;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inspect::Part;
+
+    #[test]
+    fn a_byte_too_many_breaks_the_budget_and_the_largest_are_named() {
+        let part = |name: &str, flash| Part { name: name.into(), flash, ram: 0 };
+        let sizes = |flash, ram| Sizes { flash, ram, crates: vec![], symbols: vec![part("table", 7)] };
+        assert_eq!(Budget::IMAGE.check(&sizes(163_840, 49_152)), Ok(()));
+        let over = Budget::IMAGE.check(&sizes(163_841, 0)).unwrap_err().to_string();
+        assert!(over.contains("163841 of 163840 B flash") && over.contains("table"), "{over}");
+        assert!(Budget::IMAGE.check(&sizes(0, 49_153)).is_err());
+    }
+}

@@ -1,0 +1,188 @@
+//! What is in a firmware image? Its sections and symbols (ELF), and the source line behind every instruction (DWARF).
+//!
+//! Needs an image with debug information, as the profile `firmware` makes them. The bytes that are flashed do not change
+//! with it.
+
+mod budget;
+mod panics;
+mod size;
+
+use std::fmt;
+
+use addr2line::gimli::{self, EndianSlice, RunTimeEndian};
+use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionFlags, SectionKind, SymbolKind};
+
+pub use budget::{Budget, Chip, OverBudget};
+pub use panics::{Allowed, AllowedError, PanicSite, PanicVerdict, panic_sites};
+pub use size::{Part, Sizes};
+
+/// An image, taken apart.
+pub struct Image<'a> {
+    sections: Vec<Section>,
+    symbols: Vec<Symbol>,
+    lines: addr2line::Context<Reader<'a>>,
+}
+
+type Reader<'a> = EndianSlice<'a, RunTimeEndian>;
+
+/// A piece of memory.
+#[derive(Clone, Debug)]
+struct Section {
+    address: u64,
+    size: u64,
+    /// Empty where the image holds nothing for it (`.bss`).
+    bytes: Vec<u8>,
+    is_code: bool,
+}
+
+impl Section {
+    fn is_ram(&self) -> bool {
+        RAM.contains(&self.address)
+    }
+}
+
+/// A function or a value.
+#[derive(Clone, Debug)]
+struct Symbol {
+    name: String,
+    /// Without the bit that says "Thumb".
+    address: u64,
+    size: u64,
+    is_code: bool,
+}
+
+/// Why an image cannot be read.
+#[derive(Debug)]
+pub enum ImageError {
+    /// It is no ELF file.
+    Elf(object::Error),
+    /// Its debug information is damaged.
+    Dwarf(gimli::Error),
+}
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Elf(error) => write!(f, "no ELF file: {error}"),
+            Self::Dwarf(error) => write!(f, "its debug information cannot be read: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for ImageError {}
+
+impl<'a> Image<'a> {
+    /// Reads an ELF file.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, ImageError> {
+        let file = object::File::parse(bytes).map_err(ImageError::Elf)?;
+        let in_memory = |section: &object::Section<'_, '_>| match section.flags() {
+            SectionFlags::Elf { sh_flags, .. } => sh_flags.0 & u64::from(object::elf::SHF_ALLOC.0) != 0,
+            _ => false,
+        };
+        let mut sections: Vec<_> = file
+            .sections()
+            .filter(|section| in_memory(section) && section.size() > 0)
+            .map(|section| Section {
+                address: section.address(),
+                size: section.size(),
+                bytes: if section.kind() == SectionKind::UninitializedData {
+                    Vec::new()
+                } else {
+                    section.data().unwrap_or_default().to_vec()
+                },
+                is_code: section.kind() == SectionKind::Text,
+            })
+            .collect();
+        sections.sort_by_key(|section| section.address);
+        let mut symbols: Vec<_> = file
+            .symbols()
+            .filter(|symbol| {
+                symbol.size() > 0 && matches!(symbol.kind(), SymbolKind::Text | SymbolKind::Data)
+            })
+            .map(|symbol| Symbol {
+                name: format!("{:#}", rustc_demangle::demangle(symbol.name().unwrap_or("?"))),
+                address: symbol.address() & !u64::from(symbol.kind() == SymbolKind::Text),
+                size: symbol.size(),
+                is_code: symbol.kind() == SymbolKind::Text,
+            })
+            .collect();
+        symbols.sort_by(|a, b| (a.address, &a.name).cmp(&(b.address, &b.name)));
+        symbols.dedup_by_key(|symbol| symbol.address);
+        Ok(Self { sections, symbols, lines: lines_of(&file).map_err(ImageError::Dwarf)? })
+    }
+
+    /// The names of all its symbols.
+    pub fn symbol_names(&self) -> impl Iterator<Item = &str> {
+        self.symbols.iter().map(|symbol| symbol.name.as_str())
+    }
+}
+
+fn lines_of<'a>(file: &object::File<'a>) -> Result<addr2line::Context<Reader<'a>>, gimli::Error> {
+    let endian = if file.is_little_endian() { RunTimeEndian::Little } else { RunTimeEndian::Big };
+    let load = |id: gimli::SectionId| -> Result<Reader<'a>, gimli::Error> {
+        let section = file.section_by_name(id.name());
+        let bytes = section.and_then(|section| section.data().ok()).unwrap_or_default();
+        Ok(EndianSlice::new(bytes, endian))
+    };
+    addr2line::Context::from_dwarf(gimli::Dwarf::load(load)?)
+}
+
+/// The crate a source file belongs to, as the compiler writes its path down.
+fn crate_of(path: &str) -> &str {
+    let segments: Vec<&str> = path.split('/').collect();
+    let after = |name: &str| segments.iter().position(|segment| *segment == name);
+    // The compiler's own: /rustc/HASH/library/core/src/…
+    if let Some(at) =
+        after("library").filter(|_| path.starts_with("/rustc/") || path.contains("/rustlib/src/"))
+    {
+        return segments.get(at + 1).copied().unwrap_or("core");
+    }
+    // Of the registry: …/registry/src/HOST/name-version/src/…
+    if let Some(at) = after("registry") {
+        let name = segments.get(at + 3).copied().unwrap_or("?");
+        return name.rsplit_once('-').map_or(name, |(name, _)| name);
+    }
+    // Ours: the folder above `src`.
+    let above = after("src").and_then(|at| segments.get(at.checked_sub(1)?).copied());
+    match above {
+        Some("library") => "case-library",
+        Some(board @ ("mps2" | "stm32")) => {
+            if board == "mps2" {
+                "board-mps2"
+            } else {
+                "board-stm32"
+            }
+        }
+        Some(folder) => folder,
+        None => "core",
+    }
+}
+
+/// Where a Cortex-M has its RAM.
+const RAM: std::ops::Range<u64> = 0x2000_0000..0x4000_0000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_source_file_tells_its_crate() {
+        for (path, name) in [
+            ("/rustc/59807616/library/core/src/num/f32.rs", "core"),
+            ("/x/.cargo/registry/src/index-1949/embassy-sync-0.8.0/src/signal.rs", "embassy-sync"),
+            ("/y/onetwo/firmware/brain/src/body/omni/drivetrain.rs", "brain"),
+            ("protocol/src/frame.rs", "protocol"),
+            ("protocol/geometry/src/math.rs", "geometry"),
+            ("firmware/boards/mps2/src/bin/../robot/lockstep.rs", "board-mps2"),
+            ("casebase/library/src/lib.rs", "case-library"),
+        ] {
+            assert_eq!(crate_of(path), name, "{path}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_image_says_so() {
+        let error = Image::parse(b"no image").err().map(|error| error.to_string());
+        assert!(error.is_some_and(|error| error.starts_with("no ELF file")));
+    }
+}

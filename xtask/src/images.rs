@@ -1,0 +1,52 @@
+//! Are the robots' images as small as they must be, and do they panic only where that is known? (DESIGN §9)
+//!
+//! One image per body; the list of places that may panic is `firmware/panics.allow`, for all images together.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use firmware_build::Body;
+use firmware_build::inspect::{Allowed, Budget, Image, Sizes, panic_sites};
+
+use crate::context::{Context, Failure};
+
+pub(crate) const WHAT: &str =
+    "the robots' images link, keep to their budgets, and panic only where firmware/panics.allow says";
+
+/// Builds all images and judges them.
+pub(crate) fn check(context: &Context) -> Result<(), Failure> {
+    // First in the more generous way: `build_image` itself installs nothing system-wide.
+    context.ensure_target()?;
+    let mut sites = BTreeMap::new();
+    let mut faults = Vec::new();
+    for body in Body::ALL {
+        let path = firmware_build::build_image(context.root(), body).map_err(Failure::Image)?;
+        let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", path.display())]);
+        let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
+        let image = Image::parse(&bytes).map_err(|error| unreadable(error.to_string()))?;
+        let sizes = Sizes::of(&image);
+        println!("xtask: {}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
+        if let Err(over) = Budget::IMAGE.check(&sizes) {
+            faults.push(format!("{}: {over}", body.word()));
+        }
+        for (site, lines) in panic_sites(&image) {
+            sites.entry(site).or_insert(lines);
+        }
+    }
+    let list = context.root().join(LIST);
+    let text =
+        fs::read_to_string(&list).map_err(|error| Failure::Firmware(vec![format!("{LIST}: {error}")]))?;
+    let allowed =
+        Allowed::parse(&text).map_err(|error| Failure::Firmware(vec![format!("{LIST}: {error}")]))?;
+    let verdict = allowed.judge(&sites);
+    faults.extend(
+        verdict.unknown.iter().map(|(site, lines)| format!("may panic: {site} ({})", lines.join(", "))),
+    );
+    faults.extend(
+        verdict.gone.iter().map(|site| format!("{LIST}: no image has `{site}` any more; take the line out")),
+    );
+    if faults.is_empty() { Ok(()) } else { Err(Failure::Firmware(faults)) }
+}
+
+/// Places that may panic, each with its reason.
+const LIST: &str = "firmware/panics.allow";
