@@ -21,7 +21,7 @@ fn main() -> ExitCode {
             }
         }
     }
-    let image = firmware_build::build_image(&firmware_build::workspace_root());
+    let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Omni);
     let told = match image {
         Ok(image) => Pair::new(seed, seconds, &image).and_then(|mut pair| pair.play(|_, _| {})),
         Err(error) => {

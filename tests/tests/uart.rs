@@ -133,7 +133,11 @@ fn run(seed: u64, bad: [f32; 3], late: u32) -> Told {
         let Some(order) = station.poll_actuators(now) else { continue };
         let judged = guard.judge(ms, &sensors, &order);
         assert_eq!(judged, Ok(()), "seed {seed}, {ms} ms");
-        let ActuatorFrame::Omni { kick, wheels, .. } = order else { panic!("no wheels: {order:?}") };
+        let (kick, wheels) = match order {
+            ActuatorFrame::Omni { kick, wheels, .. } => (kick, wheels),
+            ActuatorFrame::Released => (OmniKick::Discharge, [0.0; 4]),
+            ActuatorFrame::Legged { .. } => panic!("no wheels: {order:?}"),
+        };
         kicks.push((ms, kick));
         if trouble {
             told.braked += u32::from(kick == OmniKick::Discharge);

@@ -1,11 +1,11 @@
 //! Are the robots' images as small as they must be, and do they panic only where that is known? (DESIGN §9)
 //!
-//! One image per body; the list of places that may panic is `firmware/panics.allow`, for all images together.
+//! One image per body, and the one that runs by its own clock; the list of places that may panic is `firmware/panics.allow`, for all images together.
 
 use std::collections::BTreeMap;
 use std::fs;
 
-use firmware_build::Body;
+use firmware_build::Program;
 use firmware_build::inspect::{Allowed, Budget, Image, Sizes, panic_sites};
 
 use crate::context::{Context, Failure};
@@ -19,15 +19,15 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
     context.ensure_target()?;
     let mut sites = BTreeMap::new();
     let mut faults = Vec::new();
-    for body in Body::ALL {
-        let path = firmware_build::build_image(context.root(), body).map_err(Failure::Image)?;
+    for program in Program::IMAGES {
+        let path = firmware_build::build_program(context.root(), program).map_err(Failure::Image)?;
         let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", path.display())]);
         let bytes = fs::read(&path).map_err(|error| unreadable(error.to_string()))?;
         let image = Image::parse(&bytes).map_err(|error| unreadable(error.to_string()))?;
         let sizes = Sizes::of(&image);
         println!("xtask: {}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
         if let Err(over) = Budget::IMAGE.check(&sizes) {
-            faults.push(format!("{}: {over}", body.word()));
+            faults.push(format!("{}: {over}", program.name()));
         }
         for (site, lines) in panic_sites(&image) {
             sites.entry(site).or_insert(lines);

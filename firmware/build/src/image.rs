@@ -37,6 +37,9 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if let Program::Robot(body) = program {
         build.args(["--no-default-features", "--features", body.word()]);
     }
+    if program == Program::Free {
+        build.args(["--no-default-features", "--features", Body::Omni.word()]);
+    }
     run_cargo(&mut build)?;
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
@@ -46,6 +49,8 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
 pub enum Program {
     /// A whole robot: the brain for its body, its library and its tasks.
     Robot(Body),
+    /// A robot on wheels that runs by its own clock, with a serial line for a radio.
+    Free,
     /// Ends well where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Counts the instructions of retrievals.
@@ -57,11 +62,15 @@ pub enum Program {
 }
 
 impl Program {
+    /// Whole robots, which are held to the budgets of an image.
+    pub const IMAGES: [Self; 3] = [Self::Robot(Body::Legged), Self::Robot(Body::Omni), Self::Free];
+
     /// The name of the binary.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Robot(Body::Legged) => "onetwo-mps2-legged",
             Self::Robot(Body::Omni) => "onetwo-mps2-omni",
+            Self::Free => "onetwo-mps2-free",
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",

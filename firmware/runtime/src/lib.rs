@@ -6,7 +6,8 @@
 //! senses ─► sensors ─────┘              └─► orders ─► body ────────► wheels, legs, kicker
 //! ```
 //!
-//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival. A board implements the four traits of [`ports`], declares a task for each function of
+//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival. Where no simulator moves the
+//! body, the tasks of [`hardware`] do: wheels, kicker, senses, and a watchdog. A board implements the traits of [`ports`], declares a task for each function of
 //! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
 //!
 //! ```text
@@ -23,13 +24,20 @@ extern crate std;
 
 #[cfg(all(target_arch = "arm", target_os = "none"))]
 mod copy;
+pub mod hardware;
+pub mod kicker;
 mod mailboxes;
 mod mind;
 pub mod ports;
+pub mod progress;
+pub mod provision;
 pub mod setup;
 pub mod tasks;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod tests;
+pub mod wheel;
 
 pub use brain::BrainConfig;
 pub use mailboxes::{Arrival, INBOX_LEN, Mailboxes, OUTBOX_LEN};

@@ -9,6 +9,8 @@ use embassy_sync::signal::Signal;
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
+use crate::progress::Progress;
+
 /// Arrivals that may wait for the brain. When full, radio and senses wait with the next one: what is lost then, their
 /// drivers count.
 pub const INBOX_LEN: usize = 8;
@@ -34,6 +36,8 @@ pub struct Mailboxes {
     pub(crate) outbox: Channel<CriticalSectionRawMutex, Packet, OUTBOX_LEN>,
     /// The latest word counts: a body never works off old orders.
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
+    /// Who has run, for the watchdog.
+    pub(crate) progress: Progress,
     unsent: AtomicU32,
     undelivered: AtomicU32,
 }
@@ -45,6 +49,7 @@ impl Mailboxes {
             inbox: Channel::new(),
             outbox: Channel::new(),
             orders: Signal::new(),
+            progress: Progress::new(),
             unsent: AtomicU32::new(0),
             undelivered: AtomicU32::new(0),
         }

@@ -1,13 +1,17 @@
 //! What must a board be able to do? Hear and speak on the air, sense, and move.
 //!
-//! Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
+//! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(
     async_fn_in_trait,
     reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send"
 )]
 
+use protocol::Duration;
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
+
+use crate::kicker::{KickerAct, KickerState};
+use crate::wheel::WHEELS;
 
 /// The ear of a radio.
 pub trait RadioReceiver {
@@ -31,4 +35,56 @@ pub trait Senses {
 pub trait Body {
     /// Does what is wanted from now on, until the next call.
     async fn act(&mut self, wanted: ActuatorFrame);
+}
+
+/// Four wheels with their motors, and the dribbler.
+pub trait Wheels {
+    /// Rim speeds since the last call, m/s; a number that is none where an encoder is known to be broken.
+    fn measured(&mut self) -> [f32; WHEELS];
+
+    /// These shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed, until the next call.
+    fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
+
+    /// No current in any of them.
+    fn release(&mut self);
+}
+
+/// The kicker's capacitor and coils.
+pub trait Kicker {
+    /// What its sensors say.
+    fn state(&mut self) -> KickerState;
+
+    /// Does this; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay switched on longer
+    /// than the pulse, whatever becomes of the task: the board's timer ends it, not the program.
+    async fn act(&mut self, act: KickerAct);
+}
+
+/// What a robot on wheels feels, besides its wheels.
+pub trait Probes {
+    /// Everything at this moment.
+    fn look(&mut self) -> Seen;
+}
+
+/// What probes say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// How fast the body turns, rad/s; `None` without a gyroscope.
+    pub turn: Option<f32>,
+    /// The light barrier at the dribbler is broken.
+    pub ball: bool,
+    /// The robot lies on its side.
+    pub tipped: bool,
+    /// Battery, V; `None` where it is not measured.
+    pub battery: Option<f32>,
+    /// The kicker is charged.
+    pub kicker_ready: bool,
+}
+
+/// A watchdog that resets the computer unless it is fed.
+pub trait Dog {
+    /// How long it waits.
+    const PATIENCE: Duration;
+
+    /// Makes it wait anew.
+    fn feed(&mut self);
 }

@@ -9,15 +9,22 @@ use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
+use protocol::frame::TeamKey;
 use protocol::{Duration, Instant};
 
 use crate::mailboxes::{Arrival, Mailboxes};
 use crate::mind::Mind;
 use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
+use crate::progress::Part;
 
 /// The robot's life: begins with the first poll of this task.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
-    think(Station::new(now(), config, base), boxes).await
+    brain_with_key(config, base, TeamKey::ZERO, boxes).await
+}
+
+/// As [`brain`], with the team's key.
+pub async fn brain_with_key(config: &BrainConfig, base: CaseBase<'_>, key: TeamKey, boxes: &Mailboxes) -> ! {
+    think(Station::with_key(now(), config, base, key), boxes).await
 }
 
 /// From the air into the inbox.
@@ -72,6 +79,7 @@ pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
             }
         }
         empty(&mut mind, last, boxes);
+        boxes.progress.mark(Part::Brain);
     }
 }
 
@@ -106,7 +114,7 @@ fn empty(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) {
 }
 
 /// Embassy's clock in the project's time.
-fn now() -> Instant {
+pub(crate) fn now() -> Instant {
     Instant(embassy_time::Instant::now().as_ticks())
 }
 

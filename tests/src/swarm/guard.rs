@@ -153,8 +153,13 @@ impl Guard {
 
     /// Its order in the step that began at that moment, after all it heard in it.
     pub fn judge(&mut self, ms: u32, sensors: &SensorFrame, order: &ActuatorFrame) -> Result<(), Danger> {
-        let ActuatorFrame::Omni { wheels, dribbler, kick } = *order else {
-            return Err(Danger::Absurd(*order));
+        let (wheels, dribbler, kick) = match *order {
+            ActuatorFrame::Omni { wheels, dribbler, kick } => (wheels, dribbler, kick),
+            // Only a robot that stands, by its own measure, may let go of its motors.
+            ActuatorFrame::Released if sensors.odometry.linear.norm() < LETS_GO => {
+                ([0.0; 4], 0.0, OmniKick::Discharge)
+            }
+            ActuatorFrame::Released | ActuatorFrame::Legged { .. } => return Err(Danger::Absurd(*order)),
         };
         let kick_speed = match kick {
             OmniKick::Flat(speed) | OmniKick::Chip(speed) => speed,
@@ -250,6 +255,8 @@ const SLACK: u32 = 10;
 const GAP: u32 = 50;
 const SILENCE: u32 = 100;
 const ARM_AFTER: u32 = 500;
+/// Slower than this a robot stands, m/s.
+const LETS_GO: f32 = 0.1;
 /// ms: from 4 m/s at 5 m/s² it takes 0.8 s, from 20 rad/s at 40 rad/s² 0.5 s.
 const STANDS_WITHIN: u32 = 1_000;
 /// m/s and m/s²: as fast as any robot is, and what its wheels hold.

@@ -219,7 +219,7 @@ fn headquarters(plan: &Plan, epoch: u32, script: Script) -> Headquarters {
 }
 
 fn discharges(order: &ActuatorFrame) -> bool {
-    matches!(order, ActuatorFrame::Omni { kick: OmniKick::Discharge, .. })
+    matches!(order, ActuatorFrame::Omni { kick: OmniKick::Discharge, .. } | ActuatorFrame::Released)
 }
 
 /// The first tick at or after that moment.

@@ -76,7 +76,7 @@ impl<'a> Image<'a> {
     pub fn parse(bytes: &'a [u8]) -> Result<Self, ImageError> {
         let file = object::File::parse(bytes).map_err(ImageError::Elf)?;
         let in_memory = |section: &object::Section<'_, '_>| match section.flags() {
-            SectionFlags::Elf { sh_flags, .. } => sh_flags.0 & u64::from(object::elf::SHF_ALLOC.0) != 0,
+            SectionFlags::Elf { sh_flags, .. } => sh_flags.0 & object::elf::SHF_ALLOC.0 != 0,
             _ => false,
         };
         let mut sections: Vec<_> = file

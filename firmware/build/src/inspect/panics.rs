@@ -127,7 +127,7 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             innermost.get_or_insert((site.clone(), line.clone()));
             match &mut found {
                 // Whoever it was inlined into may be the one to mend.
-                Some((_, lines)) => *lines += &format!(" in {}", plain(&name)),
+                Some((_, lines)) => *lines = format!("{lines} in {}", plain(&name)),
                 None if is_std => {}
                 None => found = Some((site, line)),
             }

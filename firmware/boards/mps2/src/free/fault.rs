@@ -1,0 +1,119 @@
+//! What does a robot do when its program cannot go on? Motors off, the place kept and told, and a new life (DESIGN §6).
+//!
+//! A record in memory that no start clears outlives the reset: how often the robot was started since power came, and what
+//! ended the last life.
+
+use core::mem::MaybeUninit;
+use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{ExceptionFrame, exception};
+
+use super::body;
+use super::console::say;
+
+/// What is known of this life and the last.
+#[derive(Clone, Copy)]
+pub(crate) struct Life {
+    /// Starts since power came, this one included.
+    pub(crate) boots: u32,
+    /// Panics since then.
+    pub(crate) panics: u32,
+    place: [u8; PLACE_LEN],
+    place_len: usize,
+    /// Not 0: the watchdog ended the last life. No `bool`, for memory nobody wrote may hold anything.
+    bitten: u32,
+    magic: u32,
+}
+
+impl Life {
+    const FIRST: Self =
+        Self { boots: 0, panics: 0, place: [0; PLACE_LEN], place_len: 0, bitten: 0, magic: MAGIC };
+
+    /// Where the last panic was: file and line.
+    pub(crate) fn place(&self) -> &[u8] {
+        self.place.get(..self.place_len).unwrap_or_default()
+    }
+}
+
+/// Counts this start; call once, first of all.
+pub(crate) fn life() -> Life {
+    let mut life = with(|life| *life);
+    if life.magic != MAGIC {
+        life = Life::FIRST;
+    }
+    life.boots = life.boots.wrapping_add(1);
+    BITTEN.store(life.bitten != 0, Ordering::Relaxed);
+    let told = life;
+    // Told once: the next life has its own end.
+    life.bitten = 0;
+    with(|kept| *kept = life);
+    told
+}
+
+/// Whether this is the first life since power came.
+pub(crate) fn is_first_life() -> bool {
+    with(|life| life.boots) == 1
+}
+
+/// Whether the last life was ended by the watchdog.
+pub(crate) fn was_bitten() -> bool {
+    BITTEN.load(Ordering::Relaxed)
+}
+
+/// The watchdog has bitten.
+pub(crate) fn remember_bite() {
+    with(|life| life.bitten = 1);
+}
+
+static BITTEN: AtomicBool = AtomicBool::new(false);
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    body::stop();
+    cortex_m::interrupt::disable();
+    match info.location() {
+        Some(place) => ended(&[place.file().as_bytes(), b":", &digits(place.line())]),
+        None => ended(&[b"an unknown place"]),
+    }
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    body::stop();
+    ended(&[b"a hard fault, program counter ", &digits(frame.pc())])
+}
+
+/// Keeps and tells the place, then starts anew.
+fn ended(place: &[&[u8]]) -> ! {
+    with(|life| {
+        life.panics = life.panics.wrapping_add(1);
+        let text = place.iter().flat_map(|word| word.iter());
+        life.place_len = life.place.iter_mut().zip(text).map(|(to, from)| *to = *from).count();
+    });
+    say(&[b"panic at ", with(|life| *life).place(), b"; motors off, starting anew"]);
+    SCB::sys_reset()
+}
+
+/// The record. Nobody is interrupted by a panic who holds it: it is touched at the start, in the watchdog's NMI, and here.
+fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
+    #[unsafe(link_section = ".uninit.life")]
+    static mut LIFE: MaybeUninit<Life> = MaybeUninit::uninit();
+    // SAFETY: one processor, and no two of its users run at the same time. The record consists of whole numbers, for which
+    // every pattern of bits is a value; a start whose `magic` is wrong replaces all of it.
+    unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
+}
+
+fn digits(number: u32) -> [u8; 10] {
+    let (mut rest, mut text) = (number, [b'0'; 10]);
+    for digit in text.iter_mut().rev() {
+        *digit = b'0' + (rest % 10) as u8;
+        rest /= 10;
+    }
+    text
+}
+
+/// Bytes of a place that are kept.
+const PLACE_LEN: usize = 96;
+const MAGIC: u32 = 0x0121_fe50;

@@ -1,0 +1,27 @@
+//! What can be made to go wrong on the emulated board? A word that the emulator's loader puts into flash asks for it.
+
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use embassy_time::{Duration, Timer};
+
+use super::fault;
+
+/// Does what the word asks for, once since power came: 1 a panic, 2 a task that hangs; both after 300 ms.
+pub(crate) async fn run() {
+    // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
+    let word = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
+    Timer::after(Duration::from_millis(300)).await;
+    if fault::is_first_life() {
+        match word {
+            1 => panic!(),
+            2 => {
+                while !NEVER.load(Ordering::Relaxed) {
+                    core::hint::spin_loop();
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+static NEVER: AtomicBool = AtomicBool::new(false);

@@ -1,0 +1,131 @@
+//! How do frames come and go over the board's serial line? Stuffed bytes (`protocol::serial`), an interrupt each (CMSDK APB
+//! UART, Arm DDI 0479).
+
+use core::future::poll_fn;
+use core::sync::atomic::{AtomicU32, Ordering};
+use core::task::Poll;
+
+use cortex_m::interrupt::InterruptNumber;
+use cortex_m::peripheral::NVIC;
+use cortex_m_rt::exception;
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::pipe::Pipe;
+use embassy_sync::waitqueue::AtomicWaker;
+use protocol::link::Packet;
+use protocol::serial::{Lines, line};
+use runtime::ports::{RadioReceiver, RadioSender};
+
+/// Starts both directions; call once.
+pub(crate) fn start() {
+    BAUD_DIVIDER.write(DIVIDER_LEAST);
+    CONTROL.write(TX_ON | RX_ON | TX_INTERRUPT | RX_INTERRUPT);
+    // SAFETY: the interrupts do no more than move a byte and wake a task.
+    unsafe {
+        NVIC::unmask(Irq(RX_IRQ));
+        NVIC::unmask(Irq(TX_IRQ));
+    }
+}
+
+/// Bytes that came; twice the longest frame, so that the brain's longest step loses none at the line's pace.
+static CAME: Pipe<CriticalSectionRawMutex, 512> = Pipe::new();
+/// Bytes that found it full, for a debugger to read.
+static LOST: AtomicU32 = AtomicU32::new(0);
+static ROOM: AtomicWaker = AtomicWaker::new();
+
+/// The two interrupts that are on are the line's.
+#[exception]
+unsafe fn DefaultHandler(number: i16) {
+    if number == RX_IRQ as i16 {
+        // First: a byte that comes after the last look must ring again.
+        INTERRUPTS.write(RX_INTERRUPT_BIT);
+        while STATE.read() & RX_FULL != 0 {
+            if CAME.try_write(&[DATA.read() as u8]).is_err() {
+                LOST.store(LOST.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
+            }
+        }
+    } else {
+        INTERRUPTS.write(TX_INTERRUPT_BIT);
+        ROOM.wake();
+    }
+}
+
+/// Hears frames.
+pub(crate) struct Ear(Lines);
+
+impl Ear {
+    pub(crate) fn new() -> Self {
+        Self(Lines::new())
+    }
+}
+
+impl RadioReceiver for Ear {
+    async fn receive(&mut self) -> Packet {
+        loop {
+            let mut byte = [0];
+            CAME.read(&mut byte).await;
+            if let Some(packet) = self.0.push(byte[0]) {
+                return packet;
+            }
+        }
+    }
+}
+
+/// Speaks frames.
+pub(crate) struct Mouth;
+
+impl RadioSender for Mouth {
+    async fn send(&mut self, packet: Packet) {
+        for byte in &line(&packet) {
+            poll_fn(|context| {
+                ROOM.register(context.waker());
+                if STATE.read() & TX_FULL == 0 { Poll::Ready(()) } else { Poll::Pending }
+            })
+            .await;
+            DATA.write(u32::from(*byte));
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Irq(u16);
+
+// SAFETY: the numbers below are those of the first UART on AN386, and they do not change.
+unsafe impl InterruptNumber for Irq {
+    fn number(self) -> u16 {
+        self.0
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Register(usize);
+
+impl Register {
+    fn read(self) -> u32 {
+        // SAFETY: every register below is one of this board's first UART (MPS2 AN386: at 0x4000_4000), 32 bits wide.
+        unsafe { ((BASE + self.0) as *const u32).read_volatile() }
+    }
+
+    fn write(self, value: u32) {
+        // SAFETY: as above.
+        unsafe { ((BASE + self.0) as *mut u32).write_volatile(value) }
+    }
+}
+
+const BASE: usize = 0x4000_4000;
+const RX_IRQ: u16 = 0;
+const TX_IRQ: u16 = 1;
+const DATA: Register = Register(0x00);
+const STATE: Register = Register(0x04);
+const CONTROL: Register = Register(0x08);
+const INTERRUPTS: Register = Register(0x0c);
+const BAUD_DIVIDER: Register = Register(0x10);
+const TX_FULL: u32 = 1;
+const RX_FULL: u32 = 1 << 1;
+const TX_ON: u32 = 1;
+const RX_ON: u32 = 1 << 1;
+const TX_INTERRUPT: u32 = 1 << 2;
+const RX_INTERRUPT: u32 = 1 << 3;
+const TX_INTERRUPT_BIT: u32 = 1;
+const RX_INTERRUPT_BIT: u32 = 1 << 1;
+/// The fastest the line goes; an emulated one has no other pace.
+const DIVIDER_LEAST: u32 = 16;

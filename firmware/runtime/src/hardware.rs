@@ -1,0 +1,285 @@
+//! What does a robot's computer do besides thinking, where no simulator does it? Wheels a thousand times a second, kicker,
+//! senses, and the watchdog over all of it.
+//!
+//! ```text
+//! brain ─► orders ─► control (1 kHz) ─► wheels, dribbler
+//!                      │  └─ rims ─► senses (100 Hz) ─► inbox ─► brain
+//!                      └─ wish ─► kicker (1 kHz) ─► capacitor, coils
+//! control, radio, brain ─► progress ─► watchdog
+//! ```
+//!
+//! **What may be lost.** Orders, rims and wishes are signals: only the newest counts. Packets and pictures go through the
+//! channels of [`Mailboxes`], which count what they drop.
+
+use core::pin::pin;
+
+use embassy_futures::select::{Either, select};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::signal::Signal;
+use embassy_time::{Duration, Ticker, Timer};
+use geometry::{Body, Twist};
+use motion::omni::Omni;
+use protocol::robot_io::{Health, OmniKick, SensorFrame};
+
+use crate::kicker::{Interlock, KickerAct};
+use crate::mailboxes::{Arrival, Mailboxes};
+use crate::ports::{Dog, Kicker, Probes, RadioReceiver, Wheels};
+use crate::progress::Part;
+use crate::tasks::now;
+use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
+
+/// What the tasks of this module tell each other.
+pub struct Wires {
+    /// Rim speeds as measured, m/s.
+    rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
+    /// What the kicker shall do.
+    wish: Signal<CriticalSectionRawMutex, OmniKick>,
+}
+
+impl Wires {
+    /// Nothing said yet.
+    pub const fn new() -> Self {
+        Self { rims: Signal::new(), wish: Signal::new() }
+    }
+}
+
+impl Default for Wires {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Leads the wheels to what the brain orders, and to a stop where it orders nothing. Takes the place of
+/// [`tasks::body`](crate::tasks::body).
+pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) -> ! {
+    let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
+    let mut control = Control::new();
+    loop {
+        ticker.next().await;
+        let now = now();
+        if let Some(order) = boxes.orders.try_take() {
+            control.order(now, order);
+        }
+        let measured = wheels.measured();
+        let step = control.step(now, measured);
+        match step.motors {
+            Motors::Driven(duty) => wheels.drive(duty, step.dribbler),
+            Motors::Released => wheels.release(),
+        }
+        wires.rims.signal(measured);
+        wires.wish.signal(step.kick);
+        boxes.progress.mark(Part::Control);
+    }
+}
+
+/// Charges and fires, as far as the interlock lets it.
+pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
+    let mut interlock = Interlock::new();
+    loop {
+        // The control loop says it every millisecond; if it says nothing any more, nobody may fire.
+        let wish = match select(wires.wish.wait(), Timer::after(SILENT)).await {
+            Either::First(wish) => wish,
+            Either::Second(()) => OmniKick::Discharge,
+        };
+        let act = interlock.step(now(), wish, kicker.state());
+        kicker.act(act).await;
+        if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_)) {
+            // What was wished while the coil had current is old.
+            wires.wish.reset();
+        }
+    }
+}
+
+/// Puts what wheels and probes say before the brain, at its pace. The place is the host's to tell.
+pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -> ! {
+    let mut ticker = Ticker::every(BRAIN_PERIOD);
+    let kinematics = Omni::default();
+    let mut rims = [0.0; WHEELS];
+    loop {
+        ticker.next().await;
+        if let Some(newest) = wires.rims.try_take() {
+            rims = newest;
+        }
+        let seen = probes.look();
+        let Twist { linear, angular } = kinematics.twist(rims);
+        // A gyroscope knows better than four wheels how the body turns, where there is one.
+        let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
+        let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
+        let picture = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: seen.ball,
+            busy: false,
+            odometry,
+            health,
+        };
+        boxes.room_for_arrival().await;
+        boxes.deliver(Arrival::Sensors(picture));
+    }
+}
+
+/// As [`tasks::radio_receive`](crate::tasks::radio_receive), and says that it listens, whether it hears something or not.
+pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
+    loop {
+        let packet = {
+            // Not dropped half-way: bytes of a packet that is coming in would be lost.
+            let mut next = pin!(radio.receive());
+            loop {
+                boxes.progress.mark(Part::Radio);
+                if let Either::First(packet) = select(next.as_mut(), Timer::after(LISTENS)).await {
+                    break packet;
+                }
+            }
+        };
+        boxes.room_for_arrival().await;
+        boxes.deliver(Arrival::Packet(packet));
+    }
+}
+
+/// Feeds the dog as long as control, radio and brain all run. It is as patient as [`Dog::PATIENCE`].
+pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
+    let mut ticker = Ticker::every(Duration::from_micros(D::PATIENCE.0 / LOOKS_A_PATIENCE));
+    loop {
+        ticker.next().await;
+        if boxes.progress.all() {
+            dog.feed();
+        }
+    }
+}
+
+/// The brain's pace on wheels (DESIGN §2).
+const BRAIN_PERIOD: Duration = Duration::from_millis(10);
+/// The control loop has said nothing for ten of its steps.
+const SILENT: Duration = Duration::from_millis(10);
+/// How often a radio that hears nothing says that it listens.
+const LISTENS: Duration = Duration::from_millis(10);
+/// The watchdog's task looks so often while the dog waits.
+const LOOKS_A_PATIENCE: u64 = 5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::World;
+    use core::cell::{Cell, RefCell};
+    use protocol::link::Packet;
+    use protocol::robot_io::ActuatorFrame;
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    use crate::kicker::KickerState;
+    use crate::ports::Seen;
+
+    /// Wheels that reach two thirds of a change in 30 ms.
+    struct Motor(&'static Cell<Option<[f32; WHEELS]>>, [f32; WHEELS]);
+    impl Wheels for Motor {
+        fn measured(&mut self) -> [f32; WHEELS] {
+            self.1
+        }
+        fn drive(&mut self, duty: [f32; WHEELS], _dribbler: f32) {
+            for (speed, duty) in self.1.iter_mut().zip(duty) {
+                *speed += (6.0 * duty - *speed) / 30.0;
+            }
+            self.0.set(Some(duty));
+        }
+        fn release(&mut self) {
+            self.0.set(None);
+        }
+    }
+
+    struct Coil(&'static RefCell<Vec<KickerAct>>);
+    impl Kicker for Coil {
+        fn state(&mut self) -> KickerState {
+            KickerState { ball: true, volts: 210.0 }
+        }
+        async fn act(&mut self, act: KickerAct) {
+            self.0.borrow_mut().push(act);
+        }
+    }
+
+    struct Quiet;
+    impl RadioReceiver for Quiet {
+        async fn receive(&mut self) -> Packet {
+            core::future::pending().await
+        }
+    }
+
+    struct Counting(&'static Cell<u32>);
+    impl Dog for Counting {
+        const PATIENCE: protocol::Duration = protocol::Duration::millis(100);
+        fn feed(&mut self) {
+            self.0.set(self.0.get() + 1);
+        }
+    }
+
+    struct Still;
+    impl Probes for Still {
+        fn look(&mut self) -> Seen {
+            Seen { turn: None, ball: true, tipped: false, battery: Some(15.0), kicker_ready: false }
+        }
+    }
+
+    fn leaked<T>(value: T) -> &'static T {
+        Box::leak(Box::new(value))
+    }
+
+    const GO: ActuatorFrame =
+        ActuatorFrame::Omni { wheels: [1.0; 4], dribbler: 0.0, kick: OmniKick::Flat(4.0) };
+
+    #[test]
+    fn an_order_drives_and_kicks_and_its_absence_brakes_and_discharges() {
+        let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
+        let (duty, acts) = (leaked(Cell::new(None)), leaked(RefCell::new(Vec::new())));
+        let mut world = World::new();
+        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
+        world.spawn(kicker(Coil(acts), wires));
+        world.settle();
+        world.advance(5_000);
+        assert_eq!(duty.get(), None, "no order yet, no current");
+        boxes.orders.signal(GO);
+        world.advance(30_000);
+        assert!(duty.get().is_some_and(|duty| duty[0] > 0.1));
+        assert_eq!(acts.borrow().iter().filter(|act| matches!(act, KickerAct::Flat(_))).count(), 1);
+        world.advance(300_000);
+        assert!(duty.get().is_some_and(|duty| duty.iter().all(|duty| duty.abs() < 0.02)), "{duty:?}");
+        assert_eq!(acts.borrow().last(), Some(&KickerAct::Bleed));
+    }
+
+    #[test]
+    fn the_brain_sees_wheels_and_probes_a_hundred_times_a_second() {
+        let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
+        let mut world = World::new();
+        world.spawn(senses(Still, boxes, wires));
+        world.settle();
+        wires
+            .rims
+            .signal(Omni::default().rims(Twist { linear: geometry::Vector::new(1.0, 0.0), angular: 0.0 }));
+        world.advance(10_000);
+        let Ok(Arrival::Sensors(picture)) = boxes.inbox.try_receive() else { panic!("nothing seen") };
+        assert!((picture.odometry.linear.x() - 1.0).abs() < 1e-3 && picture.ball_contact);
+        assert_eq!((picture.pose, picture.health.battery), (None, Some(15.0)));
+        world.advance(60_000);
+        assert_eq!(boxes.inbox.len(), 5);
+    }
+
+    #[test]
+    fn the_dog_is_fed_only_while_control_radio_and_brain_all_run() {
+        let (boxes, wires) = (leaked(Mailboxes::new()), leaked(Wires::new()));
+        let (fed, duty) = (leaked(Cell::new(0)), leaked(Cell::new(None)));
+        let mut world = World::new();
+        world.spawn(control(Motor(duty, [0.0; WHEELS]), boxes, wires));
+        world.spawn(radio_receive(Quiet, boxes));
+        world.spawn(watchdog(Counting(fed), boxes));
+        world.settle();
+        world.advance(1_000_000);
+        assert_eq!(fed.get(), 0, "the brain has not said a word");
+        for ms in (1_000..2_000).step_by(10) {
+            boxes.progress.mark(Part::Brain);
+            world.advance(ms * 1_000);
+        }
+        assert!((45..=50).contains(&fed.get()), "{}", fed.get());
+        let before = fed.get();
+        world.advance(3_000_000);
+        assert!(fed.get() <= before + 1, "the brain is silent again");
+    }
+}

@@ -1,0 +1,156 @@
+//! When may the kicker charge, and when does it fire? The interlock between the brain's wish and 200 V (DESIGN §6). Sans-IO.
+//!
+//! | wish | ball at the mouth | capacitor | what happens |
+//! |---|---|---|---|
+//! | `Discharge` | – | – | not charged, bled through the coil too slowly to move the plunger |
+//! | none, or a kick | – | low | charged |
+//! | a kick | no | full | waits: the light barrier fires it, the brain's order only arms it |
+//! | a kick | yes | full | one pulse, then nothing for half a second |
+
+use protocol::robot_io::OmniKick;
+use protocol::{Duration, Instant};
+
+/// What the kicker's board shall do until the next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum KickerAct {
+    /// Neither charge nor fire.
+    Rest,
+    /// Charge the capacitor.
+    Charge,
+    /// Let it run empty without a kick.
+    Bleed,
+    /// A pulse through the flat kicker's coil, of this length.
+    Flat(Duration),
+    /// The same through the chip kicker's.
+    Chip(Duration),
+}
+
+/// What the kicker's sensors say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KickerState {
+    /// The light barrier in front of the kicker is broken.
+    pub ball: bool,
+    /// The capacitor's voltage, V.
+    pub volts: f32,
+}
+
+/// The interlock of one kicker.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interlock {
+    fired: Option<Instant>,
+}
+
+impl Interlock {
+    /// Of a kicker that has not fired yet.
+    pub const fn new() -> Self {
+        Self { fired: None }
+    }
+
+    /// One step.
+    pub fn step(&mut self, now: Instant, wish: OmniKick, state: KickerState) -> KickerAct {
+        // A voltage that cannot be read is taken for a full capacitor: it is not charged, and not fired.
+        let (full, readable) = (state.volts.is_nan() || state.volts >= FULL_VOLTS, !state.volts.is_nan());
+        if wish == OmniKick::Discharge {
+            return if readable && state.volts < EMPTY_VOLTS { KickerAct::Rest } else { KickerAct::Bleed };
+        }
+        let rested = self.fired.is_none_or(|fired| now.since(fired) >= PAUSE);
+        let pulse = match wish {
+            OmniKick::Flat(speed) => pulse(speed, FLAT_PULSE).map(KickerAct::Flat),
+            OmniKick::Chip(speed) => pulse(speed, CHIP_PULSE).map(KickerAct::Chip),
+            OmniKick::None | OmniKick::Discharge => None,
+        };
+        if let Some(act) = pulse.filter(|_| readable && full && state.ball && rested) {
+            self.fired = Some(now);
+            return act;
+        }
+        if full { KickerAct::Rest } else { KickerAct::Charge }
+    }
+
+    /// Whether a kick would be fired at once, as far as charge and pause tell.
+    pub fn is_ready(&self, now: Instant, volts: f32) -> bool {
+        volts >= FULL_VOLTS && self.fired.is_none_or(|fired| now.since(fired) >= PAUSE)
+    }
+}
+
+impl Default for Interlock {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// How long a pulse gives the ball this speed; `None` for a speed that is none. Never longer than the table's last.
+fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
+    if !speed.is_finite() || speed <= 0.0 {
+        return None;
+    }
+    let mut last = (0.0, 0);
+    for &(to, micros) in table {
+        if speed <= to {
+            let share = (speed - last.0) / (to - last.0);
+            return Some(Duration(last.1 + (share * (micros - last.1) as f32) as u64));
+        }
+        last = (to, micros);
+    }
+    Some(Duration(last.1))
+}
+
+/// Ball speed, m/s, and the pulse for it, µs: estimates that stand in for a robot's own calibration.
+const FLAT_PULSE: &[(f32, u64)] = &[(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)];
+/// The same of the chip kicker.
+const CHIP_PULSE: &[(f32, u64)] = &[(2.0, 2_000), (4.0, 3_800), (6.0, 6_000)];
+/// The capacitor is full, V (teams use 180 to 240).
+pub const FULL_VOLTS: f32 = 200.0;
+/// It is safe to touch below this, V (extra-low voltage is 60 V of direct current; half of it).
+const EMPTY_VOLTS: f32 = 30.0;
+/// No second kick before this: the plunger must come back.
+const PAUSE: Duration = Duration::millis(500);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state(ball: bool, volts: f32) -> KickerState {
+        KickerState { ball, volts }
+    }
+
+    #[test]
+    fn nothing_fires_without_ball_charge_pause_and_a_number() {
+        let mut interlock = Interlock::new();
+        let kick = OmniKick::Flat(4.0);
+        let now = Instant(1_000_000);
+        assert_eq!(interlock.step(now, kick, state(false, 210.0)), KickerAct::Rest);
+        assert_eq!(interlock.step(now, kick, state(true, 150.0)), KickerAct::Charge);
+        assert_eq!(interlock.step(now, kick, state(true, f32::NAN)), KickerAct::Rest);
+        assert_eq!(interlock.step(now, OmniKick::Flat(f32::NAN), state(true, 210.0)), KickerAct::Rest);
+        assert_eq!(interlock.step(now, OmniKick::None, state(true, 210.0)), KickerAct::Rest);
+        assert_eq!(interlock.step(now, kick, state(true, 210.0)), KickerAct::Flat(Duration(2_600)));
+        assert!(!interlock.is_ready(now + Duration::millis(499), 210.0));
+        assert_eq!(interlock.step(now + Duration::millis(499), kick, state(true, 210.0)), KickerAct::Rest);
+        let later = now + PAUSE;
+        assert_eq!(
+            interlock.step(later, OmniKick::Chip(3.0), state(true, 210.0)),
+            KickerAct::Chip(Duration(2_900))
+        );
+    }
+
+    #[test]
+    fn a_discharge_bleeds_until_it_is_safe_and_never_charges() {
+        let mut interlock = Interlock::new();
+        for (volts, act) in [
+            (210.0, KickerAct::Bleed),
+            (30.0, KickerAct::Bleed),
+            (29.0, KickerAct::Rest),
+            (f32::NAN, KickerAct::Bleed),
+        ] {
+            assert_eq!(interlock.step(Instant(0), OmniKick::Discharge, state(true, volts)), act, "{volts}");
+        }
+    }
+
+    #[test]
+    fn a_pulse_grows_with_the_speed_and_has_an_end() {
+        let pulses: [u64; 9] = core::array::from_fn(|n| pulse(n as f32 + 0.5, FLAT_PULSE).map_or(0, |d| d.0));
+        assert!(pulses.windows(2).all(|pair| pair[0] <= pair[1]), "{pulses:?}");
+        assert_eq!(pulses[8], 4_500);
+        assert_eq!(pulse(-1.0, FLAT_PULSE), None);
+    }
+}

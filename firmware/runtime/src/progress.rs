@@ -1,0 +1,64 @@
+//! Does everything that must run still run? Whoever does says so, and the watchdog is fed only when all of them did
+//! (DESIGN §1: runtime).
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+/// Who has to say that it runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The control loop of the wheels.
+    Control = 1,
+    /// The ear of the radio, whether it hears something or not.
+    Radio = 1 << 1,
+    /// The brain: it had a thought.
+    Brain = 1 << 2,
+}
+
+/// Who has run since the watchdog was fed last.
+#[derive(Debug, Default)]
+pub struct Progress(AtomicU32);
+
+impl Progress {
+    /// Nobody yet.
+    pub const fn new() -> Self {
+        Self(AtomicU32::new(0))
+    }
+
+    /// This one runs.
+    pub fn mark(&self, part: Part) {
+        // Load and store, not a swap: all tasks of a robot run on one executor.
+        self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);
+    }
+
+    /// Whether all have run since the last time this was true.
+    pub fn all(&self) -> bool {
+        let all = self.0.load(Ordering::Relaxed) == ALL;
+        if all {
+            self.0.store(0, Ordering::Relaxed);
+        }
+        all
+    }
+}
+
+const ALL: u32 = Part::Control as u32 | Part::Radio as u32 | Part::Brain as u32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_all_parts_together_count_and_only_once() {
+        let progress = Progress::new();
+        for missing in [Part::Control, Part::Radio, Part::Brain] {
+            for part in [Part::Control, Part::Radio, Part::Brain, Part::Brain] {
+                if part != missing {
+                    progress.mark(part);
+                }
+            }
+            assert!(!progress.all(), "{missing:?} is missing");
+            progress.mark(missing);
+            assert!(progress.all());
+            assert!(!progress.all());
+        }
+    }
+}

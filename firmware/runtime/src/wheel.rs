@@ -1,0 +1,202 @@
+//! How does a wheel get the speed the brain wants? A thousand times a second, from encoder to duty, and to a stop where the
+//! brain has gone silent (DESIGN §2, §6). Sans-IO; m/s at the rim, duty as a share of the battery's voltage.
+
+use protocol::robot_io::{ActuatorFrame, OmniKick};
+use protocol::{Duration, Instant};
+
+/// Wheels of a robot.
+pub const WHEELS: usize = 4;
+/// How often the loop runs (DESIGN §2).
+pub const CONTROL_PERIOD: Duration = Duration::millis(1);
+
+/// What the motors shall do until the next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motors {
+    /// These duties, −1 to 1.
+    Driven([f32; WHEELS]),
+    /// No current.
+    Released,
+}
+
+/// What is wanted of everything that moves, after the loop's own check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The wheels.
+    pub motors: Motors,
+    /// The dribbler's share of full speed, 0–1.
+    pub dribbler: f32,
+    /// The kicker.
+    pub kick: OmniKick,
+}
+
+/// The control loop of four wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Control {
+    order: Option<(Instant, ActuatorFrame)>,
+    /// What the wheels are led to now; runs down where orders stay away.
+    wanted: [f32; WHEELS],
+    integral: [f32; WHEELS],
+}
+
+impl Control {
+    /// Nothing ordered yet: the motors are without current.
+    pub const fn new() -> Self {
+        Self { order: None, wanted: [0.0; WHEELS], integral: [0.0; WHEELS] }
+    }
+
+    /// The brain wants this from now on.
+    pub fn order(&mut self, now: Instant, order: ActuatorFrame) {
+        self.order = Some((now, order));
+    }
+
+    /// One step of a millisecond: what to do, from what the encoders say.
+    pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> Step {
+        let fresh = self.order.filter(|(at, _)| now.since(*at) < ORDER_STALE).map(|(_, order)| order);
+        let (dribbler, kick) = match (self.order, fresh) {
+            (None, _) | (_, Some(ActuatorFrame::Released | ActuatorFrame::Legged { .. })) => {
+                *self = Self { order: self.order, ..Self::new() };
+                return Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+            }
+            (Some(_), Some(ActuatorFrame::Omni { wheels, dribbler, kick }))
+                if is_finite(&wheels, dribbler) =>
+            {
+                self.wanted = wheels;
+                (dribbler, kick)
+            }
+            // The brain has gone silent, or said something that is no number: to a stop, as fast as the carpet holds.
+            (Some(_), _) => {
+                let slower = |speed: f32| (speed.abs() - BRAKE_A_STEP).max(0.0) * speed.signum();
+                self.wanted = self.wanted.map(slower);
+                (0.0, OmniKick::Discharge)
+            }
+        };
+        let mut duty = [0.0; WHEELS];
+        for (((duty, wanted), measured), integral) in
+            duty.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
+        {
+            // A sensor that is broken is not followed: the wheel runs open, by the motor's own constant.
+            let error = if measured.is_finite() { wanted - measured } else { 0.0 };
+            let open = wanted * FEED_FORWARD + error * PROPORTIONAL;
+            let trial = *integral + error * INTEGRAL_A_STEP;
+            let free = open + trial;
+            *duty = free.clamp(-1.0, 1.0);
+            // At the voltage's end nothing is added up that would have to be taken back later.
+            if free == *duty || free.abs() < (open + *integral).abs() {
+                *integral = trial;
+            }
+        }
+        Step { motors: Motors::Driven(duty), dribbler, kick }
+    }
+}
+
+impl Default for Control {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
+    wheels.iter().all(|speed| speed.is_finite()) && dribbler.is_finite()
+}
+
+/// An order older than this is none: five steps of the brain. The governor brakes for a silent host, this loop for a
+/// silent brain.
+pub const ORDER_STALE: Duration = Duration::millis(50);
+/// By so much a rim slows down in a step, m/s: the governor's 5 m/s².
+const BRAKE_A_STEP: f32 = 0.005;
+/// Duty for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on a robot).
+const FEED_FORWARD: f32 = 1.0 / 6.0;
+/// Duty for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
+const PROPORTIONAL: f32 = 0.4;
+/// Duty an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
+const INTEGRAL_A_STEP: f32 = 0.006;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a load that takes
+    /// 8 % of its voltage.
+    fn motor(speed: f32, duty: f32) -> f32 {
+        speed + ((duty - 0.08) * 5.4 - speed) * (0.001 / 0.03)
+    }
+
+    fn omni(speed: f32) -> ActuatorFrame {
+        ActuatorFrame::Omni { wheels: [speed, -speed, 0.5 * speed, 0.0], dribbler: 0.5, kick: OmniKick::None }
+    }
+
+    fn run(
+        control: &mut Control,
+        from: u64,
+        ms: u64,
+        order: Option<ActuatorFrame>,
+        speeds: &mut [f32; WHEELS],
+    ) -> Step {
+        let mut last = Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::None };
+        for t in from..from + ms {
+            let now = Instant(t * 1000);
+            if let Some(order) = order.filter(|_| t % 10 == 0) {
+                control.order(now, order);
+            }
+            last = control.step(now, *speeds);
+            if let Motors::Driven(duty) = last.motors {
+                for (speed, duty) in speeds.iter_mut().zip(duty) {
+                    assert!((-1.0..=1.0).contains(&duty));
+                    *speed = motor(*speed, duty);
+                }
+            }
+        }
+        last
+    }
+
+    #[test]
+    fn wheels_reach_their_speeds_within_a_fifth_of_a_second_in_spite_of_load_and_a_weak_battery() {
+        let (mut control, mut speeds) = (Control::new(), [0.0; WHEELS]);
+        run(&mut control, 0, 200, Some(omni(2.0)), &mut speeds);
+        for (speed, wanted) in speeds.iter().zip([2.0, -2.0, 1.0, 0.0]) {
+            assert!((speed - wanted).abs() < 0.05, "{speeds:?}");
+        }
+        run(&mut control, 200, 400, Some(omni(-1.0)), &mut speeds);
+        assert!((speeds[0] + 1.0).abs() < 0.02, "{speeds:?}");
+    }
+
+    #[test]
+    fn a_brain_that_has_gone_silent_is_braked_after_50_ms_and_its_kicker_discharged() {
+        let (mut control, mut speeds) = (Control::new(), [0.0; WHEELS]);
+        run(&mut control, 0, 300, Some(omni(2.0)), &mut speeds);
+        // The last order was at 290 ms.
+        let held = run(&mut control, 300, 39, None, &mut speeds);
+        assert_eq!((held.dribbler, held.kick), (0.5, OmniKick::None));
+        assert!(speeds[0] > 1.9);
+        let braking = run(&mut control, 339, 2, None, &mut speeds);
+        assert_eq!((braking.dribbler, braking.kick), (0.0, OmniKick::Discharge));
+        // 2 m/s at 5 m/s², and a while for the motor.
+        run(&mut control, 341, 600, None, &mut speeds);
+        assert!(speeds.iter().all(|speed| speed.abs() < 0.02), "{speeds:?}");
+    }
+
+    #[test]
+    fn before_the_first_order_and_when_released_there_is_no_current() {
+        let mut control = Control::new();
+        let released = Step { motors: Motors::Released, dribbler: 0.0, kick: OmniKick::Discharge };
+        assert_eq!(control.step(Instant(0), [0.0; WHEELS]), released);
+        control.order(Instant(1000), omni(1.0));
+        assert_ne!(control.step(Instant(1000), [0.0; WHEELS]).motors, Motors::Released);
+        control.order(Instant(2000), ActuatorFrame::Released);
+        assert_eq!(control.step(Instant(2000), [0.0; WHEELS]), released);
+    }
+
+    #[test]
+    fn numbers_that_are_none_neither_drive_nor_stay() {
+        let mut control = Control::new();
+        let bad = ActuatorFrame::Omni { wheels: [f32::NAN; 4], dribbler: 0.0, kick: OmniKick::Flat(6.0) };
+        control.order(Instant(0), bad);
+        let step = control.step(Instant(0), [0.0; WHEELS]);
+        assert_eq!((step.motors, step.kick), (Motors::Driven([0.0; WHEELS]), OmniKick::Discharge));
+        control.order(Instant(1000), omni(1.0));
+        let Motors::Driven(duty) = control.step(Instant(1000), [f32::NAN; WHEELS]).motors else {
+            panic!("released")
+        };
+        assert!(duty.iter().all(|duty| duty.is_finite()), "{duty:?}");
+    }
+}

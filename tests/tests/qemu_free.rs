@@ -1,0 +1,215 @@
+//! Does a robot that runs by its own clock obey its team's host and nobody else, stop when the host is gone, and come back from
+//! a panic and from a task that hangs? (DESIGN §6)
+//!
+//! The image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's standard streams. Times are
+//! generous: what is waited for must come, how soon depends on the machine. Needs QEMU and a compiler for the target (feature
+//! `qemu`).
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Child, Command as Process, Stdio};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use protocol::frame::TeamKey;
+use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Welcome};
+use protocol::host_link::HostLink;
+use protocol::serial::{Lines, line};
+use protocol::slot::{PAGE_ADDRESS, TRIAL_ADDRESS};
+use protocol::team::TeamMessage;
+use protocol::{RobotId, TeamId};
+use rules::Phase;
+
+/// Key 01 02 … 10, robot 3, team 1, division B; the check was computed by a SipHash of another hand.
+const PAGE: [u8; 32] = [
+    0x31, 0x2d, 0x32, 0x4b, 0x01, 0x03, 0x01, 0x02, 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07, 0x08, 0x09,
+    0x0a, 0x0b, 0x0c, 0x0d, 0x0e, 0x0f, 0x10, 0x80, 0xbc, 0xf1, 0x87, 0xa5, 0x5a, 0x66, 0x6f,
+];
+const TEAM: TeamId = TeamId(1);
+/// For anything that must come in the end, on a machine however busy.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+#[test]
+fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
+    let mut robot = Robot::start(Some(&PAGE), 0);
+    robot.hears_itself_say("robot: ready");
+    let lost = |condition: Condition| condition.has(Condition::LINK_LOST);
+    let mut ours = HostLink::new(TEAM, key(), 7);
+    assert!(robot.until(&mut ours, false, lost), "before the host speaks");
+    assert!(robot.until(&mut ours, true, |condition| !lost(condition)), "the host speaks");
+    assert!(robot.until(&mut ours, false, lost), "the host falls silent");
+    // Another key: its words change nothing in a second and a half, in which half a second would do.
+    let mut theirs = HostLink::new(TEAM, TeamKey([9; 16]), 8);
+    let began = Instant::now();
+    while began.elapsed() < Duration::from_millis(1_500) {
+        robot.say(&mut theirs, ours.life(id()).unwrap_or(1));
+        thread::sleep(Duration::from_millis(5));
+    }
+    robot.heard.try_iter().for_each(drop);
+    assert!(robot.until(&mut ours, false, |_| true), "it still speaks");
+    assert!(robot.last.is_some_and(lost), "a stranger's host moved it");
+}
+
+#[test]
+fn a_robot_without_a_key_or_with_a_damaged_page_says_nothing_on_the_air() {
+    for (page, words) in [(None, "no page"), (Some(damaged()), "a damaged page")] {
+        let mut robot = Robot::start(page.as_ref(), 0);
+        robot.hears_itself_say(words);
+        thread::sleep(Duration::from_millis(500));
+        assert!(robot.heard.try_recv().is_err(), "it speaks");
+    }
+}
+
+#[test]
+fn a_panic_takes_the_current_off_tells_its_place_and_starts_anew_in_a_new_life() {
+    let mut robot = Robot::start(Some(&PAGE), 1);
+    robot.hears_itself_say("trial.rs");
+    robot.hears_itself_say("motors off, starting anew");
+    robot.hears_itself_say("awake after a panic at");
+    let mut link = HostLink::new(TEAM, key(), 7);
+    assert!(robot.until(&mut link, false, |_| true));
+    let began = Instant::now();
+    while link.life(id()) != Some(2) && began.elapsed() < PATIENCE {
+        robot.until(&mut link, false, |_| true);
+    }
+    assert_eq!(link.life(id()), Some(2), "the second life has an epoch of its own");
+}
+
+#[test]
+fn a_task_that_hangs_is_ended_by_the_watchdog() {
+    let mut robot = Robot::start(Some(&PAGE), 2);
+    robot.hears_itself_say("watchdog: a task hangs; motors off");
+    robot.hears_itself_say("awake after the watchdog's bite");
+    robot.hears_itself_say("ready");
+}
+
+/// The image in an emulator.
+struct Robot {
+    child: Child,
+    said: String,
+    console: Receiver<Vec<u8>>,
+    heard: Receiver<Vec<u8>>,
+    lines: Lines,
+    last: Option<Condition>,
+    page: PathBuf,
+}
+
+impl Robot {
+    fn start(page: Option<&[u8; 32]>, trial: u32) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let file = std::env::temp_dir().join(format!("onetwo-page-{}-{number}", std::process::id()));
+        fs::write(&file, page.map_or(&[0xff; 32][..], |page| page)).expect("a temporary file");
+        let qemu = ensure_qemu(Install::ForUser).unwrap_or_else(|error| panic!("{error}"));
+        let mut child = Process::new(qemu)
+            .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "stdio"])
+            .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+            .arg(&*IMAGE)
+            .args(["-device", &format!("loader,file={},addr={PAGE_ADDRESS:#x},force-raw=on", file.display())])
+            .args(["-device", &format!("loader,addr={TRIAL_ADDRESS:#x},data={trial},data-len=4")])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the emulator that was just found");
+        let heard = pumped(child.stdout.take().expect("piped"));
+        let console = pumped(child.stderr.take().expect("piped"));
+        Self { child, said: String::new(), console, heard, lines: Lines::new(), last: None, page: file }
+    }
+
+    /// Waits for words on the console.
+    fn hears_itself_say(&mut self, words: &str) {
+        let began = Instant::now();
+        while !self.said.contains(words) {
+            if let Ok(more) = self.console.recv_timeout(Duration::from_millis(100)) {
+                self.said += &String::from_utf8_lossy(&more);
+            }
+            assert!(began.elapsed() < PATIENCE, "`{words}` was not said: {}", self.said);
+        }
+    }
+
+    /// A welcome and a command of that host.
+    fn say(&mut self, link: &mut HostLink, life: u32) {
+        let command = Command {
+            to: id(),
+            defending: geometry::GoalEnd::Negative,
+            phase: Phase::Run,
+            duty: Duty::Player,
+            directive: Directive::Stand,
+        };
+        let messages = [HostMessage::Welcome(Welcome { to: id(), life }), HostMessage::Command(command)];
+        let stdin = self.child.stdin.as_mut().expect("piped");
+        for message in messages {
+            stdin.write_all(&line(&link.seal(&message))).expect("it listens");
+        }
+        stdin.flush().expect("it listens");
+    }
+
+    /// Goes on, with the host speaking or not, until telemetry of a condition like that comes.
+    fn until(&mut self, link: &mut HostLink, speaking: bool, like: impl Fn(Condition) -> bool) -> bool {
+        let began = Instant::now();
+        while began.elapsed() < PATIENCE {
+            if let (true, Some(life)) = (speaking, link.life(id())) {
+                self.say(link, life);
+            }
+            let Ok(bytes) = self.heard.recv_timeout(Duration::from_millis(5)) else { continue };
+            let packets: Vec<_> = bytes.iter().filter_map(|byte| self.lines.push(*byte)).collect();
+            for packet in packets {
+                if let Ok((_, TeamMessage::Telemetry(telemetry))) = link.open(&packet) {
+                    self.last = Some(telemetry.condition);
+                    if like(telemetry.condition) {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+}
+
+impl Drop for Robot {
+    fn drop(&mut self) {
+        // It may have ended by itself; either way nothing is left to do about it.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        let _ = fs::remove_file(&self.page);
+    }
+}
+
+/// What comes out of a pipe, piece by piece.
+fn pumped(mut pipe: impl Read + Send + 'static) -> Receiver<Vec<u8>> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        let mut buffer = [0; 1024];
+        while let Ok(len @ 1..) = pipe.read(&mut buffer) {
+            if sender.send(buffer[..len].to_vec()).is_err() {
+                break;
+            }
+        }
+    });
+    receiver
+}
+
+fn key() -> TeamKey {
+    TeamKey(std::array::from_fn(|n| n as u8 + 1))
+}
+
+fn id() -> RobotId {
+    RobotId::new(3).expect("an id")
+}
+
+fn damaged() -> [u8; 32] {
+    let mut page = PAGE;
+    page[9] ^= 1;
+    page
+}
+
+/// The image, built where it is missing or old.
+static IMAGE: LazyLock<PathBuf> = LazyLock::new(|| {
+    build_program(&workspace_root(), Program::Free).unwrap_or_else(|error| panic!("{error}"))
+});
