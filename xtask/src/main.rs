@@ -4,9 +4,12 @@
 //! failures last, each with the command that repeats it.
 
 mod bench;
+mod chores;
 mod context;
+mod cost;
 mod determinism;
 mod evaluation;
+mod game_cost;
 mod images;
 mod page;
 mod pictures;
@@ -20,6 +23,7 @@ mod trial_cost;
 use std::env;
 use std::process::ExitCode;
 
+use chores::Chore;
 use context::Context;
 use steps::{STEPS, Step};
 
@@ -33,33 +37,20 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
-        Ok(Request::TrialCost) => told(trial_cost::run_bench(&Context::new())),
-        Ok(Request::StrategyCost) => told(strategy_cost::run_bench(&Context::new())),
-        Ok(Request::SimulatorCost { write }) => told(simulator_cost::run_bench(&Context::new(), write)),
-        Ok(Request::Bench(name, words)) => told(bench::start(&Context::new(), name, &words)),
-        Ok(Request::Screenshots) => told(page::pictures(&Context::new())),
-        Ok(Request::PageCost) => told(page::bench(&Context::new())),
-        Ok(Request::Pictures) => told(pictures::draw(&Context::new())),
-        Ok(Request::Faults(name, words)) => told(bench::start_example(&Context::new(), name, &words)),
-        Ok(Request::Evaluation) => told(evaluation::write(&Context::new())),
+        Ok(Request::Chore(chore, words)) => match (chore.run)(&Context::new(), &words) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(failure) => {
+                eprintln!("xtask: {failure}");
+                ExitCode::FAILURE
+            }
+        },
         Ok(Request::Help) => {
-            println!("{USAGE}");
+            println!("{USAGE}{}", chores::usage());
             ExitCode::SUCCESS
         }
         Err(wrong) => {
-            eprintln!("xtask: {wrong}\n{USAGE}");
+            eprintln!("xtask: {wrong}\n{USAGE}{}", chores::usage());
             ExitCode::from(2)
-        }
-    }
-}
-
-/// A chore's end, said on stderr where it failed.
-fn told(end: Result<(), context::Failure>) -> ExitCode {
-    match end {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("xtask: {failure}");
-            ExitCode::FAILURE
         }
     }
 }
@@ -80,64 +71,20 @@ fn test(steps: &[&'static Step]) -> ExitCode {
 enum Request {
     Test(Vec<&'static Step>),
     List,
-    Pictures,
-    /// Of the page, in a browser.
-    Screenshots,
-    /// What a frame costs the page's script, and viewers the match.
-    PageCost,
-    Evaluation,
-    /// What a simulated second costs.
-    TrialCost,
-    /// What a second of the Small Size simulator costs; the table goes into its README.
-    SimulatorCost {
-        write: bool,
-    },
-    /// What strategy's decisions cost.
-    StrategyCost,
-    /// Retrieval, motion or radio, with these words for the bench.
-    Bench(&'static str, Vec<String>),
-    /// The swarm, or another of the faults' programs, with these words for it.
-    Faults(&'static str, Vec<String>),
+    /// With the words that are its own.
+    Chore(&'static Chore, Vec<String>),
     Help,
 }
 
 impl Request {
     fn from_words(words: &[String]) -> Result<Self, String> {
-        let mut words = words.iter().map(String::as_str);
-        match words.next() {
+        match words.first().map(String::as_str) {
             None | Some("help" | "--help" | "-h") => return Ok(Self::Help),
             Some("test") => {}
-            Some("swarm") => return Ok(Self::Faults("swarm", words.map(String::from).collect())),
-            Some("faults") => return Ok(Self::Faults("faults", words.map(String::from).collect())),
-            Some(verb @ ("pictures" | "screenshots" | "evaluation")) => {
-                return match words.next() {
-                    None if verb == "evaluation" => Ok(Self::Evaluation),
-                    None if verb == "screenshots" => Ok(Self::Screenshots),
-                    None => Ok(Self::Pictures),
-                    Some(word) => Err(format!("unknown argument `{word}`")),
-                };
-            }
-            Some("bench") => {
-                return match words.next() {
-                    Some("retrieval") => Ok(Self::Bench("retrieval", words.map(String::from).collect())),
-                    Some("radio") => Ok(Self::Bench("radio", words.map(String::from).collect())),
-                    Some("motion") => Ok(Self::Bench("motion", words.map(String::from).collect())),
-                    Some("hil") => Ok(Self::Faults("hil", words.map(String::from).collect())),
-                    Some("trial") => Ok(Self::TrialCost),
-                    Some("strategy") => Ok(Self::StrategyCost),
-                    Some("page") => Ok(Self::PageCost),
-                    Some("simulator") => match words.next() {
-                        None => Ok(Self::SimulatorCost { write: false }),
-                        Some("--write") => Ok(Self::SimulatorCost { write: true }),
-                        Some(word) => Err(format!("unknown argument `{word}`")),
-                    },
-                    _ => Err("bench needs a name: retrieval, motion, radio, hil, trial, strategy, page or simulator"
-                        .into()),
-                };
-            }
-            Some(verb) => return Err(format!("no verb `{verb}`")),
+            Some(_) => return Chore::asked(words).map(|(chore, words)| Self::Chore(chore, words)),
         }
         let mut chosen = Vec::new();
+        let mut words = words[1..].iter().map(String::as_str);
         while let Some(word) = words.next() {
             match word {
                 "--list" => return Ok(Self::List),
@@ -157,33 +104,11 @@ impl Request {
 }
 
 const USAGE: &str = "\
-usage: cargo xtask test [--only STEP]... [--list] | cargo xtask swarm | cargo xtask faults | cargo xtask pictures | cargo xtask screenshots | cargo xtask evaluation | cargo xtask bench NAME
-  test           check everything: style, tests, documentation, firmware, QEMU, determinism
+usage: cargo xtask test [--only STEP]... [--list], or one of the chores below
+  test           check everything: style, tests, documentation, firmware, QEMU, the page, determinism
     --only STEP  this step alone; may be repeated
     --list       name the steps
-  swarm [--seeds N] [--first N] [--jobs J]
-                 play N runs (100 if not told) with faults drawn from their seeds, and hold them to what is promised
-  faults [--seeds N] [--write]
-                 what loss costs a team; --write puts table and picture into docs/faults.md
-  pictures       draw the documentation's pictures anew
-  screenshots    take the page's pictures anew, in a browser; they lie in docs/page
-  evaluation     play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation
-  bench retrieval [--write | --guest | --verify]
-                 count a retrieval's instructions on the robot's processor and here, and hold them to the budgets;
-                 --write puts the table into casebase/README.md, --guest leaves this machine out,
-                 --verify holds 10^6 answers to a plain scan's instead
-  bench motion [--write | --guest | --verify]
-                 likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,
-                 --verify holds 10^6 times to the best of all shares between the axes instead
-  bench radio [--write]
-                 likewise for radio frames on the robot's processor; the table is protocol/README.md's
-  bench hil [--seconds N] [--seed N]
-                 play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed
-  bench page     measure what a frame costs the page's script, full over empty, and count what five viewers cost a match
-  bench trial    count the instructions of a simulated second and hold them to the budget
-  bench strategy count the instructions of strategy's decisions and hold them to the budgets
-  bench simulator [--write]
-                 the same of eleven against eleven on wheels; --write puts the table into hil-sim/README.md";
+";
 
 #[cfg(test)]
 mod tests {
@@ -191,6 +116,14 @@ mod tests {
 
     fn ask(line: &str) -> Result<Request, String> {
         Request::from_words(&line.split_whitespace().map(String::from).collect::<Vec<_>>())
+    }
+
+    /// The chore that a line asks for, and its words.
+    fn chore(line: &str) -> Option<(&'static str, Vec<String>)> {
+        match ask(line) {
+            Ok(Request::Chore(chore, words)) => Some((chore.name, words)),
+            _ => None,
+        }
     }
 
     #[test]
@@ -207,6 +140,18 @@ mod tests {
     }
 
     #[test]
+    fn chores_are_found_by_all_their_words_and_get_the_rest() {
+        let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+        assert_eq!(chore("pictures"), Some(("pictures", words(&[]))));
+        assert_eq!(chore("budgets"), Some(("budgets", words(&[]))));
+        assert_eq!(chore("bench game"), Some(("bench game", words(&[]))));
+        assert_eq!(chore("bench simulator --write"), Some(("bench simulator", words(&["--write"]))));
+        assert_eq!(chore("bench retrieval --guest"), Some(("bench retrieval", words(&["--guest"]))));
+        assert_eq!(chore("swarm --seeds 9"), Some(("swarm", words(&["--seeds", "9"]))));
+        assert!(chores::usage().contains("bench hil [--seconds N]"));
+    }
+
+    #[test]
     fn what_is_not_understood_is_named() {
         assert!(ask("test --only nothing").unwrap_err().contains("no step `nothing`"));
         assert!(ask("test --only").unwrap_err().contains("needs the name"));
@@ -214,23 +159,8 @@ mod tests {
         assert!(ask("deploy").unwrap_err().contains("deploy"));
         assert!(matches!(ask(""), Ok(Request::Help)));
         assert!(matches!(ask("test --list"), Ok(Request::List)));
-        assert!(matches!(ask("pictures"), Ok(Request::Pictures)));
-        assert!(ask("pictures now").is_err());
-        assert!(matches!(ask("screenshots"), Ok(Request::Screenshots)));
-        assert!(matches!(ask("bench page"), Ok(Request::PageCost)));
-        assert!(matches!(ask("evaluation"), Ok(Request::Evaluation)));
-        assert!(ask("evaluation soon").is_err());
-        assert!(
-            matches!(ask("bench retrieval --guest"), Ok(Request::Bench("retrieval", words)) if words == ["--guest"])
-        );
-        assert!(matches!(ask("bench motion"), Ok(Request::Bench("motion", words)) if words.is_empty()));
-        assert!(
-            matches!(ask("swarm --seeds 9"), Ok(Request::Faults("swarm", words)) if words == ["--seeds", "9"])
-        );
-        assert!(matches!(ask("bench trial"), Ok(Request::TrialCost)));
-        assert!(matches!(ask("bench strategy"), Ok(Request::StrategyCost)));
-        assert!(matches!(ask("bench simulator --write"), Ok(Request::SimulatorCost { write: true })));
-        assert!(ask("bench simulator --fast").unwrap_err().contains("--fast"));
-        assert!(ask("bench").unwrap_err().contains("retrieval"));
+        assert!(ask("pictures now").unwrap_err().contains("takes none"));
+        assert!(ask("bench simulator --fast").unwrap_err().contains("takes [--write]"));
+        assert!(ask("bench").unwrap_err().contains("retrieval, motion"));
     }
 }

@@ -2,25 +2,22 @@
 //!
 //! So many of a kind and twice as many: the difference is free of everything that happens once.
 
-use crate::context::{Context, Failure, run};
-use crate::simulator_cost::counted;
+use crate::context::{Context, Failure};
+use crate::cost::{Row, counted, judge, release};
 
 /// Instructions of one decision of each kind, held to the budgets.
 pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
-    run(&mut context.cargo("build --release -p host --example strategy_cost"))?;
-    let target = firmware_build::target_dir(context.root());
-    let program =
-        target.join("release/examples").join(format!("strategy_cost{}", std::env::consts::EXE_SUFFIX));
-    let mut over = None;
-    for (part, what, most) in PARTS {
-        let cost = (counted(&program, part, 2 * COUNT)? - counted(&program, part, COUNT)?) / f64::from(COUNT);
-        let budget = most.map_or_else(|| "no budget".into(), |most| format!("at most {most:.0}"));
-        println!("xtask: {what}: {cost:.0} instructions ({budget})");
-        if most.is_some_and(|most| cost > most) {
-            over = Some(what);
-        }
-    }
-    over.map_or(Ok(()), |what| Err(Failure::Budget(what.into())))
+    judge(&rows(context)?)
+}
+
+/// The figures.
+pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
+    let program = release(context, "-p host --example strategy_cost", "examples/strategy_cost")?;
+    let row = |&(part, what, most): &(&str, &str, Option<f64>)| {
+        let count = |times: u32| Ok(counted(&program, [part, &times.to_string()])?.0);
+        Ok(Row::new(what, (count(2 * COUNT)? - count(COUNT)?) / f64::from(COUNT), most))
+    };
+    PARTS.iter().map(row).collect()
 }
 
 /// DESIGN §9: one pass location evaluated.

@@ -2,74 +2,59 @@
 //!
 //! The same trials once and twice as many: the difference is free of everything that happens once.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
+use std::{fs, io};
 
-use crate::context::{Context, Failure, line_of, run};
+use crate::context::{Context, Failure};
+use crate::cost::{Row, counted, judge, release};
 
 /// Instructions a simulated second, of every approach against both kinds of opponents.
 pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
-    run(&mut context.cargo("build --release --bin onetwo"))?;
-    let target = firmware_build::target_dir(context.root());
-    let program = target.join("release").join(format!("onetwo{}", std::env::consts::EXE_SUFFIX));
-    let folder = target.join("bench-trial");
-    let mut broken = Vec::new();
+    judge(&rows(context)?)
+}
+
+/// The figures.
+pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
+    let program = release(context, "--bin onetwo", "onetwo")?;
+    let folder = firmware_build::target_dir(context.root()).join("bench-trial");
+    let mut rows = Vec::new();
     for opponents in ["dg", "2d"] {
         for approach in ["cbr", "reactive"] {
-            let count = |trials| counted(&program, &folder, opponents, approach, trials);
+            let count = |trials| played(&program, &folder, opponents, approach, trials);
             let (once, twice) = (count(TRIALS)?, count(2 * TRIALS)?);
             let cost = (twice.instructions - once.instructions) / (twice.seconds - once.seconds);
-            println!(
-                "xtask: {approach} against {opponents}: {:.2} M instructions a simulated second, of at most {:.1} M",
-                cost / 1e6,
-                BUDGET / 1e6
-            );
-            if cost > BUDGET {
-                broken.push(format!("{approach} against {opponents}"));
-            }
+            rows.push(Row::new(format!("{approach} against {opponents}"), cost, Some(BUDGET)));
         }
     }
-    if broken.is_empty() { Ok(()) } else { Err(Failure::Budget(broken.join(", "))) }
+    Ok(rows)
 }
 
 /// What trials came to.
-struct Counted {
+struct Played {
     instructions: f64,
     seconds: f64,
 }
 
-fn counted(
+fn played(
     program: &Path,
-    folder: &PathBuf,
+    folder: &Path,
     opponents: &str,
     approach: &str,
     trials: u32,
-) -> Result<Counted, Failure> {
+) -> Result<Played, Failure> {
     // What an earlier run kept would not be played again.
     let _ = fs::remove_dir_all(folder);
-    let mut command = Command::new("valgrind");
-    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program);
-    command.args(["evaluate", "--jobs", "1", "--maps", "0", "--profile", "simulated", "--scenario", "3"]);
-    command.args([
-        "--opponents",
-        opponents,
-        "--approach",
-        approach,
-        "--trials",
-        &trials.to_string(),
-        "--out",
-    ]);
-    command.arg(folder).stdin(Stdio::null());
-    let line = line_of(&command);
-    let output = command.output().map_err(|error| Failure::Start { line: line.clone(), error })?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let instructions = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
-    let rows = fs::read_to_string(folder.join("trials.csv")).ok();
-    match (instructions.filter(|_| output.status.success()), rows.and_then(|rows| seconds(&rows))) {
-        (Some(instructions), Some(seconds)) => Ok(Counted { instructions, seconds }),
-        _ => Err(Failure::Command { line, status: output.status }),
-    }
+    let line = format!(
+        "evaluate --jobs 1 --maps 0 --profile simulated --scenario 3 --opponents {opponents} --approach {approach} \
+         --trials {trials} --out"
+    );
+    let out = folder.display().to_string();
+    let (instructions, _) = counted(program, line.split_whitespace().chain([out.as_str()]))?;
+    let file = folder.join("trials.csv");
+    let wrong = |error| Failure::Start { line: file.display().to_string(), error };
+    let rows = fs::read_to_string(&file).map_err(wrong)?;
+    let none = || wrong(io::Error::new(io::ErrorKind::InvalidData, "no column of seconds"));
+    Ok(Played { instructions, seconds: seconds(&rows).ok_or_else(none)? })
 }
 
 /// The sum of a table's seconds.

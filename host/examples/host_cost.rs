@@ -1,0 +1,73 @@
+//! What is there to count in a host's work? A recorded match's inputs, fed again image by image.
+//!
+//! `cargo run --release -p host --example host_cost -- FILE.trace` feeds the recording's first host. A round is everything
+//! from one packet of vision to the next: tracking, the referee's packets, robots' frames, deadlines, planning where it is due,
+//! and the commands encoded and sealed. `cargo xtask bench game` counts each call of [`count_this_round`] under callgrind.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::process::ExitCode;
+
+use flate2::bufread::MultiGzDecoder;
+use host::recording::RecordingHeader;
+use host::trace::{Kind, Reader, Record};
+use host::{Host, Input};
+use protocol::frame::TeamKey;
+
+fn main() -> ExitCode {
+    let Some(file) = std::env::args().nth(1) else {
+        eprintln!("usage: host_cost FILE.trace");
+        return ExitCode::from(2);
+    };
+    match feed(&file) {
+        Ok(words) => {
+            println!("{words}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("{file}: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn feed(file: &str) -> Result<String, Box<dyn std::error::Error>> {
+    let mut reader = Reader::new(MultiGzDecoder::new(BufReader::new(File::open(file)?)))?;
+    let header = RecordingHeader::from_json(reader.header())?;
+    let first = header.hosts.first().ok_or("no host in it")?;
+    let mut host = Host::new(first.settings(header.league()?, TeamKey::ZERO)?, first.began());
+    let (mut round, mut rounds, mut packets, mut bytes) = (Vec::<Record>::new(), 0, 0, 0);
+    let mut image = None;
+    for record in reader.by_ref().filter(|record| record.host == 0 && record.kind.is_input()) {
+        let next = record.kind == Kind::Vision && image.is_none_or(|at| record.at > at);
+        if next {
+            let (said, long) = count_this_round(&mut host, &round);
+            (rounds, packets, bytes) = (rounds + u32::from(image.is_some()), packets + said, bytes + long);
+            round.clear();
+            image = Some(record.at);
+        }
+        round.push(record);
+    }
+    Ok(format!("{rounds} rounds, {packets} packets of {bytes} bytes to the robots"))
+}
+
+/// What one image sets going: how many packets it ends in, and their bytes.
+#[inline(never)]
+fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
+    let (mut packets, mut bytes) = (0, 0);
+    for record in round {
+        let input = match record.kind {
+            Kind::Vision => Input::Vision(&record.bytes),
+            Kind::Referee => Input::Referee(&record.bytes),
+            Kind::Robot => Input::Robot(&record.bytes),
+            Kind::Timeout => Input::Timeout,
+            Kind::Sent => continue,
+        };
+        host.handle(record.at, input);
+        while let Some((_, packet)) = host.poll_packet() {
+            packets += 1;
+            bytes += packet.len() as u64;
+        }
+    }
+    (packets, bytes)
+}

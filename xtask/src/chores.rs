@@ -1,0 +1,169 @@
+//! What can be asked for besides the tests? One row a chore: its words, what it does, and who does it.
+
+use crate::context::{Context, Failure};
+use crate::{bench, cost, evaluation, game_cost, page, pictures, simulator_cost, strategy_cost, trial_cost};
+
+/// Something that is done now and then.
+#[derive(Debug)]
+pub(crate) struct Chore {
+    /// What a person types.
+    pub(crate) name: &'static str,
+    /// The words it takes after that, as the usage shows them; none where it takes none.
+    pub(crate) takes: &'static str,
+    /// What it does, for the usage.
+    pub(crate) what: &'static str,
+    /// Does it; the words are those after its name.
+    pub(crate) run: fn(&Context, &[String]) -> Result<(), Failure>,
+    /// Whether it judges its words itself, because another program knows them.
+    free: bool,
+}
+
+impl Chore {
+    /// The chore that these words ask for, and the words that are left for it.
+    pub(crate) fn asked(words: &[String]) -> Result<(&'static Self, Vec<String>), String> {
+        let named = |chore: &&Self| {
+            let name = chore.name.split(' ');
+            let count = name.clone().count();
+            words.len() >= count && name.zip(words).all(|(name, word)| name == word)
+        };
+        let Some(chore) = CHORES.iter().find(named) else {
+            let first = words.first().map_or("", String::as_str);
+            let names: Vec<_> = CHORES.iter().filter_map(|chore| chore.name.strip_prefix("bench ")).collect();
+            return Err(match first {
+                "bench" => format!("bench needs a name: {}", names.join(", ")),
+                _ => format!("no verb `{first}`"),
+            });
+        };
+        let rest = words[chore.name.split(' ').count()..].to_vec();
+        let known = |word: &String| chore.takes.split(['[', ']', '|', ' ']).any(|known| known == word);
+        match rest.iter().find(|word| !chore.free && !known(word)) {
+            Some(word) => Err(format!("unknown argument `{word}`; `{}` takes {}", chore.name, chore.taken())),
+            None => Ok((chore, rest)),
+        }
+    }
+
+    fn taken(&self) -> &str {
+        if self.takes.is_empty() { "none" } else { self.takes }
+    }
+}
+
+/// The usage of all chores.
+pub(crate) fn usage() -> String {
+    let line = |chore: &Chore| {
+        let head = format!("{} {}", chore.name, chore.takes);
+        format!("  {}\n                 {}\n", head.trim_end(), chore.what)
+    };
+    CHORES.iter().map(line).collect()
+}
+
+/// Whether `--write` is among the words.
+fn writes(words: &[String]) -> bool {
+    words.iter().any(|word| word == "--write")
+}
+
+const fn chore(
+    name: &'static str,
+    takes: &'static str,
+    what: &'static str,
+    run: fn(&Context, &[String]) -> Result<(), Failure>,
+) -> Chore {
+    Chore { name, takes, what, run, free: false }
+}
+
+/// One whose words another program knows.
+const fn handed_on(
+    name: &'static str,
+    takes: &'static str,
+    what: &'static str,
+    run: fn(&Context, &[String]) -> Result<(), Failure>,
+) -> Chore {
+    Chore { name, takes, what, run, free: true }
+}
+
+static CHORES: [Chore; 15] = [
+    handed_on(
+        "swarm",
+        "[--seeds N] [--first N] [--jobs J]",
+        "play N runs (100 if not told) with faults drawn from their seeds, and hold them to what is promised",
+        |context, words| bench::start_example(context, "swarm", words),
+    ),
+    handed_on(
+        "faults",
+        "[--seeds N] [--write]",
+        "what loss costs a team; --write puts table and picture into docs/faults.md",
+        |context, words| bench::start_example(context, "faults", words),
+    ),
+    chore("pictures", "", "draw the documentation's pictures anew", |context, _| pictures::draw(context)),
+    chore(
+        "screenshots",
+        "",
+        "take the page's pictures anew, in a browser; they lie in docs/page",
+        |context, _| page::pictures(context),
+    ),
+    chore(
+        "evaluation",
+        "",
+        "play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation",
+        |context, _| evaluation::write(context),
+    ),
+    chore(
+        "budgets",
+        "",
+        "count trial, game, strategy and simulator as below, and write docs/budgets.md",
+        |context, _| cost::write(context),
+    ),
+    handed_on(
+        "bench retrieval",
+        "[--write | --guest | --verify]",
+        "count a retrieval's instructions on the robot's processor and here, and hold them to the budgets; --write puts\n\
+        \x20                the table into casebase/README.md, --guest leaves this machine out, --verify holds 10^6 answers to a\n\
+        \x20                plain scan's instead",
+        |context, words| bench::start(context, "retrieval", words),
+    ),
+    handed_on(
+        "bench motion",
+        "[--write | --guest | --verify]",
+        "likewise for planned motions, interception and ways around others; the table is firmware/motion/README.md's,\n\
+        \x20                --verify holds 10^6 times to the best of all shares between the axes instead",
+        |context, words| bench::start(context, "motion", words),
+    ),
+    handed_on(
+        "bench radio",
+        "[--write]",
+        "likewise for radio frames on the robot's processor; the table is protocol/README.md's",
+        |context, words| bench::start(context, "radio", words),
+    ),
+    handed_on(
+        "bench hil",
+        "[--seconds N] [--seed N]",
+        "play a match with six robots as images under QEMU and with native ones in one run; compare hashes and wall speed",
+        |context, words| bench::start_example(context, "hil", words),
+    ),
+    chore(
+        "bench page",
+        "",
+        "measure what a frame costs the page's script, full over empty, and count what five viewers cost a match",
+        |context, _| page::bench(context),
+    ),
+    chore(
+        "bench trial",
+        "",
+        "count the instructions of a simulated second of the paper's trials and hold them to the budget",
+        |context, _| trial_cost::run_bench(context),
+    ),
+    chore(
+        "bench game",
+        "",
+        "likewise of a host with eleven robots, per packet of vision, and of a match of two whole teams",
+        |context, _| game_cost::run_bench(context),
+    ),
+    chore("bench strategy", "", "likewise of one decision of strategy's, of each kind", |context, _| {
+        strategy_cost::run_bench(context)
+    }),
+    chore(
+        "bench simulator",
+        "[--write]",
+        "likewise of a second of eleven against eleven on wheels; --write puts the table into hil-sim/README.md",
+        |context, words| simulator_cost::run_bench(context, writes(words)),
+    ),
+];

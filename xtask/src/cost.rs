@@ -1,0 +1,134 @@
+//! What does the host side cost, and is it within DESIGN §9? Programs under callgrind, which counts instructions: the same on any
+//! machine of one kind, however busy it is. [`write`] gathers every such figure in docs/budgets.md.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::context::{Context, Failure, line_of, run};
+use crate::{game_cost, simulator_cost, strategy_cost, trial_cost};
+
+/// A figure and what it may be.
+pub(crate) struct Row {
+    /// What is counted.
+    pub(crate) what: String,
+    /// Millions of instructions.
+    pub(crate) millions: f64,
+    /// At most so many millions, where DESIGN says.
+    pub(crate) most: Option<f64>,
+}
+
+impl Row {
+    pub(crate) fn new(what: impl Into<String>, instructions: f64, most: Option<f64>) -> Self {
+        Self { what: what.into(), millions: instructions / 1e6, most: most.map(|most| most / 1e6) }
+    }
+
+    fn breaks(&self) -> bool {
+        self.most.is_some_and(|most| self.millions > most)
+    }
+}
+
+/// The rows as Markdown.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let mut text = String::from("| what | million instructions | at most |\n|---|---|---|\n");
+    for row in rows {
+        let most = row.most.map_or_else(|| "–".into(), digits);
+        let _ = writeln!(text, "| {} | {} | {most} |", row.what, digits(row.millions));
+    }
+    text
+}
+
+/// To the single instruction where it is little.
+fn digits(millions: f64) -> String {
+    if millions < 0.1 { format!("{millions:.6}") } else { format!("{millions:.2}") }
+}
+
+/// Prints the rows; fails where one breaks its budget.
+pub(crate) fn judge(rows: &[Row]) -> Result<(), Failure> {
+    for row in rows {
+        let most = row.most.map_or_else(String::new, |most| format!(", of at most {} M", digits(most)));
+        println!("xtask: {}: {} M instructions{most}", row.what, digits(row.millions));
+    }
+    let broken: Vec<_> = rows.iter().filter(|row| row.breaks()).map(|row| row.what.as_str()).collect();
+    if broken.is_empty() { Ok(()) } else { Err(Failure::Budget(broken.join(", "))) }
+}
+
+/// A program of the workspace, built for release.
+pub(crate) fn release(context: &Context, build: &str, name: &str) -> Result<PathBuf, Failure> {
+    run(&mut context.cargo(&format!("build --release {build}")))?;
+    let folder = firmware_build::target_dir(context.root()).join("release");
+    Ok(folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Instructions of a whole run, and what it printed.
+pub(crate) fn counted<'a>(
+    program: &Path,
+    words: impl IntoIterator<Item = &'a str>,
+) -> Result<(f64, String), Failure> {
+    let mut command = Command::new("valgrind");
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).args(words);
+    let line = line_of(&command);
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .map_err(|error| Failure::Start { line: format!("{line} (is valgrind installed?)"), error })?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    let instructions = said.lines().find_map(|line| line.split_once("Collected :")?.1.trim().parse().ok());
+    match instructions.filter(|_| output.status.success()) {
+        Some(instructions) => Ok((instructions, String::from_utf8_lossy(&output.stdout).into_owned())),
+        None => Err(Failure::Command { line, status: output.status }),
+    }
+}
+
+/// Counts everything and writes docs/budgets.md.
+pub(crate) fn write(context: &Context) -> Result<(), Failure> {
+    let parts = [
+        ("The simulator: a second of eleven against eleven", "simulator", simulator_cost::rows(context)?),
+        ("A trial of the first paper: a simulated second", "trial", trial_cost::rows(context)?),
+        ("Strategy: one decision", "strategy", strategy_cost::rows(context)?),
+        ("Matches: the host, and two whole teams", "game", game_cost::rows(context)?),
+    ];
+    let mut text = String::from(HEAD);
+    for (title, bench, rows) in &parts {
+        let _ = write!(text, "\n## {title}\n\n`cargo xtask bench {bench}`\n\n{}", table(rows));
+    }
+    text.push_str(TAIL);
+    let file = context.root().join("docs/budgets.md");
+    fs::write(&file, text).map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
+    println!("xtask: written: docs/budgets.md");
+    judge(&parts.into_iter().flat_map(|(_, _, rows)| rows).collect::<Vec<_>>())
+}
+
+const HEAD: &str = "\
+# What it costs
+
+Instructions counted by valgrind's callgrind on x86-64 in a release build; `cargo xtask budgets` writes this page again. What
+happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the design's budget.
+";
+
+const TAIL: &str = "
+## On the robot
+
+Counted in guest instructions under QEMU, each table written by its own command: retrieval
+([casebase](../casebase/README.md), `cargo xtask bench retrieval --write`), planned motion ([motion](../firmware/motion/README.md),
+`cargo xtask bench motion --write`), radio frames ([protocol](../protocol/README.md), `cargo xtask bench radio --write`). A brain's
+worst step, the median retrieval and the image's size are held by `cargo xtask test`.
+";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_broken_budget_fails_and_names_what_broke_it() {
+        let rows = [Row::new("all", 7.5e6, Some(10e6)), Row::new("some", 1.0e3, None)];
+        assert_eq!(
+            table(&rows).lines().skip(2).collect::<Vec<_>>(),
+            ["| all | 7.50 | 10.00 |", "| some | 0.001000 | – |"]
+        );
+        assert!(judge(&rows).is_ok());
+        let broken = judge(&[Row::new("this", 11e6, Some(10e6))]).unwrap_err();
+        assert!(broken.to_string().contains("this"), "{broken}");
+    }
+}

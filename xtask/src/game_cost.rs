@@ -1,0 +1,95 @@
+//! What does a host cost with eleven robots, and a match of two whole teams? Both under callgrind (DESIGN §9).
+//!
+//! The host is fed with a recorded match of division A; each packet of vision with all that follows it until the next is counted for
+//! itself, by a dump of callgrind's. A match is counted over so many seconds and over twice as many.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::{fs, io};
+
+use crate::context::{Context, Failure, line_of, run};
+use crate::cost::{Row, counted, judge, release};
+
+/// Instructions, held to the budgets.
+pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
+    judge(&rows(context)?)
+}
+
+/// The figures.
+pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
+    let onetwo = release(context, "--bin onetwo", "onetwo")?;
+    let feeder = release(context, "-p host --example host_cost", "examples/host_cost")?;
+    let folder = firmware_build::target_dir(context.root()).join("bench-game");
+    let _ = fs::remove_dir_all(&folder);
+    let wrong = |error| Failure::Start { line: folder.display().to_string(), error };
+    fs::create_dir_all(&folder).map_err(wrong)?;
+    let mut match_of_eleven = Command::new(&onetwo);
+    match_of_eleven.args("play --headless --league division-a --seed 1 --json --duration".split(' '));
+    match_of_eleven.args([&SECONDS.to_string(), "--record"]).arg(folder.join("match"));
+    run(match_of_eleven.stdout(Stdio::null()))?;
+    let rounds = each_round(&feeder, &folder)?;
+    let mean = rounds.iter().sum::<f64>() / rounds.len() as f64;
+    let late = rounds[rounds.len() - 1 - rounds.len() / 1000];
+    let _ = fs::remove_dir_all(&folder);
+    let played = |seconds: u32| {
+        let line = format!("play --headless --seed 1 --json --duration {seconds}");
+        Ok::<_, Failure>(counted(&onetwo, line.split(' '))?.0)
+    };
+    let second = (played(2 * SECONDS)? - played(SECONDS)?) / f64::from(SECONDS);
+    let host = "host, 11 v 11, from a packet of vision to the commands";
+    Ok(vec![
+        Row::new(format!("{host}: mean of {} packets", rounds.len()), mean, Some(10e6)),
+        Row::new(format!("{host}: 999 of 1,000 at most"), late, Some(25e6)),
+        Row::new(format!("{host}: worst"), rounds[rounds.len() - 1], None),
+        Row::new("a second of 6 v 6 with two whole teams, simulator and all", second, Some(300e6)),
+    ])
+}
+
+/// What each packet cost, rising.
+fn each_round(feeder: &Path, folder: &Path) -> Result<Vec<f64>, Failure> {
+    let mut command = Command::new("valgrind");
+    command.arg("--tool=callgrind").arg(format!("--callgrind-out-file={}", folder.join("round").display()));
+    command.args([format!("--toggle-collect={ROUND}"), format!("--dump-after={ROUND}")]);
+    command.arg(feeder).arg(folder.join("match.trace"));
+    let line = line_of(&command);
+    let start = |error| Failure::Start { line: format!("{line} (is valgrind installed?)"), error };
+    let status = command.stdin(Stdio::null()).stderr(Stdio::null()).status().map_err(start)?;
+    if !status.success() {
+        return Err(Failure::Command { line, status });
+    }
+    let mut rounds = Vec::new();
+    for entry in fs::read_dir(folder).map_err(start)? {
+        let path = entry.map_err(start)?.path();
+        if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("round.")) {
+            let text = fs::read_to_string(&path).map_err(start)?;
+            rounds.extend(total(&text));
+        }
+    }
+    rounds.sort_by(f64::total_cmp);
+    // The first call is before any packet, and a handful of numbers would be no distribution.
+    if rounds.len() < 1000 {
+        return Err(start(io::Error::other(format!("only {} packets counted", rounds.len()))));
+    }
+    Ok(rounds)
+}
+
+/// The total of one of callgrind's dumps.
+fn total(dump: &str) -> Option<f64> {
+    dump.lines().find_map(|line| line.strip_prefix("totals:")?.trim().parse().ok())
+}
+
+/// Simulated seconds of either match.
+const SECONDS: u32 = 20;
+/// What is counted call by call.
+const ROUND: &str = "host_cost::count_this_round";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dump_s_total_is_read_from_its_last_line() {
+        assert_eq!(total("part: 100\nevents: Ir\nsummary: 56492\ntotals: 56492\n"), Some(56_492.0));
+        assert_eq!(total("part: 1\n"), None);
+    }
+}
