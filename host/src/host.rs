@@ -18,7 +18,7 @@ use crate::geometry::VisionGeometry;
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::{self, Listener};
 use crate::strategy::view::{Game, RobotSet};
-use crate::strategy::{Coach, Flip, Orders, View};
+use crate::strategy::{Coach, Flip, Orders, Team, View};
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, Who, World};
 
@@ -35,6 +35,8 @@ pub struct HostSettings {
     pub defending: GoalEnd,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// Who decides open play.
+    pub team: Team,
     /// The radio's.
     pub radio: RadioSettings,
 }
@@ -48,6 +50,7 @@ impl HostSettings {
             keeper: RobotId::ZERO,
             defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
             kick: [1.0; RobotId::COUNT],
+            team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
         }
     }
@@ -128,7 +131,7 @@ impl Host {
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
-            coach: Coach::default(),
+            coach: Coach::of(settings.team),
             robots: Default::default(),
             world: World::default(),
             last_ball: None,

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::HostSettings;
 use crate::radio::{RadioSettings, Relay};
+use crate::strategy::Team;
 
 /// What a trace begins with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +48,9 @@ pub struct HostHeader {
     /// When it began, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
+    /// Who decided open play.
+    #[serde(default)]
+    pub plays: Team,
     /// The team's number on the radio.
     pub team: u8,
     /// Which life of the host it was.
@@ -119,6 +123,7 @@ impl HostHeader {
             keeper: keeper.number(),
             kick: kick.to_vec(),
             began_us: began.0,
+            plays: Team::Ours,
             team: radio.team.0,
             epoch: radio.epoch,
             relay: relay.to_owned(),
@@ -130,7 +135,7 @@ impl HostHeader {
     /// Of a host with these settings that begins at `began`.
     pub fn of(settings: &HostSettings, began: Instant) -> Self {
         let who = (settings.us, settings.keeper, settings.defending);
-        Self::new(who, &settings.kick, &settings.radio, began)
+        Self { plays: settings.team, ..Self::new(who, &settings.kick, &settings.radio, began) }
     }
 
     /// The settings it began with; the key is for the caller to bring.
@@ -141,6 +146,7 @@ impl HostHeader {
             keeper: self.keeper()?,
             defending: self.defending()?,
             kick: self.kick()?,
+            team: self.plays,
             radio: self.radio(key)?,
         })
     }

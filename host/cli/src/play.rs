@@ -1,5 +1,5 @@
-//! `onetwo play`: a whole match in the simulator, both teams ours (DESIGN §8). Shown on the page at the clock's pace; `--headless` as
-//! fast as the machine plays it, told line by line, or as one JSON object.
+//! `onetwo play`: a whole match in the simulator, ours against ours or another team (DESIGN §8). Shown on the page at the clock's pace;
+//! `--headless` as fast as the machine plays it, told line by line, or as one JSON object.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -10,6 +10,7 @@ use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
 use host::shell::Recorder;
+use host::strategy::Team;
 use indicatif::{ProgressBar, ProgressStyle};
 use page::Powers;
 use protocol::Instant;
@@ -40,6 +41,12 @@ pub(crate) struct PlayArgs {
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
+    /// Who plays blue: ours, reactive, marking, zone or idle.
+    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
+    blue: Team,
+    /// Who plays yellow.
+    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
+    yellow: Team,
     /// Robots of each team; the league's number unless told.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
@@ -74,9 +81,14 @@ pub(crate) fn league(name: &str) -> Result<League, String> {
         .ok_or_else(|| "expected ssl-2013, division-b or division-a".to_owned())
 }
 
+/// A team by its name.
+pub(crate) fn team(word: &str) -> Result<Team, String> {
+    Team::from_word(word).ok_or_else(|| format!("take {}", Team::ALL.map(Team::word).join(", ")))
+}
+
 /// `onetwo play`.
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
-    let mut config = GameConfig::new(args.league, args.seed, args.duration);
+    let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
     let settings = args.settings.choose()?.settings;
     for team in &mut config.teams {
         team.settings = settings.clone();
@@ -213,7 +225,13 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
             metrics.shots, metrics.chances, metrics.passes, metrics.possession_s
         )?;
     }
-    let words = if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
+    let mut words =
+        if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
+    for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
+        if team != Team::Ours {
+            words += &format!(" --{side} {}", team.word());
+        }
+    }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)
 }
 

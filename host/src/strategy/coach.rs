@@ -8,6 +8,7 @@ use geometry::{Angle, Attack, Point};
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side};
 
+use super::opponents::{Rival, Team};
 use super::order::{Order, Role, Task, Why};
 use super::support::Target;
 use super::view::{ROBOTS_MAX, View, nearest};
@@ -28,6 +29,9 @@ struct Pass {
 /// Chooses what everybody does; see [`Coach::decide`].
 #[derive(Clone, Debug, Default)]
 pub struct Coach {
+    team: Team,
+    /// Another team's open play, where it is not ours.
+    rival: Option<Rival>,
     phase: Option<Phase<Side>>,
     since: Instant,
     /// Who goes for the ball, or takes our restart.
@@ -43,6 +47,11 @@ pub struct Coach {
 }
 
 impl Coach {
+    /// Of that team.
+    pub fn of(team: Team) -> Self {
+        Self { team, rival: Rival::of(team), ..Self::default() }
+    }
+
     /// Orders for all our robots of the view, one each, by id.
     pub fn decide(&mut self, view: &View) -> Orders {
         self.remember(view);
@@ -51,8 +60,12 @@ impl Coach {
             plan.send_off_surplus();
         }
         match view.phase {
+            _ if self.team == Team::Idle => plan.everybody(Role::Player, Task::Stand, Why::Idle),
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
-            Phase::Run => self.open_play(&mut plan),
+            Phase::Run => match &mut self.rival {
+                Some(rival) => plan.orders.extend(rival.open_play(view, &mut plan.free, self.barred)),
+                None => self.open_play(&mut plan),
+            },
             Phase::BallPlacement(Side::Ours) => self.place_ball(&mut plan),
             Phase::PreparePenalty(side) | Phase::Penalty(side) => self.penalty(&mut plan, side),
             Phase::PrepareKickoff(side) | Phase::Kickoff(side) => self.kickoff(&mut plan, side),

@@ -5,10 +5,12 @@
 //! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
 //!
 //! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its planner of free kicks, all for the coach to call.
+//! [`opponents`] are other teams' open play, to measure ours by.
 
 mod coach;
 pub mod coerce;
 pub mod defence;
+pub mod opponents;
 mod order;
 pub mod pass;
 pub mod restart;
@@ -18,5 +20,6 @@ pub mod threat;
 pub mod view;
 
 pub use coach::{Coach, Orders};
+pub use opponents::Team;
 pub use order::{Order, Role, Task, Why};
 pub use view::{Flip, View};

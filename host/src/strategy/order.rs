@@ -85,6 +85,8 @@ pub enum Why {
     DoubleTouch,
     /// No ball is seen.
     NoBall,
+    /// The team is the one that only stands.
+    Idle,
     /// The referee lets us have so many.
     TooMany {
         /// How many.

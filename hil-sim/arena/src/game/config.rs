@@ -4,6 +4,7 @@ use brain::{Approach, BrainConfig};
 use casebase::Settings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
+use host::strategy::Team;
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
 
@@ -31,6 +32,8 @@ pub struct TeamSetup {
     pub colour: Colour,
     /// How many robots.
     pub robots: u8,
+    /// Who decides its open play.
+    pub plays: Team,
     /// What robots without a host's order let themselves be led by.
     pub approach: Approach,
     /// How they retrieve.
@@ -44,8 +47,13 @@ impl GameConfig {
             League::DivisionA => 11,
             _ => 6,
         };
-        let team =
-            |colour| TeamSetup { colour, robots, approach: Approach::Cases, settings: Settings::default() };
+        let team = |colour| TeamSetup {
+            colour,
+            robots,
+            plays: Team::Ours,
+            approach: Approach::Cases,
+            settings: Settings::default(),
+        };
         let total = Duration((duration_s * 1e6) as u64);
         Self {
             league,
@@ -58,6 +66,25 @@ impl GameConfig {
             teams: [team(Colour::Yellow), team(Colour::Blue)],
             air: AirSettings::default(),
         }
+    }
+}
+
+impl GameConfig {
+    /// The same between these two.
+    pub fn between(mut self, blue: Team, yellow: Team) -> Self {
+        for setup in &mut self.teams {
+            setup.plays = if setup.colour == Colour::Blue { blue } else { yellow };
+            // A team that stands cannot place a ball, and the referee does not wait for it to.
+            self.referee.team_mut(setup.colour).can_place_ball &= setup.plays != Team::Idle;
+        }
+        self
+    }
+}
+
+impl GameConfig {
+    /// Who decides a side's open play.
+    pub fn plays(&self, colour: Colour) -> Team {
+        self.teams.iter().find(|setup| setup.colour == colour).map_or(Team::Ours, |setup| setup.plays)
     }
 }
 

@@ -17,7 +17,7 @@ mod story;
 
 pub use config::{GameConfig, TeamSetup};
 pub use recording::header;
-pub use report::{GameReport, TeamReport};
+pub use report::{GameReport, PerTeam, TeamReport};
 pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::camera::Cameras;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use hil_sim::small_size::referee::Metrics;
+use host::strategy::Team;
 use rules::Colour;
 use serde::Serialize;
 
@@ -19,6 +20,8 @@ pub struct GameReport {
     pub ball_in_play: f32,
     /// Offences by kind.
     pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
+    /// Who decided each side's open play.
+    pub teams: PerTeam<Team>,
     /// What else was counted.
     pub metrics: PerTeam<TeamReport>,
     /// League and seed, to play it again.
@@ -88,6 +91,7 @@ impl GameReport {
             fouls: PerTeam::of(|team| {
                 metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
             }),
+            teams: PerTeam::of(|team| config.plays(team)),
             metrics: PerTeam::of(|team| TeamReport::of(metrics, team)),
             league: config.league.name(),
             seed: config.seed,

@@ -176,6 +176,7 @@ pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings
     HostSettings {
         defending: own_goal(config, colour),
         keeper: config.referee.team(colour).keeper,
+        team: config.plays(colour),
         radio: RadioSettings { relay: Relay::No, ..usual.radio },
         ..usual
     }

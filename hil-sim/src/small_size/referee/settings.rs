@@ -100,6 +100,14 @@ impl RefereeSettings {
     }
 
     /// One team's part.
+    pub fn team_mut(&mut self, colour: Colour) -> &mut TeamSettings {
+        match colour {
+            Colour::Yellow => &mut self.yellow,
+            Colour::Blue => &mut self.blue,
+        }
+    }
+
+    /// One team's part.
     pub fn team(&self, colour: Colour) -> &TeamSettings {
         match colour {
             Colour::Yellow => &self.yellow,

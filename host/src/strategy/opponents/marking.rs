@@ -1,0 +1,56 @@
+//! How does a team of man-markers play? Whoever is not at the ball stays between an opponent and the own goal and moves when it moves,
+//! as the paper's Teams G and B, who were swift to answer every change (Biswas et al. 2014 §6). With the ball far from every
+//! opponent two go free for a pass. Attack frame, m.
+
+use geometry::Vector;
+
+use super::{Places, Style, defenders, free_places};
+use crate::strategy::order::{Role, Why};
+use crate::strategy::view::{Ball, Robot, View};
+use crate::strategy::{roles, support};
+
+pub(super) const STYLE: Style = Style { target: support::target, places };
+
+fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+    let goal = view.our_goal();
+    let mut them: heapless::Vec<&Robot, { super::ROBOTS_MAX }> = view
+        .theirs
+        .iter()
+        .filter(|robot| robot.id != view.their_keeper)
+        .filter(|robot| ball.position.distance(robot.position) > AT_BALL)
+        .collect();
+    let danger = |robot: &Robot| robot.position.distance(goal);
+    them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
+    let marks = (0_u8..).zip(them).map(|(i, robot)| {
+        // Before its next step: where it will be when the marker has answered.
+        let at = robot.position + robot.velocity * ANSWERS;
+        let home = (goal - at).unit().unwrap_or(Vector::new(-1.0, 0.0));
+        (at + home * OFF, Role::Marker(i), Why::Marks { opponent: robot.id })
+    });
+    let forward = if is_ours(view, ball) { FORWARD } else { 0 };
+    let [near, _] = defenders(view);
+    let places = [near].into_iter().chain(free_places(view, ball, forward)).chain(marks);
+    let mut places: Places = places.take(wanted).collect();
+    let missing = wanted - places.len().min(wanted);
+    places.extend(free_places(view, ball, FORWARD + missing).skip(forward).take(missing));
+    places
+}
+
+/// Can one of ours have the ball well before any of theirs?
+fn is_ours(view: &View, ball: &Ball) -> bool {
+    let soonest = |robots: &[Robot]| {
+        robots.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min)
+    };
+    soonest(&view.ours) + SOONER < soonest(&view.theirs)
+}
+
+/// An opponent this near the ball is the business of whoever goes for it, m.
+const AT_BALL: f32 = 0.4;
+/// A marker's centre stands this far from its opponent's, m: two bodies and room to brake.
+const OFF: f32 = 0.3;
+/// A marker goes to where its opponent will be in so long, s: a command's way to the robot and its first step.
+const ANSWERS: f32 = 0.15;
+/// The ball is ours if we are this much sooner at it, s.
+const SOONER: f32 = 0.3;
+/// So many leave their opponents while the ball is ours.
+const FORWARD: usize = 2;

@@ -1,0 +1,53 @@
+//! How does a team of ball chasers play? The nearest runs for the ball and shoots, or kicks it ahead; a second backs it up, a third
+//! waits in front, the rest defend. Nobody passes on purpose. Attack frame, m.
+
+use geometry::{Attack, Point, Vector};
+use protocol::RobotId;
+
+use super::{Place, Places, Style, defenders, free_places};
+use crate::strategy::defence::room_along;
+use crate::strategy::order::{Role, Why};
+use crate::strategy::support::{Target, best_shot};
+use crate::strategy::view::{Ball, View};
+
+pub(super) const STYLE: Style = Style { target: shoot_or_clear, places };
+
+/// A shot from wherever one is worth it, else ahead along the freest way: it runs after its own ball.
+pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) -> Target {
+    let (at, room) = best_shot(view, ball);
+    if ball.distance(view.their_goal()) < SHOOTS_WITHIN {
+        return Target::Shot { at, room };
+    }
+    let ahead = |y: f32| {
+        let at = view.clamp(Point::new(ball.x() + AHEAD, ball.y() * INWARDS + y), 0.5);
+        (at, room_along(view, ball, at))
+    };
+    let (at, room) = [1.0, -1.0]
+        .map(ahead)
+        .into_iter()
+        .fold(ahead(0.0), |best, next| if next.1 > best.1 { next } else { best });
+    Target::Ahead { at, room }
+}
+
+fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+    let home = (view.our_goal() - ball.position).unit().unwrap_or(Vector::new(-1.0, 0.0));
+    let second: Place =
+        (ball.position + home * BEHIND, Role::Support(0), Why::OnBallLine { y: view.our_goal().y() });
+    let [near, far] = defenders(view);
+    [second, near]
+        .into_iter()
+        .chain(free_places(view, ball, 1))
+        .chain([far])
+        .chain(free_places(view, ball, wanted))
+        .take(wanted)
+        .collect()
+}
+
+/// Farther shots are not even tried, m.
+const SHOOTS_WITHIN: f32 = 4.0;
+/// How far ahead a clearance comes to rest, m: as far as the kicker is soonest at it again.
+const AHEAD: f32 = 2.0;
+/// A clearance goes from the wing to the middle by this share of its distance.
+const INWARDS: f32 = 0.5;
+/// The second stays this far behind the ball, m: where a ball that the first loses comes to.
+const BEHIND: f32 = 0.9;

@@ -1,0 +1,107 @@
+//! Does each opponent give everybody one lawful order, and play in its own way?
+
+use super::*;
+use crate::strategy::view::tests::view;
+
+const OURS: [(f32, f32); 6] = [(-4.4, 0.0), (-3.0, 0.5), (-3.0, -0.5), (-0.5, 0.0), (0.5, 1.5), (0.5, -1.5)];
+const THEIRS: [(f32, f32); 4] = [(4.4, 0.0), (-1.5, 1.4), (-1.0, -1.6), (2.0, 0.5)];
+
+fn orders(team: Team, view: &View) -> Orders {
+    let mut free = view.ours.iter().map(|robot| robot.id).collect();
+    let mut orders = Rival::of(team).unwrap().open_play(view, &mut free, None);
+    assert!(free.is_empty() || view.ball.is_none(), "{team:?} leaves {free:?}");
+    orders.sort_unstable_by_key(|order| order.robot);
+    orders
+}
+
+#[test]
+fn every_robot_has_one_order_and_nobody_but_the_keeper_is_sent_into_an_area_or_over_a_line() {
+    for team in Team::OPPONENTS {
+        for ball in [(0.3, 0.2), (-4.2, 0.0), (4.3, 0.1), (4.4, 2.9), (-2.9, -2.8), (-3.3, 0.0)] {
+            for robots in 0..=OURS.len() {
+                let view = view(ball, &OURS[..robots], &THEIRS);
+                let orders = orders(team, &view);
+                let ids: Vec<_> = orders.iter().map(|order| order.robot.number()).collect();
+                assert_eq!(ids, (0..robots as u8).collect::<Vec<_>>(), "{team:?} {ball:?}");
+                for order in orders.iter().filter(|order| order.role != Role::Keeper) {
+                    if let Task::GoTo { at, .. } = order.task {
+                        assert!(!view.in_our_area(at, 0.1) && !view.in_their_area(at, 0.2), "{order:?}");
+                        assert_eq!(view.clamp(at, 0.0), at, "{order:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nobody_but_the_keeper_goes_for_a_ball_in_an_area_and_the_barred_never_does() {
+    for team in Team::OPPONENTS {
+        for ball in [(-4.2, 0.3), (4.2, 0.3)] {
+            let orders = orders(team, &view(ball, &OURS, &THEIRS));
+            assert!(orders.iter().skip(1).all(|order| matches!(order.task, Task::GoTo { .. })), "{orders:?}");
+        }
+        let view = view((-0.4, 0.0), &OURS, &THEIRS);
+        let mut free = view.ours.iter().map(|robot| robot.id).collect();
+        let barred = view.ours[3].id;
+        let orders = Rival::of(team).unwrap().open_play(&view, &mut free, Some(barred));
+        let order = orders.iter().find(|order| order.robot == barred).unwrap();
+        assert_eq!(order.role, Role::Barred, "{team:?}");
+        assert!(matches!(order.task, Task::GoTo { .. }), "{order:?}");
+    }
+}
+
+#[test]
+fn chasers_shoot_near_the_goal_and_kick_ahead_far_from_it() {
+    let near = orders(Team::Reactive, &view((2.0, 0.0), &[(-4.4, 0.0), (1.8, 0.0)], &[(4.4, 0.0)]));
+    assert!(matches!(near[1].task, Task::Kick { at, kick } if at.x() > 4.4 && kick == support::SHOT));
+    let far = orders(Team::Reactive, &view((-2.0, 1.0), &[(-4.4, 0.0), (-2.2, 1.0)], &[(4.4, 0.0)]));
+    assert!(matches!(far[1].task, Task::Kick { at, .. } if (at.x() - 0.0).abs() < 0.01), "{far:?}");
+}
+
+#[test]
+fn a_marker_stands_between_each_opponent_and_the_goal() {
+    // Theirs has the ball: everybody but keeper, first and one defender marks.
+    let view = view((2.0, 0.4), &OURS, &THEIRS);
+    let orders = orders(Team::Marking, &view);
+    for opponent in [1, 2] {
+        let them = view.theirs[opponent];
+        let marker = orders
+            .iter()
+            .find(|order| matches!(order.why, Why::Marks { opponent } if opponent == them.id))
+            .unwrap();
+        let Task::GoTo { at, .. } = marker.task else { panic!("{marker:?}") };
+        let (way, goal) = (view.our_goal() - them.position, at - them.position);
+        assert!(goal.norm() < 0.31 && way.unit().unwrap().dot(goal) > 0.29, "{marker:?}");
+    }
+}
+
+#[test]
+fn the_wall_stands_across_the_line_from_ball_to_goal_and_moves_with_the_ball() {
+    for ball in [(0.0, 1.0), (0.0, -1.0), (-1.0, 2.0)] {
+        let view = view(ball, &OURS, &THEIRS);
+        let wall: Vec<_> = orders(Team::Zone, &view)
+            .iter()
+            .filter(|order| order.role == Role::Wall)
+            .filter_map(|order| if let Task::GoTo { at, .. } = order.task { Some(at) } else { None })
+            .collect();
+        // One plays the ball, one waits in front, and one may have a pass.
+        assert!(wall.len() >= 2, "{ball:?}: {wall:?}");
+        let n = wall.len() as f32;
+        let middle = Point::<Attack>::new(
+            wall.iter().map(|p| p.x()).sum::<f32>() / n,
+            wall.iter().map(|p| p.y()).sum::<f32>() / n,
+        );
+        let line = geometry::Segment::new(Point::new(ball.0, ball.1), view.our_goal());
+        assert!(line.distance_to(middle) < 0.05, "{ball:?}: {wall:?}");
+    }
+}
+
+#[test]
+fn a_team_is_read_by_the_word_it_is_written_with() {
+    for team in Team::ALL {
+        assert_eq!(Team::from_word(team.word()), Some(team));
+        assert_eq!(serde_json::to_string(&team).unwrap(), format!("\"{}\"", team.word()));
+    }
+    assert_eq!(Team::from_word("best"), None);
+}

@@ -1,0 +1,36 @@
+//! How does a team play that defends its zone? All but two stand side by side on an arc between ball and goal and follow the ball; one
+//! plays it, one waits in front. Attack frame, m.
+
+use geometry::{Angle, Vector};
+
+use super::{Places, Style, free_places};
+use crate::strategy::order::{Role, Why};
+use crate::strategy::support;
+use crate::strategy::view::{Ball, View};
+
+pub(super) const STYLE: Style = Style { target: support::target, places };
+
+fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
+    let goal = view.our_goal();
+    let forward = usize::from(wanted > 2);
+    let wall = wanted - forward.min(wanted);
+    let to_ball = view.clamp(ball.position, 0.0) - goal;
+    let nearest = view.field.penalty_depth + NEAREST_OFF;
+    let radius = (to_ball.norm() - OFF_BALL).clamp(nearest, (view.field.length * FARTHEST).max(nearest));
+    let middle = to_ball.unit().unwrap_or(Vector::new(1.0, 0.0));
+    let bricks = (0..wall).map(|i| {
+        let beside = (i as f32 - (wall as f32 - 1.0) * 0.5) * SPACING / radius;
+        let at = goal + middle.rotated(Angle::new(beside)) * radius;
+        (at, Role::Wall, Why::OnBallLine { y: goal.y() })
+    });
+    bricks.chain(free_places(view, ball, forward)).take(wanted).collect()
+}
+
+/// The wall's bricks stand this far apart, centre to centre, m: two bodies, and less than a ball's way between them.
+const SPACING: f32 = 0.3;
+/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with a body.
+const OFF_BALL: f32 = 0.8;
+/// It never comes nearer to the goal than this beyond the area's depth, m.
+const NEAREST_OFF: f32 = 0.35;
+/// Nor farther from it than this share of the field: who stands at the halfway line cannot be chipped over to the keeper alone.
+const FARTHEST: f32 = 0.4;
