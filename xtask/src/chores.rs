@@ -80,7 +80,7 @@ const fn handed_on(
     Chore { name, takes, what, run, free: true }
 }
 
-static CHORES: [Chore; 15] = [
+static CHORES: [Chore; 16] = [
     handed_on(
         "swarm",
         "[--seeds N] [--first N] [--jobs J]",
@@ -105,6 +105,12 @@ static CHORES: [Chore; 15] = [
         "",
         "play the paper's evaluation and write docs/evaluation.md's figures; the report lies in out/evaluation",
         |context, _| evaluation::write(context),
+    ),
+    chore(
+        "matches",
+        "",
+        "play each team against each and write docs/matches.md; the rest lies in out/matches",
+        |context, _| evaluation::write_matches(context),
     ),
     chore(
         "budgets",

@@ -2,6 +2,12 @@
 
 use crate::context::{Context, Failure, run};
 
+/// Plays the round robin of all teams and writes `docs/matches.md`.
+pub(crate) fn write_matches(context: &Context) -> Result<(), Failure> {
+    let line = "evaluate matches --fresh --round-robin --out out/matches --markdown docs/matches.md";
+    run(&mut context.cargo(&format!("run --release -- {line}")))
+}
+
 /// Plays the paper's evaluation and the ablations, and puts tables and plots into the documentation; what is not committed, the
 /// reports with everything in them, stays under `out`.
 pub(crate) fn write(context: &Context) -> Result<(), Failure> {

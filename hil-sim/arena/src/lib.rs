@@ -8,6 +8,8 @@
 //!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
 //!
+//! [`matches`] plays many of them and says what they came to, as the second paper's Table 2 does.
+//!
 //! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
 //!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
@@ -17,6 +19,7 @@ mod cycles;
 mod defaults;
 pub mod evaluation;
 pub mod game;
+pub mod matches;
 mod names;
 mod picture;
 mod recording;

@@ -26,7 +26,7 @@ pub(crate) struct Cli {
 /// One verb, one file.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
-    /// A match of the Small Size League in the simulator: two teams of ours, a referee, and what came of it.
+    /// A match of the Small Size League in the simulator: two teams, a referee, and what came of it.
     Play(PlayArgs),
     /// One trial of the paper.
     Trial(TrialArgs),

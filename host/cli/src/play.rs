@@ -62,7 +62,7 @@ pub(crate) struct PlayArgs {
     settings: SettingsArgs,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 600".to_owned())?;
     if (0.0..=36_000.0).contains(&seconds) { Ok(seconds) } else { Err("0 to 36000 seconds".to_owned()) }
 }
@@ -94,7 +94,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
         team.settings = settings.clone();
         team.robots = args.robots.unwrap_or(team.robots);
     }
-    let shelf = cases(args)?;
+    let shelf = cases(&args.folder, args.league)?;
     let base = shelf.as_ref().map_or_else(CaseBase::default, Shelf::base);
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
@@ -190,14 +190,14 @@ impl Watcher for Watched {
 }
 
 /// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.
-fn cases(args: &PlayArgs) -> Result<Option<Shelf>, Failure> {
-    let known = case_library::LEAGUES.iter().any(|league| league.name == args.league.name());
-    if args.folder.library.is_none() && !known {
-        eprintln!("no cases come with {}: robots that are left free play reactively", args.league.name());
+pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
+    let known = case_library::LEAGUES.iter().any(|known| known.name == league.name());
+    if folder.library.is_none() && !known {
+        eprintln!("no cases come with {}: robots that are left free play reactively", league.name());
         return Ok(None);
     }
-    let folder = FolderArgs { library: args.folder.library.clone() };
-    Shelf::open(&LibraryArgs { folder, league: args.league.name().to_owned() }).map(Some)
+    let folder = FolderArgs { library: folder.library.clone() };
+    Shelf::open(&LibraryArgs { folder, league: league.name().to_owned() }).map(Some)
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {
@@ -229,7 +229,7 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
         if team != Team::Ours {
-            words += &format!(" --{side} {}", team.word());
+            words.extend([" --", side, " ", team.word()]);
         }
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)

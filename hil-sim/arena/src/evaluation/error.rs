@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use hil_sim::SimulationError;
 
+use crate::game::GameError;
+
 /// Why an evaluation stopped, or could not be put together.
 #[derive(Debug)]
 pub enum EvaluationError {
@@ -57,6 +59,13 @@ pub enum EvaluationError {
         /// Why.
         error: SimulationError,
     },
+    /// A match could not be played.
+    Match {
+        /// Its number.
+        number: usize,
+        /// Why.
+        error: GameError,
+    },
     /// Trials could not be written as CSV.
     Csv(csv::Error),
     /// The caller stopped it; what was played is kept.
@@ -105,6 +114,7 @@ impl fmt::Display for EvaluationError {
                  they go on where they stopped"
             ),
             Self::Trial { trial, error } => write!(f, "trial {trial}: {error}"),
+            Self::Match { number, error } => write!(f, "match {number}: {error}"),
             Self::Csv(error) => write!(f, "trials as CSV: {error}"),
             Self::Stopped => f.write_str("stopped; the same command goes on from here"),
         }

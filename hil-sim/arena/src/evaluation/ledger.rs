@@ -9,11 +9,45 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use hil_sim::Parameters;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::error::EvaluationError;
 use super::plan::{Cell, Plan};
 use super::row::{TrialRow, to_csv, to_line};
+
+/// A row that a ledger keeps: one of a plan's trials, when it is over.
+pub trait Entry: Clone + PartialEq + Serialize + DeserializeOwned + Send {
+    /// Which evaluation its file is of.
+    type Identity: Clone + Serialize + DeserializeOwned;
+    /// What its file begins with.
+    const MARK: &'static str;
+    /// Its number in the plan, from 0.
+    fn number(&self) -> usize;
+    /// Is it what that evaluation plans under its number?
+    fn is_planned(&self, identity: &Self::Identity) -> bool;
+    /// How many are planned.
+    fn planned(identity: &Self::Identity) -> usize;
+    /// In what two evaluations differ, for people; empty between equals.
+    fn differences(own: &Self::Identity, other: &Self::Identity) -> Vec<&'static str>;
+}
+
+impl Entry for TrialRow {
+    type Identity = Identity;
+    const MARK: &'static str = "# onetwo trials 1 ";
+    fn number(&self) -> usize {
+        self.trial
+    }
+    fn is_planned(&self, identity: &Identity) -> bool {
+        identity.plan.get(self.trial).is_some_and(|planned| self.is_of(&planned))
+    }
+    fn planned(identity: &Identity) -> usize {
+        identity.plan.len()
+    }
+    fn differences(own: &Identity, other: &Identity) -> Vec<&'static str> {
+        own.differences(other)
+    }
+}
 
 /// Which evaluation a file is of: whatever decides its trials. Only equals are resumed or merged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,38 +105,37 @@ impl Identity {
 
 /// What a file of trials holds.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct Kept<R: Entry = TrialRow> {
     /// Where it lies.
     pub file: PathBuf,
     /// Which evaluation it is of.
-    pub identity: Identity,
+    pub identity: R::Identity,
     /// Its trials, in the order of the file.
-    pub rows: Vec<TrialRow>,
+    pub rows: Vec<R>,
     /// Bytes up to the end of the last whole line.
     whole: usize,
 }
 
 /// Reads a file of trials; `None` where it was torn before its first trial.
-pub fn read(path: &Path) -> Result<Option<Kept>, EvaluationError> {
+pub fn read<R: Entry>(path: &Path) -> Result<Option<Kept<R>>, EvaluationError> {
     let bytes = std::fs::read(path).map_err(EvaluationError::file(path))?;
     parse(path, &bytes)
 }
 
-fn parse(path: &Path, bytes: &[u8]) -> Result<Option<Kept>, EvaluationError> {
+fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, EvaluationError> {
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
     let mut lines = bytes[..whole].split_inclusive(|&byte| byte == b'\n');
     let (Some(head), Some(_columns)) = (lines.next(), lines.next()) else { return Ok(None) };
     let fault = |line, what: String| EvaluationError::Row { file: path.to_owned(), line, what };
-    let json = head.strip_prefix(MARK.as_bytes()).ok_or_else(|| fault(1, format!("no `{MARK}`")))?;
-    let identity: Identity = serde_json::from_slice(json).map_err(|error| fault(1, error.to_string()))?;
+    let json = head.strip_prefix(R::MARK.as_bytes()).ok_or_else(|| fault(1, format!("no `{}`", R::MARK)))?;
+    let identity: R::Identity = serde_json::from_slice(json).map_err(|error| fault(1, error.to_string()))?;
     let mut reader = csv::Reader::from_reader(&bytes[head.len()..whole]);
     let rows = (3..).zip(reader.deserialize()).map(|(line, row)| {
-        let row: TrialRow = row.map_err(|error| fault(line, error.to_string()))?;
-        let planned = identity.plan.get(row.trial);
-        if planned.is_some_and(|planned| row.is_of(&planned)) {
+        let row: R = row.map_err(|error| fault(line, error.to_string()))?;
+        if row.is_planned(&identity) {
             Ok(row)
         } else {
-            Err(fault(line, format!("trial {} of the plan is another", row.trial)))
+            Err(fault(line, format!("trial {} of the plan is another", row.number())))
         }
     });
     let rows = rows.collect::<Result<_, _>>()?;
@@ -120,7 +153,10 @@ pub(super) struct Ledger {
 
 impl Ledger {
     /// Opens or begins a file of `identity`; the trials it holds already come with it.
-    pub(super) fn open(path: &Path, identity: &Identity) -> Result<(Self, Vec<TrialRow>), EvaluationError> {
+    pub(super) fn open<R: Entry>(
+        path: &Path,
+        identity: &R::Identity,
+    ) -> Result<(Self, Vec<R>), EvaluationError> {
         let failed = EvaluationError::file(path);
         let mut file = OpenOptions::new()
             .read(true)
@@ -135,15 +171,15 @@ impl Ledger {
         }
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(EvaluationError::file(path))?;
-        let kept = parse(path, &bytes)?;
+        let kept = parse::<R>(path, &bytes)?;
         let mut ledger = Self { file, path: path.to_owned(), headed: kept.is_some() };
         let Some(kept) = kept else {
             ledger.cut(0)?;
             let json = serde_json::to_string(identity).map_err(|error| ledger.unwritten(error))?;
-            ledger.write(format!("{MARK}{json}\n").as_bytes())?;
+            ledger.write(format!("{}{json}\n", R::MARK).as_bytes())?;
             return Ok((ledger, Vec::new()));
         };
-        let differences = kept.identity.differences(identity);
+        let differences = R::differences(&kept.identity, identity);
         if !differences.is_empty() {
             return Err(EvaluationError::Another { file: path.to_owned(), differences });
         }
@@ -152,7 +188,7 @@ impl Ledger {
     }
 
     /// Keeps a trial: once this returns, killing the process does not lose it.
-    pub(super) fn keep(&mut self, row: &TrialRow) -> Result<(), EvaluationError> {
+    pub(super) fn keep<R: Entry>(&mut self, row: &R) -> Result<(), EvaluationError> {
         let line = if self.headed { to_line(row) } else { to_csv(std::slice::from_ref(row)) };
         let line = line.map_err(|error| self.unwritten(error))?;
         self.headed = true;
@@ -173,15 +209,12 @@ impl Ledger {
     }
 }
 
-/// What a file of trials begins with.
-const MARK: &str = "# onetwo trials 1 ";
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
 
     fn text(identity: &Identity) -> String {
-        format!("{MARK}{}\n", serde_json::to_string(identity).unwrap())
+        format!("{}{}\n", TrialRow::MARK, serde_json::to_string(identity).unwrap())
     }
 
     /// Of some evaluation.
@@ -203,14 +236,14 @@ pub(super) mod tests {
     }
 
     fn refused(text: &str) -> String {
-        parse(Path::new("x.csv"), text.as_bytes()).unwrap_err().to_string()
+        parse::<TrialRow>(Path::new("x.csv"), text.as_bytes()).unwrap_err().to_string()
     }
 
     #[test]
     fn a_file_torn_before_its_first_trial_holds_nothing() {
         let head = text(&identity());
         for torn in ["", "# one", head.trim_end(), &head, &format!("{head}trial,pro")] {
-            assert_eq!(parse(Path::new("x.csv"), torn.as_bytes()).unwrap(), None, "{torn}");
+            assert_eq!(parse::<TrialRow>(Path::new("x.csv"), torn.as_bytes()).unwrap(), None, "{torn}");
         }
     }
 
@@ -233,7 +266,10 @@ pub(super) mod tests {
     #[test]
     fn what_is_no_file_of_trials_is_refused_with_its_line() {
         assert!(refused("a,b\n1,2\n").starts_with("x.csv:1: "));
-        assert!(refused(&format!("{MARK}{{}}\ntrial\n")).starts_with("x.csv:1: missing field `program`"));
+        assert!(
+            refused(&format!("{}{{}}\ntrial\n", TrialRow::MARK))
+                .starts_with("x.csv:1: missing field `program`")
+        );
         let wrong = format!("{}trial,profile\n1,simulated\n", text(&identity()));
         assert!(refused(&wrong).starts_with("x.csv:3: "), "{}", refused(&wrong));
     }

@@ -124,7 +124,7 @@ fn plays(cycles: &[CycleReport]) -> String {
 }
 
 /// Rows as `trials.csv`, with their columns' names in the first line.
-pub fn to_csv(rows: &[TrialRow]) -> Result<Vec<u8>, csv::Error> {
+pub fn to_csv<R: Serialize>(rows: &[R]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;
@@ -133,7 +133,7 @@ pub fn to_csv(rows: &[TrialRow]) -> Result<Vec<u8>, csv::Error> {
 }
 
 /// One row without the columns' names, its end of line included.
-pub(super) fn to_line(row: &TrialRow) -> Result<Vec<u8>, csv::Error> {
+pub(super) fn to_line<R: Serialize>(row: &R) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.serialize(row)?;
     writer.into_inner().map_err(|error| error.into_error().into())

@@ -14,7 +14,7 @@ use hil_sim::{NativeBackend, Parameters};
 use rayon::prelude::*;
 
 use super::error::EvaluationError;
-use super::ledger::{Identity, Kept, Ledger};
+use super::ledger::{Entry as Row, Identity, Kept, Ledger};
 use super::plan::{Plan, Planned, Shard};
 use super::row::TrialRow;
 use super::setup::Setup;
@@ -92,38 +92,53 @@ impl<'a> Evaluation<'a> {
         file: &Path,
         progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
     ) -> Result<Vec<TrialRow>, EvaluationError> {
-        let (ledger, kept) = Ledger::open(file, &self.identity())?;
-        let mut rows: BTreeMap<usize, TrialRow> = BTreeMap::new();
-        for row in kept {
-            insert(&mut rows, row)?;
-        }
-        let open: Vec<_> =
-            self.plan.shard(shard).filter(|planned| !rows.contains_key(&planned.number)).collect();
-        let of = self.plan.shard(shard).count();
-        let told = |done: usize| match progress(Progress { done, of }) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(EvaluationError::Stopped),
+        let play = |number| match self.plan.get(number) {
+            Some(planned) => self.play(&planned),
+            None => unreachable!("a shard is of its plan"),
         };
-        let before = of - open.len();
-        told(before)?;
-        let keeper = Mutex::new((ledger, rows, before));
-        open.par_iter().try_for_each(|planned| {
-            let row = self.play(planned)?;
-            // A thread that panicked while it kept a trial stops the run anyway.
-            let mut keeper = keeper.lock().unwrap_or_else(PoisonError::into_inner);
-            let (ledger, rows, done) = &mut *keeper;
-            ledger.keep(&row)?;
-            rows.insert(row.trial, row);
-            *done += 1;
-            told(*done)
-        })?;
-        let (_, rows, _) = keeper.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok(rows.into_values().filter(|row| shard.has(row.trial)).collect())
+        play_open(&self.identity(), shard, file, progress, play)
     }
 }
 
+/// Plays what `file` lacks of a shard, as [`Evaluation::play_shard`] does, each trial by its number.
+pub(crate) fn play_open<R: Row>(
+    identity: &R::Identity,
+    shard: Shard,
+    file: &Path,
+    progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    play: impl Fn(usize) -> Result<R, EvaluationError> + Sync,
+) -> Result<Vec<R>, EvaluationError> {
+    let (ledger, kept) = Ledger::open::<R>(file, identity)?;
+    let mut rows: BTreeMap<usize, R> = BTreeMap::new();
+    for row in kept {
+        insert(&mut rows, row)?;
+    }
+    let numbers = || (0..R::planned(identity)).filter(|number| shard.has(*number));
+    let open: Vec<_> = numbers().filter(|number| !rows.contains_key(number)).collect();
+    let of = numbers().count();
+    let told = |done: usize| match progress(Progress { done, of }) {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(EvaluationError::Stopped),
+    };
+    let before = of - open.len();
+    told(before)?;
+    let keeper = Mutex::new((ledger, rows, before));
+    open.par_iter().try_for_each(|number| {
+        let row = play(*number)?;
+        // A thread that panicked while it kept a trial stops the run anyway.
+        let mut keeper = keeper.lock().unwrap_or_else(PoisonError::into_inner);
+        let (ledger, rows, done) = &mut *keeper;
+        ledger.keep(&row)?;
+        rows.insert(row.number(), row);
+        *done += 1;
+        told(*done)
+    })?;
+    let (_, rows, _) = keeper.into_inner().unwrap_or_else(PoisonError::into_inner);
+    Ok(rows.into_values().filter(|row| shard.has(row.number())).collect())
+}
+
 /// All trials of an evaluation from the files of its shards, in the plan's order.
-pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationError> {
+pub fn merge<R: Row>(files: Vec<Kept<R>>) -> Result<(R::Identity, Vec<R>), EvaluationError> {
     let mut files = files.into_iter();
     let first = files.next().ok_or(EvaluationError::Nothing)?;
     let mut rows = BTreeMap::new();
@@ -131,7 +146,7 @@ pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationEr
         insert(&mut rows, row)?;
     }
     for file in files {
-        let differences = file.identity.differences(&first.identity);
+        let differences = R::differences(&file.identity, &first.identity);
         if !differences.is_empty() {
             return Err(EvaluationError::Another { file: file.file, differences });
         }
@@ -139,7 +154,7 @@ pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationEr
             insert(&mut rows, row)?;
         }
     }
-    let of = first.identity.plan.len();
+    let of = R::planned(&first.identity);
     let missing = || (0..of).filter(|number| !rows.contains_key(number));
     match missing().next() {
         Some(first) => Err(EvaluationError::Missing { trials: missing().count(), of, first }),
@@ -147,8 +162,8 @@ pub fn merge(files: Vec<Kept>) -> Result<(Identity, Vec<TrialRow>), EvaluationEr
     }
 }
 
-fn insert(rows: &mut BTreeMap<usize, TrialRow>, row: TrialRow) -> Result<(), EvaluationError> {
-    let trial = row.trial;
+fn insert<R: Row>(rows: &mut BTreeMap<usize, R>, row: R) -> Result<(), EvaluationError> {
+    let trial = row.number();
     match rows.entry(trial) {
         Entry::Vacant(place) => {
             place.insert(row);

@@ -54,12 +54,16 @@ impl<T> PerTeam<T> {
 pub struct TeamReport {
     /// Seconds that it had the ball.
     pub possession_s: f32,
+    /// Seconds in play with the ball in the opponents' half.
+    pub ball_in_their_half_s: f32,
     /// Shots at the goal (Biswas et al. 2014: what the attack ratio counts).
     pub shots: u32,
     /// Shots that a keeper had to stop, that hit a post, or went in.
     pub chances: u32,
     /// Passes that arrived.
     pub passes: u32,
+    /// Balls lost to the opponents.
+    pub losses: u32,
     /// Time of the ball in the opponents' half over that in the own.
     pub offence_ratio: Option<f32>,
     /// Own shots over the opponents'.
@@ -71,9 +75,11 @@ impl TeamReport {
         let own = metrics.team(team);
         Self {
             possession_s: own.possession_s,
+            ball_in_their_half_s: own.ball_in_their_half_s,
             shots: own.shots,
             chances: own.chances,
             passes: own.passes,
+            losses: own.losses,
             offence_ratio: metrics.offence_ratio(team),
             attack_ratio: metrics.attack_ratio(team),
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use arena::evaluation::{EvaluationError, Kept, Results, Shard, merge, read};
+use arena::evaluation::{Entry, EvaluationError, Kept, Results, Shard, merge, read};
 use clap::Args;
 
 use super::report::{self, ReportArgs};
@@ -37,7 +37,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The files of shards in a folder, in the order of their names.
-pub(super) fn shards(folder: &Path) -> Result<Vec<Kept>, EvaluationError> {
+pub(super) fn shards<R: Entry>(folder: &Path) -> Result<Vec<Kept<R>>, EvaluationError> {
     let failed = |error| EvaluationError::File { file: folder.to_owned(), error };
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {

@@ -5,6 +5,7 @@
 
 mod ablations;
 mod judge;
+mod matches;
 mod merge;
 mod report;
 mod tables;
@@ -37,6 +38,8 @@ enum EvaluateVerb {
     Judge(judge::JudgeArgs),
     /// Say what each part of the approach is worth: one thing changed at a time.
     Ablations(ablations::AblationsArgs),
+    /// Play matches against other teams and say what they come to: the second paper's Table 2.
+    Matches(Box<matches::MatchesArgs>),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
@@ -46,5 +49,6 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
         Some(EvaluateVerb::Report(args)) => report::run(args),
         Some(EvaluateVerb::Judge(args)) => judge::run(args),
         Some(EvaluateVerb::Ablations(args)) => ablations::run(args),
+        Some(EvaluateVerb::Matches(args)) => matches::run(args),
     }
 }

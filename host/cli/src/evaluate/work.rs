@@ -88,11 +88,20 @@ pub(super) fn play(
     pool: &rayon::ThreadPool,
     title: &str,
 ) -> Result<Vec<TrialRow>, Failure> {
+    with_bar(pool, title, |told| evaluation.play_shard(shard, file, told))
+}
+
+/// Plays on a pool of threads, with `title` before a bar; Ctrl-C ends it in order.
+pub(super) fn with_bar<R: Send>(
+    pool: &rayon::ThreadPool,
+    title: &str,
+    play: impl FnOnce(&(dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Result<R, EvaluationError> + Send,
+) -> Result<R, Failure> {
     // The trials under way are still played and kept.
     let stopped = stopped_by_hand();
     // Drawn on a terminal's stderr, and nowhere else.
     let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} trials, {eta} to go") {
+    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}, {eta} to go") {
         bar.set_style(style);
     }
     bar.set_message(title.to_owned());
@@ -106,9 +115,9 @@ pub(super) fn play(
         bar.set_position(progress.done as u64);
         if stopped.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let rows = pool.install(|| evaluation.play_shard(shard, file, &told));
+    let played = pool.install(|| play(&told));
     bar.finish_and_clear();
-    Ok(rows?)
+    Ok(played?)
 }
 
 /// Plays a shard of a plan and, where it is the whole, writes and tells what came out.

@@ -206,7 +206,7 @@ fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
         };
         let to_middle = (Point::new(0.0, at.y()) - at).unit().unwrap_or_default();
         while inside(at) {
-            at = at + to_middle * STEP;
+            at += to_middle * STEP;
         }
     }
     at

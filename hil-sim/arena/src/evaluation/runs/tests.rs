@@ -79,7 +79,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let shards = [1, 2, 3].map(|i| Shard::new(i, 3).unwrap());
     let files = shards.map(|shard| {
         assert_eq!(played(&thirds, shard, 2).len(), 2);
-        read(&thirds.file(shard)).unwrap().unwrap()
+        read::<TrialRow>(&thirds.file(shard)).unwrap().unwrap()
     });
     let (identity, merged) = merge(files.iter().rev().cloned().collect()).unwrap();
     assert_eq!((hash(&merged), identity), (expected.clone(), evaluation().identity()));
@@ -95,11 +95,11 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let stopped = pool.install(|| evaluation().play_shard(Shard::WHOLE, &file, &stop));
     assert!(matches!(stopped, Err(EvaluationError::Stopped)), "{stopped:?}");
-    let kept = read(&file).unwrap().unwrap().rows;
+    let kept = read::<TrialRow>(&file).unwrap().unwrap().rows;
     assert_eq!(kept.len(), 2);
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() - 7]).unwrap();
-    assert_eq!(read(&file).unwrap().unwrap().rows, kept[..1]);
+    assert_eq!(read::<TrialRow>(&file).unwrap().unwrap().rows, kept[..1]);
     let told = AtomicUsize::new(0);
     let count = |_| {
         told.fetch_add(1, Ordering::Relaxed);
@@ -108,7 +108,7 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let resumed = evaluation().play_shard(Shard::WHOLE, &file, &count).unwrap();
     assert_eq!(hash(&resumed), expected);
     assert_eq!(told.into_inner(), 1 + 5, "one trial of six was kept");
-    assert_eq!(read(&file).unwrap().unwrap().rows.len(), 6);
+    assert_eq!(read::<TrialRow>(&file).unwrap().unwrap().rows.len(), 6);
 }
 
 #[test]
@@ -124,12 +124,12 @@ fn another_evaluation_is_not_mixed_in() {
     let refused = small(2).play_shard(Shard::WHOLE, &file, GO_ON);
     assert!(matches!(refused, Err(EvaluationError::Another { .. })), "{refused:?}");
 
-    let kept = read(&file).unwrap().unwrap();
+    let kept = read::<TrialRow>(&file).unwrap().unwrap();
     let mut unlike = kept.clone();
     unlike.rows[0].time_s += 1.0;
     assert!(matches!(merge(vec![kept.clone(), kept.clone()]), Ok((_, rows)) if rows == kept.rows));
     assert!(matches!(merge(vec![kept.clone(), unlike]), Err(EvaluationError::Unlike { trial: 0 })));
-    assert!(matches!(merge(Vec::new()), Err(EvaluationError::Nothing)));
+    assert!(matches!(merge::<TrialRow>(Vec::new()), Err(EvaluationError::Nothing)));
 }
 
 #[test]

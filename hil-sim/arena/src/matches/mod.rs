@@ -1,0 +1,122 @@
+//! What does our play come to against other teams? Many matches, and the second paper's Table 2 of them (Biswas et al. 2014 §6):
+//! offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
+//!
+//! ```text
+//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes ─► matches.json, tables in words, plot
+//! ```
+//! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any number of threads, shards
+//! and interrupts.
+
+mod outcome;
+mod paper;
+mod plan;
+mod plot;
+mod row;
+mod words;
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use casebase::{CaseBase, Settings};
+use hil_sim::NativeBackend;
+use serde::{Deserialize, Serialize};
+
+pub use outcome::{Estimate, Outcome, outcomes};
+pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
+pub use plan::{Pairing, Plan, Planned};
+pub use plot::plot;
+pub use row::MatchRow;
+pub use words::markdown;
+
+use crate::evaluation::{EvaluationError, Progress, Shard, play_open};
+use crate::game::{GameConfig, Nobody, play};
+
+/// Everything that decides the matches of a plan.
+#[derive(Clone, Debug)]
+pub struct Matches<'a> {
+    /// Which matches.
+    pub plan: Plan,
+    /// The case base in every robot.
+    pub base: CaseBase<'a>,
+    /// How it is searched.
+    pub settings: Settings,
+    /// Version and commit of the program: matches of two programs are never mixed.
+    pub program: String,
+}
+
+/// Which evaluation a file of matches is of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MatchIdentity {
+    /// Version and commit of the program.
+    pub program: String,
+    /// Hash of the case base, 8 hexadecimal digits.
+    pub case_base: String,
+    /// The named settings of retrieval that are not as usual, name and value.
+    pub settings: Vec<(String, String)>,
+    /// All matches.
+    pub plan: Plan,
+}
+
+impl MatchIdentity {
+    /// In what the other differs, for people; empty between equals.
+    pub fn differences(&self, other: &Self) -> Vec<&'static str> {
+        let (own, theirs) = (&self.plan, &other.plan);
+        let pairs = [
+            (self.program != other.program, "program"),
+            (self.case_base != other.case_base, "cases"),
+            (self.settings != other.settings, "settings"),
+            (own.seed != theirs.seed, "seed"),
+            (own.league != theirs.league, "league"),
+            (own.duration_s.to_bits() != theirs.duration_s.to_bits(), "length of a match"),
+            (own.pairings != theirs.pairings, "teams"),
+            (own.matches != theirs.matches, "number of matches"),
+        ];
+        pairs.into_iter().filter_map(|(differs, what)| differs.then_some(what)).collect()
+    }
+}
+
+impl Matches<'_> {
+    /// What its files say they are of.
+    pub fn identity(&self) -> MatchIdentity {
+        let settings = self.settings.describe();
+        MatchIdentity {
+            program: self.program.clone(),
+            case_base: format!("{:08x}", self.base.hash()),
+            settings: settings.map(|(name, value)| (name.to_owned(), value.to_string())).collect(),
+            plan: self.plan.clone(),
+        }
+    }
+
+    /// A match of the plan, ready to be played.
+    pub fn config(&self, planned: &Planned) -> Result<GameConfig, EvaluationError> {
+        let league = self.plan.league().ok_or(EvaluationError::Nothing)?;
+        let (blue, yellow) = planned.sides();
+        let mut config = GameConfig::new(league, planned.seed, self.plan.duration_s).between(blue, yellow);
+        for team in &mut config.teams {
+            team.settings = self.settings.clone();
+        }
+        Ok(config)
+    }
+
+    /// Plays the match of that number.
+    pub fn play(&self, number: usize) -> Result<MatchRow, EvaluationError> {
+        let planned = self.plan.get(number).ok_or(EvaluationError::Nothing)?;
+        let report = play(&self.config(&planned)?, &mut NativeBackend::new(self.base), &mut Nobody)
+            .map_err(|error| EvaluationError::Match { number, error })?;
+        Ok(MatchRow::new(&planned, &report))
+    }
+
+    /// Plays what `file` lacks of a shard, on all threads of the current rayon pool; its rows in the plan's order. As
+    /// [`crate::evaluation::Evaluation::play_shard`].
+    pub fn play_shard(
+        &self,
+        shard: Shard,
+        file: &Path,
+        progress: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
+    ) -> Result<Vec<MatchRow>, EvaluationError> {
+        play_open(&self.identity(), shard, file, progress, |number| self.play(number))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,139 @@
+//! What did two teams' matches come to? Means a match with Student's 95 % intervals, and the paper's ratios (Biswas et al. 2014 §6).
+
+use std::collections::BTreeMap;
+
+use host::strategy::Team;
+use serde::Serialize;
+
+use super::plan::Plan;
+use super::row::{MatchRow, counted};
+use crate::evaluation::statistics::{Sample, paired, student};
+
+/// A mean over matches.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// It.
+    pub mean: f64,
+    /// Lower end of its 95 % interval; none of a single match.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+    /// Matches that have the number.
+    pub matches: u32,
+}
+
+impl Estimate {
+    /// Of these numbers; none without any.
+    fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
+        let sample = Sample::of(values)?;
+        let interval = student(sample, CONFIDENCE);
+        Some(Self {
+            mean: sample.mean,
+            low: interval.map(|interval| interval.low),
+            high: interval.map(|interval| interval.high),
+            matches: sample.n,
+        })
+    }
+}
+
+/// All matches of two teams.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Whose numbers are told first.
+    pub own: Team,
+    /// Against whom.
+    pub opponent: Team,
+    /// How many were played.
+    pub matches: u32,
+    /// Won, drawn, lost.
+    pub won_drawn_lost: [u32; 3],
+    /// All goals, for and against.
+    pub goals: [u32; 2],
+    /// Goals a match.
+    pub goals_for: Option<Estimate>,
+    /// Goals against a match.
+    pub goals_against: Option<Estimate>,
+    /// The chance of such a difference of goals between equals, by the paired t; none of a single match.
+    pub goals_p: Option<f64>,
+    /// Offence ratio, the mean of the matches' own.
+    pub offence_ratio: Option<Estimate>,
+    /// Attack ratio, the mean of those matches' in which the opponents shot.
+    pub attack_ratio: Option<Estimate>,
+    /// All own shots over all of theirs: what counts the matches in which they never shot too.
+    pub attack_ratio_of_all: Option<f64>,
+    /// Shots, a match, for and against.
+    pub shots: [Option<Estimate>; 2],
+    /// Shots that needed a keeper, a post or went in, for and against.
+    pub chances: [Option<Estimate>; 2],
+    /// Share of the ball.
+    pub possession: Option<Estimate>,
+    /// Passes that arrived, for and against.
+    pub passes: [Option<Estimate>; 2],
+    /// Balls lost, for and against.
+    pub losses: [Option<Estimate>; 2],
+    /// Share of the match with the ball in play.
+    pub ball_in_play: Option<Estimate>,
+    /// Offences by kind, all matches, own and theirs.
+    pub fouls: [BTreeMap<String, u32>; 2],
+}
+
+/// One a pair of the plan, in its order.
+pub fn outcomes(plan: &Plan, rows: &[MatchRow]) -> Vec<Outcome> {
+    plan.pairings
+        .iter()
+        .map(|pairing| {
+            let played: Vec<_> = rows
+                .iter()
+                .filter(|row| (row.own, row.opponent) == (pairing.own, pairing.opponent))
+                .collect();
+            outcome(pairing.own, pairing.opponent, &played)
+        })
+        .collect()
+}
+
+fn outcome(own: Team, opponent: Team, rows: &[&MatchRow]) -> Outcome {
+    let mean = |of: fn(&MatchRow) -> f64| Estimate::of(rows.iter().map(|row| of(row)));
+    let of_some = |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)));
+    let both = |ours: fn(&MatchRow) -> u32, theirs: fn(&MatchRow) -> u32| {
+        [ours, theirs].map(|of| Estimate::of(rows.iter().map(|row| f64::from(of(row)))))
+    };
+    let total = |of: fn(&MatchRow) -> u32| rows.iter().map(|row| of(row)).sum::<u32>();
+    let ends = |end: std::cmp::Ordering| {
+        rows.iter().filter(|row| row.goals.cmp(&row.goals_against) == end).count() as u32
+    };
+    let fouls = |of: fn(&MatchRow) -> &str| {
+        let mut all = BTreeMap::new();
+        for (kind, n) in rows.iter().flat_map(|row| counted(of(row))) {
+            *all.entry(kind.to_owned()).or_default() += n;
+        }
+        all
+    };
+    let differences = Sample::of(rows.iter().map(|row| f64::from(row.goals) - f64::from(row.goals_against)));
+    let (shots, against) = (total(|row| row.shots), total(|row| row.shots_against));
+    Outcome {
+        own,
+        opponent,
+        matches: rows.len() as u32,
+        won_drawn_lost: [
+            ends(std::cmp::Ordering::Greater),
+            ends(std::cmp::Ordering::Equal),
+            ends(std::cmp::Ordering::Less),
+        ],
+        goals: [total(|row| row.goals), total(|row| row.goals_against)],
+        goals_for: mean(|row| f64::from(row.goals)),
+        goals_against: mean(|row| f64::from(row.goals_against)),
+        goals_p: differences.and_then(paired).map(|test| test.p),
+        offence_ratio: of_some(MatchRow::offence_ratio),
+        attack_ratio: of_some(MatchRow::attack_ratio),
+        attack_ratio_of_all: (against > 0).then(|| f64::from(shots) / f64::from(against)),
+        shots: both(|row| row.shots, |row| row.shots_against),
+        chances: both(|row| row.chances, |row| row.chances_against),
+        possession: of_some(MatchRow::possession),
+        passes: both(|row| row.passes, |row| row.passes_against),
+        losses: both(|row| row.losses, |row| row.losses_against),
+        ball_in_play: mean(|row| f64::from(row.ball_in_play)),
+        fouls: [fouls(|row| &row.fouls), fouls(|row| &row.fouls_against)],
+    }
+}
+
+const CONFIDENCE: f64 = 0.95;

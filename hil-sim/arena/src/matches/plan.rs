@@ -1,0 +1,124 @@
+//! Which matches are played? Each pair of teams so many times, with the same chances for every pair, in turn as blue and as yellow.
+
+use hil_sim::Fnv;
+use host::strategy::Team;
+use rules::League;
+use serde::{Deserialize, Serialize};
+
+/// Two teams.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pairing {
+    /// Whose numbers are told first.
+    pub own: Team,
+    /// Against whom.
+    pub opponent: Team,
+}
+
+/// Numbers the matches: pair by pair.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// Its name: field, robots and rules.
+    pub league: String,
+    /// Simulated seconds of a match.
+    pub duration_s: f64,
+    /// Who meets whom.
+    pub pairings: Vec<Pairing>,
+    /// How often each pair meets.
+    pub matches: u32,
+}
+
+/// A match of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Planned {
+    /// Its number in the plan, from 0.
+    pub number: usize,
+    /// Who plays.
+    pub pairing: Pairing,
+    /// Does the first of the pair play blue?
+    pub own_is_blue: bool,
+    /// Plays it again.
+    pub seed: u64,
+}
+
+impl Planned {
+    /// Blue and yellow.
+    pub fn sides(&self) -> (Team, Team) {
+        let Pairing { own, opponent } = self.pairing;
+        if self.own_is_blue { (own, opponent) } else { (opponent, own) }
+    }
+}
+
+impl Plan {
+    /// Our team against each of these.
+    pub fn against(opponents: &[Team]) -> Vec<Pairing> {
+        opponents.iter().map(|&opponent| Pairing { own: Team::Ours, opponent }).collect()
+    }
+
+    /// Each of these against each other.
+    pub fn round_robin(teams: &[Team]) -> Vec<Pairing> {
+        let pairs = |(i, &own): (usize, &Team)| {
+            teams[i + 1..].iter().map(move |&opponent| Pairing { own, opponent }).collect::<Vec<_>>()
+        };
+        teams.iter().enumerate().flat_map(pairs).collect()
+    }
+
+    /// Number of matches.
+    pub fn len(&self) -> usize {
+        self.pairings.len() * self.matches as usize
+    }
+
+    /// There is nothing to play.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The league itself.
+    pub fn league(&self) -> Option<League> {
+        [League::Ssl2013, League::DivisionB, League::DivisionA]
+            .into_iter()
+            .find(|league| league.name() == self.league)
+    }
+
+    /// The match of that number.
+    pub fn get(&self, number: usize) -> Option<Planned> {
+        let matches = self.matches as usize;
+        let pairing = *self.pairings.get(number.checked_div(matches)?)?;
+        let round = number % matches;
+        Some(Planned { number, pairing, own_is_blue: round.is_multiple_of(2), seed: self.seed_of(round) })
+    }
+
+    /// The pair does not enter: all meet the same chances.
+    fn seed_of(&self, round: usize) -> u64 {
+        let mut hash = Fnv::default();
+        hash.add(&self.seed.to_le_bytes());
+        hash.add(&(round as u64).to_le_bytes());
+        let value = hash.value();
+        (value ^ (value >> SEED_BITS)) & ((1 << SEED_BITS) - 1)
+    }
+}
+
+/// Seeds are short enough for every reader of JSON (53 bits) and for people.
+const SEED_BITS: u32 = 48;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_meet_as_often_on_both_sides_with_the_same_seeds() {
+        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone]);
+        assert_eq!(pairings.len(), 3);
+        let plan = Plan { seed: 1, league: "division-b".to_owned(), duration_s: 600.0, pairings, matches: 4 };
+        let all: Vec<_> = (0..plan.len()).filter_map(|number| plan.get(number)).collect();
+        assert_eq!((all.len(), plan.get(12)), (12, None));
+        assert_eq!(all.iter().filter(|planned| planned.own_is_blue).count(), 6);
+        for round in 0..4 {
+            assert_eq!(all[round].seed, all[round + 4].seed);
+            assert_eq!(all[round].pairing.own, Team::Ours);
+        }
+        assert_ne!(all[0].seed, all[1].seed);
+        assert_eq!(all[1].sides(), (Team::Reactive, Team::Ours));
+    }
+}

@@ -1,0 +1,66 @@
+//! How do the ratios lie beside the paper's? One picture: offence and attack ratio a pair, with 95 % intervals; the paper's range as a
+//! band. px, a ratio's axis is logarithmic, for 2 and 1/2 are as far from 1.
+
+use drawing::{Anchor, Font, Svg, Theme};
+
+use super::outcome::{Estimate, Outcome};
+use super::paper::PAPER;
+
+/// A title, whose ratio, and the paper's range.
+type Panel = (&'static str, fn(&Outcome) -> Option<Estimate>, [f64; 2]);
+
+/// Both ratios of all pairs, as an SVG.
+pub fn plot(outcomes: &[Outcome]) -> String {
+    let mut svg = Svg::default();
+    let colors = Theme::Light.colors();
+    let font = |fill| Font { size: 13.0, fill, bold: false, halo: None };
+    let height = ROW * (outcomes.len() as f64 + 2.0);
+    let panels: [Panel; 2] = [
+        ("offence ratio", |outcome| outcome.offence_ratio, range(PAPER.map(|game| game.offence_ratio))),
+        ("attack ratio", |outcome| outcome.attack_ratio, range(PAPER.map(|game| game.attack_ratio))),
+    ];
+    for (panel, (title, of, [low, high])) in panels.into_iter().enumerate() {
+        let left = NAMES + (PANEL + GAP) * panel as f64;
+        let x = |ratio: f64| left + PANEL * (ratio.clamp(LEAST, MOST) / LEAST).ln() / (MOST / LEAST).ln();
+        let bottom = -height + ROW;
+        svg.rect([x(low), -ROW], [x(high), bottom], format_args!("fill=\"{}\" opacity=\"0.5\"", colors.line));
+        svg.text([left, -ROW * 0.6], title, Anchor::Start, Font { bold: true, ..font(colors.ink) });
+        for tick in [0.25, 0.5, 1.0, 2.0, 4.0] {
+            let style = format_args!("stroke=\"{}\" stroke-width=\"1\"", colors.faint).to_string();
+            svg.line([x(tick), -ROW], [x(tick), bottom], style);
+            svg.text([x(tick), bottom - 14.0], &tick.to_string(), Anchor::Middle, font(colors.faint));
+        }
+        for (i, outcome) in outcomes.iter().enumerate() {
+            let y = -ROW * (i as f64 + 1.5);
+            if panel == 0 {
+                let pair = format!("{} – {}", outcome.own.word(), outcome.opponent.word());
+                svg.text([NAMES - 10.0, y - 4.0], &pair, Anchor::End, font(colors.ink));
+            }
+            let Some(estimate) = of(outcome) else { continue };
+            if let (Some(low), Some(high)) = (estimate.low, estimate.high) {
+                let style = format_args!("stroke=\"{}\" stroke-width=\"2\"", colors.team).to_string();
+                svg.line([x(low), y], [x(high), y], style);
+            }
+            svg.circle([x(estimate.mean), y], 4.5, format_args!("fill=\"{}\"", colors.team));
+        }
+    }
+    let width = NAMES + 2.0 * PANEL + GAP + 20.0;
+    let title = "Offence and attack ratios by opponent; the band is the paper's range";
+    svg.finish([0.0, -height], [width, 0.0], 1.0, colors.paper, title)
+}
+
+fn range(values: [f64; 6]) -> [f64; 2] {
+    [values.into_iter().fold(f64::INFINITY, f64::min), values.into_iter().fold(0.0, f64::max)]
+}
+
+/// Of a pair, px.
+const ROW: f64 = 28.0;
+/// Room for the pairs' names, px.
+const NAMES: f64 = 170.0;
+/// Of a ratio's axis, px.
+const PANEL: f64 = 260.0;
+/// Between the two, px.
+const GAP: f64 = 40.0;
+/// The axis' ends: ratios beyond are drawn at them.
+const LEAST: f64 = 0.2;
+const MOST: f64 = 6.0;

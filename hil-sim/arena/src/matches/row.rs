@@ -1,0 +1,149 @@
+//! What is kept of a match? One row of `matches.csv`: who met whom, and every measure of both sides. s; `own` is the first of the pair.
+
+use std::collections::BTreeMap;
+
+use host::strategy::Team;
+use serde::{Deserialize, Serialize};
+
+use super::MatchIdentity;
+use super::plan::Planned;
+use crate::evaluation::Entry;
+use crate::game::{GameReport, PerTeam};
+
+/// A match's measures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MatchRow {
+    /// Its number in the plan, from 0.
+    pub number: usize,
+    /// Whose numbers are told first.
+    pub own: Team,
+    /// Against whom.
+    pub opponent: Team,
+    /// The first of them played blue.
+    pub own_is_blue: bool,
+    /// Plays it again.
+    pub seed: u64,
+    /// Goals.
+    pub goals: u32,
+    /// Goals against.
+    pub goals_against: u32,
+    /// Share of the match in which the ball was in play.
+    pub ball_in_play: f32,
+    /// Seconds in play with the ball in the opponents' half.
+    pub their_half_s: f32,
+    /// Seconds in play with the ball in the own half.
+    pub own_half_s: f32,
+    /// Shots at the goal.
+    pub shots: u32,
+    /// The opponents'.
+    pub shots_against: u32,
+    /// Shots that a keeper had to stop, that hit a post, or went in.
+    pub chances: u32,
+    /// The opponents'.
+    pub chances_against: u32,
+    /// Seconds with the ball.
+    pub possession_s: f32,
+    /// The opponents'.
+    pub possession_against_s: f32,
+    /// Passes that arrived.
+    pub passes: u32,
+    /// The opponents'.
+    pub passes_against: u32,
+    /// Balls lost to the opponents.
+    pub losses: u32,
+    /// Theirs to us.
+    pub losses_against: u32,
+    /// Offences: `kind:number`, a blank between two.
+    pub fouls: String,
+    /// The opponents'.
+    pub fouls_against: String,
+    /// Equal for equal matches.
+    pub trace_hash: String,
+}
+
+impl MatchRow {
+    /// Of a match that was played.
+    pub(super) fn new(planned: &Planned, report: &GameReport) -> Self {
+        fn sides<T>(blue_first: bool, of: &PerTeam<T>) -> (&T, &T) {
+            if blue_first { (&of.blue, &of.yellow) } else { (&of.yellow, &of.blue) }
+        }
+        let blue = planned.own_is_blue;
+        let (own, theirs) = sides(blue, &report.metrics);
+        let (goals, goals_against) = sides(blue, &report.score);
+        let (fouls, fouls_against) = sides(blue, &report.fouls);
+        Self {
+            number: planned.number,
+            own: planned.pairing.own,
+            opponent: planned.pairing.opponent,
+            own_is_blue: blue,
+            seed: planned.seed,
+            goals: *goals,
+            goals_against: *goals_against,
+            ball_in_play: report.ball_in_play,
+            their_half_s: own.ball_in_their_half_s,
+            own_half_s: theirs.ball_in_their_half_s,
+            shots: own.shots,
+            shots_against: theirs.shots,
+            chances: own.chances,
+            chances_against: theirs.chances,
+            possession_s: own.possession_s,
+            possession_against_s: theirs.possession_s,
+            passes: own.passes,
+            passes_against: theirs.passes,
+            losses: own.losses,
+            losses_against: theirs.losses,
+            fouls: listed(fouls),
+            fouls_against: listed(fouls_against),
+            trace_hash: report.trace_hash.clone(),
+        }
+    }
+
+    /// The paper's offence ratio (§6): time of the ball in their half over that in the own; `None` where it never was in the own.
+    pub fn offence_ratio(&self) -> Option<f64> {
+        (self.own_half_s > 0.0).then(|| f64::from(self.their_half_s) / f64::from(self.own_half_s))
+    }
+
+    /// The paper's attack ratio (§6): own shots over the opponents'; `None` where those never shot.
+    pub fn attack_ratio(&self) -> Option<f64> {
+        (self.shots_against > 0).then(|| f64::from(self.shots) / f64::from(self.shots_against))
+    }
+
+    /// Share of the time with a team at the ball in which it was ours.
+    pub fn possession(&self) -> Option<f64> {
+        let both = f64::from(self.possession_s) + f64::from(self.possession_against_s);
+        (both > 0.0).then(|| f64::from(self.possession_s) / both)
+    }
+}
+
+impl Entry for MatchRow {
+    type Identity = MatchIdentity;
+    const MARK: &'static str = "# onetwo matches 1 ";
+    fn number(&self) -> usize {
+        self.number
+    }
+    fn is_planned(&self, identity: &MatchIdentity) -> bool {
+        identity.plan.get(self.number).is_some_and(|planned| {
+            (self.own, self.opponent) == (planned.pairing.own, planned.pairing.opponent)
+                && (self.own_is_blue, self.seed) == (planned.own_is_blue, planned.seed)
+        })
+    }
+    fn planned(identity: &MatchIdentity) -> usize {
+        identity.plan.len()
+    }
+    fn differences(own: &MatchIdentity, other: &MatchIdentity) -> Vec<&'static str> {
+        own.differences(other)
+    }
+}
+
+fn listed(fouls: &BTreeMap<&'static str, u32>) -> String {
+    let words: Vec<_> = fouls.iter().map(|(kind, n)| format!("{kind}:{n}")).collect();
+    words.join(" ")
+}
+
+/// How often each kind stands in such a list.
+pub(super) fn counted(list: &str) -> impl Iterator<Item = (&str, u32)> {
+    list.split_whitespace().filter_map(|entry| {
+        let (kind, n) = entry.split_once(':')?;
+        Some((kind, n.parse().ok()?))
+    })
+}
