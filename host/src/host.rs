@@ -17,8 +17,9 @@ use ssl::Message;
 use crate::geometry::VisionGeometry;
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::{self, Listener};
+use crate::strategy::tally::{Bookkeeper, PlayTally};
 use crate::strategy::view::{Game, RobotSet};
-use crate::strategy::{Coach, Flip, Orders, Team, View};
+use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, Who, World};
 
@@ -39,6 +40,8 @@ pub struct HostSettings {
     pub team: Team,
     /// The radio's.
     pub radio: RadioSettings,
+    /// Which of the second paper's tactics it plays.
+    pub tactics: Tactics,
 }
 
 impl HostSettings {
@@ -52,6 +55,7 @@ impl HostSettings {
             kick: [1.0; RobotId::COUNT],
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
+            tactics: Tactics::default(),
         }
     }
 }
@@ -114,6 +118,7 @@ pub struct Host {
     planned: Option<Instant>,
     undecodable: Undecodable,
     halted: bool,
+    books: Bookkeeper,
 }
 
 /// What a robot of ours last said of itself.
@@ -131,7 +136,7 @@ impl Host {
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
-            coach: Coach::of(settings.team),
+            coach: Coach::new(settings.team, settings.tactics, settings.league),
             robots: Default::default(),
             world: World::default(),
             last_ball: None,
@@ -140,6 +145,7 @@ impl Host {
             planned: None,
             undecodable: Undecodable::default(),
             halted: false,
+            books: Bookkeeper::default(),
             settings,
         }
     }
@@ -176,6 +182,11 @@ impl Host {
     /// The field as it was when it was last planned for.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// What was counted of our passes, free kicks and roles.
+    pub fn tally(&self) -> &PlayTally {
+        self.books.tally()
     }
 
     /// What everybody was told last, and why.
@@ -293,6 +304,7 @@ impl Host {
             .allowing(self.allowed());
         self.orders = self.coach.decide(&view);
         let flip = Flip::defending(game.defending);
+        self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
         let command = |order: &crate::strategy::Order| Command {
             to: order.robot,
             defending: game.defending,

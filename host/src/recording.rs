@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::HostSettings;
 use crate::radio::{RadioSettings, Relay};
-use crate::strategy::Team;
+use crate::strategy::{Tactics, Team};
 
 /// What a trace begins with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -62,6 +62,9 @@ pub struct HostHeader {
     /// Were frames sealed with a key other than zeros?
     #[serde(default)]
     pub keyed: bool,
+    /// Which tactics it played.
+    #[serde(default = "Tactics::none")]
+    pub tactics: Tactics,
 }
 
 /// Why a header builds no host.
@@ -129,13 +132,18 @@ impl HostHeader {
             relay: relay.to_owned(),
             way_us: radio.way.0,
             keyed: radio.key != TeamKey::ZERO,
+            tactics: Tactics::NONE,
         }
     }
 
     /// Of a host with these settings that begins at `began`.
     pub fn of(settings: &HostSettings, began: Instant) -> Self {
         let who = (settings.us, settings.keeper, settings.defending);
-        Self { plays: settings.team, ..Self::new(who, &settings.kick, &settings.radio, began) }
+        Self {
+            plays: settings.team,
+            tactics: settings.tactics,
+            ..Self::new(who, &settings.kick, &settings.radio, began)
+        }
     }
 
     /// The settings it began with; the key is for the caller to bring.
@@ -148,6 +156,7 @@ impl HostHeader {
             kick: self.kick()?,
             team: self.plays,
             radio: self.radio(key)?,
+            tactics: self.tactics,
         })
     }
 
@@ -246,6 +255,18 @@ mod tests {
         let written = header();
         assert!(written.hosts[0].keyed);
         assert!(!written.to_json().contains("7,7,7"), "{}", written.to_json());
+    }
+
+    #[test]
+    fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_told() {
+        let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
+        settings.tactics = Tactics { threats: true, ..Tactics::NONE };
+        let told = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
+        let read: HostHeader = serde_json::from_str(&told).unwrap();
+        assert_eq!(read.settings(League::DivisionB, TeamKey::ZERO).unwrap().tactics, settings.tactics);
+        let tactics = told.find(",\"tactics\"").unwrap();
+        let old: HostHeader = serde_json::from_str(&format!("{}}}", &told[..tactics])).unwrap();
+        assert_eq!(old.tactics, Tactics::NONE);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
 use host::shell::Recorder;
-use host::strategy::Team;
+use host::strategy::{Tactics, Team};
 use indicatif::{ProgressBar, ProgressStyle};
 use page::Powers;
 use protocol::Instant;
@@ -50,6 +50,12 @@ pub(crate) struct PlayArgs {
     /// Robots of each team; the league's number unless told.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
+    /// What ours plays of the second paper as yellow: none, all, usual, or names such as threats,pass-ahead.
+    #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
+    yellow_tactics: Tactics,
+    /// The same for blue.
+    #[arg(long, value_name = "TACTICS", default_value = "usual", value_parser = Tactics::parse)]
+    blue_tactics: Tactics,
     /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
@@ -92,6 +98,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
     for team in &mut config.teams {
         team.settings = settings.clone();
+        team.tactics = if team.colour == Colour::Blue { args.blue_tactics } else { args.yellow_tactics };
         team.robots = args.robots.unwrap_or(team.robots);
     }
     let shelf = cases(&args.folder, args.league)?;
@@ -230,6 +237,11 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {
         if team != Team::Ours {
             words.extend([" --", side, " ", team.word()]);
+        }
+    }
+    for (side, tactics) in [("blue", args.blue_tactics), ("yellow", args.yellow_tactics)] {
+        if tactics != Tactics::default() {
+            words.extend([" --", side, "-tactics ", &tactics.words()]);
         }
     }
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)

@@ -4,7 +4,8 @@
 //! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them
 //! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
 //!
-//! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its planner of free kicks, all for the coach to call.
+//! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its planner of free kicks; [`Tactics`] says which of them the coach
+//! plays.
 //! [`opponents`] are other teams' open play, to measure ours by.
 
 mod coach;
@@ -16,10 +17,13 @@ pub mod pass;
 pub mod restart;
 pub mod roles;
 pub mod support;
+mod tactics;
+pub mod tally;
 pub mod threat;
 pub mod view;
 
 pub use coach::{Coach, Orders};
 pub use opponents::Team;
 pub use order::{Order, Role, Task, Why};
+pub use tactics::Tactics;
 pub use view::{Flip, View};

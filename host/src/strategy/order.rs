@@ -1,9 +1,12 @@
 //! What is a robot told, and why? A task in the attack frame, the role it serves, and the numbers behind it.
 
+use core::fmt;
+
 use geometry::{Angle, Attack, Point};
 use protocol::RobotId;
 use protocol::host::{Directive, Duty, KickOrder};
 
+use super::threat::Guards;
 use super::view::Flip;
 
 /// What one robot shall do, and why.
@@ -34,6 +37,8 @@ pub enum Role {
     Receiver,
     /// Took our restart and must not touch the ball before somebody else has.
     Barred,
+    /// Draws an opponent away before our free kick.
+    Coercer,
     /// Stands where a pass can come.
     Support(u8),
     /// Stands between an opponent and our goal.
@@ -78,6 +83,27 @@ pub enum Why {
     BestTarget {
         /// Room along the way of the ball, m.
         room: f32,
+    },
+    /// Its part in the defence against threats.
+    Threat(Guards),
+    /// The likeliest pass found.
+    Chances {
+        /// P(receive).
+        receive: f32,
+        /// P(goal | receive).
+        goal: f32,
+    },
+    /// This opponent follows it and shall be drawn out of the way.
+    Coerces {
+        /// Whom.
+        marker: RobotId,
+    },
+    /// Waits until coercers are in place.
+    Coercing {
+        /// So many are.
+        arrived: usize,
+        /// Of so many.
+        of: usize,
     },
     /// Open play: the robots choose among themselves.
     OpenPlay,
@@ -128,6 +154,8 @@ pub enum Task {
     Receive {
         /// Where.
         at: Point<Attack>,
+        /// Shoot it on at this point at first touch; nothing: take it.
+        then: Option<Point<Attack>>,
     },
     /// Be where the ball would cross this stretch.
     Block {
@@ -155,10 +183,43 @@ impl Task {
             Self::Pass { at, receiver, kick, ready } => {
                 Directive::Pass { at: flip.to_wire(at), receiver, kick, ready }
             }
-            Self::Receive { at } => Directive::Receive { at: flip.to_wire(at), then: None },
+            Self::Receive { at, then } => {
+                Directive::Receive { at: flip.to_wire(at), then: then.map(|then| flip.to_wire(then)) }
+            }
             Self::Block { from, to } => Directive::Block { from: flip.to_wire(from), to: flip.to_wire(to) },
             Self::PlaceBall { at } => Directive::PlaceBall { at: flip.to_wire(at) },
             Self::Gameplay => Directive::Gameplay { hint: None },
+        }
+    }
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Referee => f.write_str("the referee's word leaves nothing else"),
+            Self::SoonestAtBall { seconds } => write!(f, "soonest at the ball, in {seconds:.2} s"),
+            Self::OnBallLine { y } => {
+                write!(f, "on the line from the ball to our goal, {y:.2} m beside its middle")
+            }
+            Self::ClearsArea { room } => write!(f, "only the keeper may play it there; {room:.2} m of room"),
+            Self::FreePlace { worth } => write!(f, "the best free place, worth {worth:.2}"),
+            Self::Marks { opponent } => {
+                write!(f, "opponent {opponent} is nearest to our goal and not marked")
+            }
+            Self::BestTarget { room } => write!(f, "the best target for the ball, {room:.2} m of room"),
+            Self::Threat(guards) => write!(f, "{guards}"),
+            Self::Chances { receive, goal } => {
+                write!(f, "the best pass: received with {receive:.2}, then a goal with {goal:.2}")
+            }
+            Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the way"),
+            Self::Coercing { arrived, of } => {
+                write!(f, "{arrived} of {of} are where opponents shall follow them")
+            }
+            Self::OpenPlay => f.write_str("open play: the robots choose among themselves"),
+            Self::DoubleTouch => f.write_str("it touched the ball last at our restart"),
+            Self::Idle => f.write_str("the team only stands"),
+            Self::NoBall => f.write_str("no ball is seen"),
+            Self::TooMany { allowed } => write!(f, "the referee lets us have {allowed}"),
         }
     }
 }
@@ -179,6 +240,16 @@ mod tests {
     use super::*;
     use geometry::GoalEnd;
     use protocol::quantized::WirePoint;
+
+    #[test]
+    fn a_reason_is_told_with_its_numbers() {
+        let marker = RobotId::new(3).unwrap();
+        assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the way");
+        let chances = Why::Chances { receive: 0.75, goal: 0.2 };
+        assert_eq!(chances.to_string(), "the best pass: received with 0.75, then a goal with 0.20");
+        let held = Why::Threat(Guards::Held { opponent: marker, primaries_off: 0.5 });
+        assert!(held.to_string().contains("0.50 m"), "{held}");
+    }
 
     #[test]
     fn a_task_is_turned_for_the_team_that_attacks_towards_minus_x() {

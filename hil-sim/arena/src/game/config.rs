@@ -4,7 +4,7 @@ use brain::{Approach, BrainConfig};
 use casebase::Settings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
-use host::strategy::Team;
+use host::strategy::{Tactics, Team};
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
 
@@ -38,6 +38,8 @@ pub struct TeamSetup {
     pub approach: Approach,
     /// How they retrieve.
     pub settings: Settings,
+    /// Which of the second paper's tactics its host plays.
+    pub tactics: Tactics,
 }
 
 impl GameConfig {
@@ -53,6 +55,7 @@ impl GameConfig {
             plays: Team::Ours,
             approach: Approach::Cases,
             settings: Settings::default(),
+            tactics: Tactics::default(),
         };
         let total = Duration((duration_s * 1e6) as u64);
         Self {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use hil_sim::small_size::referee::Metrics;
 use host::strategy::Team;
+use host::strategy::tally::PlayTally;
 use rules::Colour;
 use serde::Serialize;
 
@@ -68,10 +69,12 @@ pub struct TeamReport {
     pub offence_ratio: Option<f32>,
     /// Own shots over the opponents'.
     pub attack_ratio: Option<f32>,
+    /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
+    pub play: PlayTally,
 }
 
 impl TeamReport {
-    fn of(metrics: &Metrics, team: Colour) -> Self {
+    fn of(metrics: &Metrics, team: Colour, play: PlayTally) -> Self {
         let own = metrics.team(team);
         Self {
             possession_s: own.possession_s,
@@ -82,6 +85,7 @@ impl TeamReport {
             losses: own.losses,
             offence_ratio: metrics.offence_ratio(team),
             attack_ratio: metrics.attack_ratio(team),
+            play,
         }
     }
 }
@@ -98,7 +102,7 @@ impl GameReport {
                 metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
             }),
             teams: PerTeam::of(|team| config.plays(team)),
-            metrics: PerTeam::of(|team| TeamReport::of(metrics, team)),
+            metrics: PerTeam::of(|team| TeamReport::of(metrics, team, *game.host(team).tally())),
             league: config.league.name(),
             seed: config.seed,
             trace_hash: game.trace().digits(),

@@ -178,6 +178,7 @@ pub(super) fn host_settings(config: &GameConfig, colour: Colour) -> HostSettings
         keeper: config.referee.team(colour).keeper,
         team: config.plays(colour),
         radio: RadioSettings { relay: Relay::No, ..usual.radio },
+        tactics: config.teams[colour as usize].tactics,
         ..usual
     }
 }

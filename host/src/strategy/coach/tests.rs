@@ -1,11 +1,17 @@
 //! Does everybody have one sensible order in every phase of the game?
 
 use super::*;
+use crate::strategy::threat::Guards;
 use crate::strategy::view::Ball;
 use crate::strategy::view::tests::view;
+use geometry::Vector;
 
 const OURS: [(f32, f32); 6] = [(-4.4, 0.0), (-3.0, 0.5), (-3.0, -0.5), (-0.5, 0.0), (0.5, 1.5), (0.5, -1.5)];
 const THEIRS: [(f32, f32); 3] = [(4.4, 0.0), (2.0, 1.0), (1.0, -1.0)];
+
+fn coach() -> Coach {
+    Coach::new(Team::Ours, Tactics::default(), League::DivisionB)
+}
 
 fn phases() -> Vec<Phase<Side>> {
     let by = |side| {
@@ -34,9 +40,15 @@ fn every_robot_has_exactly_one_order_in_every_phase_with_and_without_a_ball() {
                     if ball.is_none() {
                         view.ball = None;
                     }
-                    let orders = Coach::default().decide(&view);
-                    let ids: Vec<_> = orders.iter().map(|order| order.robot.number()).collect();
-                    assert_eq!(ids, (0..robots as u8).collect::<Vec<_>>(), "{phase:?} {ball:?}");
+                    for tactics in [Tactics::NONE, Tactics::ALL] {
+                        let orders = Coach::new(Team::Ours, tactics, League::DivisionB).decide(&view);
+                        let ids: Vec<_> = orders.iter().map(|order| order.robot.number()).collect();
+                        assert_eq!(
+                            ids,
+                            (0..robots as u8).collect::<Vec<_>>(),
+                            "{phase:?} {ball:?} {tactics:?}"
+                        );
+                    }
                 }
             }
         }
@@ -47,12 +59,12 @@ fn every_robot_has_exactly_one_order_in_every_phase_with_and_without_a_ball() {
 fn in_halt_everybody_stands() {
     let mut view = view((0.0, 0.0), &OURS, &THEIRS);
     view.phase = Phase::Halt;
-    assert!(Coach::default().decide(&view).iter().all(|order| order.task == Task::Stand));
+    assert!(coach().decide(&view).iter().all(|order| order.task == Task::Stand));
 }
 
 #[test]
 fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
-    let orders = Coach::default().decide(&view((0.0, 0.0), &OURS, &THEIRS));
+    let orders = coach().decide(&view((0.0, 0.0), &OURS, &THEIRS));
     let of = |task: fn(&Order) -> bool| orders.iter().filter(|order| task(order)).count();
     assert_eq!(of(|order| order.role == Role::Keeper), 1);
     assert_eq!(of(|order| matches!(order.role, Role::Defender(_))), 2);
@@ -62,7 +74,7 @@ fn in_open_play_there_are_a_keeper_two_defenders_and_three_who_play_cases() {
 #[test]
 fn one_too_many_goes_to_the_touch_line_and_it_is_not_the_keeper() {
     let view = view((0.0, 0.0), &OURS, &THEIRS).allowing(4);
-    let orders = Coach::default().decide(&view);
+    let orders = coach().decide(&view);
     let leaving: Vec<_> =
         orders.iter().filter(|order| order.role == Role::Leaving).map(|order| order.robot.number()).collect();
     assert_eq!(leaving, [4, 5]);
@@ -70,7 +82,7 @@ fn one_too_many_goes_to_the_touch_line_and_it_is_not_the_keeper() {
 
 #[test]
 fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() {
-    let mut coach = Coach::default();
+    let mut coach = coach();
     let mut view = view((-0.35, 0.0), &OURS, &THEIRS);
     view.phase = Phase::FreeKick(Side::Ours);
     let taker = coach.decide(&view).iter().find(|order| order.role == Role::Taker).unwrap().robot;
@@ -89,13 +101,13 @@ fn nobody_is_sent_near_the_ball_in_stop_nor_to_a_ball_in_their_area() {
     for ball in [(0.0, 0.0), (-3.2, 0.3), (4.2, 2.7), (-4.3, -2.8)] {
         let mut view = view(ball, &OURS, &THEIRS);
         view.phase = Phase::Stop;
-        for order in Coach::default().decide(&view) {
+        for order in coach().decide(&view) {
             if let Task::GoTo { at, .. } = order.task {
                 assert!(at.distance(Point::new(ball.0, ball.1)) > 0.6, "{ball:?}: {order:?}");
             }
         }
     }
-    let orders = Coach::default().decide(&view((4.2, 0.3), &OURS, &THEIRS));
+    let orders = coach().decide(&view((4.2, 0.3), &OURS, &THEIRS));
     assert!(
         orders.iter().all(|order| !matches!(order.task, Task::Gameplay | Task::Kick { .. })),
         "{orders:?}"
@@ -104,7 +116,7 @@ fn nobody_is_sent_near_the_ball_in_stop_nor_to_a_ball_in_their_area() {
 
 #[test]
 fn the_same_views_give_the_same_orders_and_roles_hold_between_them() {
-    let (mut a, mut b) = (Coach::default(), Coach::default());
+    let (mut a, mut b) = (coach(), coach());
     for step in 0..50 {
         let view = view((step as f32 * 0.01, 0.1), &OURS, &THEIRS);
         assert_eq!(a.decide(&view), b.decide(&view));
@@ -113,4 +125,88 @@ fn the_same_views_give_the_same_orders_and_roles_hold_between_them() {
     let jittered = a.decide(&view((0.01, -0.01), &OURS, &THEIRS));
     let roles = |orders: &Orders| orders.iter().map(|order| order.role).collect::<Vec<_>>();
     assert_eq!(roles(&first), roles(&jittered));
+}
+
+#[test]
+fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_only_if_the_ball_is_theirs() {
+    let tactics = Tactics { threats: true, second_level: true, ..Tactics::NONE };
+    let guards = |orders: &Orders| {
+        orders
+            .iter()
+            .filter(|order| matches!(order.why, Why::Threat(_)))
+            .map(|order| order.robot.number())
+            .collect::<Vec<_>>()
+    };
+    // Ours: our 3 is at it. Theirs: their 2 is, and their 1 is free before our goal.
+    let ours = view((-0.4, 0.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
+    assert_eq!(guards(&Coach::new(Team::Ours, tactics, League::DivisionB).decide(&ours)), [0, 1, 2]);
+    let theirs = view((0.9, -1.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
+    let mut far = theirs.clone();
+    far.ours.iter_mut().skip(3).for_each(|robot| robot.position = robot.position - Vector::new(1.5, 0.0));
+    let orders = Coach::new(Team::Ours, tactics, League::DivisionB).decide(&far);
+    let marks = |order: &&Order| matches!(order.why, Why::Threat(Guards::SecondLevel { opponent, .. }) if opponent.number() == 1);
+    assert!(orders.iter().any(|order| marks(&order)), "{orders:?}");
+    let alone = Tactics { second_level: false, ..tactics };
+    assert_eq!(guards(&Coach::new(Team::Ours, alone, League::DivisionB).decide(&far)), [0, 1, 2]);
+}
+
+/// A free kick of ours with the taker behind the ball, `x` m before our 4 at its place, after so many ms.
+fn free_kick(ms: u64, receiver: (f32, f32), theirs: &[(f32, f32)]) -> View {
+    let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (0.855, 0.0), receiver, (-1.0, -2.0)];
+    let mut view = view((1.0, 0.0), &ours, theirs);
+    view.phase = Phase::FreeKick(Side::Ours);
+    view.now = Instant(1_000_000 + ms * 1_000);
+    view
+}
+
+#[test]
+fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_is_told_where() {
+    let tactics = Tactics { pass_ahead: true, ..Tactics::NONE };
+    let mut coach = Coach::new(Team::Ours, tactics, League::DivisionB);
+    // Six of them before their goal: no shot.
+    let theirs = [(4.4, 0.0), (3.2, 0.3), (3.2, -0.3), (2.9, 0.05), (3.0, -0.15), (2.6, 0.0)];
+    let mut receiver = (1.0, 2.0);
+    let (mut went, mut left) = (None, None);
+    for ms in (0..3_500).step_by(20) {
+        let mut view = free_kick(ms, receiver, &theirs);
+        let taker = view.ours[3].id;
+        if let Some((at, _)) = went {
+            // The taker looks at x*, the receiver gets there at 2 m/s.
+            let at: Point<Attack> = at;
+            let ball = Point::new(1.0, 0.0);
+            view.ours[3].heading = ball.direction_to(at);
+            view.ours[3].position = ball - (at - ball).unit().unwrap() * 0.14;
+            let way = at - Point::new(receiver.0, receiver.1);
+            let step = way.unit().unwrap_or_default() * 0.04_f32.min(way.norm());
+            receiver = (receiver.0 + step.x(), receiver.1 + step.y());
+        }
+        let orders = coach.decide(&view);
+        for order in &orders {
+            if let Task::Pass { at, ready, receiver, .. } = order.task {
+                assert_eq!(order.robot, taker);
+                assert!(
+                    matches!(order.why, Why::Chances { receive, .. } if receive > 0.3),
+                    "{:?}",
+                    order.why
+                );
+                went.get_or_insert((at, receiver));
+                if ready && left.is_none() {
+                    left = Some(ms);
+                    let told = orders.iter().find(|order| order.robot == receiver).unwrap();
+                    assert!(matches!(told.task, Task::Receive { at: there, .. } if there == at), "{told:?}");
+                }
+            }
+        }
+    }
+    assert!(left.is_some_and(|left| left > 200), "{went:?} {left:?}");
+    // Once it is in play the receiver has it, and the books are told once.
+    let mut view = free_kick(3_500, receiver, &theirs);
+    view.phase = Phase::Run;
+    let (at, id) = went.unwrap();
+    let orders = coach.decide(&view);
+    let told = orders.iter().find(|order| order.robot == id).unwrap();
+    assert!(matches!(told.task, Task::Receive { at: there, .. } if there == at), "{told:?}");
+    let sent = coach.take_sent().unwrap();
+    assert_eq!((sent.to, sent.receiver, sent.planned), (at, id, None));
+    assert_eq!(coach.take_sent(), None);
 }

@@ -116,7 +116,7 @@ impl Rival {
             if let Target::Mate { id, at, room } = target
                 && free.contains(&id)
             {
-                order(free, id, Role::Receiver, Task::Receive { at }, Why::BestTarget { room });
+                order(free, id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
             }
         } else {
             self.aim = None;

@@ -16,6 +16,8 @@ pub mod edge;
 mod lawful;
 pub mod receiving;
 
+use core::fmt;
+
 use geometry::{Attack, Point};
 use protocol::RobotId;
 
@@ -137,6 +139,34 @@ pub enum Guards {
     },
 }
 
+impl fmt::Display for Guards {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::FirstLevel { open, uncovered, .. } => {
+                write!(f, "{open:.2} rad of our goal are open to the ball, {uncovered:.2} of them uncovered")
+            }
+            Self::Spare => f.write_str("one primary defender suffices; beside it"),
+            Self::SecondLevel { opponent, blocks, rank, open, time_to_shoot } => {
+                let what = match blocks {
+                    Blocks::Shot => "the shot of",
+                    Blocks::Pass => "the pass to",
+                };
+                let n = rank + 1;
+                write!(
+                    f,
+                    "threat {n}: {what} opponent {opponent}, {open:.2} rad open, {time_to_shoot:.1} s away"
+                )
+            }
+            Self::Held { opponent, primaries_off } => {
+                write!(
+                    f,
+                    "the shot of opponent {opponent} until the primaries, {primaries_off:.2} m off, are there"
+                )
+            }
+        }
+    }
+}
+
 /// One robot's part in the defence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assignment {
@@ -171,6 +201,13 @@ pub struct Memory {
     tasks: heapless::Vec<Kept, ROBOTS_MAX>,
     held: Option<Kept>,
     near: RobotSet,
+}
+
+impl Memory {
+    /// Who are the primary defenders.
+    pub fn primaries(&self) -> [Option<RobotId>; 2] {
+        self.primaries
+    }
 }
 
 /// A task somebody has.

@@ -1,0 +1,140 @@
+//! To whom and where does our free kick go, and who starts when? Pass location and pass-ahead (Biswas et al. 2014 §3).
+//! Attack frame, SI units.
+
+use geometry::{Attack, Point};
+use protocol::{Instant, RobotId};
+
+use super::super::defence::room_along;
+use super::super::order::{Task, Why};
+use super::super::pass::ahead::{PassAhead, PasserMove, Places, Times};
+use super::super::pass::{Rating, SAMPLES, Scene};
+use super::super::support::{self, Target};
+use super::super::tally::Sent;
+use super::super::view::{Ball, Robot, View};
+use super::{Coach, restart};
+use rules::{Phase, Side};
+
+/// A pass being coordinated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ahead {
+    pub(super) receiver: RobotId,
+    pub(super) rating: Rating,
+    steps: PassAhead,
+    /// It is the attack of the Coerce and Attack Planner; whether its receiver coerced before.
+    planned: Option<bool>,
+}
+
+impl Ahead {
+    /// Begins at `now`.
+    pub(super) fn new(receiver: RobotId, rating: Rating, now: Instant, planned: Option<bool>) -> Self {
+        Self { receiver, rating, steps: PassAhead::new(now), planned }
+    }
+
+    /// Whether its receiver has started.
+    pub(super) fn receiver_goes(&self) -> bool {
+        self.steps.receiver_started().is_some()
+    }
+
+    /// What its receiver does.
+    pub(super) fn reception(&self) -> Task {
+        let shot = self.rating.shot;
+        Task::Receive { at: self.rating.at, then: shot.one_touch.then_some(shot.aim) }
+    }
+
+    /// Its numbers.
+    pub(super) fn why(&self) -> Why {
+        Why::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
+    }
+}
+
+impl Coach {
+    /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else what there is.
+    pub(super) fn target(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Target {
+        let usual = support::target(view, taker, ball.position);
+        let free_kick = view.phase == Phase::FreeKick(Side::Ours);
+        if !self.tactics.pass_ahead || !free_kick || self.gave_up || matches!(usual, Target::Shot { .. }) {
+            return usual;
+        }
+        self.searches.forget();
+        let offers = self.searches.offers(view, &self.kicks, ball.position, taker, SAMPLES);
+        let best = offers.iter().find(|offer| offer.rating.receive() > LIKELY);
+        let Some(best) = best else { return usual };
+        self.ahead = Some(Ahead::new(best.receiver, best.rating, view.now, None));
+        let at = best.rating.at;
+        Target::Mate { id: best.receiver, at, room: room_along(view, ball.position, at) }
+    }
+
+    /// What the taker does for its pass ahead, if it has one.
+    pub(super) fn pass_ahead(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+        let mut ahead = self.ahead?;
+        let passer = view.our(taker)?;
+        let Some(receiver) = view.our(ahead.receiver) else { return self.give_up() };
+        let now = Scene::of(view, &self.kicks, ball.position, Some(taker), receiver).rate(ahead.rating.at);
+        if ahead.steps.shot().is_none() && now.receive() < ahead.rating.receive() * STILL_LIKELY {
+            return self.give_up();
+        }
+        let times = times(ball, passer, receiver, &ahead.rating, &self.kicks.constants().receiver);
+        let moves = ahead.steps.step(view.now, &times);
+        self.ahead = Some(ahead);
+        let task = match moves.passer {
+            PasserMove::GivesUp { .. } => return self.give_up(),
+            PasserMove::Waits => {
+                let at = restart::taker_waits(view, ball.position);
+                Task::GoTo { at, face: at.direction_to(ball.position) }
+            }
+            PasserMove::Goes | PasserMove::Shoots => Task::Pass {
+                at: ahead.rating.at,
+                receiver: ahead.receiver,
+                kick: ahead.rating.kick.order(),
+                ready: moves.passer == PasserMove::Shoots,
+            },
+        };
+        Some((task, ahead.why()))
+    }
+
+    /// The pass of our restart that has just left.
+    pub(super) fn sent(&self, view: &View, receiver: RobotId, to: Point<Attack>) -> Option<Sent> {
+        let (passer, from) = (self.first?, self.ball_lay?);
+        let rated = |mate| Scene::of(view, &self.kicks, from, Some(passer), mate).rate(to);
+        let rating = self.ahead.map(|ahead| ahead.rating).or_else(|| view.our(receiver).map(rated))?;
+        Some(Sent {
+            passer,
+            receiver,
+            from,
+            to,
+            flight: rating.ball_time,
+            chip: self.ahead.is_some() && rating.kick.is_chip(),
+            likely: rating.receive(),
+            planned: self.ahead.and_then(|ahead| ahead.planned),
+        })
+    }
+
+    fn give_up(&mut self) -> Option<(Task, Why)> {
+        (self.ahead, self.aim, self.gave_up) = (None, None, true);
+        None
+    }
+}
+
+/// The times of Algorithm 1; the passer waits a finger behind x_p, so that it does not touch the ball before.
+fn times(
+    ball: &Ball,
+    passer: &Robot,
+    receiver: &Robot,
+    rating: &Rating,
+    limits: &motion::trajectory::FreeLimits,
+) -> Times {
+    let places = Places::of(ball.position, rating);
+    let times = Times::of(&places, passer, receiver, rating.ball_time, limits);
+    let (at, facing) = places.passer;
+    let waits = passer.position.distance(at) < WAITS_WITHIN && (passer.heading - facing).abs() < AIMED;
+    Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
+}
+
+/// A pass that arrives less likely than this is not aimed at.
+const LIKELY: f32 = 0.3;
+/// A pass whose P(receive) falls below this share of what it was is given up.
+const STILL_LIKELY: f32 = 0.5;
+/// This near to x_p a passer waits for its receiver, m: the 0.04 m that the robot leaves to the ball, and what it stands off by.
+const WAITS_WITHIN: f32 = 0.09;
+/// Looks at x* this exactly, rad: the robot itself turns the rest before it kicks.
+const AIMED: f32 = 0.15;

@@ -1,0 +1,100 @@
+//! How does a free kick of ours go by the Coerce and Attack Planner? Coercers go and wait to be followed, then the pass ahead (Biswas
+//! et al. 2014 §4). Who coerces nobody defends or supports as usual until it receives. Attack frame, SI units.
+
+use protocol::RobotId;
+use rules::{League, Phase, Side};
+
+use super::super::coerce::tactics::Models;
+use super::super::coerce::{ByPassLocation, FinalAttack, Part, Planner, Progress, Settings};
+use super::super::order::{Role, Task, Why};
+use super::super::pass::{Kicks, Scene};
+use super::super::support::{self, Target};
+use super::super::view::{Ball, View};
+use super::super::{defence, restart};
+use super::{Ahead, Coach, Plan};
+
+/// The planner, and what was asked of it at this free kick.
+#[derive(Clone, Debug)]
+pub(super) struct Cap {
+    planner: Planner,
+    /// The seed of the next plan.
+    seed: u64,
+    asked: bool,
+}
+
+impl Cap {
+    pub(super) fn new(league: League) -> Self {
+        let planner = Planner::new(Settings::of(league), Models::default());
+        Self { planner, seed: 0, asked: false }
+    }
+
+    /// Another phase has begun.
+    pub(super) fn forget(&mut self) {
+        self.asked = false;
+    }
+}
+
+impl Coach {
+    /// Sees what opponents do before our free kick (step 1).
+    pub(super) fn observe(&mut self, view: &View) {
+        let before = matches!(view.phase, Phase::Stop | Phase::BallPlacement(Side::Ours));
+        if self.tactics.coerce
+            && before
+            && view.next.is_none_or(|next| next == Phase::FreeKick(Side::Ours))
+            && let Some(taker) = self.first
+        {
+            self.cap.planner.observe(view, taker);
+        }
+    }
+
+    /// What the taker does while others coerce; orders for those. When they are done, the attack becomes the pass ahead.
+    pub(super) fn coerce(&mut self, plan: &mut Plan<'_>, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+        let view = plan.view;
+        if !self.tactics.coerce || self.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
+            return None;
+        }
+        let value = ByPassLocation::new(&self.kicks);
+        if !self.cap.asked {
+            self.cap.asked = true;
+            self.cap.seed += 1;
+            let shot = matches!(support::target(view, taker, ball.position), Target::Shot { .. });
+            self.gave_up = shot
+                || ball.position.x() < FROM
+                || self.cap.planner.plan(view, &value, taker, self.cap.seed).is_none();
+            if self.gave_up {
+                return None;
+            }
+        }
+        let progress = self.cap.planner.watch(view, &value);
+        if let Progress::Attacking(attack) = progress
+            && self.ahead.is_none()
+        {
+            self.ahead = begin(view, &self.kicks, taker, ball, &attack);
+            self.aim = self.ahead.map(|ahead| {
+                let (id, at) = (ahead.receiver, ahead.rating.at);
+                (view.now, Target::Mate { id, at, room: defence::room_along(view, ball.position, at) })
+            });
+            self.gave_up = self.ahead.is_none();
+        }
+        for posting in self.cap.planner.postings(view) {
+            if let Part::Coerces { marker, .. } = posting.part
+                && plan.take(posting.robot)
+            {
+                let at = plan.kept_off(posting.at);
+                plan.order(posting.robot, Role::Coercer, plan.facing_ball(at), Why::Coerces { marker });
+            }
+        }
+        let Progress::Coercing { arrived, of, .. } = progress else { return None };
+        let at = restart::taker_waits(view, ball.position);
+        Some((Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Coercing { arrived, of }))
+    }
+}
+
+fn begin(view: &View, kicks: &Kicks, taker: RobotId, ball: &Ball, attack: &FinalAttack) -> Option<Ahead> {
+    let receiver = view.our(attack.plan.receiver)?;
+    let scene = Scene::of(view, kicks, ball.position, Some(taker), receiver);
+    Some(Ahead::new(receiver.id, scene.rate(attack.plan.at), view.now, Some(attack.reused)))
+}
+
+/// Free kicks farther back than this are brought into play as soon as can be, m: no pass from there leads to a shot.
+const FROM: f32 = -1.0;

@@ -1,0 +1,73 @@
+//! Who plays the ball, who defends and who is free for cases while the ball is in play?
+
+use geometry::{Attack, Point};
+
+use super::super::order::{Role, Task, Why};
+use super::super::view::View;
+use super::super::{roles, support};
+use super::{Coach, Plan};
+
+impl Coach {
+    /// Open play: keeper, who is first at the ball, two defenders, the rest.
+    pub(super) fn open_play(&mut self, plan: &mut Plan<'_>) {
+        let view = plan.view;
+        let Some(ball) = view.ball else { return self.defend(plan, false) };
+        if let Some(barred) = self.barred
+            && plan.take(barred)
+        {
+            let (at, worth) = best_place(view, ball.position);
+            plan.order(barred, Role::Barred, plan.facing_ball(at), Why::FreePlace { worth });
+        }
+        if let Some(pass) = self.pass
+            && plan.take(pass.receiver)
+        {
+            self.first = Some(pass.receiver);
+            let why = Why::BestTarget { room: support::worth(view, ball.position, pass.at) };
+            plan.order(pass.receiver, Role::Receiver, Task::Receive { at: pass.at, then: pass.then }, why);
+            self.defend(plan, false);
+            return plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
+        }
+        if view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0) {
+            // Nobody but a keeper may touch it there.
+            self.first = None;
+            self.defend(plan, self.attacked);
+            return self.support(plan, ball.position);
+        }
+        let candidates = view.ours.iter().filter(|robot| plan.free.contains(&robot.id));
+        let soonest = roles::choose(candidates, self.first, roles::WORTH, |robot| {
+            let bound = if view.in_play.has(robot.id) { BOUND } else { 0.0 };
+            roles::time_to(robot, ball.rest) - bound
+        });
+        self.first = soonest.map(|(id, _)| id);
+        self.see_whose_ball(view, soonest.map_or(f32::INFINITY, |(_, seconds)| seconds));
+        if let Some((id, seconds)) = soonest
+            && plan.take(id)
+        {
+            plan.order(id, Role::Player, Task::Gameplay, Why::SoonestAtBall { seconds: seconds.max(0.0) });
+        }
+        // Who plays a case plays it to its end.
+        for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
+            if plan.free.len() > 2 && plan.take(robot.id) {
+                plan.order(robot.id, Role::Player, Task::Gameplay, Why::OpenPlay);
+            }
+        }
+        self.defend(plan, self.attacked);
+        plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
+    }
+
+    /// The ball is theirs while one of them is clearly sooner at it than ours, `ours` s from now.
+    fn see_whose_ball(&mut self, view: &View, ours: f32) {
+        let Some(ball) = view.ball else { return };
+        let theirs =
+            view.theirs.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min);
+        let worth = if self.attacked { -roles::WORTH } else { roles::WORTH };
+        self.attacked = theirs + worth < ours;
+    }
+}
+
+fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
+    support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
+}
+
+/// A robot that plays a case counts as this much nearer to the ball, s: changing hands would end the case.
+const BOUND: f32 = 1.0;

@@ -1,0 +1,87 @@
+//! Who has an order already, and who not yet? What is written while the coach decides. Attack frame, m.
+
+use geometry::{Angle, Attack, Point};
+use protocol::RobotId;
+use rules::Phase;
+
+use super::super::order::{Order, Role, Task, Why};
+use super::super::view::View;
+use super::super::{defence, restart};
+use super::{Free, Orders};
+
+/// Orders being written, and who has none yet.
+pub(super) struct Plan<'v> {
+    pub(super) view: &'v View,
+    pub(super) orders: Orders,
+    pub(super) free: Free,
+}
+
+impl<'v> Plan<'v> {
+    /// Nobody has an order yet.
+    pub(super) fn new(view: &'v View) -> Self {
+        Self { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() }
+    }
+
+    pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
+        // One order a robot, and as many places as robots.
+        let _ = self.orders.push(Order { robot, role, task, why });
+    }
+
+    /// Takes a robot out of those without an order; false if it is not among them.
+    pub(super) fn take(&mut self, id: RobotId) -> bool {
+        let before = self.free.len();
+        self.free.retain(|other| *other != id);
+        self.free.len() < before
+    }
+
+    /// Those with the highest numbers leave while we are too many; the keeper stays.
+    pub(super) fn send_off_surplus(&mut self) {
+        let view = self.view;
+        let surplus = self.free.len().saturating_sub(view.allowed);
+        let leaving: Free = view
+            .ours
+            .iter()
+            .rev()
+            .map(|robot| robot.id)
+            .filter(|id| *id != view.keeper)
+            .take(surplus)
+            .collect();
+        for (i, id) in leaving.into_iter().enumerate() {
+            self.take(id);
+            let at = Point::new(0.25 * i as f32, -view.field.width * 0.5 - LEAVE_BEYOND);
+            self.order(id, Role::Leaving, self.facing_ball(at), Why::TooMany { allowed: view.allowed });
+        }
+    }
+
+    pub(super) fn keeper(&mut self) {
+        if self.take(self.view.keeper) {
+            let (task, why) = defence::keeper(self.view);
+            self.order(self.view.keeper, Role::Keeper, task, why);
+        }
+    }
+
+    pub(super) fn keeper_guards(&mut self) {
+        if self.take(self.view.keeper) {
+            self.order(self.view.keeper, Role::Keeper, defence::keeper_line(self.view), Why::Referee);
+        }
+    }
+
+    pub(super) fn everybody(&mut self, role: Role, task: Task, why: Why) {
+        for id in core::mem::take(&mut self.free) {
+            self.order(id, role, task, why);
+        }
+    }
+
+    pub(super) fn facing_ball(&self, at: Point<Attack>) -> Task {
+        let face = self.view.ball.map_or(Angle::ZERO, |ball| at.direction_to(ball.position));
+        Task::GoTo { at, face }
+    }
+
+    /// Off the ball unless it is in play.
+    pub(super) fn kept_off(&self, at: Point<Attack>) -> Point<Attack> {
+        if self.view.phase == Phase::Run { at } else { restart::kept_off(self.view, at) }
+    }
+}
+
+/// Robots that leave stand this far beyond the touch line, m: off the playing area, on the carpet.
+const LEAVE_BEYOND: f32 = 0.15;

@@ -1,0 +1,159 @@
+//! How are restarts played, and where is everybody meanwhile? Ours with a taker and mates to pass to, theirs with a wall.
+
+use protocol::Duration;
+use rules::{Phase, Side};
+
+use super::super::order::{Role, Task, Why};
+use super::super::support::{self, Target};
+use super::super::view::{Ball, ROBOTS_MAX};
+use super::super::{defence, restart, roles};
+use super::{Coach, Plan};
+
+impl Coach {
+    /// Our ball placement: the nearest brings it, the others keep out of its way.
+    pub(super) fn place_ball(&mut self, plan: &mut Plan<'_>) {
+        let view = plan.view;
+        if let (Some(ball), Some(at)) = (view.ball, view.placement) {
+            let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
+            let first = roles::choose(field_players, self.first, roles::WORTH, |robot| {
+                roles::time_to(robot, ball.position)
+            });
+            self.first = first.map(|(id, _)| id);
+            if let Some((id, seconds)) = first
+                && plan.take(id)
+            {
+                plan.order(id, Role::Taker, Task::PlaceBall { at }, Why::SoonestAtBall { seconds });
+            }
+        }
+        self.defend(plan, false);
+        self.spread(plan);
+    }
+
+    /// Kick-off: ours with a taker and mates to pass to, theirs with everybody at home.
+    pub(super) fn kickoff(&mut self, plan: &mut Plan<'_>, side: Side) {
+        let view = plan.view;
+        if side == Side::Ours {
+            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), false);
+            self.receiver(plan);
+        }
+        self.defend(plan, false);
+        let places: heapless::Vec<_, ROBOTS_MAX> = restart::kickoff_places(view).into_iter().collect();
+        self.fill(plan, &places, |i| (Role::Support(i as u8), Why::Referee));
+    }
+
+    /// Free kick: ours with a taker and mates in free places, theirs with a wall and marked opponents.
+    pub(super) fn free_kick(&mut self, plan: &mut Plan<'_>, side: Side) {
+        let view = plan.view;
+        let Some(ball) = view.ball else { return self.defend(plan, false) };
+        if side == Side::Ours {
+            self.taker(plan, matches!(view.phase, Phase::FreeKick(_)), false);
+            self.receiver(plan);
+            self.defend(plan, false);
+            return self.spread(plan);
+        }
+        self.first = None;
+        if self.tactics.second_level && self.tactics.threats {
+            return self.their_free_kick(plan, &ball);
+        }
+        self.defend(plan, false);
+        let mut places: heapless::Vec<_, ROBOTS_MAX> = heapless::Vec::new();
+        let mut whom: heapless::Vec<_, ROBOTS_MAX> = heapless::Vec::new();
+        // Near our area the defenders are the wall already.
+        if ball.position.distance(view.our_goal()) > WALL_BEYOND {
+            let _ = places.push(restart::wall(view, &ball));
+            let _ = whom.push((Role::Wall, Why::OnBallLine { y: view.our_goal().y() }));
+        }
+        for (i, (at, opponent)) in defence::marks(view).into_iter().enumerate() {
+            let _ = places.push(at);
+            let _ = whom.push((Role::Marker(i as u8), Why::Marks { opponent }));
+        }
+        self.fill(plan, &places, |i| whom.get(i).copied().unwrap_or((Role::Player, Why::Referee)));
+        self.spread(plan);
+    }
+
+    /// Our taker: behind the ball until it may kick, then the kick.
+    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, penalty: bool) {
+        let view = plan.view;
+        let Some(ball) = view.ball else { return };
+        let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
+        let chosen = roles::choose(field_players, self.first, TAKER_WORTH, |robot| {
+            roles::time_to(robot, ball.position)
+        });
+        self.first = chosen.map(|(id, _)| id);
+        let Some((id, seconds)) = chosen else { return };
+        if !plan.take(id) {
+            return;
+        }
+        if !started {
+            let at = plan.kept_off(restart::taker_waits(view, view.placement.unwrap_or(ball.position)));
+            return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
+        }
+        self.ball_lay = Some(ball.position);
+        if let Some((task, why)) = self.coerce(plan, id, &ball) {
+            return plan.order(id, Role::Taker, task, why);
+        }
+        let wait = if penalty { Duration(0) } else { MATES_GET_READY };
+        let stands =
+            self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
+        if self.age(view) >= wait && !stands {
+            let target = if penalty {
+                let (at, room) = support::best_shot(view, ball.position);
+                Target::Shot { at, room }
+            } else {
+                self.target(view, id, &ball)
+            };
+            self.aim = Some((view.now, target));
+        }
+        if let Some((task, why)) = self.pass_ahead(view, id, &ball) {
+            return plan.order(id, Role::Taker, task, why);
+        }
+        let (task, why) = restart::take(view, &ball, self.aim.map(|(_, target)| target));
+        plan.order(id, Role::Taker, task, why);
+    }
+
+    /// The mate that our restart is aimed at; of a pass ahead, as soon as it is its time.
+    fn receiver(&mut self, plan: &mut Plan<'_>) {
+        if let Some(ahead) = self.ahead {
+            if ahead.receiver_goes() && plan.take(ahead.receiver) {
+                plan.order(ahead.receiver, Role::Receiver, ahead.reception(), ahead.why());
+            }
+            return;
+        }
+        if let Some((_, Target::Mate { id, at, room })) = self.aim
+            && plan.take(id)
+        {
+            plan.order(id, Role::Receiver, Task::Receive { at, then: None }, Why::BestTarget { room });
+        }
+    }
+
+    /// Theirs against threats: a wall where it has room, everybody else as keeper, primary defender or against a second-level threat.
+    fn their_free_kick(&mut self, plan: &mut Plan<'_>, ball: &Ball) {
+        let view = plan.view;
+        if ball.position.distance(view.our_goal()) > WALL_BEYOND {
+            let at = plan.kept_off(restart::wall(view, ball));
+            let primaries = self.primaries(plan);
+            let near = view.ours.iter().filter(|robot| {
+                plan.free.contains(&robot.id) && robot.id != view.keeper && !primaries.has(robot.id)
+            });
+            let wall = roles::choose(near, self.others[0], roles::WORTH, |robot| roles::time_to(robot, at));
+            self.others[0] = wall.map(|(id, _)| id);
+            if let Some((id, _)) = wall
+                && plan.take(id)
+            {
+                plan.order(id, Role::Wall, plan.facing_ball(at), Why::OnBallLine { y: view.our_goal().y() });
+            }
+        }
+        self.defend(plan, true);
+        self.spread(plan);
+    }
+}
+
+/// How much sooner another robot must be at the ball to become the taker, s: more than in play, the ball lies.
+const TAKER_WORTH: f32 = 1.0;
+/// Mates are given this long to take their places before a restart is aimed, of the 5 s (A) that the rules give: they are there since
+/// the ball was placed, and run on while the taker goes around it.
+const MATES_GET_READY: Duration = Duration::millis(200);
+/// A target once chosen stands for this long: to walk around the ball, aim and kick.
+const AIM_STANDS: Duration = Duration::millis(3000);
+/// Nearer to our goal than this the defenders are the wall, m.
+const WALL_BEYOND: f32 = 2.2;

@@ -1,0 +1,118 @@
+//! How did the passes and free kicks of a team go, and how calm were its roles? Counts of a match, for reports (papers-checklist D24).
+
+use protocol::{Instant, RobotId};
+use rules::{Colour, FieldSpec, Phase, Side};
+use serde::{Deserialize, Serialize};
+
+use super::order::{Order, Role};
+use super::pass::{Ordered, PassTally, PassWatch};
+use super::view::{Flip, View};
+use crate::world::World;
+use geometry::{Attack, Point};
+
+/// A restart's pass that has just left, as the coach knows it; attack frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sent {
+    /// Who kicked.
+    pub passer: RobotId,
+    /// Who shall have it.
+    pub receiver: RobotId,
+    /// x0.
+    pub from: Point<Attack>,
+    /// x*.
+    pub to: Point<Attack>,
+    /// T_b, s.
+    pub flight: f32,
+    /// Through the air.
+    pub chip: bool,
+    /// P(receive).
+    pub likely: f32,
+    /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
+    pub planned: Option<bool>,
+}
+
+/// Free kicks by the Coerce and Attack Planner: the second paper's Table 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CapTally {
+    /// Passes that left.
+    pub attempts: u32,
+    /// … that the receiver, or another mate, had.
+    pub successes: u32,
+    /// … whose receiver had coerced somebody before.
+    pub reuses: u32,
+    /// … of those, that arrived.
+    pub reuse_successes: u32,
+}
+
+/// A team's counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlayTally {
+    /// Passes of restarts.
+    pub passes: PassTally,
+    /// Planned free kicks.
+    pub cap: CapTally,
+    /// How often a robot's role changed while the phase did not; places within a role do not count.
+    pub role_changes: u32,
+}
+
+/// Counts while a match is played.
+#[derive(Clone, Debug, Default)]
+pub struct Bookkeeper {
+    tally: PlayTally,
+    watch: Option<(PassWatch, Option<bool>)>,
+    roles: [Option<Role>; RobotId::COUNT],
+    phase: Option<Phase<Side>>,
+}
+
+impl Bookkeeper {
+    /// What was counted so far.
+    pub fn tally(&self) -> &PlayTally {
+        &self.tally
+    }
+
+    /// The next moment: what was ordered in it, and the pass that began.
+    pub fn note(
+        &mut self,
+        (world, view, field): (&World, &View, &FieldSpec),
+        (us, flip): (Colour, Flip),
+        orders: &[Order],
+        sent: Option<Sent>,
+    ) {
+        let same = self.phase.replace(view.phase) == Some(view.phase);
+        let before = core::mem::take(&mut self.roles);
+        for order in orders {
+            let slot = order.robot.index();
+            self.roles[slot] = Some(order.role);
+            let other = |had: Role| core::mem::discriminant(&had) != core::mem::discriminant(&order.role);
+            self.tally.role_changes += u32::from(same && before[slot].is_some_and(other));
+        }
+        if let Some(sent) = sent {
+            self.watch = Some((PassWatch::new(ordered(&sent, view.now, us, flip)), sent.planned));
+        }
+        let Some((watch, planned)) = &mut self.watch else { return };
+        let Some(verdict) = watch.observe(world, field) else { return };
+        self.tally.passes.record(watch.ordered(), &verdict);
+        if let Some(reused) = *planned {
+            let (cap, good) = (&mut self.tally.cap, u32::from(verdict.is_success()));
+            cap.attempts += 1;
+            cap.successes += good;
+            cap.reuses += u32::from(reused);
+            cap.reuse_successes += u32::from(reused) * good;
+        }
+        self.watch = None;
+    }
+}
+
+fn ordered(sent: &Sent, at: Instant, us: Colour, flip: Flip) -> Ordered {
+    Ordered {
+        at,
+        us,
+        passer: sent.passer,
+        receiver: sent.receiver,
+        from: flip.to_field(sent.from),
+        to: flip.to_field(sent.to),
+        flight: sent.flight,
+        chip: sent.chip,
+        likely: sent.likely,
+    }
+}
