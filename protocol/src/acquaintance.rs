@@ -12,6 +12,8 @@ use crate::{Duration, Instant, RobotId};
 #[derive(Clone, Debug, Default)]
 pub struct Acquaintances {
     mates: [Option<Mate>; RobotId::COUNT],
+    /// Whom to greet, a bit each: asked after every packet, and nearly always nobody.
+    owed: u16,
     /// When this robot greeted last.
     greeted: Option<Instant>,
     /// With whom the next greeting begins, so that nobody is left out for ever.
@@ -26,8 +28,12 @@ struct Mate {
     believed: bool,
     /// It said that we named its life.
     believes: bool,
-    /// It is to be greeted.
-    owed: bool,
+}
+
+const _: () = assert!(RobotId::COUNT <= u16::BITS as usize, "a bit for each mate");
+
+const fn bit(mate: RobotId) -> u16 {
+    1 << mate.number()
 }
 
 impl Acquaintances {
@@ -35,10 +41,15 @@ impl Acquaintances {
     pub fn hear(&mut self, mate: RobotId, life: u32) {
         let slot = &mut self.mates[mate.index()];
         match slot {
-            Some(known) if known.life > life => {}
-            Some(known) if known.life == life => known.owed |= !(known.believed && known.believes),
-            _ => *slot = Some(Mate { life, believed: false, believes: false, owed: true }),
+            Some(known) if known.life > life => return,
+            Some(known) if known.life == life => {
+                if known.believed && known.believes {
+                    return;
+                }
+            }
+            _ => *slot = Some(Mate { life, believed: false, believes: false }),
         }
+        self.owed |= bit(mate);
     }
 
     /// That life of a mate, heard already, has named our present life.
@@ -48,20 +59,22 @@ impl Acquaintances {
         };
         known.believed = true;
         known.believes |= bond != Bond::Heard;
-        known.owed |= bond != Bond::Mutual;
+        if bond != Bond::Mutual {
+            self.owed |= bit(mate);
+        }
     }
 
     /// Whom to greet now, if anybody waits for it.
     pub fn poll(&mut self, now: Instant) -> Option<Greeting> {
-        if self.greeted.is_some_and(|last| now.since(last) < GREET_EVERY) {
+        if self.owed == 0 || self.greeted.is_some_and(|last| now.since(last) < GREET_EVERY) {
             return None;
         }
         let mut mates: heapless::Vec<Greeted, GREETED_MAX> = heapless::Vec::new();
         let first = usize::from(self.next);
         for number in (first..first + RobotId::COUNT).map(|n| (n % RobotId::COUNT) as u8) {
             let Some(who) = RobotId::new(number).filter(|_| !mates.is_full()) else { break };
-            let Some(mate) = self.mates[who.index()].as_mut().filter(|mate| mate.owed) else { continue };
-            mate.owed = false;
+            let Some(mate) = self.mates[who.index()].filter(|_| self.owed & bit(who) != 0) else { continue };
+            self.owed &= !bit(who);
             let bond = match (mate.believed, mate.believes) {
                 (false, _) => Bond::Heard,
                 (true, false) => Bond::Believed,

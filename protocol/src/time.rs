@@ -34,7 +34,9 @@ impl Duration {
 
     /// In seconds.
     pub fn as_secs_f32(self) -> f32 {
-        self.0 as f32 * 1e-6
+        // The first hour in one instruction of a robot's processor; the same number either way.
+        let micros = u32::try_from(self.0).map_or_else(|_| self.0 as f32, |micros| micros as f32);
+        micros * 1e-6
     }
 
     /// From seconds; negative or NaN gives zero.
@@ -82,5 +84,12 @@ mod tests {
         assert_eq!(Instant(3).since(Instant(5)), Duration(0));
         assert_eq!(Instant(3) - Duration(5), Instant(0));
         assert_eq!(Duration::from_secs_f32(-1.0), Duration(0));
+    }
+
+    #[test]
+    fn seconds_are_the_same_number_on_both_sides_of_an_hour() {
+        for micros in [0, 1, 16_777_217, 0xffff_ff7f, 0xffff_ffff, 0x1_0000_0000, 0x1_0000_0101, u64::MAX] {
+            assert_eq!(Duration(micros).as_secs_f32(), micros as f32 * 1e-6, "{micros}");
+        }
     }
 }

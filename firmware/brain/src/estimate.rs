@@ -39,7 +39,17 @@ pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
 }
 
 /// Expected seconds of one action, from the time it starts.
-pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
+fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
+    action_with(scene, part, index, || scene.case.partner_of(part, index))
+}
+
+/// The same, told by `partner` who is at the other end of the action's hand-over.
+pub(crate) fn action_with(
+    scene: &Scene<'_>,
+    part: CaseRobot,
+    index: usize,
+    partner: impl FnOnce() -> Option<(CaseRobot, usize)>,
+) -> f32 {
     let place = scene.place_of(part);
     let spec = scene.body.spec();
     match scene.case.action(part, index) {
@@ -49,7 +59,7 @@ pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
         Some(Action::Turn(_)) => spec.turn,
         Some(Action::GetBall) => {
             spec.grab
-                + match handed_over(scene, part, index) {
+                + match handed_over(scene, partner()) {
                     // After a kick: from where it was kicked, or from the place, to where the ball will lie.
                     Some((from, leg)) => {
                         let start = if from == part { leg.start() } else { place };
@@ -59,15 +69,15 @@ pub(crate) fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
                 }
         }
         Some(Action::ReceiveBall(_)) => {
-            spec.grab + handed_over(scene, part, index).map_or(0.0, |(_, leg)| along(scene, &leg))
+            spec.grab + handed_over(scene, partner()).map_or(0.0, |(_, leg)| along(scene, &leg))
         }
         Some(Action::PassBall(_) | Action::Kick(_)) => spec.turn + spec.kick,
     }
 }
 
-/// The leg by which the ball comes to this robot for that action, and who makes it.
-fn handed_over(scene: &Scene<'_>, part: CaseRobot, index: usize) -> Option<(CaseRobot, Leg)> {
-    let (from, action) = scene.case.partner_of(part, index)?;
+/// The leg by which the ball comes from that action of a partner, and who makes it.
+fn handed_over(scene: &Scene<'_>, partner: Option<(CaseRobot, usize)>) -> Option<(CaseRobot, Leg)> {
+    let (from, action) = partner?;
     Some((from, scene.leg(from, action)?))
 }
 

@@ -95,12 +95,17 @@ pub struct Execution {
     held: bool,
     kicked: bool,
     started: bool,
+    /// The hand-overs of the actions asked for last, by their number: finding one walks the whole case.
+    partners: [Option<(usize, Partner)>; 2],
 }
+
+/// The other end of an action's hand-over, if it has one.
+type Partner = Option<(CaseRobot, usize)>;
 
 impl Execution {
     /// At the beginning of `part`.
     pub fn new(part: CaseRobot) -> Self {
-        Self { part, done: 0, place: None, held: false, kicked: false, started: false }
+        Self { part, done: 0, place: None, held: false, kicked: false, started: false, partners: [None; 2] }
     }
 
     /// The case robot it plays.
@@ -124,7 +129,7 @@ impl Execution {
                 self.started = true;
                 // Waiting has no limit of its own (DESIGN §4.4): the gameplay's is enough.
                 if action != Action::Wait {
-                    let after = estimate::limit(estimate::action(scene, self.part, self.done));
+                    let after = estimate::limit(self.expected(scene));
                     timers.set(Timer::Action, scene.now + after);
                 }
             }
@@ -158,8 +163,28 @@ impl Execution {
         }
     }
 
+    /// Expected seconds of the current action.
+    fn expected(&mut self, scene: &Scene<'_>) -> f32 {
+        let (part, index) = (self.part, self.done);
+        estimate::action_with(scene, part, index, || self.partner_of(scene, index))
+    }
+
+    /// The other end of the hand-over of action number `index`; looked up once.
+    fn partner_of(&mut self, scene: &Scene<'_>, index: usize) -> Partner {
+        // The current action and the next are asked for in turn: two places are enough.
+        let slot = &mut self.partners[index % 2];
+        if let Some((of, partner)) = *slot
+            && of == index
+        {
+            return partner;
+        }
+        let partner = scene.case.partner_of(self.part, index);
+        *slot = Some((index, partner));
+        partner
+    }
+
     /// Whether action number `index` may begin.
-    fn may_start(&self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
+    fn may_start(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
         match scene.case.action(self.part, index) {
             None | Some(Action::Wait | Action::GoToPoint(_) | Action::Turn(_)) => true,
             Some(Action::GetBall) if index == 0 => true,
@@ -176,8 +201,8 @@ impl Execution {
     }
 
     /// The kick or pass that gives us the ball is done, or the ball is seen coming.
-    fn ball_is_handed_over(&self, scene: &Scene<'_>, index: usize) -> bool {
-        let Some((from, their_action)) = scene.case.partner_of(self.part, index) else { return true };
+    fn ball_is_handed_over(&mut self, scene: &Scene<'_>, index: usize) -> bool {
+        let Some((from, their_action)) = self.partner_of(scene, index) else { return true };
         let done = if from == self.part {
             self.done > their_action
         } else {
@@ -199,8 +224,8 @@ impl Execution {
     }
 
     /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its place.
-    fn receiver_is_ready(&self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
-        let Some((_, receive)) = scene.case.partner_of(self.part, index) else { return true };
+    fn receiver_is_ready(&mut self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
+        let Some((_, receive)) = self.partner_of(scene, index) else { return true };
         let Some(Progress::Execute { done }) = scene.progress_of(to) else { return false };
         let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
         let at_receive = (usize::from(done)..receive).all(waits);

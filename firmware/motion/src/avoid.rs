@@ -127,6 +127,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
         return Way { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
     let mut scene = Scene::new(course.obstacles, within);
+    scene.look();
     let goal = scene.nearest_free(to);
     if scene.is_inside(from) {
         let exit = scene.nearest_free(from);
@@ -153,9 +154,9 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
 fn past<F: Copy>(from: Point<F>, via: Point<F>, behind: Point<F>, limits: &FreeLimits) -> Point<F> {
     let (first, second) = (via - from, behind - via);
     let (Some(along), Some(on)) = (first.unit(), second.unit()) else { return via };
-    let speed = limits.speed * along.dot(on).max(0.0);
+    let speed = limits.speed * math::max(along.dot(on), 0.0);
     let beyond = 0.5 * speed * speed / limits.braking;
-    via + along * beyond.min(second.norm())
+    via + along * math::min(beyond, second.norm())
 }
 
 /// The first of the possible steps after which the robot can brake to rest without touching anything.

@@ -26,6 +26,19 @@ pub fn hypot(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
 
+/// The larger of two numbers, as `f32::max`: a NaN gives way to the other. On an M4F that one is a call; this is two
+/// comparisons, and one where the second is a known number.
+#[inline]
+pub fn max(a: f32, b: f32) -> f32 {
+    if a > b || b.is_nan() { a } else { b }
+}
+
+/// The smaller of two numbers, as `f32::min`; see [`max`].
+#[inline]
+pub fn min(a: f32, b: f32) -> f32 {
+    if a < b || b.is_nan() { a } else { b }
+}
+
 /// `(sin x, cos x)`; absolute error below 2e-7 for |x| < 1,000 rad (tested), rubbish beyond 10,000.
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let (r, quadrant) = reduce(x);
@@ -165,6 +178,18 @@ mod tests {
         assert!(clamp(f32::NAN, -1.0, 1.0).is_nan());
         assert_eq!(clamp(0.5, 1.0, -1.0), -1.0);
         assert_eq!(clamp(7.0, f32::NAN, f32::NAN), 7.0);
+    }
+
+    #[test]
+    fn the_larger_and_the_smaller_are_the_standard_librarys() {
+        let all =
+            [f32::NEG_INFINITY, -2.5, -f32::MIN_POSITIVE, 0.0, 1e-40, 1.0, f32::MAX, f32::INFINITY, f32::NAN];
+        for a in all {
+            for b in all {
+                assert_eq!(max(a, b).to_bits(), a.max(b).to_bits(), "{a} {b}");
+                assert_eq!(min(a, b).to_bits(), a.min(b).to_bits(), "{a} {b}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Which places does something cover? Discs, boxes along the axes and capsules: what robots keep out of. Metres.
 
-use crate::{Point, Segment, Vector};
+use crate::{Point, Segment, Vector, math};
 
 /// A closed region of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl<F: Copy> Shape<F> {
                     if least - at > at - most { least - at } else { at - most }
                 };
                 let (x, y) = (over(point.x(), low.x(), high.x()), over(point.y(), low.y(), high.y()));
-                if x > 0.0 && y > 0.0 { Vector::<F>::new(x, y).norm() } else { x.max(y) }
+                if x > 0.0 && y > 0.0 { Vector::<F>::new(x, y).norm() } else { math::max(x, y) }
             }
         }
     }

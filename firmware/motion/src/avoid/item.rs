@@ -21,30 +21,35 @@ pub(super) struct Item<F> {
 /// All obstacles, and the region to stay in.
 pub(super) struct Scene<'o, F> {
     obstacles: &'o [Obstacle<F>],
-    items: [Item<F>; OBSTACLES_MAX],
+    items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
     within: Option<Shape<F>>,
 }
 
 impl<'o, F: Copy> Scene<'o, F> {
+    /// Without its obstacles: [`Scene::look`] comes next, where it stands, for it is large to be handed around.
     pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>) -> Self {
-        let item = Item {
-            center: Point::default(),
-            route: 0.0,
-            brake: 0.0,
-            margin: SKIN,
-            is_disc: false,
-            moves: false,
-        };
         let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
-        let mut scene = Self { obstacles, items: [item; _], moves: false, within };
-        for (item, obstacle) in scene.items.iter_mut().zip(obstacles) {
+        Self { obstacles, items: heapless::Vec::new(), moves: false, within }
+    }
+
+    /// Takes in the obstacles.
+    pub(super) fn look(&mut self) {
+        for obstacle in self.obstacles {
             let velocity = obstacle.velocity;
-            item.moves = velocity.is_finite() && velocity.dot(velocity) > SPEED_MIN * SPEED_MIN;
-            scene.moves |= item.moves;
+            let mut item = Item {
+                center: Point::default(),
+                route: 0.0,
+                brake: 0.0,
+                margin: SKIN,
+                is_disc: false,
+                moves: velocity.is_finite() && velocity.dot(velocity) > SPEED_MIN * SPEED_MIN,
+            };
+            self.moves |= item.moves;
             item.enclose(&obstacle.shape);
+            // There is room: the obstacles were counted above.
+            let _ = self.items.push(item);
         }
-        scene
     }
 
     /// Every obstacle with its item.
@@ -65,7 +70,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
             // Nearly all are far from both.
             if item.may_hold(from) || item.may_hold(goal) {
-                let nearest = gap(&obstacle.shape, from).min(gap(&obstacle.shape, goal));
+                let nearest = math::min(gap(&obstacle.shape, from), gap(&obstacle.shape, goal));
                 item.margin = (nearest - TOUCH).clamp(0.0, SKIN);
                 item.enclose(&obstacle.shape);
             }
@@ -90,14 +95,15 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// As [`Self::stays_within`]; who is outside already may come no farther out.
     pub(super) fn stays_within_or_returns(&self, from: Point<F>, to: Point<F>) -> bool {
-        self.within.is_none_or(|within| within.distance_to(to) <= within.distance_to(from).max(0.0))
+        self.within.is_none_or(|within| within.distance_to(to) <= math::max(within.distance_to(from), 0.0))
     }
 
     /// The first obstacle that a piece of way touches, by its number, when it takes from `at` to `at + time` s.
     pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
         let mut first = None;
         let mut least = f32::INFINITY;
-        let seen = Seen { from, way, before: at.min(FORESIGHT), later: (at + time).min(FORESIGHT) };
+        let seen =
+            Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
         for (number, (item, obstacle)) in self.all().enumerate() {
             let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
             if let Some(share) = touches(from, way, item.center, item.route)
@@ -112,10 +118,11 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// Nothing is touched, with a smaller margin: what is left of braking.
     pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
-        let seen = Seen { from, way, before: at.min(FORESIGHT), later: (at + time).min(FORESIGHT) };
+        let seen =
+            Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
         self.all().all(|(item, obstacle)| {
             let (from, way) = if item.moves { seen.by(obstacle.velocity) } else { (from, way) };
-            let margin = item.margin.min(BRAKE_SKIN);
+            let margin = math::min(item.margin, BRAKE_SKIN);
             touches(from, way, item.center, item.brake)
                 .and_then(|share| item.hit(&obstacle.shape, from, way, margin, share))
                 .is_none()
@@ -164,7 +171,7 @@ impl<F: Copy> Item<F> {
         self.is_disc = matches!(shape, Shape::Disc { .. });
         self.center = center;
         self.route = square(radius + corner * self.margin);
-        self.brake = square(radius + corner * self.margin.min(BRAKE_SKIN));
+        self.brake = square(radius + corner * math::min(self.margin, BRAKE_SKIN));
     }
 
     /// Whether the point is in the circle, or no number tells.
@@ -222,8 +229,8 @@ fn square(x: f32) -> f32 {
 fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     match *shape {
         Shape::Box { low, high } => {
-            let over = |at: f32, least: f32, most: f32| (least - at).max(at - most);
-            over(point.x(), low.x(), high.x()).max(over(point.y(), low.y(), high.y()))
+            let over = |at: f32, least: f32, most: f32| math::max(least - at, at - most);
+            math::max(over(point.x(), low.x(), high.x()), over(point.y(), low.y(), high.y()))
         }
         _ => shape.distance_to(point),
     }
@@ -286,8 +293,8 @@ fn hits_box<F: Copy>(
         } else {
             let (a, b) = ((least - at) / by, (most - at) / by);
             let (first, last) = if a < b { (a, b) } else { (b, a) };
-            enters = enters.max(first);
-            leaves = leaves.min(last);
+            enters = math::max(enters, first);
+            leaves = math::min(leaves, last);
         }
     }
     (enters < leaves).then_some(enters)

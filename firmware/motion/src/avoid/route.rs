@@ -38,8 +38,7 @@ struct Search<'s, F> {
     goal: Point<F>,
     velocity: Vector<F>,
     limits: &'s FreeLimits,
-    nodes: [Node<F>; NODES_MAX],
-    count: usize,
+    nodes: heapless::Vec<Node<F>, NODES_MAX>,
     checks: u32,
     /// Towards the goal, m/s.
     speed: f32,
@@ -57,11 +56,13 @@ impl<F: Copy> Route<F> {
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
-        let mut search =
-            Search { scene, goal, velocity, limits, nodes: [start; _], count: 1, checks: 0, speed };
+        let nodes = heapless::Vec::new();
+        let mut search = Search { scene, goal, velocity, limits, nodes, checks: 0, speed };
+        // The first of many.
+        let _ = search.nodes.push(start);
         match search.run() {
-            Some(last) => search.route(last, true),
-            None => search.route(search.nearest(), false),
+            Some(last) => search.route(start, last, true),
+            None => search.route(start, search.nearest(), false),
         }
     }
 }
@@ -94,7 +95,7 @@ impl<F: Copy> Search<'_, F> {
 
     fn cheapest(&self) -> Option<(usize, Node<F>)> {
         let mut best: Option<(usize, Node<F>)> = None;
-        for (i, node) in self.nodes.iter().take(self.count).enumerate() {
+        for (i, node) in self.nodes.iter().enumerate() {
             if node.estimate < best.map_or(f32::INFINITY, |(_, best)| best.estimate) {
                 best = Some((i, *node));
             }
@@ -118,7 +119,7 @@ impl<F: Copy> Search<'_, F> {
         let peak = math::sqrt(self.speed * self.speed + 2.0 * self.limits.acceleration * length);
         let faster = self.speed + peak;
         let speeding = if faster > 0.0 { 2.0 * length / faster } else { 0.0 };
-        speeding.max(length / self.limits.speed)
+        math::max(speeding, length / self.limits.speed)
     }
 
     /// Adds a corner that can be reached from the node; else the number of what stands before it.
@@ -133,12 +134,10 @@ impl<F: Copy> Search<'_, F> {
         let piece = way.norm();
         let turning = if number == 0 { self.turning(way, piece) } else { 0.0 };
         let (length, cost) = (node.length + piece, node.cost + piece + turning + extra);
-        if let Some(free) = self.nodes.get_mut(self.count)
-            && piece > PIECE_MIN
-        {
+        if piece > PIECE_MIN {
             let estimate = cost + at.distance(self.goal);
-            *free = Node { at, parent: number, length, cost, estimate };
-            self.count += 1;
+            // Where there is no room for more corners, those there are must do.
+            let _ = self.nodes.push(Node { at, parent: number, length, cost, estimate });
         }
         None
     }
@@ -168,7 +167,7 @@ impl<F: Copy> Search<'_, F> {
         if item.moves {
             // Where it will be when the robot comes by, and room for being early or late there.
             for _ in 0..2 {
-                let distance = at(obstacle, meeting).distance_to(from).max(0.0);
+                let distance = math::max(at(obstacle, meeting).distance_to(from), 0.0);
                 meeting = self.time_after(node.length + distance);
             }
             gap += EARLY_OR_LATE * obstacle.velocity.norm();
@@ -213,7 +212,7 @@ impl<F: Copy> Search<'_, F> {
 
     fn nearest(&self) -> usize {
         let mut best = (0, f32::INFINITY);
-        for (i, node) in self.nodes.iter().take(self.count).enumerate() {
+        for (i, node) in self.nodes.iter().enumerate() {
             let distance = node.at.distance(self.goal);
             if distance < best.1 {
                 best = (i, distance);
@@ -222,8 +221,7 @@ impl<F: Copy> Search<'_, F> {
         best.0
     }
 
-    fn route(&self, last: usize, arrives: bool) -> Route<F> {
-        let [start, ..] = self.nodes;
+    fn route(&self, start: Node<F>, last: usize, arrives: bool) -> Route<F> {
         let node = |i: usize| self.nodes.get(i).copied().unwrap_or(start);
         let end = node(last).at;
         let rest = if arrives { end.distance(self.goal) } else { 0.0 };
@@ -251,7 +249,7 @@ fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straig
         return 0.0;
     }
     let (side, across) = (straight.cross(corner), straight.cross(velocity));
-    if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / straight.norm().max(PIECE_MIN) }
+    if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / math::max(straight.norm(), PIECE_MIN) }
 }
 
 /// To go around this obstacle on this side, on the way to there.
@@ -264,17 +262,15 @@ struct Turn<F> {
 
 /// What is still to be tried from a corner, first come, first served.
 struct Turns<F> {
-    list: [Turn<F>; TURNS_MAX],
+    list: heapless::Vec<Turn<F>, TURNS_MAX>,
     begin: usize,
-    end: usize,
     /// Obstacles that are in the list or were, on the left and on the right.
     seen: [u64; 2],
 }
 
 impl<F: Copy> Turns<F> {
     fn new(item: usize, to: Point<F>) -> Self {
-        let list = [Turn { item, side: 1.0, to }; _];
-        let mut turns = Self { list, begin: 0, end: 0, seen: [0; 2] };
+        let mut turns = Self { list: heapless::Vec::new(), begin: 0, seen: [0; 2] };
         turns.add(item, 1.0, to);
         turns.add(item, -1.0, to);
         turns
@@ -283,17 +279,13 @@ impl<F: Copy> Turns<F> {
     fn add(&mut self, item: usize, side: f32, to: Point<F>) {
         let [left, right] = &mut self.seen;
         let seen = if side > 0.0 { left } else { right };
-        if *seen >> item & 1 == 0
-            && let Some(free) = self.list.get_mut(self.end)
-        {
+        if *seen >> item & 1 == 0 && self.list.push(Turn { item, side, to }).is_ok() {
             *seen |= 1 << item;
-            *free = Turn { item, side, to };
-            self.end += 1;
         }
     }
 
     fn next(&mut self) -> Option<Turn<F>> {
-        let turn = self.list.get(..self.end)?.get(self.begin).copied()?;
+        let turn = self.list.get(self.begin).copied()?;
         self.begin += 1;
         Some(turn)
     }
@@ -321,7 +313,7 @@ fn around<F: Copy>(
     }
     let middle = both.unit().unwrap_or(outwards);
     let middle = if middle.dot(outwards) < 0.0 { -middle } else { middle };
-    let opening = (1.0 + first.dot(middle)).max(OPENING_MIN);
+    let opening = math::max(1.0 + first.dot(middle), OPENING_MIN);
     center + (first + middle) * (radius / opening)
 }
 

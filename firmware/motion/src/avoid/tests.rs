@@ -138,7 +138,8 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
         // Moving already, where it could still brake.
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
-        let (free, way) = (Scene::new(&scene, None), Segment::new(from, from + stop));
+        let (mut free, way) = (Scene::new(&scene, None), Segment::new(from, from + stop));
+        free.look();
         if free.is_clear(way.from, way.vector(), 0.0, 1.0) && CARPET.contains(way.to) {
             course.velocity = velocity;
         }

@@ -106,7 +106,7 @@ impl AxisLimits {
             let squared = self.peak_distance * d + self.peak_start * v * v;
             if squared <= self.speed_squared {
                 // Where only braking is left, rounding may put the peak below the speed.
-                let peak = math::sqrt(squared).max(v);
+                let peak = math::max(math::sqrt(squared), v);
                 (peak, (peak - v) * self.per_acceleration, 0.0)
             } else {
                 let up = 0.5 * (self.speed_squared - v * v) * self.per_acceleration;
@@ -117,7 +117,7 @@ impl AxisLimits {
         let rate = if speeding < 0.0 { -self.braking } else { self.acceleration };
         let turned = scaled.first;
         let peak_at = turned + speeding.abs();
-        let brake_at = peak_at + cruise.max(0.0);
+        let brake_at = peak_at + math::max(cruise, 0.0);
         Phases {
             start: speed,
             end: distance,
@@ -167,10 +167,10 @@ impl Phases {
             return (place, self.peak, 0.0);
         }
         if time < self.turned {
-            let t = time.max(0.0);
+            let t = math::max(time, 0.0);
             return (self.start * t + 0.5 * self.brake * t * t, self.start + self.brake * t, self.brake);
         }
-        let t = (time - self.turned).max(0.0);
+        let t = math::max(time - self.turned, 0.0);
         let (from, speed) =
             if self.turned > 0.0 { (0.5 * self.start * self.turned, 0.0) } else { (0.0, self.start) };
         (from + speed * t + 0.5 * self.rate * t * t, speed + self.rate * t, self.rate)

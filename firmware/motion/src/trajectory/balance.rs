@@ -33,12 +33,12 @@ pub(super) fn balance(
         let scale = 1.0 / math::hypot(1.0 - at, at);
         let (x, y) = ((1.0 - at) * scale, at * scale);
         let (tx, ty) = times(x, y);
-        let time = tx.max(ty);
+        let time = math::max(tx, ty);
         if time < best.time {
             best = Balance { x, y, time };
         }
         // The faster axis only gets slower from here.
-        if tx.min(ty) > within {
+        if math::min(tx, ty) > within {
             break;
         }
         let value = (tx - ty) / (tx + ty);

@@ -31,7 +31,7 @@ impl Default for FreeLimits {
 impl FreeLimits {
     /// The same robot, no faster than `speed`, m/s.
     pub fn slowed_to(self, speed: f32) -> Self {
-        Self { speed: self.speed.min(speed), ..self }
+        Self { speed: math::min(self.speed, speed), ..self }
     }
 
     /// All three are positive numbers.
@@ -87,7 +87,7 @@ impl CalcMotion for FreeLimits {
         within: f32,
     ) -> bool {
         let speed = math::sqrt(self.speed * self.speed + velocity.dot(velocity));
-        let utmost = Utmost { acceleration: self.acceleration.max(self.braking), speed };
+        let utmost = Utmost { acceleration: math::max(self.acceleration, self.braking), speed };
         out_of_reach(to - from, velocity, radius, within, utmost)
     }
 }
@@ -121,7 +121,7 @@ impl<F> FreeMotion<F> {
 
 impl<F: Copy> Motion<F> for FreeMotion<F> {
     fn duration(&self) -> f32 {
-        self.x.duration.max(self.y.duration)
+        math::max(self.x.duration, self.y.duration)
     }
 
     fn at(&self, time: f32) -> State<F> {

@@ -71,7 +71,9 @@ impl Drivetrain {
             // Nothing to plan; whoever must leave is sent elsewhere, or pushed.
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
-        let around = Surroundings::of(belief, drive.to, drive.manner);
+        let field = belief.league().field();
+        let mut around = Surroundings::none(&field);
+        around.look(belief, &field, drive.to, drive.manner);
         let way = avoid::plan(&Course {
             from,
             velocity: self.velocity,

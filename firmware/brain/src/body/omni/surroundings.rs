@@ -21,11 +21,15 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Of this robot on its way to `to`.
-    pub fn of(belief: &Belief, to: Point<Field>, manner: Manner) -> Self {
-        let field = belief.league().field();
-        let KeepOut { forbidden, within } = keep_out(&situation(belief, &field));
-        let mut around = Self { obstacles: heapless::Vec::new(), within: within.grown(-BODY - BORDER) };
+    /// Where nothing stands around; [`Surroundings::look`] comes next, for they are large to be handed around.
+    pub fn none(field: &FieldSpec) -> Self {
+        Self { obstacles: heapless::Vec::new(), within: field.carpet().grown(-BODY - BORDER) }
+    }
+
+    /// Takes in what matters to this robot on its way to `to`.
+    pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, manner: Manner) {
+        let KeepOut { forbidden, within } = keep_out(&situation(belief, field));
+        self.within = within.grown(-BODY - BORDER);
         let me = belief.pose.position;
         // The way it means to go, and the one on which it could come to rest.
         let way = Segment::new(me, to);
@@ -33,19 +37,19 @@ impl Surroundings {
         for region in &forbidden {
             let shape = region.shape.grown(BODY + LAW);
             if is_near(&shape, way) || is_near(&shape, stops) {
-                around.add(Obstacle::standing(shape));
+                self.add(Obstacle::standing(shape));
             }
         }
         if manner == Manner::Shy
             && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
         {
             let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + SHY };
-            around.add(Obstacle { shape, velocity: ball.velocity });
+            self.add(Obstacle { shape, velocity: ball.velocity });
         }
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
             let near = |p: Point<Field>| p.x() * goal.sign() as f32 > 0.5 * field.length - NEAR_GOAL;
             if near(me) || near(to) {
-                around.add_goal(&field, goal);
+                self.add_goal(field, goal);
             }
         }
         // Close to the ball bodies touch: a robot that went around every opponent there would never have it.
@@ -56,10 +60,9 @@ impl Surroundings {
             let speed = other.velocity.x().abs() + other.velocity.y().abs();
             let reach = radius + ASIDE + ASIDE_FOR * speed;
             if way.distance_to(at) < reach || stops.distance_to(at) < reach {
-                around.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
+                self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
             }
         }
-        around
     }
 
     /// Where there is no room for another one it is left out: rules and goals come first, and robots leave room.
