@@ -22,7 +22,7 @@ pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) 
     brain_with_key(config, base, TeamKey::ZERO, boxes).await
 }
 
-/// As [`brain`], with the team's key.
+/// As [`brain()`], with the team's key.
 pub async fn brain_with_key(config: &BrainConfig, base: CaseBase<'_>, key: TeamKey, boxes: &Mailboxes) -> ! {
     think(Station::with_key(now(), config, base, key), boxes).await
 }

@@ -8,7 +8,7 @@
 //!
 //! [`game`] plays matches of the Small Size League, a host and its robots on each side.
 //!
-//! [`matches`] plays many of them and says what they came to, as the second paper's Table 2 does.
+//! [`mod@matches`] plays many of them and says what they came to, as the second paper's Table 2 does.
 //!
 //! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
 //!
