@@ -8,7 +8,7 @@ fn the_two_commands_come_first_and_are_the_ones_we_check() {
     let blocks = shell_blocks(&read("README.md"));
     assert_eq!(
         blocks.first().map(Vec::as_slice),
-        Some(["cargo run --release -- play", "cargo xtask test"].map(String::from).as_slice())
+        Some(["cargo run --release -- play --headless", "cargo xtask test"].map(String::from).as_slice())
     );
     let script = read(".ci/run");
     let last = script.lines().rev().find(|line| !line.is_empty());
