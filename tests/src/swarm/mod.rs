@@ -1,7 +1,7 @@
 //! Does a team stay safe whatever goes wrong at once, and does it play again when all is well? A swarm of runs, each with
 //! faults of its own (DESIGN §5, §6).
 //!
-//! A seed is a run: [`plan`] draws who plays and what goes wrong, [`legged`] and [`wheels`] play it with native brains,
+//! A seed is a run: [`plan`] draws who plays and what goes wrong, `legged` and `wheels` play it with native brains,
 //! [`adversary`] tampers with radios and [`computer`] with sensors and clocks. What is promised is watched from outside:
 //! [`crate::invariants`] for the team's cycles, [`guard`] for each robot's body, by what an [`honest`] listener may
 //! believe. `cargo xtask swarm --seeds 10000` runs many; one that fails prints the line that repeats it.
