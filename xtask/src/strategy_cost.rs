@@ -13,21 +13,44 @@ pub(crate) fn run_bench(context: &Context) -> Result<(), Failure> {
 /// The figures.
 pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     let program = release(context, "-p host --example strategy_cost", "examples/strategy_cost")?;
-    let row = |&(part, what, most): &(&str, &str, Option<f64>)| {
-        let count = |times: u32| Ok(counted(&program, [part, &times.to_string()])?.0);
-        Ok(Row::new(what, (count(2 * COUNT)? - count(COUNT)?) / f64::from(COUNT), most))
+    let row = |part: &Part| {
+        let count = |times: u32| Ok(counted(&program, [part.word, &times.to_string()])?.0);
+        let each = (count(2 * part.count)? - count(part.count)?) / f64::from(part.count);
+        Ok(Row::new(part.what, each, part.most))
     };
     PARTS.iter().map(row).collect()
 }
 
 /// DESIGN §9: one pass location evaluated.
 const PASS_LOCATION: f64 = 2_000.0;
-/// So many and twice as many; a multiple of the 200 places of a search, on all 64 scenes.
-const COUNT: u32 = 12_800;
-/// The program's words, what they mean, and the budget.
-const PARTS: [(&str, &str, Option<f64>); 4] = [
-    ("pass-search-six", "a pass location in a search, six against six", Some(PASS_LOCATION)),
-    ("pass-search", "a pass location in a search, eleven against eleven", Some(PASS_LOCATION)),
-    ("pass-location-six", "a pass location rated in full, six against six", None),
-    ("pass-location", "a pass location rated in full, eleven against eleven", None),
+/// So many places and twice as many; a multiple of the 200 places of a search, on all 64 scenes.
+const PLACES: u32 = 12_800;
+/// So many ticks of the defence: eight of each of the 64 scenes.
+const TICKS: u32 = 512;
+/// So many plans: each of the 64 scenes once.
+const PLANS: u32 = 64;
+
+struct Part {
+    /// The program's word.
+    word: &'static str,
+    what: &'static str,
+    count: u32,
+    most: Option<f64>,
+}
+
+const fn part(word: &'static str, what: &'static str, count: u32, most: Option<f64>) -> Part {
+    Part { word, what, count, most }
+}
+
+const PARTS: [Part; 10] = [
+    part("pass-search-six", "a pass location in a search, six against six", PLACES, Some(PASS_LOCATION)),
+    part("pass-search", "a pass location in a search, eleven against eleven", PLACES, Some(PASS_LOCATION)),
+    part("pass-location-six", "a pass location rated in full, six against six", PLACES, None),
+    part("pass-location", "a pass location rated in full, eleven against eleven", PLACES, None),
+    part("defend-six", "a tick of the defence by threats, six against six", TICKS, None),
+    part("defend", "a tick of the defence by threats, eleven against eleven", TICKS, None),
+    part("cap-plan-six", "a free kick planned (Coerce and Attack), six against six", PLANS, None),
+    part("cap-plan", "a free kick planned (Coerce and Attack), eleven against eleven", PLANS, None),
+    part("cap-watch", "a tick of coercing, six against six", TICKS, None),
+    part("cap-attack", "a free kick planned and its attack planned anew, six against six", PLANS, None),
 ];

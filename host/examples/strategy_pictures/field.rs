@@ -2,11 +2,9 @@
 
 use casebase::FieldMm;
 use drawing::{Anchor, At, Colors, Font, Svg, Theme};
-use geometry::{Angle, Attack, Point, Vector};
+use geometry::{Attack, Point};
 use host::strategy::View;
-use host::strategy::view::{Ball, ROBOTS_MAX, Robot, RobotSet};
-use protocol::{Instant, RobotId};
-use rules::{AreaForm, FieldSpec, League, Phase};
+use rules::{AreaForm, FieldSpec};
 
 /// Colours of the pictures.
 pub(crate) fn colors() -> &'static Colors {
@@ -16,34 +14,6 @@ pub(crate) fn colors() -> &'static Colors {
 /// A place in mm.
 pub(crate) fn mm(at: Point<Attack>) -> At {
     [f64::from(at.x()) * 1000.0, f64::from(at.y()) * 1000.0]
-}
-
-/// A moment on a league's field; robots at rest, numbered from 0.
-pub(crate) fn moment(league: League, ball: (f32, f32), ours: &[(f32, f32)], theirs: &[(f32, f32)]) -> View {
-    let position = Point::new(ball.0, ball.1);
-    let robots = |places: &[(f32, f32)]| {
-        let robot = |(id, (x, y)): (RobotId, &(f32, f32))| Robot {
-            id,
-            position: Point::new(*x, *y),
-            heading: Angle::ZERO,
-            velocity: Vector::default(),
-        };
-        RobotId::all().zip(places).map(robot).collect()
-    };
-    View {
-        now: Instant(0),
-        phase: Phase::Run,
-        next: None,
-        placement: None,
-        ball: Some(Ball { position, velocity: Vector::default(), rest: position, height: 0.0 }),
-        ours: robots(ours),
-        theirs: robots(theirs),
-        keeper: RobotId::ZERO,
-        their_keeper: RobotId::ZERO,
-        allowed: ROBOTS_MAX,
-        in_play: RobotSet::default(),
-        field: league.field(),
-    }
 }
 
 /// The field in the drawing's integers.

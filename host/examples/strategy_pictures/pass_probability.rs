@@ -9,7 +9,8 @@ use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
 use rules::League;
 
-use super::field::{LETTERS, colors, in_mm, label, legend, lines, map, mm, moment, robots, text};
+use super::field::{LETTERS, colors, in_mm, label, legend, lines, map, mm, robots, text};
+use super::scenes::moment;
 
 /// Draws it: two columns of panels.
 pub(crate) fn draw() -> String {

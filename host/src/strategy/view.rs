@@ -66,6 +66,13 @@ pub struct Ball {
     pub height: f32,
 }
 
+impl Ball {
+    /// A ball that lies still.
+    pub fn at_rest(position: Point<Attack>) -> Self {
+        Self { position, velocity: Vector::default(), rest: position, height: 0.0 }
+    }
+}
+
 /// A robot, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot {
@@ -77,6 +84,13 @@ pub struct Robot {
     pub heading: Angle,
     /// Where it goes, m/s.
     pub velocity: Vector<Attack>,
+}
+
+impl Robot {
+    /// A robot that stands, facing the goal we attack.
+    pub fn at_rest(id: RobotId, position: Point<Attack>) -> Self {
+        Self { id, position, heading: Angle::ZERO, velocity: Vector::default() }
+    }
 }
 
 /// What the referee says, in our words.
@@ -159,6 +173,31 @@ impl View {
             their_keeper: game.their_keeper,
             allowed: ROBOTS_MAX,
             in_play,
+            field,
+        }
+    }
+
+    /// A moment made up, for pictures, counts and tests: play runs, a second has passed, everybody rests where they are put, numbered
+    /// from 0; the keepers are 0.
+    pub fn still(
+        field: FieldSpec,
+        ball: Point<Attack>,
+        ours: impl IntoIterator<Item = Point<Attack>>,
+        theirs: impl IntoIterator<Item = Point<Attack>>,
+    ) -> Self {
+        let robot = |(id, position)| Robot::at_rest(id, position);
+        Self {
+            now: Instant(1_000_000),
+            phase: Phase::Run,
+            next: None,
+            placement: None,
+            ball: Some(Ball::at_rest(ball)),
+            ours: RobotId::all().zip(ours).map(robot).collect(),
+            theirs: RobotId::all().zip(theirs).map(robot).collect(),
+            keeper: RobotId::ZERO,
+            their_keeper: RobotId::ZERO,
+            allowed: ROBOTS_MAX,
+            in_play: RobotSet::default(),
             field,
         }
     }
@@ -253,30 +292,8 @@ pub(crate) mod tests {
 
     /// A view of division B's field with our robots 0, 1, … and theirs at these places, towards +x.
     pub(crate) fn view(ball: (f32, f32), ours: &[(f32, f32)], theirs: &[(f32, f32)]) -> View {
-        let robots = |places: &[(f32, f32)]| {
-            let robot = |(i, (x, y)): (usize, &(f32, f32))| Robot {
-                id: RobotId::new(i as u8).unwrap(),
-                position: Point::new(*x, *y),
-                heading: Angle::ZERO,
-                velocity: Vector::default(),
-            };
-            places.iter().enumerate().map(robot).collect()
-        };
-        let position = Point::new(ball.0, ball.1);
-        View {
-            now: Instant(1_000_000),
-            phase: Phase::Run,
-            next: None,
-            placement: None,
-            ball: Some(Ball { position, velocity: Vector::default(), rest: position, height: 0.0 }),
-            ours: robots(ours),
-            theirs: robots(theirs),
-            keeper: RobotId::new(0).unwrap(),
-            their_keeper: RobotId::new(0).unwrap(),
-            allowed: ROBOTS_MAX,
-            in_play: RobotSet::default(),
-            field: League::DivisionB.field(),
-        }
+        let at = |&(x, y): &(f32, f32)| Point::new(x, y);
+        View::still(League::DivisionB.field(), at(&ball), ours.iter().map(at), theirs.iter().map(at))
     }
 
     #[test]

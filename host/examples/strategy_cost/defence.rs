@@ -1,0 +1,75 @@
+//! What is there to count in defending (Biswas et al. 2014 §5) and in planning a free kick (§4)? Whole decisions of a tick.
+
+use host::strategy::View;
+use host::strategy::coerce::tactics::Models;
+use host::strategy::coerce::{self, ByPassLocation, Planner, Progress};
+use host::strategy::pass::{Kicks, PassConstants};
+use host::strategy::threat::{Memory, Settings, defend};
+use host::strategy::view::RobotSet;
+use motion::ball::BallModel;
+use motion::ball::chip::ChipModel;
+use protocol::{Duration, RobotId};
+use rules::League;
+
+use crate::scenes::{Random, SCENES};
+
+/// The whole defence, over scenes in turn; each is looked at for a while, so that memory has something to hold.
+pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
+    let mut random = Random::new(1);
+    let scenes: Vec<View> = (0..SCENES).map(|_| random.rolling(league, robots)).collect();
+    let (mut memory, mut given) = (Memory::default(), 0);
+    let mut team = RobotSet::default();
+    RobotId::all().take(usize::from(robots)).for_each(|id| team.insert(id));
+    for i in 0..count {
+        let view = &scenes[(i / 8 % SCENES) as usize];
+        given += defend(view, team, &mut memory, &Settings::default()).assignments.len();
+    }
+    format!("{given} assignments")
+}
+
+/// Plans of free kicks, half of the opponents at a robot of ours.
+pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
+    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let value = ByPassLocation::new(&kicks);
+    let mut random = Random::new(2);
+    let scenes: Vec<View> = (0..SCENES).map(|_| random.free_kick(league, robots)).collect();
+    let (mut coercers, mut worth) = (0, 0.0_f64);
+    for i in 0..count {
+        let view = &scenes[(i % SCENES) as usize];
+        let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
+        if let Some(plan) = planner.plan(view, &value, TAKER, u64::from(i)) {
+            coercers += plan.coerce.coercers.len();
+            worth += f64::from(plan.optimistic.worth.value());
+        }
+    }
+    format!("{coercers} coercers, mean value {:.4}", worth / f64::from(count))
+}
+
+/// Ticks of a plan being executed; with `attack` each is the one that plans the attack anew, plan included.
+pub(crate) fn watches(count: u32, attack: bool) -> String {
+    let league = League::DivisionB;
+    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let value = ByPassLocation::new(&kicks);
+    let mut random = Random::new(3);
+    let mut view = random.free_kick(league, 6);
+    let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
+    let (mut attacks, mut planned) = (0, planner.plan(&view, &value, TAKER, 1).is_some());
+    for i in 0..count {
+        if attack {
+            planned &= planner.plan(&view, &value, TAKER, u64::from(i)).is_some();
+            planner.watch(&view, &value);
+            view.now += Duration::millis(5_000);
+        } else {
+            // A microsecond: coercing never ends.
+            view.now += Duration(1);
+        }
+        attacks += u32::from(matches!(planner.watch(&view, &value), Progress::Attacking(_)));
+    }
+    format!("planned {planned}, {attacks} attacks")
+}
+
+/// Takes the free kick.
+const TAKER: RobotId = match RobotId::new(1) {
+    Some(id) => id,
+    None => RobotId::ZERO,
+};

@@ -1,0 +1,53 @@
+//! What is there to count in seeking a place for a pass? Places rated in full, and a search (Biswas et al. 2014 §3.1).
+
+use host::strategy::View;
+use host::strategy::pass::{Kicks, PassConstants, SAMPLES, Scene, Search};
+use motion::ball::BallModel;
+use motion::ball::chip::ChipModel;
+use protocol::RobotId;
+use rules::League;
+
+use crate::scenes::{Random, SCENES};
+
+/// Rates `count` places in full, [`PLACES`] a scene (a multiple of them).
+pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
+    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let mut random = Random::new(1);
+    let (mut sum, mut chips) = (0.0_f64, 0);
+    // As many scenes however many places are rated: they cost the same for N and 2N.
+    let scenes: Vec<View> = (0..SCENES).map(|_| random.view(league, robots)).collect();
+    for group in 0..count / PLACES {
+        let view = &scenes[(group % SCENES) as usize];
+        let (Some(ball), Some(receiver)) = (view.ball, view.ours.get(1)) else { continue };
+        let scene = Scene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
+        for _ in 0..PLACES {
+            let rating = scene.rate(random.place(view, 1.0));
+            sum += f64::from(rating.value());
+            chips += u32::from(rating.kick.is_chip());
+        }
+    }
+    format!("mean {:.5}, {chips} chips", sum / f64::from(count))
+}
+
+/// Seeks among `count` places, a search of [`SAMPLES`] a scene: what the team does at every moment.
+pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
+    let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
+    let mut random = Random::new(1);
+    let scenes: Vec<View> = (0..SCENES).map(|_| random.view(league, robots)).collect();
+    let (mut sum, mut search) = (0.0_f64, Search::new(0));
+    for group in 0..count / SAMPLES {
+        let view = &scenes[(group / MOMENTS % SCENES) as usize];
+        let (Some(ball), Some(receiver)) = (view.ball, view.ours.get(1)) else { continue };
+        let scene = Scene::of(view, &kicks, ball.position, Some(RobotId::ZERO), receiver);
+        if group % MOMENTS == 0 {
+            search = Search::new(u64::from(group));
+        }
+        sum += f64::from(search.step(&scene, SAMPLES).value());
+    }
+    format!("mean {:.5}", sum / f64::from(count / SAMPLES))
+}
+
+/// Moments in a row at which one search goes on.
+const MOMENTS: u32 = 8;
+/// Places rated in a row at one moment, as a search does; the moment's own part is in their cost.
+const PLACES: u32 = 200;
