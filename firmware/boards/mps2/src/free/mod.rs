@@ -8,6 +8,8 @@ mod clock;
 mod console;
 mod dog;
 mod fault;
+#[path = "../register.rs"]
+mod register;
 mod trial;
 mod uart;
 

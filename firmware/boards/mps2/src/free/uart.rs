@@ -15,6 +15,8 @@ use protocol::link::Packet;
 use protocol::serial::{Lines, line};
 use runtime::ports::{RadioReceiver, RadioSender};
 
+use super::register::Register;
+
 /// Starts both directions; call once.
 pub(crate) fn start() {
     BAUD_DIVIDER.write(DIVIDER_LEAST);
@@ -96,29 +98,18 @@ unsafe impl InterruptNumber for Irq {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Register(usize);
-
-impl Register {
-    fn read(self) -> u32 {
-        // SAFETY: every register below is one of this board's first UART (MPS2 AN386: at 0x4000_4000), 32 bits wide.
-        unsafe { ((BASE + self.0) as *const u32).read_volatile() }
-    }
-
-    fn write(self, value: u32) {
-        // SAFETY: as above.
-        unsafe { ((BASE + self.0) as *mut u32).write_volatile(value) }
-    }
+const fn register(offset: usize) -> Register {
+    // SAFETY: every register below is one of this board's first UART (MPS2 AN386: at 0x4000_4000).
+    unsafe { Register::at(0x4000_4000 + offset) }
 }
 
-const BASE: usize = 0x4000_4000;
 const RX_IRQ: u16 = 0;
 const TX_IRQ: u16 = 1;
-const DATA: Register = Register(0x00);
-const STATE: Register = Register(0x04);
-const CONTROL: Register = Register(0x08);
-const INTERRUPTS: Register = Register(0x0c);
-const BAUD_DIVIDER: Register = Register(0x10);
+const DATA: Register = register(0x00);
+const STATE: Register = register(0x04);
+const CONTROL: Register = register(0x08);
+const INTERRUPTS: Register = register(0x0c);
+const BAUD_DIVIDER: Register = register(0x10);
 const TX_FULL: u32 = 1;
 const RX_FULL: u32 = 1 << 1;
 const TX_ON: u32 = 1;

@@ -11,6 +11,8 @@ use cortex_m::peripheral::NVIC;
 use protocol::lockstep::{ETHERTYPE, MESSAGE_LEN_MAX};
 use zerocopy::IntoBytes;
 
+use super::register::Register;
+
 /// Starts the controller: its ear and its mouth. Call once; `None` if there is no such controller.
 pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     if BYTE_TEST.read() != BYTE_TEST_VALUE {
@@ -140,37 +142,26 @@ const CHECKSUM_LEN: usize = 4;
 const FRAME_WORDS: usize = (MESSAGE_AT + MESSAGE_LEN_MAX + CHECKSUM_LEN).div_ceil(4);
 
 /// A register of the controller.
-#[derive(Clone, Copy)]
-struct Register(usize);
-
-impl Register {
-    fn read(self) -> u32 {
-        // SAFETY: every register below is one of this board's controller (MPS2 AN386: at 0x4020_0000), 32 bits wide.
-        unsafe { ((BASE + self.0) as *const u32).read_volatile() }
-    }
-
-    fn write(self, value: u32) {
-        // SAFETY: as above.
-        unsafe { ((BASE + self.0) as *mut u32).write_volatile(value) }
-    }
+const fn register(offset: usize) -> Register {
+    // SAFETY: every register below is one of this board's Ethernet controller (MPS2 AN386: at 0x4020_0000).
+    unsafe { Register::at(0x4020_0000 + offset) }
 }
 
-const BASE: usize = 0x4020_0000;
-const RX_DATA_FIFO: Register = Register(0x00);
-const TX_DATA_FIFO: Register = Register(0x20);
-const RX_STATUS_FIFO: Register = Register(0x40);
-const TX_STATUS_FIFO: Register = Register(0x48);
-const IRQ_CFG: Register = Register(0x54);
-const INT_STS: Register = Register(0x58);
-const INT_EN: Register = Register(0x5c);
-const BYTE_TEST: Register = Register(0x64);
-const FIFO_INT: Register = Register(0x68);
-const RX_CFG: Register = Register(0x6c);
-const TX_CFG: Register = Register(0x70);
-const RX_FIFO_INF: Register = Register(0x7c);
-const TX_FIFO_INF: Register = Register(0x80);
-const MAC_CSR_CMD: Register = Register(0xa4);
-const MAC_CSR_DATA: Register = Register(0xa8);
+const RX_DATA_FIFO: Register = register(0x00);
+const TX_DATA_FIFO: Register = register(0x20);
+const RX_STATUS_FIFO: Register = register(0x40);
+const TX_STATUS_FIFO: Register = register(0x48);
+const IRQ_CFG: Register = register(0x54);
+const INT_STS: Register = register(0x58);
+const INT_EN: Register = register(0x5c);
+const BYTE_TEST: Register = register(0x64);
+const FIFO_INT: Register = register(0x68);
+const RX_CFG: Register = register(0x6c);
+const TX_CFG: Register = register(0x70);
+const RX_FIFO_INF: Register = register(0x7c);
+const TX_FIFO_INF: Register = register(0x80);
+const MAC_CSR_CMD: Register = register(0xa4);
+const MAC_CSR_DATA: Register = register(0xa8);
 
 const BYTE_TEST_VALUE: u32 = 0x8765_4321;
 const MAC_CSR_BUSY: u32 = 1 << 31;

@@ -10,6 +10,8 @@ mod fault;
 mod instructions;
 mod library;
 mod lockstep;
+#[path = "../register.rs"]
+mod register;
 
 use cortex_m_rt::{entry, exception};
 

@@ -1,0 +1,26 @@
+//! How is a device's register read and written? At its address, 32 bits wide, never merged or left out.
+
+/// A register of the board's.
+#[derive(Clone, Copy)]
+pub(crate) struct Register(usize);
+
+impl Register {
+    /// The register at an address.
+    ///
+    /// # Safety
+    ///
+    /// A device's register of 32 bits is there on every board the image runs on (MPS2 AN386).
+    pub(crate) const unsafe fn at(address: usize) -> Self {
+        Self(address)
+    }
+
+    pub(crate) fn read(self) -> u32 {
+        // SAFETY: whoever made it promised that a register is there.
+        unsafe { (self.0 as *const u32).read_volatile() }
+    }
+
+    pub(crate) fn write(self, value: u32) {
+        // SAFETY: as above.
+        unsafe { (self.0 as *mut u32).write_volatile(value) }
+    }
+}
