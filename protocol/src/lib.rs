@@ -16,6 +16,7 @@ pub mod host_link;
 pub mod ids;
 pub mod link;
 pub mod lockstep;
+pub mod provision;
 pub mod quantized;
 pub mod robot_io;
 pub mod serial;

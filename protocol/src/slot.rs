@@ -10,7 +10,7 @@ pub const LEN: usize = 0x0010_0000;
 /// Bytes before the table.
 pub const HEADER_LEN: usize = 8;
 
-/// Address of the page that tells the robot who it is and which key it has (`runtime::provision`), below the slot.
+/// Address of the page that tells the robot who it is and which key it has ([`crate::provision`]), below the slot.
 pub const PAGE_ADDRESS: usize = 0x002f_f000;
 /// Address of the word that asks the emulated board for a fault.
 pub const TRIAL_ADDRESS: usize = 0x002f_e000;

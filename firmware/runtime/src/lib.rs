@@ -30,7 +30,6 @@ mod mailboxes;
 mod mind;
 pub mod ports;
 pub mod progress;
-pub mod provision;
 pub mod setup;
 pub mod tasks;
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! How does a robot start that nobody leads by the hand? Clock, provisioned page, tasks, and what it says of all that.
 //!
-//! Without a page ([`runtime::provision`]) it drives nothing and says nothing on the air. Its words for people go to stderr
+//! Without a page ([`protocol::provision`]) it drives nothing and says nothing on the air. Its words for people go to stderr
 //! over semihosting. A page and a fault to be tried out ([`mod@trial`]) are put into its flash by the emulator's loader.
 
 mod body;
@@ -16,8 +16,8 @@ mod uart;
 use casebase::CaseBase;
 use embassy_executor::{SpawnError, Spawner};
 use protocol::frame::TeamKey;
+use protocol::provision::{self, PAGE_LEN};
 use runtime::hardware::{self, Wires};
-use runtime::provision::{self, PAGE_LEN};
 use runtime::{BrainConfig, Mailboxes, tasks};
 
 use console::say;

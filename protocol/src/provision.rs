@@ -8,10 +8,11 @@
 use core::fmt;
 use core::hash::Hasher as _;
 
-use protocol::frame::TeamKey;
-use protocol::{RobotId, TeamId};
 use rules::League;
 use siphasher::sip::SipHasher24;
+
+use crate::frame::TeamKey;
+use crate::{RobotId, TeamId};
 
 /// Bytes of a page; the rest of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
