@@ -9,8 +9,8 @@ use geometry::{Pose, Twist, Vector};
 use hil_sim::TraceHash;
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
-use hil_sim::small_size::{Ball, Drive, Event, Kick, Order, Parameters, Who, World};
-use protocol::RobotId;
+use hil_sim::small_size::{Ball, Drive, Event, Kick, Order, Parameters, World};
+use protocol::{RobotId, Who};
 use rules::{Colour, League};
 use ssl::Message;
 

@@ -10,7 +10,7 @@ use protocol::frame::{Refusal, TeamKey};
 use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
-use protocol::{Duration, Instant, RobotId, TeamId};
+use protocol::{Duration, Instant, RobotId, TeamId, Who};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
@@ -21,7 +21,7 @@ use crate::strategy::tally::{Bookkeeper, PlayTally};
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::{self, Tracker};
-use crate::world::{Ball, Who, World};
+use crate::world::{Ball, World};
 
 /// What is fixed for a host's life.
 #[derive(Clone, Debug)]

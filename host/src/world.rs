@@ -5,7 +5,7 @@ use geometry::{Field, Point, Pose, Vector, math};
 use motion::ball::chip::ChipModel;
 use motion::ball::{BallModel, BallPath};
 use motion::trajectory::Motion;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
 /// The field at one moment.
@@ -72,15 +72,6 @@ impl Kick {
     pub fn is_chip(&self) -> bool {
         self.climb > 0.0
     }
-}
-
-/// Which robot of which team.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Who {
-    /// Its team.
-    pub colour: Colour,
-    /// Its shell number.
-    pub id: RobotId,
 }
 
 /// A robot.

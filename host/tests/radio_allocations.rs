@@ -5,13 +5,13 @@ use std::cell::Cell;
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
 use host::radio::{Radio, RadioSettings, Relay, Situation};
-use host::world::{BallModels, Robot, Who, World};
+use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
 use protocol::host::{Command, Directive, Duty, Telemetry};
 use protocol::link::{Link, Packet};
 use protocol::quantized::WirePose;
 use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
-use protocol::{Instant, RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, Phase};
 
 struct Counting;

@@ -83,6 +83,36 @@ impl TeamId {
     }
 }
 
+/// Which robot of which team; yellow sorts first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Who {
+    /// Its team.
+    pub colour: Colour,
+    /// Its shell number.
+    pub id: RobotId,
+}
+
+impl Who {
+    /// Yellow's robot of that number.
+    pub const fn yellow(id: RobotId) -> Self {
+        Self { colour: Colour::Yellow, id }
+    }
+
+    /// Blue's robot of that number.
+    pub const fn blue(id: RobotId) -> Self {
+        Self { colour: Colour::Blue, id }
+    }
+
+    /// One number for both: 0–15 yellow, 16–31 blue.
+    pub const fn slot(self) -> usize {
+        let team = match self.colour {
+            Colour::Yellow => 0,
+            Colour::Blue => RobotId::COUNT,
+        };
+        team + self.id.index()
+    }
+}
+
 /// A stored case: 4 × authored index + symmetry (DESIGN §4.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]

@@ -24,5 +24,5 @@ pub mod slot;
 pub mod team;
 pub mod time;
 
-pub use ids::{CaseId, CycleId, RobotId, TeamId};
+pub use ids::{CaseId, CycleId, RobotId, TeamId, Who};
 pub use time::{Duration, Instant};

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use brain::{Brain, BrainConfig};
 use casebase::CaseBase;
 use geometry::{Field, GoalEnd, Point, Pose, Vector};
-use hil_sim::small_size::{Ball, Event, Parameters, Robot, Who, World};
+use hil_sim::small_size::{Ball, Event, Parameters, Robot, World};
 use protocol::host::{
     Command, Directive, Duty, HostMessage, PART_ROBOTS_MAX, Telemetry, WireBall, WireRobot, WireWho,
     WorldPart,
@@ -16,7 +16,7 @@ use protocol::host::{
 use protocol::quantized::to_mm;
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::team::{Closure, CycleState, Decision, TeamMessage};
-use protocol::{CycleId, Instant, RobotId, TeamId};
+use protocol::{CycleId, Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
 /// A field with our robots under brains, theirs standing where the test puts them.

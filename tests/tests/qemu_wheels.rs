@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use brain::BrainConfig;
 use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
-use hil_sim::small_size::{Ball, Drive, Order, Parameters, Who, World};
+use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, NativeBackend, QemuBackend};
 use protocol::frame::TeamKey;
 use protocol::host::{
@@ -20,7 +20,7 @@ use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::quantized::{WirePoint, WirePose, to_mm};
 use protocol::team::TeamMessage;
-use protocol::{Instant, RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
 /// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.

@@ -7,7 +7,7 @@ use brain::{BrainConfig, Station};
 use geometry::{GoalEnd, Pose, Twist};
 use hil_sim::Stream;
 use host::radio::{Radio, RadioSettings, Situation};
-use host::world::{BallModels, Robot, Who, World};
+use host::world::{BallModels, Robot, World};
 use match_tests::swarm::guard::Guard;
 use match_tests::swarm::honest::Sayings;
 use protocol::frame::TeamKey;
@@ -15,7 +15,7 @@ use protocol::host::{Command, Directive, Duty};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::robot_io::{ActuatorFrame, Health, OmniKick, SensorFrame};
 use protocol::serial::{Lines, line};
-use protocol::{Instant, RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase};
 
 const KEY: TeamKey = TeamKey([0x3c; 16]);

@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use firmware_build::Install;
 
@@ -32,9 +33,7 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
     ];
     let mut differing = Vec::new();
     let mut hashes = BTreeSet::new();
-    for trial in trials() {
-        let played = players.each_ref().map(|player| player.trace_hash(context.root(), trial));
-        println!("xtask: {trial}: {}", told(&players, &played));
+    for (trial, played) in play(context.root(), &players) {
         match same(&played) {
             Some(hash) => {
                 hashes.insert(hash.to_string());
@@ -47,6 +46,31 @@ pub(crate) fn run(context: &Context) -> Result<(), Failure> {
         differing.push(format!("{} different trials have only {} hashes", trials().count(), hashes.len()));
     }
     if differing.is_empty() { Ok(()) } else { Err(Failure::Determinism(differing)) }
+}
+
+/// What each player made of a trial.
+type Played = [Result<String, String>; 3];
+
+/// Plays every trial with every player, as many trials at once as there are cores: images in lockstep run one at a time.
+fn play(root: &Path, players: &[Player; 3]) -> Vec<(Trial, Played)> {
+    let trials: Vec<Trial> = trials().collect();
+    let next = AtomicUsize::new(0);
+    let take = || trials.get(next.fetch_add(1, Ordering::Relaxed));
+    let some = || {
+        let one = |trial: &Trial| {
+            let played = players.each_ref().map(|player| player.trace_hash(root, *trial));
+            println!("xtask: {trial}: {}", told(players, &played));
+            (*trial, played)
+        };
+        std::iter::from_fn(take).map(one).collect::<Vec<_>>()
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        let all: Vec<_> = (0..cores).map(|_| scope.spawn(some)).collect();
+        all.into_iter()
+            .flat_map(|one| one.join().expect("a trial that cannot be played is an answer"))
+            .collect()
+    })
 }
 
 /// A trial of the paper with full brains.

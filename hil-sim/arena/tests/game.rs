@@ -4,9 +4,8 @@
 use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
 use geometry::Point;
 use hil_sim::NativeBackend;
-use hil_sim::small_size::Who;
 use host::radio::To;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::{Colour, League, Phase};
 
 fn short(seed: u64, seconds: f64, watcher: &mut dyn Watcher) -> GameReport {

@@ -2,7 +2,7 @@
 
 use geometry::{Field, Point, Vector};
 
-use super::robot::Who;
+use protocol::Who;
 
 /// What happened in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]

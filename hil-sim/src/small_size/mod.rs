@@ -31,12 +31,12 @@ pub use parameters::{
     DribblerParameters, DriveParameters, FieldParameters, KickParameters, NoiseParameters, Parameters,
 };
 pub use pitch::Pitch;
-pub use robot::{Drive, Kick, Order, Robot, Who};
+pub use robot::{Drive, Kick, Order, Robot};
 
 use geometry::{Angle, Field, Point, Pose, Vector};
-use protocol::RobotId;
 use protocol::robot_io::ActuatorFrame;
-use rules::{Colour, League};
+use protocol::{RobotId, Who};
+use rules::League;
 
 use crate::rng::Stream;
 use senses::Senses;
@@ -317,27 +317,6 @@ impl World {
             Some(place) => Ok(usize::from(place)),
             None => Err(self.robots.partition_point(|robot| robot.who < who)),
         }
-    }
-}
-
-impl Who {
-    /// Yellow's robot of that number.
-    pub const fn yellow(id: RobotId) -> Self {
-        Self { colour: Colour::Yellow, id }
-    }
-
-    /// Blue's robot of that number.
-    pub const fn blue(id: RobotId) -> Self {
-        Self { colour: Colour::Blue, id }
-    }
-
-    /// One number for both: 0–15 yellow, 16–31 blue.
-    pub const fn slot(self) -> usize {
-        let team = match self.colour {
-            Colour::Yellow => 0,
-            Colour::Blue => RobotId::COUNT,
-        };
-        team + self.id.index()
     }
 }
 

@@ -5,22 +5,12 @@
 //! brakes, its dribbler stops and its kicker is at rest.
 
 use geometry::{Body, Field, Point, Pose, Twist, Vector, math};
-use protocol::RobotId;
+use protocol::Who;
 use protocol::robot_io::{ActuatorFrame, OmniKick};
-use rules::Colour;
 
 use super::STEP;
 use super::parameters::{BatteryParameters, BodyParameters, DriveParameters, Parameters};
 use super::wheels::Wheels;
-
-/// A robot by its colour and number; sorted yellow first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Who {
-    /// Its team.
-    pub colour: Colour,
-    /// Its number.
-    pub id: RobotId,
-}
 
 /// What a robot's wheels shall do.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

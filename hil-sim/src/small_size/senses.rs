@@ -7,8 +7,9 @@ use protocol::robot_io::{Health, SensorFrame};
 
 use super::STEP;
 use super::parameters::{BatteryParameters, NoiseParameters};
-use super::robot::{Odometer, Robot, Who};
+use super::robot::{Odometer, Robot};
 use crate::rng::Stream;
+use protocol::Who;
 
 /// One robot's senses.
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@
 use protocol::robot_io::ActuatorFrame;
 
 use super::World;
-use super::robot::Who;
 use crate::trace::TraceHash;
+use protocol::Who;
 
 impl TraceHash {
     /// A tick begins with the Small Size world like this.

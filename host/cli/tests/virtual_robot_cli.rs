@@ -12,15 +12,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant as Clock};
 
 use geometry::{Angle, Field, GoalEnd, Point, Pose};
-use hil_sim::small_size::Who as Seen;
 use hil_sim::small_size::quirks::Profile;
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
 use host::radio::{Radio, RadioSettings, Relay, Situation, To};
 use host::shell::{Link as _, SimLink, SimSettings};
-use host::world::{BallModels, Robot, Who, World};
+use host::world::{BallModels, Robot, World};
 use protocol::frame::TeamKey;
 use protocol::host::{Command, Directive, Duty};
-use protocol::{Instant, RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase};
 
 const US: Colour = Colour::Blue;
@@ -62,7 +61,7 @@ fn simulate(profile: Profile, socket: &UdpSocket, shown: &Mutex<World>, end: &At
         }
         let mut world = World::empty(now, BallModels::default());
         for robot in ROBOTS {
-            let Some(seen) = server.world().robot(Seen::blue(id(robot))) else { continue };
+            let Some(seen) = server.world().robot(Who::blue(id(robot))) else { continue };
             let pose: Pose<Field> = seen.pose;
             world.put(Robot {
                 who: Who { colour: US, id: id(robot) },

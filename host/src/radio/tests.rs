@@ -1,8 +1,9 @@
 //! Does the radio speak as often as it should, to whom it should, and does it know how well it is heard?
 
 use super::*;
-use crate::world::{BallModels, Robot, Who};
+use crate::world::{BallModels, Robot};
 use geometry::{Angle, Field, GoalEnd, Point, Pose, Vector};
+use protocol::Who;
 use protocol::host::{Directive, Duty};
 use protocol::link::{Heard as RobotHeard, Link};
 use protocol::team::{Progress, Role, Status};

@@ -8,7 +8,8 @@ use ssl::tracker::{
 };
 
 use super::Tracker;
-use crate::world::{Ball, Kick, Robot, Who, World};
+use crate::world::{Ball, Kick, Robot, World};
+use protocol::Who;
 
 /// Makes tracker packets, one of a picture; the packet's space is used again and again.
 #[derive(Clone, Debug)]

@@ -5,12 +5,12 @@
 //! name. An unseen robot coasts, its confidence falls, and after a second it is gone.
 
 use geometry::{Angle, Field, Point, Pose, Vector};
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
 use super::filter::{Freedom, Plane, Turning};
 use super::seen::{Captured, RobotSeen};
-use crate::world::{Robot, Who, index};
+use crate::world::{Robot, index};
 
 /// What became of robots that cameras claimed to see, counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

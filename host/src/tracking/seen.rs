@@ -2,11 +2,9 @@
 
 use geometry::{Angle, Field, Point};
 use heapless::Vec;
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::Colour;
 use ssl::vision::{DetectionFrame, DetectionRobot};
-
-use crate::world::Who;
 
 /// A moment on vision's clock, µs: since 1970, or since a simulator's start.
 pub(super) type Captured = i64;

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 
 use geometry::Point;
 use host::tracking::{Heard, Tracker};
-use host::world::Who;
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::Colour::{Blue, Yellow};
 use ssl::Message;
 use ssl::log::Packet;

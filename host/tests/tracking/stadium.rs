@@ -1,8 +1,7 @@
 //! A field whose truth is known, seen by cameras with noise. SI; vision's packets in mm as on the wire.
 
 use host::tracking::{Heard, Tracker};
-use host::world::Who;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rules::Colour;

@@ -5,11 +5,11 @@ use geometry::{GoalEnd, Point};
 use hil_sim::Stream;
 use hil_sim::small_size::World;
 use host::radio::{Radio, RadioSettings, Situation, To};
-use host::world::{Ball, BallModels, Robot, Who};
+use host::world::{Ball, BallModels, Robot};
 use protocol::host::{Command, Directive, Duty, KickOrder};
 use protocol::link::Packet;
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::{Colour, Phase, Side};
 
 use super::plan::{Plan, Span};

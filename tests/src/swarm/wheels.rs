@@ -6,12 +6,12 @@ use std::rc::Rc;
 
 use brain::BrainConfig;
 use geometry::{Angle, GoalEnd, Point, Pose};
-use hil_sim::small_size::{Ball, Order, Parameters, Who, World};
+use hil_sim::small_size::{Ball, Order, Parameters, World};
 use hil_sim::{Air, Backend, Mcu, Stream};
 use host::radio::{RadioSettings, Relay};
 use protocol::lockstep::TickIn;
 use protocol::robot_io::{ActuatorFrame, OmniKick};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Duration, Instant, RobotId, Who};
 use rules::{Colour, League};
 
 use super::adversary::earlier_match;

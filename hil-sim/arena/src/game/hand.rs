@@ -3,7 +3,8 @@
 
 use geometry::{Field, Point, Pose};
 use hil_sim::Backend;
-use hil_sim::small_size::{Ball, Who};
+use hil_sim::small_size::Ball;
+use protocol::Who;
 use rules::state::Command;
 
 use super::{Game, GameConfig, GameError};

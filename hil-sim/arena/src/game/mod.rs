@@ -23,10 +23,10 @@ pub use story::{GameStory, sentence};
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
 use hil_sim::small_size::referee::InternalReferee;
-use hil_sim::small_size::{Event, Parameters, Who, World};
+use hil_sim::small_size::{Event, Parameters, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use ssl::Message;
 

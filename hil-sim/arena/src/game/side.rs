@@ -1,12 +1,12 @@
 //! One side of a match: its host, its robots' computers, and the air between them. Times in ticks of 10 ms and µs.
 
 use geometry::{Angle, GoalEnd, Pose};
-use hil_sim::small_size::{Who, World};
+use hil_sim::small_size::World;
 use hil_sim::{Air, AirSettings, Backend, Mcu, TraceHash};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
 use protocol::lockstep::TickIn;
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use rules::restart::kickoff_places;
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 
 use geometry::{Point, Pose, Vector};
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::League;
 
 use super::*;
-use crate::small_size::{Ball, Parameters, Who};
+use crate::small_size::{Ball, Parameters};
 
 fn world(league: League) -> World {
     let mut world = World::new(league, Parameters::of(league).unwrap(), 1);

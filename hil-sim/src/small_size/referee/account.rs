@@ -1,11 +1,11 @@
 //! What has each team to its account? Goals, fouls, cards, placements, time-outs (rules: sanctions, game structure).
 
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::{Colour, limits};
 
 use super::event::Event;
+use super::micros;
 use super::settings::TeamSettings;
-use super::{micros, observation::Who};
 
 /// One team's account.
 #[derive(Clone, Debug)]

@@ -3,10 +3,8 @@
 //! Rules 2026, appendix "game events". m, m/s, s, field frame.
 
 use geometry::{Field, Point};
-use protocol::{Instant, RobotId};
+use protocol::{Instant, RobotId, Who};
 use rules::Colour;
-
-use super::observation::Who;
 
 /// Something the referee noticed or decided.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,14 +3,14 @@
 //! Rules 2026, referee commands; m, m/s, field frame.
 
 use geometry::{Field, Point};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, Who};
 use rules::restart::{AfterPlacement, placement_lack, placement_needless};
 use rules::state::{Command, Stage};
 use rules::{Colour, Phase, limits};
 
 use super::InternalReferee;
 use super::event::{Kind, PenaltyEnd, Restart, What};
-use super::observation::{RobotSeen, Who};
+use super::observation::RobotSeen;
 
 /// Who brings the ball to its place.
 enum Placer {

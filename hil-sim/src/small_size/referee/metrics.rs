@@ -12,8 +12,9 @@ use rules::Colour;
 
 use super::InternalReferee;
 use super::event::{Event, Kind, What};
-use super::observation::{BallSeen, Who};
+use super::observation::BallSeen;
 use super::scene::is_running;
+use protocol::Who;
 
 /// How often each kind happened, by team.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -3,9 +3,7 @@
 //! m, m/s, rad, field frame; times in µs since the simulation's start.
 
 use geometry::{Field, Point, Pose, Vector};
-use protocol::Instant;
-
-pub(super) use crate::small_size::Who;
+use protocol::{Instant, Who};
 
 /// The ball.
 #[derive(Clone, Copy, Debug, PartialEq)]

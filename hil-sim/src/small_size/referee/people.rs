@@ -5,11 +5,11 @@
 use std::collections::VecDeque;
 
 use geometry::{Field, Point, Pose};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::{Colour, Phase, limits};
 
 use super::event::What;
-use super::observation::{RobotSeen, Who};
+use super::observation::RobotSeen;
 use super::scene::{COLOURS, is_running};
 use super::{InternalReferee, micros};
 

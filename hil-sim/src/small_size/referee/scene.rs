@@ -3,12 +3,12 @@
 //! m, m/s, s, field frame.
 
 use geometry::{Field, GoalEnd, Point};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::{Colour, FieldSpec, Limits, Phase, limits};
 
 use super::account::Accounts;
 use super::event::{Event, What};
-use super::observation::{BallSeen, CrashSeen, RobotSeen, Who};
+use super::observation::{BallSeen, CrashSeen, RobotSeen};
 
 /// Both colours, in the order of the wire.
 pub(super) const COLOURS: [Colour; 2] = [Colour::Yellow, Colour::Blue];

@@ -1,12 +1,12 @@
 //! What shall robots do, and what do they answer? Ports 10301 and 10302; m/s, rad/s, kick angles in degrees, dribbler in rpm.
 
 use geometry::{Twist, Vector, math};
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::Colour;
 use ssl::simulation::{MoveCommand, RobotCommand, RobotControl, RobotControlResponse, RobotFeedback};
 
 use super::{Refusal, Server};
-use crate::small_size::{Drive, Kick, Order, Who};
+use crate::small_size::{Drive, Kick, Order};
 
 impl Server {
     /// Robots of a team are commanded; gives what comes back.

@@ -3,13 +3,13 @@
 //! What a message leaves out stays as it is.
 
 use geometry::{Angle, Point, Pose, Vector};
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::Colour;
 use ssl::common::Team;
 use ssl::simulation::{SimulatorCommand, SimulatorControl, TeleportBall, TeleportRobot};
 
 use super::{Refusal, SPEED_MAX, Server};
-use crate::small_size::{Ball, Who};
+use crate::small_size::Ball;
 
 impl Server {
     /// Does what a command of port 10300 asks for; gives what could not be done.

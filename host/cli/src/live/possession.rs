@@ -55,8 +55,8 @@ impl Possession {
 #[cfg(test)]
 mod tests {
     use geometry::{Angle, Point, Pose, Vector};
-    use host::world::{Ball, Robot, Who};
-    use protocol::{Instant, RobotId};
+    use host::world::{Ball, Robot};
+    use protocol::{Instant, RobotId, Who};
 
     use super::*;
 

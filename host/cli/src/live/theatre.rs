@@ -11,9 +11,8 @@ use arena::game::{Crowd, Game, GameConfig, GameReport, TICK_US, Watcher};
 use casebase::CaseBase;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use hil_sim::small_size::Who;
 use page::{Happening, Kind, Page, Request, Scene};
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::Command;
 

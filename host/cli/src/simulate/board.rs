@@ -3,12 +3,11 @@
 use std::time::{Duration, Instant};
 
 use geometry::Point;
-use hil_sim::small_size::Who;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
 use host::{Host, HostSettings, Input};
 use page::{Happening, Kind, Page, Powers, Request, Scene};
-use protocol::RobotId;
+use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};

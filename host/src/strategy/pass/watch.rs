@@ -5,11 +5,11 @@
 //! second. A touch is a robot near the ball and a ball that changes its way there.
 
 use geometry::{Field, Point, Vector};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Duration, Instant, RobotId, Who};
 use rules::limits::{BALL_RADIUS, ROBOT_HEIGHT, ROBOT_RADIUS};
 use rules::{Colour, FieldSpec};
 
-use crate::world::{Ball, Who, World};
+use crate::world::{Ball, World};
 
 /// A pass that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,7 +14,8 @@ use geometry::{Field, Point, Vector};
 use super::super::robots::seconds;
 use super::super::scene::Camera;
 use super::super::seen::Captured;
-use crate::world::{GRAVITY, Who};
+use crate::world::GRAVITY;
+use protocol::Who;
 
 /// A kick that is being watched.
 #[derive(Clone, Copy, Debug)]

@@ -13,7 +13,8 @@ use super::{Around, Balls};
 use crate::tracking::filter::Plane;
 use crate::tracking::robots::{Moved, micros, seconds};
 use crate::tracking::seen::Captured;
-use crate::world::{BallModels, Who};
+use crate::world::BallModels;
+use protocol::Who;
 
 /// What is known of the ball's height.
 #[derive(Clone, Copy, Debug, Default)]

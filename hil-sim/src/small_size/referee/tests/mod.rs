@@ -16,12 +16,11 @@ mod wire;
 mod world;
 
 use geometry::{Angle, Field, Point, Pose, Vector};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Duration, Instant, RobotId, Who};
 use rules::state::GameState;
 use rules::{Colour, League, Phase};
 
 use super::*;
-use crate::small_size::Who;
 
 /// A match on a stage.
 struct Stage {

@@ -2,12 +2,12 @@
 //! defenders. m, s, field frame; distances from a robot's nearest side.
 
 use geometry::{Field, GoalEnd, Point};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::legality::{self, InArea};
 use rules::{Colour, FieldSpec, Phase, limits};
 
 use super::super::event::{Event, What};
-use super::super::observation::{RobotSeen, Who};
+use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 

@@ -3,11 +3,10 @@
 //! m, m/s, s, field frame.
 
 use geometry::{Field, Point};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::{Colour, Phase, legality, limits};
 
 use super::super::event::{Event, What};
-use super::super::observation::Who;
 use super::super::scene::{COLOURS, Scene};
 use super::{Episodes, Touches};
 

@@ -5,12 +5,12 @@
 use std::collections::BTreeMap;
 
 use geometry::{Angle, Vector, math};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::legality::{self, Blame};
 use rules::{Colour, limits};
 
 use super::super::event::{Event, What};
-use super::super::observation::{CrashSeen, RobotSeen, Who};
+use super::super::observation::{CrashSeen, RobotSeen};
 use super::super::scene::{COLOURS, Scene};
 use super::Episodes;
 

@@ -5,11 +5,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::{Colour, Phase, legality, limits};
 
 use super::super::event::{Event, What};
-use super::super::observation::{RobotSeen, Who};
+use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Episodes;
 

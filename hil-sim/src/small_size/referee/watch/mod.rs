@@ -14,7 +14,6 @@ mod touches;
 use geometry::{Field, Point};
 
 use super::event::Event;
-use super::observation::Who;
 use super::scene::Scene;
 use areas::Areas;
 use ball::BallWatch;
@@ -23,6 +22,7 @@ use calm::Calm;
 use episodes::Episodes;
 use lines::Lines;
 use penalty::PenaltyWatch;
+use protocol::Who;
 use touches::Touches;
 
 /// All watchers.

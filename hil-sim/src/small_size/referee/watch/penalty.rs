@@ -6,9 +6,9 @@ use geometry::{Field, Vector};
 use rules::{Colour, Phase, legality, limits};
 
 use super::super::event::{Event, PenaltyEnd, What};
-use super::super::observation::Who;
 use super::super::scene::Scene;
 use super::Touches;
+use protocol::Who;
 
 /// Watches a penalty.
 #[derive(Clone, Debug, Default)]

@@ -5,10 +5,10 @@
 use std::collections::BTreeMap;
 
 use geometry::{Field, Point};
-use protocol::Instant;
+use protocol::{Instant, Who};
 use rules::{Colour, limits};
 
-use super::super::observation::{RobotSeen, Who};
+use super::super::observation::RobotSeen;
 use super::super::scene::{COLOURS, Scene};
 
 /// The last touch.
