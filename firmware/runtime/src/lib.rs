@@ -26,10 +26,12 @@ extern crate std;
 mod copy;
 pub mod hardware;
 pub mod kicker;
+pub mod ledger;
 mod mailboxes;
 mod mind;
 pub mod ports;
 pub mod progress;
+pub mod sense;
 pub mod setup;
 pub mod tasks;
 #[cfg(test)]

@@ -1,0 +1,176 @@
+//! How often was this robot started, power cuts included? A ledger in its flash, for every start must bring a larger epoch than
+//! all before it (DESIGN §6): hosts and mates take nothing of an older one. Sans-IO.
+//!
+//! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and writes the next one
+//! into the next empty cell. A full half goes on in the other, which is erased first; until the new cell is written the old half
+//! still says all. A cell that was written halfway, when the power went, is skipped.
+//!
+//! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, the rest 0xff.
+
+/// Bytes of a cell: what an STM32H7 writes into its flash at once.
+pub const CELL_LEN: usize = 32;
+const MAGIC: [u8; 4] = *b"1-2B";
+
+/// What lies in a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cell {
+    /// Erased.
+    Empty,
+    /// A start with this epoch.
+    Epoch(u32),
+    /// Something else, or something that cannot be read.
+    Damaged,
+}
+
+impl Cell {
+    /// Of its bytes.
+    pub fn of(bytes: &[u8; CELL_LEN]) -> Self {
+        let [m0, m1, m2, m3, e0, e1, e2, e3, i0, i1, i2, i3, rest @ ..] = *bytes;
+        let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
+        let inverted = u32::from_le_bytes([i0, i1, i2, i3]);
+        if bytes.iter().all(|byte| *byte == EMPTY) {
+            Self::Empty
+        } else if [m0, m1, m2, m3] == MAGIC && epoch == !inverted && rest.iter().all(|byte| *byte == EMPTY) {
+            Self::Epoch(epoch)
+        } else {
+            Self::Damaged
+        }
+    }
+}
+
+/// The bytes of a cell with this epoch.
+pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
+    let mut bytes = [EMPTY; CELL_LEN];
+    let words = MAGIC.into_iter().chain(epoch.to_le_bytes()).chain((!epoch).to_le_bytes());
+    bytes.iter_mut().zip(words).for_each(|(to, from)| *to = from);
+    bytes
+}
+
+/// Where a cell is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Which half, 0 or 1.
+    pub half: usize,
+    /// Which of its cells.
+    pub index: usize,
+}
+
+/// What a start has to do before it says anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Its epoch.
+    pub epoch: u32,
+    /// Where to write it.
+    pub at: Place,
+    /// Erase that half first.
+    pub erase: bool,
+}
+
+/// Reads all cells, `cells` in each half; `None` after 2³² starts.
+pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
+    let (mut newest, mut active) = (0, 0);
+    // The first cell of each half behind all that was written.
+    let mut free = [0; 2];
+    for (half, free) in free.iter_mut().enumerate() {
+        for index in 0..cells {
+            match read(Place { half, index }) {
+                Cell::Empty => continue,
+                Cell::Epoch(epoch) if epoch > newest => (newest, active) = (epoch, half),
+                Cell::Epoch(_) | Cell::Damaged => {}
+            }
+            *free = index + 1;
+        }
+    }
+    let epoch = newest.checked_add(1)?;
+    let [first, second] = free;
+    let index = if active == 0 { first } else { second };
+    Some(if index < cells {
+        Plan { epoch, at: Place { half: active, index }, erase: false }
+    } else {
+        Plan { epoch, at: Place { half: 1 - active, index: 0 }, erase: true }
+    })
+}
+
+/// Erased flash.
+const EMPTY: u8 = 0xff;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    const CELLS: usize = 4;
+
+    /// A flash of two halves that knows when the power goes.
+    struct Flash(Vec<[u8; CELL_LEN]>);
+
+    impl Flash {
+        fn new() -> Self {
+            Self(vec![[EMPTY; CELL_LEN]; 2 * CELLS])
+        }
+
+        fn plan(&self) -> Plan {
+            plan(CELLS, |at| Cell::of(&self.0[at.half * CELLS + at.index])).unwrap()
+        }
+
+        /// A start that loses its power after so many steps: erasing, half a cell, the whole cell.
+        fn start(&mut self, steps: usize) -> Option<u32> {
+            let Plan { epoch, at, erase } = self.plan();
+            if erase {
+                if steps == 0 {
+                    // Erasing was cut: some of it is gone, and some is neither.
+                    self.0[at.half * CELLS] = [0xf0; CELL_LEN];
+                    self.0[at.half * CELLS + 1] = [EMPTY; CELL_LEN];
+                    return None;
+                }
+                self.0[at.half * CELLS..][..CELLS].fill([EMPTY; CELL_LEN]);
+            }
+            let to = &mut self.0[at.half * CELLS + at.index];
+            assert_eq!(*to, [EMPTY; CELL_LEN], "a cell is written once");
+            let whole = cell(epoch);
+            if steps < 2 {
+                to[..6].copy_from_slice(&whole[..6]);
+                return None;
+            }
+            *to = whole;
+            Some(epoch)
+        }
+    }
+
+    #[test]
+    fn every_start_has_a_larger_epoch_than_all_before() {
+        let mut flash = Flash::new();
+        let epochs: Vec<_> = (0..40).map(|_| flash.start(2).unwrap()).collect();
+        assert_eq!(epochs, (1..=40).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn power_that_goes_at_any_moment_never_brings_an_epoch_back() {
+        // Every pattern of six starts, three ways to end each, twice over.
+        for pattern in 0..3_usize.pow(6) {
+            let (mut flash, mut last) = (Flash::new(), 0);
+            for n in 0..12 {
+                let steps = pattern / 3_usize.pow(n % 6) % 3;
+                if let Some(epoch) = flash.start(steps) {
+                    assert!(epoch > last, "pattern {pattern}, start {n}: {epoch} after {last}");
+                    last = epoch;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cell_is_what_was_written_and_nothing_else() {
+        assert_eq!(Cell::of(&cell(7)), Cell::Epoch(7));
+        assert_eq!(&cell(0x0102_0304)[..12], [0x31, 0x2d, 0x32, 0x42, 4, 3, 2, 1, 0xfb, 0xfc, 0xfd, 0xfe]);
+        assert_eq!(Cell::of(&[EMPTY; CELL_LEN]), Cell::Empty);
+        for bit in 0..8 * CELL_LEN {
+            let mut bytes = cell(7);
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(Cell::of(&bytes), Cell::Damaged, "bit {bit}");
+        }
+        let full = |at: Place| if at.index == 0 { Cell::Epoch(u32::MAX) } else { Cell::Empty };
+        assert_eq!(plan(CELLS, full), None);
+    }
+}
