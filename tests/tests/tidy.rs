@@ -274,7 +274,7 @@ const PURE: [&str; 10] = [
 ];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 27] = [
+const LOWEST_FIRST: [&str; 28] = [
     "geometry",
     "rules",
     "protocol",
@@ -290,6 +290,7 @@ const LOWEST_FIRST: [&str; 27] = [
     "brain",
     "runtime",
     "board-mps2",
+    "board-stm32",
     "firmware-build",
     "page",
     "page-browser",

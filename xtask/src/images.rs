@@ -1,17 +1,16 @@
 //! Are the robots' images as small as they must be, and do they panic only where that is known? (DESIGN §9)
 //!
-//! One image per body, and the one that runs by its own clock; the list of places that may panic is `firmware/panics.allow`, for all images together.
+//! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of places that may panic is `firmware/panics.allow`, for all images together.
 
 use std::collections::BTreeMap;
 use std::fs;
 
 use firmware_build::Program;
-use firmware_build::inspect::{Allowed, Budget, Image, Sizes, panic_sites};
+use firmware_build::inspect::{Allowed, Image, Sizes, panic_sites};
 
 use crate::context::{Context, Failure};
 
-pub(crate) const WHAT: &str =
-    "the robots' images link, keep to their budgets, and panic only where firmware/panics.allow says";
+pub(crate) const WHAT: &str = "the robots' images link, keep to their budgets, have no doubles, and panic only where firmware/panics.allow says";
 
 /// Builds all images and judges them.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
@@ -26,8 +25,11 @@ pub(crate) fn check(context: &Context) -> Result<(), Failure> {
         let image = Image::parse(&bytes).map_err(|error| unreadable(error.to_string()))?;
         let sizes = Sizes::of(&image);
         println!("xtask: {}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
-        if let Err(over) = Budget::IMAGE.check(&sizes) {
+        if let Err(over) = program.budget().check(&sizes) {
             faults.push(format!("{}: {over}", program.name()));
+        }
+        if let Some(name) = image.soft_double() {
+            faults.push(format!("{}: computes with doubles ({name})", program.name()));
         }
         for (site, lines) in panic_sites(&image) {
             sites.entry(site).or_insert(lines);

@@ -72,7 +72,10 @@ fn thumb(context: &Context) -> Result<(), Failure> {
 fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     context.ensure_component("clippy", "clippy")?;
     let packages = packages(&ON_ROBOT) + &packages(&BOARDS);
-    run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)
+    run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)?;
+    // A real board's programs for trying its parts; the other boards have none.
+    run(&mut context
+        .cargo_thumb(&format!("clippy{FIRMWARE} --package board-stm32 --examples -- -D warnings"))?)
 }
 
 fn qemu(context: &Context) -> Result<(), Failure> {
@@ -92,7 +95,7 @@ const FIRMWARE: &str = " --profile firmware";
 const ON_ROBOT: [&str; 8] =
     ["geometry", "protocol", "rules", "motion", "casebase", "case-library", "brain", "runtime"];
 /// Programs for the robot's processor.
-const BOARDS: [&str; 1] = ["board-mps2"];
+const BOARDS: [&str; 2] = ["board-mps2", "board-stm32"];
 
 #[cfg(test)]
 mod tests {

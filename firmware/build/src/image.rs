@@ -8,6 +8,7 @@ use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
+use crate::inspect::Budget;
 use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
 use crate::{Install, TARGET, TargetError, ensure_target};
@@ -19,7 +20,7 @@ pub fn build_image(root: &Path, body: Body) -> Result<PathBuf, BuildError> {
     build_program(root, Program::Robot(body))
 }
 
-/// As [`build_image`], for any program of the board.
+/// As [`build_image`], for any program of a board.
 pub fn build_program(root: &Path, program: Program) -> Result<PathBuf, BuildError> {
     build_into(&target_dir(root), root, program)
 }
@@ -32,7 +33,7 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     let toolchain = ensure_target(root, Install::ForUser).map_err(BuildError::Target)?;
     let mut build = toolchain.cargo(root, "build");
     build
-        .args(["--package", PACKAGE, "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
+        .args(["--package", program.package(), "--bin", program.name(), "--profile", PROFILE, "--target-dir"])
         .arg(target_dir);
     if let Program::Robot(body) = program {
         build.args(["--no-default-features", "--features", body.word()]);
@@ -44,13 +45,15 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
 
-/// What can be built for the emulated board.
+/// What can be built for the boards: the emulated one, where nothing else is said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// A whole robot: the brain for its body, its library and its tasks.
     Robot(Body),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
+    /// A robot on wheels for the chip of a real one, which the emulator does not know.
+    Stm32,
     /// Ends well where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Counts the instructions of retrievals.
@@ -63,7 +66,8 @@ pub enum Program {
 
 impl Program {
     /// Whole robots, which are held to the budgets of an image.
-    pub const IMAGES: [Self; 3] = [Self::Robot(Body::Legged), Self::Robot(Body::Omni), Self::Free];
+    pub const IMAGES: [Self; 4] =
+        [Self::Robot(Body::Legged), Self::Robot(Body::Omni), Self::Free, Self::Stm32];
 
     /// The name of the binary.
     pub const fn name(self) -> &'static str {
@@ -71,10 +75,27 @@ impl Program {
             Self::Robot(Body::Legged) => "onetwo-mps2-legged",
             Self::Robot(Body::Omni) => "onetwo-mps2-omni",
             Self::Free => "onetwo-mps2-free",
+            Self::Stm32 => "onetwo-stm32",
             Self::MathHash => "math-hash",
             Self::RetrievalBench => "retrieval-bench",
             Self::MotionBench => "motion-bench",
             Self::RadioBench => "radio-bench",
+        }
+    }
+
+    /// What its image may take.
+    pub const fn budget(self) -> Budget {
+        match self {
+            Self::Stm32 => Budget::BOARD,
+            _ => Budget::IMAGE,
+        }
+    }
+
+    /// The board it is for.
+    const fn package(self) -> &'static str {
+        match self {
+            Self::Stm32 => "board-stm32",
+            _ => PACKAGE,
         }
     }
 }

@@ -115,6 +115,12 @@ impl<'a> Image<'a> {
     pub fn symbol_names(&self) -> impl Iterator<Item = &str> {
         self.symbols.iter().map(|symbol| symbol.name.as_str())
     }
+
+    /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions an operation on a
+    /// processor that has single precision only (run-time ABI for the Arm architecture, §5.1.2).
+    pub fn soft_double(&self) -> Option<&str> {
+        self.symbol_names().find(|name| SOFT_DOUBLE.contains(name))
+    }
 }
 
 fn lines_of<'a>(file: &object::File<'a>) -> Result<addr2line::Context<Reader<'a>>, gimli::Error> {
@@ -158,6 +164,20 @@ fn crate_of(path: &str) -> &str {
     }
 }
 
+const SOFT_DOUBLE: [&str; 12] = [
+    "__aeabi_dadd",
+    "__aeabi_dsub",
+    "__aeabi_drsub",
+    "__aeabi_dmul",
+    "__aeabi_ddiv",
+    "__aeabi_dcmplt",
+    "__aeabi_dcmple",
+    "__aeabi_dcmpgt",
+    "__aeabi_dcmpge",
+    "__aeabi_dcmpeq",
+    "__aeabi_f2d",
+    "__aeabi_d2f",
+];
 /// Where a Cortex-M has its RAM.
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x4000_0000;
 
@@ -174,6 +194,7 @@ mod tests {
             ("protocol/src/frame.rs", "protocol"),
             ("protocol/geometry/src/math.rs", "geometry"),
             ("firmware/boards/mps2/src/bin/../robot/lockstep.rs", "board-mps2"),
+            ("firmware/boards/stm32/src/robot/mod.rs", "board-stm32"),
             ("casebase/library/src/lib.rs", "case-library"),
         ] {
             assert_eq!(crate_of(path), name, "{path}");

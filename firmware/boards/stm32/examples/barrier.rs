@@ -1,0 +1,35 @@
+//! Does the light barrier see the ball?
+//!
+//! Connect: lamp and receiver of the light barrier.
+//! See: `free`, and what the receiver sees with the lamp lit and dark; with a ball, or a hand, in the beam `ball`, as long as it is
+//! there. Lit and dark are alike with nothing in the beam: lamp or receiver point elsewhere. Dark is over 0.8: too much daylight, the
+//! receiver's resistor is too large. The two thresholds stand in `runtime::sense`.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use board_stm32::analog::Analog;
+    use embassy_time::Timer;
+    use runtime::sense::Barrier;
+
+    board_stm32::run(async {
+        let mut analog = Analog::new(board_stm32::start().analog);
+        let mut barrier = Barrier::new();
+        loop {
+            let (mut ball, mut seen) = (false, [0.0; 2]);
+            for (lit, seen) in [false, true].into_iter().zip(&mut seen) {
+                analog.light(lit);
+                Timer::after_millis(1).await;
+                *seen = analog.barrier();
+                ball = barrier.step(lit, *seen);
+            }
+            let [dark, lit] = seen;
+            defmt::info!("{=str} (dark {=f32}, lit {=f32})", if ball { "ball" } else { "free" }, dark, lit);
+            Timer::after_millis(100).await;
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,23 @@
+//! Is the battery's voltage right?
+//!
+//! Connect: the battery, or a supply in its place; motors and kicker unplugged.
+//! See: its voltage, within 2 % of a meter's. It differs: the divider is another (`src/analog.rs`). The governor brakes a robot whose
+//! battery is low for a while (`firmware/brain/src/governor.rs`), so a wrong divider keeps it from driving at all.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use board_stm32::analog::Analog;
+
+    board_stm32::run(async {
+        let mut analog = Analog::new(board_stm32::start().analog);
+        loop {
+            defmt::info!("{=f32} V", analog.battery());
+            embassy_time::Timer::after_secs(1).await;
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,31 @@
+//! Does every encoder count, and the right way round? Turned by hand.
+//!
+//! Connect: the encoders and their supply; motors without current.
+//! See: four counts and four rim speeds, five times a second. Turn each wheel so that it would turn the robot counter-clockwise: its
+//! count rises, by 4,096 a turn (`src/encoders.rs` says how many yours has), and its speed is positive. Falls: swap A and B. Goes one
+//! up and one down: A or B is not connected.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use board_stm32::encoders::Encoders;
+    use embassy_time::{Instant, Timer};
+
+    board_stm32::run(async {
+        let mut encoders = Encoders::new(board_stm32::start().encoders);
+        loop {
+            let now = protocol::Instant(Instant::now().as_micros());
+            let rims = encoders.rims(now, [0.0; 4]);
+            defmt::info!(
+                "counts {}, rims {} m/s (front right, back right, back left, front left)",
+                encoders.counts(),
+                rims
+            );
+            Timer::after_millis(200).await;
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,35 @@
+//! Does the gyroscope answer, and does its z axis point up?
+//!
+//! Connect: the IMU.
+//! See: lying still, the acceleration is about (0, 0, 1) g and every rate within 0.02 rad/s of 0. Turn the board counter-clockwise
+//! (seen from above): the third rate is positive. On its side: the third acceleration is about 0. `Stranger(0)` or `Stranger(255)`:
+//! nobody answers, see to clock, data and select; another number: another sensor.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use board_stm32::imu::Imu;
+    use embassy_time::Timer;
+
+    board_stm32::run(async {
+        let mut imu = Imu::new(board_stm32::start().imu);
+        loop {
+            match imu.start().await {
+                Ok(()) => break,
+                Err(error) => defmt::error!("{}", error),
+            }
+            Timer::after_secs(1).await;
+        }
+        loop {
+            match imu.reading() {
+                Ok(reading) => defmt::info!("{} g, {} rad/s", reading.acceleration, reading.rate),
+                Err(error) => defmt::error!("{}", error),
+            }
+            Timer::after_millis(200).await;
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

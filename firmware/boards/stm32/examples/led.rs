@@ -1,0 +1,27 @@
+//! Does the chip run, and does its log arrive? The first thing to try on a new board.
+//!
+//! Connect: the probe and the board's supply, nothing else.
+//! See: green and red take turns, a second each, and the log counts them. A second must be one: otherwise the quartz is another
+//! (`src/clocks.rs`, feature `crystal`). Nothing at all: the quartz does not run, or the probe does not reach the chip.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use embassy_stm32::gpio::{Level, Output, Speed};
+
+    board_stm32::run(async {
+        let lamps = board_stm32::start().lamps;
+        let mut alive = Output::new(lamps.alive, Level::High, Speed::Low);
+        let mut alarm = Output::new(lamps.alarm, Level::Low, Speed::Low);
+        for second in 0_u32.. {
+            defmt::info!("second {=u32}", second);
+            embassy_time::Timer::after_secs(1).await;
+            alive.toggle();
+            alarm.toggle();
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

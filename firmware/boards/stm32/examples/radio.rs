@@ -1,0 +1,29 @@
+//! Does the serial line to the radio carry bytes, both ways? Whatever comes goes back.
+//!
+//! Connect: the radio modem; or a USB serial adapter of 3.3 V instead of it, crossed (its TX to our RX).
+//! See: from the other end (1 Mbit/s, 8N1) whatever is typed comes back, and the log counts it. `line errors` rise: another rate, or
+//! noise. Nothing comes: TX and RX are not crossed.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    use board_stm32::radio;
+
+    board_stm32::run(async {
+        let Some((mut mouth, mut ear)) = radio::open(board_stm32::start().radio) else {
+            defmt::error!("the line cannot have this rate");
+            return;
+        };
+        let mut heard = 0_u32;
+        loop {
+            let bytes = ear.bytes().await;
+            heard = heard.wrapping_add(bytes.len() as u32);
+            mouth.say(bytes).await;
+            defmt::info!("{=u32} bytes, line errors {=u32}", heard, radio::noise());
+        }
+    })
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,63 @@
+//! What do battery, capacitor and light barrier say? Three voltages, read one after the other, some 10 µs each.
+
+use embassy_stm32::adc::{Adc, AdcChannel, AnyAdcChannel, SampleTime};
+use embassy_stm32::gpio::{Level, Output, Speed};
+use embassy_stm32::peripherals::ADC1;
+
+use crate::pins;
+
+/// The converter, its three inputs, and the lamp.
+pub struct Analog {
+    converter: Adc<'static, ADC1>,
+    battery: AnyAdcChannel<'static, ADC1>,
+    capacitor: AnyAdcChannel<'static, ADC1>,
+    barrier: AnyAdcChannel<'static, ADC1>,
+    lamp: Output<'static>,
+}
+
+impl Analog {
+    /// Calibrates the converter; the lamp is dark.
+    pub fn new(parts: pins::Analog) -> Self {
+        Self {
+            converter: Adc::new(parts.converter),
+            battery: parts.battery.degrade_adc(),
+            capacitor: parts.capacitor.degrade_adc(),
+            barrier: parts.barrier.degrade_adc(),
+            lamp: Output::new(parts.lamp, Level::Low, Speed::Low),
+        }
+    }
+
+    /// The battery, V.
+    pub fn battery(&mut self) -> f32 {
+        share(self.converter.blocking_read(&mut self.battery, TIME)) * SUPPLY * BATTERY_DIVIDER
+    }
+
+    /// The kicker's capacitor, V.
+    pub fn capacitor(&mut self) -> f32 {
+        share(self.converter.blocking_read(&mut self.capacitor, TIME)) * SUPPLY * CAPACITOR_DIVIDER
+    }
+
+    /// What the light barrier's receiver sees, 0 to 1.
+    pub fn barrier(&mut self) -> f32 {
+        share(self.converter.blocking_read(&mut self.barrier, TIME))
+    }
+
+    /// Lights the barrier, or not; it is seen with the next step, for a receiver needs some 100 µs.
+    pub fn light(&mut self, lit: bool) {
+        self.lamp.set_level(if lit { Level::High } else { Level::Low });
+    }
+}
+
+/// Of full range, 16 bits.
+fn share(raw: u16) -> f32 {
+    f32::from(raw) * (1.0 / 65_535.0)
+}
+
+/// For dividers of some 10 kΩ.
+const TIME: SampleTime = SampleTime::CYCLES64_5;
+/// The chip's own supply is the converter's measure, V.
+const SUPPLY: f32 = 3.3;
+/// 100 kΩ over 10 kΩ: 36 V is full range.
+const BATTERY_DIVIDER: f32 = 11.0;
+/// 1 MΩ over 10 kΩ: 333 V is full range.
+const CAPACITOR_DIVIDER: f32 = 101.0;

@@ -1,0 +1,127 @@
+//! What does a robot do when its program cannot go on? Everything off, the place kept and told, and a new life (DESIGN §6).
+//!
+//! The record lies in the calendar's backup registers: a reset leaves them alone, and unlike memory they have no check bits that a
+//! power-up would leave wrong.
+
+use core::panic::PanicInfo;
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{ExceptionFrame, exception};
+use embassy_stm32::pac;
+
+use crate::off;
+
+/// What is known of the lives before this one, since power came.
+#[derive(Clone, Copy, Debug)]
+pub struct Life {
+    /// Starts since power came, this one included.
+    pub boots: u32,
+    /// Panics and faults since then.
+    pub panics: u32,
+    /// Whether the watchdog ended the last life.
+    pub bitten: bool,
+    place: [u8; PLACE_LEN],
+    place_len: usize,
+}
+
+impl Life {
+    /// Where the last panic was: file and line.
+    pub fn place(&self) -> &str {
+        let place = self.place.get(..self.place_len).unwrap_or_default();
+        core::str::from_utf8(place).unwrap_or("an unreadable place")
+    }
+}
+
+/// Counts this start; call once, after the clocks are started.
+pub fn life() -> Life {
+    let reset = pac::RCC.rsr().read();
+    pac::RCC.rsr().modify(|flags| flags.set_rmvf(true));
+    open();
+    if read(MAGIC_AT) != MAGIC {
+        for register in 0..REGISTERS {
+            write(register, 0);
+        }
+        write(MAGIC_AT, MAGIC);
+    }
+    write(BOOTS_AT, read(BOOTS_AT).wrapping_add(1));
+    let mut place = [0; PLACE_LEN];
+    for (register, word) in (PLACE_AT..).zip(place.as_chunks_mut::<4>().0) {
+        *word = read(register).to_le_bytes();
+    }
+    Life {
+        boots: read(BOOTS_AT),
+        panics: read(PANICS_AT),
+        bitten: reset.iwdg1rstf(),
+        place,
+        place_len: read(LEN_AT) as usize,
+    }
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    off::everything();
+    cortex_m::interrupt::disable();
+    match info.location() {
+        Some(place) => ended(&[place.file().as_bytes(), b":", &digits(place.line())]),
+        None => ended(&[b"an unknown place"]),
+    }
+}
+
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    off::everything();
+    ended(&[b"a hard fault, program counter ", &digits(frame.pc())])
+}
+
+/// Keeps and tells the place, then starts anew.
+fn ended(words: &[&[u8]]) -> ! {
+    open();
+    write(PANICS_AT, read(PANICS_AT).wrapping_add(1));
+    let mut place = [0; PLACE_LEN];
+    let text = words.iter().flat_map(|word| word.iter());
+    let len = place.iter_mut().zip(text).map(|(to, from)| *to = *from).count();
+    write(LEN_AT, len as u32);
+    for (register, word) in (PLACE_AT..).zip(place.as_chunks::<4>().0) {
+        write(register, u32::from_le_bytes(*word));
+    }
+    cortex_m::asm::dsb();
+    // Last: the log itself may be what failed.
+    if let Ok(text) = core::str::from_utf8(place.get(..len).unwrap_or_default()) {
+        defmt::error!("panic at {=str}; everything off, starting anew", text);
+    }
+    SCB::sys_reset()
+}
+
+/// Lets the registers be written.
+fn open() {
+    pac::PWR.cr1().modify(|power| power.set_dbp(true));
+}
+
+fn read(register: usize) -> u32 {
+    pac::RTC.bkpr(register).read().bkp()
+}
+
+fn write(register: usize, word: u32) {
+    pac::RTC.bkpr(register).write(|kept| kept.set_bkp(word));
+}
+
+/// Decimal, leading zeros.
+fn digits(number: u32) -> [u8; 10] {
+    let (mut rest, mut text) = (number, [b'0'; 10]);
+    for digit in text.iter_mut().rev() {
+        *digit = b'0' + (rest % 10) as u8;
+        rest /= 10;
+    }
+    text
+}
+
+/// Backup registers of the chip (RM0433, 46.6.20).
+const REGISTERS: usize = 32;
+const MAGIC_AT: usize = 0;
+const BOOTS_AT: usize = 1;
+const PANICS_AT: usize = 2;
+const LEN_AT: usize = 3;
+const PLACE_AT: usize = 4;
+/// Bytes of a place that are kept.
+const PLACE_LEN: usize = 4 * (REGISTERS - PLACE_AT);
+const MAGIC: u32 = 0x0121_fe51;

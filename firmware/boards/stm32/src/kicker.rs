@@ -1,0 +1,55 @@
+//! How does the kicker's board do what the interlock decided? Charger and coils by timers that end by themselves, the capacitor kept
+//! from its resistor only as long as somebody says so.
+
+use embassy_stm32::gpio::{Level, Output, Speed};
+use embassy_time::{Duration, Timer};
+use runtime::kicker::{KickerAct, KickerState};
+use runtime::ports;
+
+use crate::pins;
+use crate::pulse::{self, Charger, Coil, Coils};
+use crate::sampling;
+
+/// Charger, capacitor, coils.
+pub struct Kicker {
+    coils: Coils,
+    charger: Charger,
+    /// High keeps the capacitor from its resistor.
+    hold: Output<'static>,
+}
+
+impl Kicker {
+    /// Running empty.
+    pub fn new(parts: pins::Kicker) -> Self {
+        let (coils, charger, hold) = pulse::of(parts);
+        Self { coils, charger, hold: Output::new(hold, Level::Low, Speed::Low) }
+    }
+
+    async fn pulse(&mut self, coil: Coil, long: protocol::Duration) {
+        self.charger.stop();
+        if self.coils.fire(coil, long) {
+            Timer::after(Duration::from_micros(long.0)).await;
+        }
+    }
+}
+
+impl ports::Kicker for Kicker {
+    fn state(&mut self) -> KickerState {
+        let newest = sampling::newest();
+        KickerState { ball: newest.ball, volts: newest.capacitor }
+    }
+
+    async fn act(&mut self, act: KickerAct) {
+        self.hold.set_level(if act == KickerAct::Bleed { Level::Low } else { Level::High });
+        match act {
+            KickerAct::Charge => self.charger.run(),
+            KickerAct::Rest | KickerAct::Bleed => self.charger.stop(),
+            KickerAct::Flat(long) => self.pulse(Coil::Flat, long).await,
+            KickerAct::Chip(long) => self.pulse(Coil::Chip, long).await,
+        }
+        Timer::after(STEP).await;
+    }
+}
+
+/// The kicker's step (`runtime::ports::Kicker`).
+const STEP: Duration = Duration::from_millis(1);

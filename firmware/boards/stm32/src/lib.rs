@@ -1,0 +1,55 @@
+//! What is on a robot's board, and how is it driven? STM32H743: pins, clocks and drivers only; all that thinks is `runtime`'s and
+//! `brain`'s (DESIGN §1). README.md has the wiring.
+//!
+//! The robot is the program `onetwo-stm32` (`src/main.rs`), its parts are tried one by one by `examples/`. Empty on the PC.
+//!
+//! | part | module |
+//! |---|---|
+//! | which pin does what | [`pins`] |
+//! | clocks | [`clocks`] |
+//! | motors, dribbler, encoders | [`wheels`], [`encoders`] |
+//! | pulses that end by themselves, kicker | [`pulse`], [`kicker`] |
+//! | gyroscope and accelerometer | [`imu`] |
+//! | what is read a thousand times a second | [`sampling`], [`analog`] |
+//! | radio | [`radio`] |
+//! | key page and ledger of starts | [`flash`] |
+//! | watchdog, panics, everything off | [`dog`], [`fault`], [`off`](fn@off::everything) |
+#![cfg(target_os = "none")]
+#![no_std]
+
+pub mod analog;
+pub mod clocks;
+pub mod dog;
+pub mod encoders;
+pub mod fault;
+pub mod flash;
+pub mod imu;
+pub mod kicker;
+pub mod off;
+pub mod pins;
+pub mod pulse;
+pub mod radio;
+pub mod sampling;
+pub mod wheels;
+
+// The log's way to the probe.
+use defmt_rtt as _;
+
+use pins::Parts;
+
+/// Starts clocks and pins; everything that moves is off. Call once, first of all.
+pub fn start() -> Parts {
+    if let Some(mut core) = cortex_m::Peripherals::take() {
+        // Data is not cached, so that the DMA and the core see the same.
+        core.SCB.enable_icache();
+    }
+    Parts::of(embassy_stm32::init(clocks::config()))
+}
+
+/// Does one thing to its end, without tasks, and then nothing more: what tries out a part.
+pub fn run(work: impl Future<Output = ()>) -> ! {
+    embassy_futures::block_on(work);
+    loop {
+        cortex_m::asm::wfi();
+    }
+}

@@ -1,0 +1,20 @@
+//! How does everything that moves stop at once? Past all drivers, for a panic asks nobody's leave.
+
+use embassy_stm32::pac;
+
+/// No current into motors and coils, the charger off, the capacitor on its resistor.
+///
+/// A timer in reset drives its pins low (RM0433, 8.7.28). What the pins were is known from `pins`.
+pub fn everything() {
+    pac::RCC.apb2rstr().modify(|reset| {
+        reset.set_tim1rst(true);
+        reset.set_tim15rst(true);
+        reset.set_tim16rst(true);
+    });
+    pac::RCC.apb1lrstr().modify(|reset| reset.set_tim5rst(true));
+    // PE0 lets current into the motors, PE4 keeps the capacitor's charge.
+    pac::GPIOE.bsrr().write(|pins| {
+        pins.set_br(0, true);
+        pins.set_br(4, true);
+    });
+}

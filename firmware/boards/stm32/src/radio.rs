@@ -1,0 +1,116 @@
+//! How do frames come and go over the radio's serial line? Stuffed bytes (`protocol::serial`), carried by the DMA: a ring for what
+//! comes, so that the brain's longest step loses nothing, one line at a time for what goes.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use embassy_stm32::mode::Async;
+use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
+use embassy_stm32::{bind_interrupts, dma, peripherals};
+use protocol::link::Packet;
+use protocol::serial::{LINE_LEN_MAX, Lines, line};
+use runtime::ports::{RadioReceiver, RadioSender};
+use static_cell::StaticCell;
+
+use crate::pins;
+
+bind_interrupts!(struct Interrupts {
+    USART2 => usart::InterruptHandler<peripherals::USART2>;
+    DMA1_STREAM0 => dma::InterruptHandler<peripherals::DMA1_CH0>;
+    DMA1_STREAM1 => dma::InterruptHandler<peripherals::DMA1_CH1>;
+});
+
+/// Both directions; `None` where the line cannot have this rate. Call once.
+pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
+    static RING: StaticCell<[u8; RING_LEN]> = StaticCell::new();
+    static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
+    let mut config = usart::Config::default();
+    config.baudrate = BAUD;
+    let line =
+        Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
+    let (tx, rx) = line.split();
+    let rx = rx.into_ring_buffered(RING.init([0; RING_LEN]));
+    Some((Mouth { tx, line: LINE.init([0; LINE_LEN_MAX]) }, Ear::new(rx)))
+}
+
+/// Hears frames.
+pub struct Ear {
+    rx: RingBufferedUartRx<'static>,
+    lines: Lines,
+    came: [u8; CHUNK],
+    /// Of `came`, what is not looked at yet.
+    rest: (usize, usize),
+}
+
+impl Ear {
+    fn new(rx: RingBufferedUartRx<'static>) -> Self {
+        Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
+    }
+
+    /// Some bytes, as they come.
+    pub async fn bytes(&mut self) -> &[u8] {
+        let len = loop {
+            match self.rx.read(&mut self.came).await {
+                Ok(len) => break len,
+                // A line that is pulled out or set to another rate; it goes on with the next read.
+                Err(_) => NOISE.store(noise().wrapping_add(1), Ordering::Relaxed),
+            }
+        };
+        self.came.get(..len).unwrap_or_default()
+    }
+}
+
+impl RadioReceiver for Ear {
+    async fn receive(&mut self) -> Packet {
+        loop {
+            let (from, to) = self.rest;
+            let rest = self.came.get(from..to).unwrap_or_default();
+            for (read, byte) in (from + 1..).zip(rest) {
+                if let Some(packet) = self.lines.push(*byte) {
+                    self.rest = (read, to);
+                    return packet;
+                }
+            }
+            self.rest = (0, self.bytes().await.len());
+        }
+    }
+}
+
+/// Speaks frames.
+pub struct Mouth {
+    tx: UartTx<'static, Async>,
+    /// Where the DMA takes them from.
+    line: &'static mut [u8; LINE_LEN_MAX],
+}
+
+impl Mouth {
+    /// Bytes as they are, as many as a line has.
+    pub async fn say(&mut self, bytes: &[u8]) {
+        let len = bytes.len().min(LINE_LEN_MAX);
+        self.line.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
+        if let Some(whole) = self.line.get(..len)
+            && self.tx.write(whole).await.is_err()
+        {
+            NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
+        }
+    }
+}
+
+impl RadioSender for Mouth {
+    async fn send(&mut self, packet: Packet) {
+        let line = line(&packet);
+        self.say(&line).await;
+    }
+}
+
+/// How often the line failed: framing, overrun, noise.
+pub fn noise() -> u32 {
+    NOISE.load(Ordering::Relaxed)
+}
+
+static NOISE: AtomicU32 = AtomicU32::new(0);
+/// The host's usual rate for serial links (`host::config`).
+const BAUD: u32 = 1_000_000;
+/// What comes in 5 ms; the half of it rings. The brain's longest step takes a fifth of a millisecond.
+const RING_LEN: usize = 512;
+/// Looked at in one go.
+const CHUNK: usize = 64;

@@ -1,0 +1,176 @@
+//! What does the robot do from its first instruction on? The start, then a task each for what must go on.
+//!
+//! All tasks run on one executor in one thread, in the order in which they are woken: the same order as on the emulated board. The
+//! brain's longest step, 40,000 instructions, takes a fifth of a millisecond here; by so much a control step may be late.
+
+use board_stm32::analog::Analog;
+use board_stm32::dog::Watchdog;
+use board_stm32::encoders::Encoders;
+use board_stm32::fault::{self, Life};
+use board_stm32::imu::Imu;
+use board_stm32::kicker::Kicker;
+use board_stm32::radio::{self, Ear, Mouth};
+use board_stm32::sampling::{self, Probes};
+use board_stm32::wheels::{Drivers, Wheels};
+use board_stm32::{flash, off};
+use case_library::division_b;
+use casebase::CaseBase;
+use embassy_executor::{Executor, SpawnError, Spawner};
+use embassy_stm32::gpio::{Level, Output, Speed};
+use embassy_time::{Duration, Ticker};
+use protocol::frame::TeamKey;
+use protocol::provision::{self, ProvisionError};
+use runtime::hardware::{self, Wires};
+use runtime::{BrainConfig, Mailboxes, tasks};
+use static_cell::StaticCell;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    let parts = board_stm32::start();
+    // First of all, with what is on the motors' wires before anybody drives them.
+    let drivers = Drivers::new(parts.motors);
+    let kicker = Kicker::new(parts.kicker);
+    let mut alarm = Output::new(parts.lamps.alarm, Level::Low, Speed::Low);
+    let alive = Output::new(parts.lamps.alive, Level::Low, Speed::Low);
+    tell(&fault::life());
+    let who = provision::read(flash::page(), false).inspect_err(|error| refuse(*error)).ok();
+    let epoch = flash::begin(parts.keeper.flash)
+        .inspect_err(|error| defmt::error!("no epoch ({}): nobody commands this robot", error))
+        .ok();
+    let radio = radio::open(parts.radio);
+    let (Some(who), Some(epoch), Some((mouth, ear))) = (who, epoch, radio) else {
+        alarm.set_high();
+        off::everything();
+        loop {
+            cortex_m::asm::wfi();
+        }
+    };
+    let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
+    defmt::info!("robot {=u8}, team {=u8}, epoch {=u32}", who.robot.number(), who.team.0, epoch);
+    let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
+    let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
+    // The last step that may take long lies behind us.
+    let dog = Watchdog::start(parts.keeper.watchdog);
+    static EXECUTOR: StaticCell<Executor> = StaticCell::new();
+    EXECUTOR.init(Executor::new()).run(|spawner| {
+        let brain = (config, division_b(), who.key);
+        start(spawner, brain, wheels, kicker, imu, analog, mouth, ear, dog, alive)
+            .expect("every task is started once");
+    })
+}
+
+static BOXES: Mailboxes = Mailboxes::new();
+static WIRES: Wires = Wires::new();
+
+#[allow(clippy::too_many_arguments, reason = "what is on the board, each for one task")]
+fn start(
+    spawner: Spawner,
+    (config, base, key): (BrainConfig, CaseBase<'static>, TeamKey),
+    wheels: Wheels,
+    kicker: Kicker,
+    imu: Imu,
+    analog: Analog,
+    mouth: Mouth,
+    ear: Ear,
+    dog: Watchdog,
+    alive: Output<'static>,
+) -> Result<(), SpawnError> {
+    spawner.spawn(control(wheels)?);
+    spawner.spawn(kick(kicker)?);
+    spawner.spawn(sample(imu, analog)?);
+    spawner.spawn(senses()?);
+    spawner.spawn(radio_send(mouth)?);
+    spawner.spawn(radio_receive(ear)?);
+    spawner.spawn(brain(config, base, key)?);
+    spawner.spawn(watchdog(dog)?);
+    spawner.spawn(report(alive)?);
+    Ok(())
+}
+
+#[embassy_executor::task]
+async fn brain(config: BrainConfig, base: CaseBase<'static>, key: TeamKey) -> ! {
+    tasks::brain_with_key(&config, base, key, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn control(wheels: Wheels) -> ! {
+    hardware::control(wheels, &BOXES, &WIRES).await
+}
+
+#[embassy_executor::task]
+async fn kick(kicker: Kicker) -> ! {
+    hardware::kicker(kicker, &WIRES).await
+}
+
+#[embassy_executor::task]
+async fn sample(imu: Imu, analog: Analog) -> ! {
+    sampling::run(imu, analog).await
+}
+
+#[embassy_executor::task]
+async fn senses() -> ! {
+    hardware::senses(Probes, &BOXES, &WIRES).await
+}
+
+#[embassy_executor::task]
+async fn radio_receive(ear: Ear) -> ! {
+    hardware::radio_receive(ear, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn radio_send(mouth: Mouth) -> ! {
+    tasks::radio_send(mouth, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn watchdog(dog: Watchdog) -> ! {
+    hardware::watchdog(dog, &BOXES).await
+}
+
+/// Blinks, and tells each second how the board is.
+#[embassy_executor::task]
+async fn report(mut alive: Output<'static>) -> ! {
+    let mut ticker = Ticker::every(BLINK);
+    loop {
+        alive.set_high();
+        ticker.next().await;
+        alive.set_low();
+        ticker.next().await;
+        defmt::debug!(
+            "{}; line errors {=u32}, unsent {=u32}, undelivered {=u32}",
+            sampling::newest(),
+            radio::noise(),
+            BOXES.unsent(),
+            BOXES.undelivered()
+        );
+    }
+}
+
+/// What ended the last life.
+fn tell(life: &Life) {
+    if life.panics > 0 {
+        defmt::warn!(
+            "start {=u32}; {=u32} panics, the last at {=str}",
+            life.boots,
+            life.panics,
+            life.place()
+        );
+    }
+    if life.bitten {
+        defmt::warn!("awake after the watchdog's bite");
+    }
+}
+
+/// Why nobody commands this robot.
+fn refuse(error: ProvisionError) {
+    let why = match error {
+        ProvisionError::Empty => "no page",
+        ProvisionError::Version(_) => "a page of another version",
+        ProvisionError::Damaged => "a damaged page",
+        ProvisionError::OpenKey => "a key of zeros",
+    };
+    defmt::error!("{=str}: nobody commands this robot; run `onetwo firmware provision`", why);
+}
+
+/// Half of the lamp's second.
+const BLINK: Duration = Duration::from_millis(500);

@@ -1,0 +1,110 @@
+//! What does the board read a thousand times a second, and who gets it? One task reads gyroscope, battery, capacitor and light
+//! barrier; kicker and brain take the newest.
+//!
+//! What is older than ten steps is no reading: then the kicker neither charges nor fires, and nobody turns by an old gyroscope.
+
+use core::cell::Cell;
+
+use embassy_sync::blocking_mutex::CriticalSectionMutex;
+use embassy_time::{Duration, Instant, Ticker};
+use runtime::kicker::FULL_VOLTS;
+use runtime::ports::{self, Seen};
+use runtime::sense::{Barrier, Tilt, Turn};
+
+use crate::analog::Analog;
+use crate::imu::{Imu, Reading};
+
+/// What was read last.
+#[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
+pub struct Sample {
+    /// How fast the body turns, rad/s, counter-clockwise.
+    pub turn: Option<f32>,
+    /// It lies on its side.
+    pub tipped: bool,
+    /// The light barrier is broken.
+    pub ball: bool,
+    /// V.
+    pub battery: f32,
+    /// V.
+    pub capacitor: f32,
+}
+
+impl Sample {
+    const NONE: Self =
+        Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
+}
+
+/// The newest sample, as long as it is young; else nothing is known, and a battery of which nothing is known brakes the robot.
+pub fn newest() -> Sample {
+    let (at, sample) = NEWEST.lock(Cell::get);
+    if at.elapsed() < STALE { sample } else { Sample::NONE }
+}
+
+/// Reads everything, for ever. A sensor that does not answer is told and tried again each second; until then the wheels tell how
+/// the robot turns.
+pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
+    let (mut turn, mut tilt, mut barrier) = (Turn::new(), Tilt::new(), Barrier::new());
+    let mut answers = false;
+    let mut lit = false;
+    let mut ticker = Ticker::every(STEP);
+    let mut asked = Instant::MIN;
+    loop {
+        if !answers && (asked == Instant::MIN || asked.elapsed() >= ASKED_AGAIN) {
+            asked = Instant::now();
+            match imu.start().await {
+                Ok(()) => answers = true,
+                Err(error) => defmt::warn!("no gyroscope: {}; the wheels tell how the robot turns", error),
+            }
+            ticker.reset();
+        }
+        ticker.next().await;
+        let reading = if answers { imu.reading().ok() } else { None };
+        // A sensor that lost its supply answers with a line that never moves.
+        if answers && !reading.is_some_and(|reading| is_alive(&reading)) {
+            answers = false;
+            defmt::warn!("the gyroscope is gone");
+        }
+        let reading = reading.filter(|_| answers);
+        let now = Instant::now();
+        let sample = Sample {
+            turn: reading.and_then(|reading| turn.step(reading.rate[UP])),
+            tipped: tilt.step(
+                protocol::Instant(now.as_micros()),
+                reading.map_or(f32::NAN, |reading| reading.acceleration[UP]),
+            ),
+            ball: barrier.step(lit, analog.barrier()),
+            battery: analog.battery(),
+            capacitor: analog.capacitor(),
+        };
+        lit = !lit;
+        analog.light(lit);
+        NEWEST.lock(|newest| newest.set((now, sample)));
+    }
+}
+
+/// What the brain asks for.
+pub struct Probes;
+
+impl ports::Probes for Probes {
+    fn look(&mut self) -> Seen {
+        let Sample { turn, tipped, ball, battery, capacitor } = newest();
+        Seen { turn, ball, tipped, battery: Some(battery), kicker_ready: capacitor >= FULL_VOLTS }
+    }
+}
+
+/// Nothing hovers without any acceleration, or at the end of all ranges.
+fn is_alive(reading: &Reading) -> bool {
+    let [x, y, z] = reading.acceleration;
+    [x, y, z] != [0.0; 3] && [x, y, z].iter().any(|g| *g > -15.9) && x != y
+}
+
+static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =
+    CriticalSectionMutex::new(Cell::new((Instant::MIN, Sample::NONE)));
+/// As the control loop.
+const STEP: Duration = Duration::from_millis(1);
+/// Ten steps.
+const STALE: Duration = Duration::from_millis(10);
+/// How often a sensor that is silent is asked again.
+const ASKED_AGAIN: Duration = Duration::from_secs(1);
+/// The sensor's axis that points up when it lies flat on the board.
+const UP: usize = 2;

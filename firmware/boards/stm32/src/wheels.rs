@@ -1,0 +1,140 @@
+//! How do four motors and the dribbler get their voltage? PWM and direction into their drivers, and one wire that takes the current
+//! off all of them.
+
+use embassy_stm32::gpio::{Input, Level, Output, OutputType, Pull, Speed};
+use embassy_stm32::peripherals::{TIM1, TIM5};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::Channel;
+use embassy_stm32::timer::low_level::CountingMode;
+use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm};
+use embassy_time::Instant;
+use runtime::ports;
+use runtime::wheel::WHEELS;
+
+use crate::encoders::Encoders;
+use crate::pins;
+
+/// The drivers of all five motors.
+pub struct Drivers {
+    pwm: SimplePwm<'static, TIM1>,
+    dribbler: SimplePwm<'static, TIM5>,
+    directions: [Output<'static>; WHEELS],
+    enable: Output<'static>,
+    fault: Input<'static>,
+}
+
+impl Drivers {
+    /// All without current.
+    pub fn new(parts: pins::Motors) -> Self {
+        let low = Speed::Low;
+        let mut pwm = SimplePwm::new(
+            parts.timer,
+            Some(PwmPin::new(parts.pwm_front_right, OutputType::PushPull)),
+            Some(PwmPin::new(parts.pwm_back_right, OutputType::PushPull)),
+            Some(PwmPin::new(parts.pwm_back_left, OutputType::PushPull)),
+            Some(PwmPin::new(parts.pwm_front_left, OutputType::PushPull)),
+            PWM,
+            CountingMode::EdgeAlignedUp,
+        );
+        let dribbler_pin = PwmPin::new(parts.dribbler, OutputType::PushPull);
+        let mut dribbler = SimplePwm::new(
+            parts.dribbler_timer,
+            Some(dribbler_pin),
+            None,
+            None,
+            None,
+            PWM,
+            CountingMode::EdgeAlignedUp,
+        );
+        for channel in CHANNELS {
+            pwm.channel(channel).set_duty_cycle(0);
+            pwm.channel(channel).enable();
+        }
+        dribbler.ch1().set_duty_cycle(0);
+        dribbler.ch1().enable();
+        Self {
+            pwm,
+            dribbler,
+            directions: [
+                Output::new(parts.dir_front_right, Level::Low, low),
+                Output::new(parts.dir_back_right, Level::Low, low),
+                Output::new(parts.dir_back_left, Level::Low, low),
+                Output::new(parts.dir_front_left, Level::Low, low),
+            ],
+            enable: Output::new(parts.enable, Level::Low, low),
+            fault: Input::new(parts.fault, Pull::Up),
+        }
+    }
+
+    /// These shares of the battery's voltage, −1 to 1, and 0 to 1 for the dribbler. Nothing where a driver has switched itself off:
+    /// three wheels alone would turn the robot.
+    pub fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32) {
+        if self.fault.is_low() {
+            self.release();
+            return;
+        }
+        let full = self.pwm.max_duty_cycle();
+        for ((channel, direction), duty) in CHANNELS.into_iter().zip(&mut self.directions).zip(duty) {
+            direction.set_level(if duty < 0.0 { Level::High } else { Level::Low });
+            self.pwm.channel(channel).set_duty_cycle(share(duty.abs(), full));
+        }
+        let full = self.dribbler.max_duty_cycle();
+        self.dribbler.ch1().set_duty_cycle(share(dribbler, full));
+        self.enable.set_high();
+    }
+
+    /// No current in any of them.
+    pub fn release(&mut self) {
+        self.enable.set_low();
+        for channel in CHANNELS {
+            self.pwm.channel(channel).set_duty_cycle(0);
+        }
+        self.dribbler.ch1().set_duty_cycle(0);
+    }
+
+    /// Whether a driver has switched itself off.
+    pub fn has_fault(&self) -> bool {
+        self.fault.is_low()
+    }
+}
+
+/// Motors with their encoders: what the control loop leads.
+pub struct Wheels {
+    drivers: Drivers,
+    encoders: Encoders,
+    duty: [f32; WHEELS],
+}
+
+impl Wheels {
+    /// All without current.
+    pub fn new(drivers: Drivers, encoders: Encoders) -> Self {
+        Self { drivers, encoders, duty: [0.0; WHEELS] }
+    }
+}
+
+impl ports::Wheels for Wheels {
+    fn measured(&mut self) -> [f32; WHEELS] {
+        self.encoders.rims(protocol::Instant(Instant::now().as_micros()), self.duty)
+    }
+
+    fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32) {
+        self.drivers.drive(duty, dribbler);
+        self.duty = if self.drivers.has_fault() { [0.0; WHEELS] } else { duty };
+    }
+
+    fn release(&mut self) {
+        self.drivers.release();
+        self.duty = [0.0; WHEELS];
+    }
+}
+
+/// A share of full duty; none for a number that is none.
+fn share(duty: f32, full: u32) -> u32 {
+    // The cast takes what is out of range to the range's end, and NaN to 0.
+    ((duty * full as f32) as u32).min(full)
+}
+
+/// In the order of the wire.
+const CHANNELS: [Channel; WHEELS] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
+/// Above what people hear; motor drivers with current control take 20 to 50 kHz.
+const PWM: Hertz = Hertz(25_000);
