@@ -28,7 +28,11 @@ pub(crate) const STEPS: [Step; 12] = [
         run: test,
     },
     Step { name: "doc", what: "the documentation builds without a warning or a broken link", run: doc },
-    Step { name: "thumb", what: "the robot's crates build for its processor", run: thumb },
+    Step {
+        name: "thumb",
+        what: "the robot's crates and a board's examples build for its processor",
+        run: thumb,
+    },
     Step { name: "clippy-thumb", what: "the linter has no warning, on the robot's side", run: clippy_thumb },
     Step { name: "doc-thumb", what: "the boards' documentation builds likewise", run: doc_thumb },
     Step { name: "image", what: images::WHAT, run: images::check },
@@ -66,14 +70,15 @@ fn doc_thumb(context: &Context) -> Result<(), Failure> {
 }
 
 fn thumb(context: &Context) -> Result<(), Failure> {
-    run(&mut context.cargo_thumb(&format!("build{FIRMWARE}{}", packages(&ON_ROBOT)))?)
+    run(&mut context.cargo_thumb(&format!("build{FIRMWARE}{}", packages(&ON_ROBOT)))?)?;
+    // A real board's programs for trying its parts, which must link too.
+    run(&mut context.cargo_thumb(&format!("build{FIRMWARE} --package board-stm32 --examples"))?)
 }
 
 fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     context.ensure_component("clippy", "clippy")?;
     let packages = packages(&ON_ROBOT) + &packages(&BOARDS);
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)?;
-    // A real board's programs for trying its parts; the other boards have none.
     run(&mut context
         .cargo_thumb(&format!("clippy{FIRMWARE} --package board-stm32 --examples -- -D warnings"))?)
 }

@@ -7,28 +7,28 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::analog::Analog;
     use embassy_time::Timer;
     use runtime::sense::Barrier;
 
-    board_stm32::run(async {
-        let mut analog = Analog::new(board_stm32::start().analog);
-        let mut barrier = Barrier::new();
-        loop {
-            let (mut ball, mut seen) = (false, [0.0; 2]);
-            for (lit, seen) in [false, true].into_iter().zip(&mut seen) {
-                analog.light(lit);
-                Timer::after_millis(1).await;
-                *seen = analog.barrier();
-                ball = barrier.step(lit, *seen);
-            }
-            let [dark, lit] = seen;
-            defmt::info!("{=str} (dark {=f32}, lit {=f32})", if ball { "ball" } else { "free" }, dark, lit);
-            Timer::after_millis(100).await;
+    // One task is enough.
+    let _ = spawner;
+    let mut analog = Analog::new(board_stm32::start().analog);
+    let mut barrier = Barrier::new();
+    loop {
+        let (mut ball, mut seen) = (false, [0.0; 2]);
+        for (lit, seen) in [false, true].into_iter().zip(&mut seen) {
+            analog.light(lit);
+            Timer::after_millis(1).await;
+            *seen = analog.barrier();
+            ball = barrier.step(lit, *seen);
         }
-    })
+        let [dark, lit] = seen;
+        defmt::info!("{=str} (dark {=f32}, lit {=f32})", if ball { "ball" } else { "free" }, dark, lit);
+        Timer::after_millis(100).await;
+    }
 }
 
 #[cfg(not(target_os = "none"))]

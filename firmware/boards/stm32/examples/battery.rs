@@ -6,17 +6,17 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::analog::Analog;
 
-    board_stm32::run(async {
-        let mut analog = Analog::new(board_stm32::start().analog);
-        loop {
-            defmt::info!("{=f32} V", analog.battery());
-            embassy_time::Timer::after_secs(1).await;
-        }
-    })
+    // One task is enough.
+    let _ = spawner;
+    let mut analog = Analog::new(board_stm32::start().analog);
+    loop {
+        defmt::info!("{=f32} V", analog.battery());
+        embassy_time::Timer::after_secs(1).await;
+    }
 }
 
 #[cfg(not(target_os = "none"))]

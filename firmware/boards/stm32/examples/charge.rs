@@ -9,8 +9,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::analog::Analog;
     use board_stm32::kicker::Kicker;
     use embassy_time::{Duration, Instant, Timer};
@@ -21,34 +21,34 @@ fn main() -> ! {
     const ENOUGH: f32 = 50.0;
     const EMPTY: f32 = 30.0;
 
-    board_stm32::run(async {
-        let parts = board_stm32::start();
-        let (mut kicker, mut analog) = (Kicker::new(parts.kicker), Analog::new(parts.analog));
-        for round in 1..=3_u8 {
-            let begun = Instant::now();
-            while analog.capacitor() < ENOUGH && begun.elapsed() < Duration::from_secs(2) {
-                kicker.act(KickerAct::Charge).await;
-            }
-            let took = begun.elapsed().as_millis();
-            defmt::info!("round {=u8}: {=f32} V after {=u64} ms", round, analog.capacitor(), took);
-            let begun = Instant::now();
-            while analog.capacitor() >= EMPTY && begun.elapsed() < Duration::from_secs(30) {
-                kicker.act(KickerAct::Bleed).await;
-            }
-            let took = begun.elapsed().as_millis();
-            defmt::info!(
-                "round {=u8}: {=f32} V after {=u64} ms of running empty",
-                round,
-                analog.capacitor(),
-                took
-            );
+    // One task is enough.
+    let _ = spawner;
+    let parts = board_stm32::start();
+    let (mut kicker, mut analog) = (Kicker::new(parts.kicker), Analog::new(parts.analog));
+    for round in 1..=3_u8 {
+        let begun = Instant::now();
+        while analog.capacitor() < ENOUGH && begun.elapsed() < Duration::from_secs(2) {
+            kicker.act(KickerAct::Charge).await;
         }
-        loop {
+        let took = begun.elapsed().as_millis();
+        defmt::info!("round {=u8}: {=f32} V after {=u64} ms", round, analog.capacitor(), took);
+        let begun = Instant::now();
+        while analog.capacitor() >= EMPTY && begun.elapsed() < Duration::from_secs(30) {
             kicker.act(KickerAct::Bleed).await;
-            defmt::info!("{=f32} V; measure before you touch anything", analog.capacitor());
-            Timer::after_secs(1).await;
         }
-    })
+        let took = begun.elapsed().as_millis();
+        defmt::info!(
+            "round {=u8}: {=f32} V after {=u64} ms of running empty",
+            round,
+            analog.capacitor(),
+            took
+        );
+    }
+    loop {
+        kicker.act(KickerAct::Bleed).await;
+        defmt::info!("{=f32} V; measure before you touch anything", analog.capacitor());
+        Timer::after_secs(1).await;
+    }
 }
 
 #[cfg(not(target_os = "none"))]

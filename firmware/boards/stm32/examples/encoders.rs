@@ -7,24 +7,24 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::encoders::Encoders;
     use embassy_time::{Instant, Timer};
 
-    board_stm32::run(async {
-        let mut encoders = Encoders::new(board_stm32::start().encoders);
-        loop {
-            let now = protocol::Instant(Instant::now().as_micros());
-            let rims = encoders.rims(now, [0.0; 4]);
-            defmt::info!(
-                "counts {}, rims {} m/s (front right, back right, back left, front left)",
-                encoders.counts(),
-                rims
-            );
-            Timer::after_millis(200).await;
-        }
-    })
+    // One task is enough.
+    let _ = spawner;
+    let mut encoders = Encoders::new(board_stm32::start().encoders);
+    loop {
+        let now = protocol::Instant(Instant::now().as_micros());
+        let rims = encoders.rims(now, [0.0; 4]);
+        defmt::info!(
+            "counts {}, rims {} m/s (front right, back right, back left, front left)",
+            encoders.counts(),
+            rims
+        );
+        Timer::after_millis(200).await;
+    }
 }
 
 #[cfg(not(target_os = "none"))]

@@ -7,28 +7,28 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::imu::Imu;
     use embassy_time::Timer;
 
-    board_stm32::run(async {
-        let mut imu = Imu::new(board_stm32::start().imu);
-        loop {
-            match imu.start().await {
-                Ok(()) => break,
-                Err(error) => defmt::error!("{}", error),
-            }
-            Timer::after_secs(1).await;
+    // One task is enough.
+    let _ = spawner;
+    let mut imu = Imu::new(board_stm32::start().imu);
+    loop {
+        match imu.start().await {
+            Ok(()) => break,
+            Err(error) => defmt::error!("{}", error),
         }
-        loop {
-            match imu.reading() {
-                Ok(reading) => defmt::info!("{} g, {} rad/s", reading.acceleration, reading.rate),
-                Err(error) => defmt::error!("{}", error),
-            }
-            Timer::after_millis(200).await;
+        Timer::after_secs(1).await;
+    }
+    loop {
+        match imu.reading() {
+            Ok(reading) => defmt::info!("{} g, {} rad/s", reading.acceleration, reading.rate),
+            Err(error) => defmt::error!("{}", error),
         }
-    })
+        Timer::after_millis(200).await;
+    }
 }
 
 #[cfg(not(target_os = "none"))]

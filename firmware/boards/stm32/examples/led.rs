@@ -6,21 +6,21 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use embassy_stm32::gpio::{Level, Output, Speed};
 
-    board_stm32::run(async {
-        let lamps = board_stm32::start().lamps;
-        let mut alive = Output::new(lamps.alive, Level::High, Speed::Low);
-        let mut alarm = Output::new(lamps.alarm, Level::Low, Speed::Low);
-        for second in 0_u32.. {
-            defmt::info!("second {=u32}", second);
-            embassy_time::Timer::after_secs(1).await;
-            alive.toggle();
-            alarm.toggle();
-        }
-    })
+    // One task is enough.
+    let _ = spawner;
+    let lamps = board_stm32::start().lamps;
+    let mut alive = Output::new(lamps.alive, Level::High, Speed::Low);
+    let mut alarm = Output::new(lamps.alarm, Level::Low, Speed::Low);
+    for second in 0_u32.. {
+        defmt::info!("second {=u32}", second);
+        embassy_time::Timer::after_secs(1).await;
+        alive.toggle();
+        alarm.toggle();
+    }
 }
 
 #[cfg(not(target_os = "none"))]

@@ -6,23 +6,23 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::radio;
 
-    board_stm32::run(async {
-        let Some((mut mouth, mut ear)) = radio::open(board_stm32::start().radio) else {
-            defmt::error!("the line cannot have this rate");
-            return;
-        };
-        let mut heard = 0_u32;
-        loop {
-            let bytes = ear.bytes().await;
-            heard = heard.wrapping_add(bytes.len() as u32);
-            mouth.say(bytes).await;
-            defmt::info!("{=u32} bytes, line errors {=u32}", heard, radio::noise());
-        }
-    })
+    // One task is enough.
+    let _ = spawner;
+    let Some((mut mouth, mut ear)) = radio::open(board_stm32::start().radio) else {
+        defmt::error!("the line cannot have this rate");
+        return;
+    };
+    let mut heard = 0_u32;
+    loop {
+        let bytes = ear.bytes().await;
+        heard = heard.wrapping_add(bytes.len() as u32);
+        mouth.say(bytes).await;
+        defmt::info!("{=u32} bytes, line errors {=u32}", heard, radio::noise());
+    }
 }
 
 #[cfg(not(target_os = "none"))]

@@ -8,8 +8,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[cortex_m_rt::entry]
-fn main() -> ! {
+#[embassy_executor::main]
+async fn main(spawner: embassy_executor::Spawner) {
     use board_stm32::wheels::Drivers;
     use embassy_time::Timer;
 
@@ -17,35 +17,31 @@ fn main() -> ! {
     /// Of the battery's voltage: a wheel without load runs 1 m/s at the rim.
     const DUTY: f32 = 0.16;
 
-    board_stm32::run(async {
-        let mut drivers = Drivers::new(board_stm32::start().motors);
-        Timer::after_secs(2).await;
-        for (wheel, name) in NAMES.iter().enumerate() {
-            for sign in [1.0, -1.0] {
-                let mut duty = [0.0; 4];
-                if let Some(one) = duty.get_mut(wheel) {
-                    *one = sign * DUTY;
-                }
-                defmt::info!(
-                    "{=str}, {=str}",
-                    name,
-                    if sign > 0.0 { "counter-clockwise" } else { "clockwise" }
-                );
-                drivers.drive(duty, 0.0);
-                if drivers.has_fault() {
-                    defmt::error!("a driver has switched itself off");
-                }
-                Timer::after_secs(2).await;
-                drivers.release();
-                Timer::after_secs(1).await;
+    // One task is enough.
+    let _ = spawner;
+    let mut drivers = Drivers::new(board_stm32::start().motors);
+    Timer::after_secs(2).await;
+    for (wheel, name) in NAMES.iter().enumerate() {
+        for sign in [1.0, -1.0] {
+            let mut duty = [0.0; 4];
+            if let Some(one) = duty.get_mut(wheel) {
+                *one = sign * DUTY;
             }
+            defmt::info!("{=str}, {=str}", name, if sign > 0.0 { "counter-clockwise" } else { "clockwise" });
+            drivers.drive(duty, 0.0);
+            if drivers.has_fault() {
+                defmt::error!("a driver has switched itself off");
+            }
+            Timer::after_secs(2).await;
+            drivers.release();
+            Timer::after_secs(1).await;
         }
-        defmt::info!("dribbler");
-        drivers.drive([0.0; 4], 0.3);
-        Timer::after_secs(2).await;
-        drivers.release();
-        defmt::info!("done; all without current");
-    })
+    }
+    defmt::info!("dribbler");
+    drivers.drive([0.0; 4], 0.3);
+    Timer::after_secs(2).await;
+    drivers.release();
+    defmt::info!("done; all without current");
 }
 
 #[cfg(not(target_os = "none"))]

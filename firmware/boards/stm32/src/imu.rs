@@ -22,6 +22,8 @@ pub enum ImuError {
     Bus,
     /// Somebody else answers, or nobody (0x00, 0xff): this instead of 0x47.
     Stranger(u8),
+    /// A line that never moves: the sensor is pulled out, or without supply.
+    Silent,
 }
 
 impl From<Error> for ImuError {
@@ -69,6 +71,10 @@ impl Imu {
     /// The newest reading: 13 bytes at 6 MHz, some 20 µs.
     pub fn reading(&mut self) -> Result<Reading, ImuError> {
         let raw: [u8; 12] = self.read(ACCEL_DATA)?;
+        // Six numbers of a sensor that works are never all alike: it weighs itself.
+        if raw.iter().all(|byte| *byte == raw[0]) {
+            return Err(ImuError::Silent);
+        }
         let [ax, ay, az, gx, gy, gz] = words(raw);
         Ok(Reading {
             acceleration: [ax, ay, az].map(|raw| f32::from(raw) * G_A_STEP),

@@ -45,11 +45,3 @@ pub fn start() -> Parts {
     }
     Parts::of(embassy_stm32::init(clocks::config()))
 }
-
-/// Does one thing to its end, without tasks, and then nothing more: what tries out a part.
-pub fn run(work: impl Future<Output = ()>) -> ! {
-    embassy_futures::block_on(work);
-    loop {
-        cortex_m::asm::wfi();
-    }
-}

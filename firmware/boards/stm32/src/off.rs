@@ -4,7 +4,7 @@ use embassy_stm32::pac;
 
 /// No current into motors and coils, the charger off, the capacitor on its resistor.
 ///
-/// A timer in reset drives its pins low (RM0433, 8.7.28). What the pins were is known from `pins`.
+/// A timer in reset drives its pins low (RM0433, 8.7.28). A test holds this to the table in `pins`.
 pub fn everything() {
     pac::RCC.apb2rstr().modify(|reset| {
         reset.set_tim1rst(true);

@@ -12,7 +12,7 @@ use runtime::ports::{self, Seen};
 use runtime::sense::{Barrier, Tilt, Turn};
 
 use crate::analog::Analog;
-use crate::imu::{Imu, Reading};
+use crate::imu::Imu;
 
 /// What was read last.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
@@ -59,12 +59,10 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
         }
         ticker.next().await;
         let reading = if answers { imu.reading().ok() } else { None };
-        // A sensor that lost its supply answers with a line that never moves.
-        if answers && !reading.is_some_and(|reading| is_alive(&reading)) {
+        if answers && reading.is_none() {
             answers = false;
             defmt::warn!("the gyroscope is gone");
         }
-        let reading = reading.filter(|_| answers);
         let now = Instant::now();
         let sample = Sample {
             turn: reading.and_then(|reading| turn.step(reading.rate[UP])),
@@ -90,12 +88,6 @@ impl ports::Probes for Probes {
         let Sample { turn, tipped, ball, battery, capacitor } = newest();
         Seen { turn, ball, tipped, battery: Some(battery), kicker_ready: capacitor >= FULL_VOLTS }
     }
-}
-
-/// Nothing hovers without any acceleration, or at the end of all ranges.
-fn is_alive(reading: &Reading) -> bool {
-    let [x, y, z] = reading.acceleration;
-    [x, y, z] != [0.0; 3] && [x, y, z].iter().any(|g| *g > -15.9) && x != y
 }
 
 static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =

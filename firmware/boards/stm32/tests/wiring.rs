@@ -52,6 +52,23 @@ fn no_pin_has_two_things_to_do_and_none_is_the_probes() {
 }
 
 #[test]
+fn what_a_panic_turns_off_is_what_the_pins_say() {
+    let off = include_str!("../src/off.rs");
+    for (pin, turned_off) in [
+        ("timer: TIM1,", "set_tim1rst(true)"),
+        ("dribbler_timer: TIM5,", "set_tim5rst(true)"),
+        ("coils: TIM15,", "set_tim15rst(true)"),
+        ("charger: TIM16,", "set_tim16rst(true)"),
+        ("enable: PE0,", "set_br(0, true)"),
+        ("hold: PE4,", "set_br(4, true)"),
+    ] {
+        assert!(PINS.contains(&format!("        {pin} \"")), "{pin} is elsewhere now; mend off.rs too");
+        assert!(off.contains(turned_off), "{turned_off}");
+    }
+    assert!(off.contains("pac::GPIOE.bsrr()"));
+}
+
+#[test]
 fn every_example_is_in_the_readme_and_says_what_to_connect_and_what_to_see() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
     let mut seen = 0;
