@@ -2,11 +2,26 @@
 
 use crate::context::{Context, Failure, run};
 
-/// Plays the round robin of all teams and writes `docs/matches.md`.
-pub(crate) fn write_matches(context: &Context) -> Result<(), Failure> {
-    let line = "evaluate matches --fresh --round-robin --out out/matches --markdown docs/matches.md";
-    run(&mut context.cargo(&format!("run --release -- {line}")))
+/// Plays our team against each other team, each against each, our team without or with each part of the second paper, and the paper's
+/// own league, and writes `docs/matches.md`. What was played is kept: the same command goes on after an interrupt.
+pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failure> {
+    for (section, words) in MATCHES {
+        let line = format!(
+            "evaluate matches {words} --out out/matches/{section} --markdown docs/matches.md --section {section}{}",
+            if fresh { " --fresh" } else { "" }
+        );
+        run(&mut context.cargo(&format!("run --release -- {line}")))?;
+    }
+    Ok(())
 }
+
+/// Sections of `docs/matches.md`, and what is played for each: 40 matches tell a goal a match from chance, 10 the order of teams.
+const MATCHES: [(&str, &str); 4] = [
+    ("opponents", "--matches 40"),
+    ("round-robin", "--round-robin --matches 10"),
+    ("ablations", "--ablations --matches 40"),
+    ("ssl-2013", "--league ssl-2013 --matches 10"),
+];
 
 /// Plays the paper's evaluation and the ablations, and puts tables and plots into the documentation; what is not committed, the
 /// reports with everything in them, stays under `out`.

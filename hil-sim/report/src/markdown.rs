@@ -157,18 +157,18 @@ fn escaped(marks: &str) -> String {
     marks.replace('*', "\\*")
 }
 
-/// A file's text with everything between the markers of that name replaced: `<!-- NAME: written by `cargo xtask evaluation` -->` and
+/// A file's text with everything between the markers of that name replaced: `<!-- NAME: written by `cargo xtask CHORE` -->` and
 /// `<!-- end of NAME -->`.
-pub fn between_markers(text: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
-    let (begin, end) = markers(name);
+pub fn between_markers(text: &str, chore: &str, name: &str, generated: &str) -> Result<String, MarkerError> {
+    let (begin, end) = markers(chore, name);
     let missing = |marker: &str| MarkerError::Missing { marker: marker.to_owned() };
     let from = text.find(&begin).ok_or_else(|| missing(&begin))? + begin.len();
     let to = text[from..].find(&end).ok_or_else(|| missing(&end))? + from;
     Ok(format!("{}\n\n{}\n\n{}", &text[..from], generated.trim(), &text[to..]))
 }
 
-fn markers(name: &str) -> (String, String) {
-    (format!("<!-- {name}: written by `cargo xtask evaluation` -->"), format!("<!-- end of {name} -->"))
+fn markers(chore: &str, name: &str) -> (String, String) {
+    (format!("<!-- {name}: written by `cargo xtask {chore}` -->"), format!("<!-- end of {name} -->"))
 }
 
 /// A file lacks a marker.
@@ -199,14 +199,17 @@ mod tests {
 
     #[test]
     fn only_what_stands_between_the_markers_is_replaced() {
-        let (begin, end) = markers("figures");
+        let (begin, end) = markers("evaluation", "figures");
         let text = format!("before\n{begin}\nold\n{end}\nafter\n");
-        let once = between_markers(&text, "figures", "new\n").unwrap();
+        let once = between_markers(&text, "evaluation", "figures", "new\n").unwrap();
         assert_eq!(once, format!("before\n{begin}\n\nnew\n\n{end}\nafter\n"));
-        assert_eq!(between_markers(&once, "figures", "new\n").unwrap(), once);
+        assert_eq!(between_markers(&once, "evaluation", "figures", "new\n").unwrap(), once);
         let missing = |marker: &str| Err(MarkerError::Missing { marker: marker.to_owned() });
-        assert_eq!(between_markers("nothing", "figures", "new"), missing(&begin));
-        assert_eq!(between_markers(&format!("{end}{begin}"), "figures", "new"), missing(&end));
-        assert_eq!(between_markers(&text, "ablations", "new"), missing(&markers("ablations").0));
+        assert_eq!(between_markers("nothing", "evaluation", "figures", "new"), missing(&begin));
+        assert_eq!(between_markers(&format!("{end}{begin}"), "evaluation", "figures", "new"), missing(&end));
+        assert_eq!(
+            between_markers(&text, "evaluation", "ablations", "new"),
+            missing(&markers("evaluation", "ablations").0)
+        );
     }
 }

@@ -2,13 +2,17 @@
 //! offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
 //!
 //! ```text
-//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes ─► matches.json, tables in words, plot
+//! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, tables in words, plots
 //! ```
 //! Shards, files, resuming and merging are [`crate::evaluation`]'s: equal plans give equal bytes for any number of threads, shards
 //! and interrupts.
 
+mod calibration;
+mod effect;
+mod entrant;
 mod outcome;
 mod paper;
+mod passes;
 mod plan;
 mod plot;
 mod row;
@@ -19,10 +23,15 @@ use std::path::Path;
 
 use casebase::{CaseBase, Settings};
 use hil_sim::NativeBackend;
+use rules::Colour;
 use serde::{Deserialize, Serialize};
 
-pub use outcome::{Estimate, Outcome, outcomes};
+pub use calibration::calibration_plot;
+pub use effect::{Change, Effect, effects};
+pub use entrant::Entrant;
+pub use outcome::{Estimate, Outcome, our_passes, outcomes};
 pub use paper::{PAPER, PAPER_PASSES, PaperGame, PaperPasses};
+pub use passes::{Kicked, Passes, Share, Tenth};
 pub use plan::{Pairing, Plan, Planned};
 pub use plot::plot;
 pub use row::MatchRow;
@@ -91,9 +100,11 @@ impl Matches<'_> {
     pub fn config(&self, planned: &Planned) -> Result<GameConfig, EvaluationError> {
         let league = self.plan.league().ok_or(EvaluationError::Nothing)?;
         let (blue, yellow) = planned.sides();
-        let mut config = GameConfig::new(league, planned.seed, self.plan.duration_s).between(blue, yellow);
+        let config = GameConfig::new(league, planned.seed, self.plan.duration_s);
+        let mut config = config.between(blue.team, yellow.team);
         for team in &mut config.teams {
             team.settings = self.settings.clone();
+            team.tactics = if team.colour == Colour::Blue { blue.tactics } else { yellow.tactics };
         }
         Ok(config)
     }

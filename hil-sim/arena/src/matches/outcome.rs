@@ -3,13 +3,16 @@
 use std::collections::BTreeMap;
 
 use host::strategy::Team;
+use host::strategy::tally::PlayTally;
 use serde::Serialize;
 
+use super::entrant::Entrant;
+use super::passes::{self, Passes};
 use super::plan::Plan;
 use super::row::{MatchRow, counted};
 use crate::evaluation::statistics::{Sample, paired, student};
 
-/// A mean over matches.
+/// A mean over matches of what is never below 0, or a share, never above 1; its interval is cut there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
     /// It.
@@ -23,14 +26,14 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Of these numbers; none without any.
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
+    /// Of these numbers, none of which can be more than `most`; none without any.
+    fn of(values: impl Iterator<Item = f64> + Clone, most: f64) -> Option<Self> {
         let sample = Sample::of(values)?;
         let interval = student(sample, CONFIDENCE);
         Some(Self {
             mean: sample.mean,
-            low: interval.map(|interval| interval.low),
-            high: interval.map(|interval| interval.high),
+            low: interval.map(|interval| interval.low.max(0.0)),
+            high: interval.map(|interval| interval.high.min(most)),
             matches: sample.n,
         })
     }
@@ -40,9 +43,9 @@ impl Estimate {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
     /// Whose numbers are told first.
-    pub own: Team,
+    pub own: Entrant,
     /// Against whom.
-    pub opponent: Team,
+    pub opponent: Entrant,
     /// How many were played.
     pub matches: u32,
     /// Won, drawn, lost.
@@ -73,6 +76,8 @@ pub struct Outcome {
     pub losses: [Option<Estimate>; 2],
     /// Share of the match with the ball in play.
     pub ball_in_play: Option<Estimate>,
+    /// Passes of restarts, planned free kicks and P(receive) against what was seen, own and theirs.
+    pub restarts: [Passes; 2],
     /// Offences by kind, all matches, own and theirs.
     pub fouls: [BTreeMap<String, u32>; 2],
 }
@@ -91,11 +96,13 @@ pub fn outcomes(plan: &Plan, rows: &[MatchRow]) -> Vec<Outcome> {
         .collect()
 }
 
-fn outcome(own: Team, opponent: Team, rows: &[&MatchRow]) -> Outcome {
-    let mean = |of: fn(&MatchRow) -> f64| Estimate::of(rows.iter().map(|row| of(row)));
-    let of_some = |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)));
+fn outcome(own: Entrant, opponent: Entrant, rows: &[&MatchRow]) -> Outcome {
+    let mean = |of: fn(&MatchRow) -> f64| Estimate::of(rows.iter().map(|row| of(row)), f64::INFINITY);
+    let ratio =
+        |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)), f64::INFINITY);
+    let share = |of: fn(&MatchRow) -> Option<f64>| Estimate::of(rows.iter().filter_map(|row| of(row)), 1.0);
     let both = |ours: fn(&MatchRow) -> u32, theirs: fn(&MatchRow) -> u32| {
-        [ours, theirs].map(|of| Estimate::of(rows.iter().map(|row| f64::from(of(row)))))
+        [ours, theirs].map(|of| Estimate::of(rows.iter().map(|row| f64::from(of(row))), f64::INFINITY))
     };
     let total = |of: fn(&MatchRow) -> u32| rows.iter().map(|row| of(row)).sum::<u32>();
     let ends = |end: std::cmp::Ordering| {
@@ -123,17 +130,43 @@ fn outcome(own: Team, opponent: Team, rows: &[&MatchRow]) -> Outcome {
         goals_for: mean(|row| f64::from(row.goals)),
         goals_against: mean(|row| f64::from(row.goals_against)),
         goals_p: differences.and_then(paired).map(|test| test.p),
-        offence_ratio: of_some(MatchRow::offence_ratio),
-        attack_ratio: of_some(MatchRow::attack_ratio),
+        offence_ratio: ratio(MatchRow::offence_ratio),
+        attack_ratio: ratio(MatchRow::attack_ratio),
         attack_ratio_of_all: (against > 0).then(|| f64::from(shots) / f64::from(against)),
         shots: both(|row| row.shots, |row| row.shots_against),
         chances: both(|row| row.chances, |row| row.chances_against),
-        possession: of_some(MatchRow::possession),
+        possession: share(MatchRow::possession),
         passes: both(|row| row.passes, |row| row.passes_against),
         losses: both(|row| row.losses, |row| row.losses_against),
-        ball_in_play: mean(|row| f64::from(row.ball_in_play)),
+        ball_in_play: share(|row| Some(f64::from(row.ball_in_play))),
+        restarts: played(rows).map(|play| Passes::of(&play)),
         fouls: [fouls(|row| &row.fouls), fouls(|row| &row.fouls_against)],
     }
 }
 
-const CONFIDENCE: f64 = 0.95;
+/// What both sides' hosts counted, over all matches.
+fn played(rows: &[&MatchRow]) -> [PlayTally; 2] {
+    let mut sums = [PlayTally::default(); 2];
+    for row in rows {
+        for (sum, more) in sums.iter_mut().zip(row.play()) {
+            passes::add(sum, &more);
+        }
+    }
+    sums
+}
+
+/// The passes of restarts of our team in all these matches, whatever its tactics; both sides' where it met itself.
+pub fn our_passes(rows: &[MatchRow]) -> Passes {
+    let mut sum = PlayTally::default();
+    for row in rows {
+        for (side, more) in [row.own, row.opponent].into_iter().zip(row.play()) {
+            if side.team == Team::Ours {
+                passes::add(&mut sum, &more);
+            }
+        }
+    }
+    Passes::of(&sum)
+}
+
+/// Of every interval.
+pub(super) const CONFIDENCE: f64 = 0.95;

@@ -1,17 +1,18 @@
 //! Which matches are played? Each pair of teams so many times, with the same chances for every pair, in turn as blue and as yellow.
 
 use hil_sim::Fnv;
-use host::strategy::Team;
 use rules::League;
 use serde::{Deserialize, Serialize};
+
+use super::entrant::Entrant;
 
 /// Two teams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pairing {
     /// Whose numbers are told first.
-    pub own: Team,
+    pub own: Entrant,
     /// Against whom.
-    pub opponent: Team,
+    pub opponent: Entrant,
 }
 
 /// Numbers the matches: pair by pair.
@@ -44,21 +45,21 @@ pub struct Planned {
 
 impl Planned {
     /// Blue and yellow.
-    pub fn sides(&self) -> (Team, Team) {
+    pub fn sides(&self) -> (Entrant, Entrant) {
         let Pairing { own, opponent } = self.pairing;
         if self.own_is_blue { (own, opponent) } else { (opponent, own) }
     }
 }
 
 impl Plan {
-    /// Our team against each of these.
-    pub fn against(opponents: &[Team]) -> Vec<Pairing> {
-        opponents.iter().map(|&opponent| Pairing { own: Team::Ours, opponent }).collect()
+    /// A team against each of these.
+    pub fn against(own: Entrant, opponents: &[Entrant]) -> Vec<Pairing> {
+        opponents.iter().map(|&opponent| Pairing { own, opponent }).collect()
     }
 
     /// Each of these against each other.
-    pub fn round_robin(teams: &[Team]) -> Vec<Pairing> {
-        let pairs = |(i, &own): (usize, &Team)| {
+    pub fn round_robin(teams: &[Entrant]) -> Vec<Pairing> {
+        let pairs = |(i, &own): (usize, &Entrant)| {
             teams[i + 1..].iter().map(move |&opponent| Pairing { own, opponent }).collect::<Vec<_>>()
         };
         teams.iter().enumerate().flat_map(pairs).collect()
@@ -104,11 +105,13 @@ const SEED_BITS: u32 = 48;
 
 #[cfg(test)]
 mod tests {
+    use host::strategy::Team;
+
     use super::*;
 
     #[test]
     fn pairs_meet_as_often_on_both_sides_with_the_same_seeds() {
-        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone]);
+        let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(Entrant::from));
         assert_eq!(pairings.len(), 3);
         let plan = Plan { seed: 1, league: "division-b".to_owned(), duration_s: 600.0, pairings, matches: 4 };
         let all: Vec<_> = (0..plan.len()).filter_map(|number| plan.get(number)).collect();
@@ -116,9 +119,9 @@ mod tests {
         assert_eq!(all.iter().filter(|planned| planned.own_is_blue).count(), 6);
         for round in 0..4 {
             assert_eq!(all[round].seed, all[round + 4].seed);
-            assert_eq!(all[round].pairing.own, Team::Ours);
+            assert_eq!(all[round].pairing.own, Entrant::ours());
         }
         assert_ne!(all[0].seed, all[1].seed);
-        assert_eq!(all[1].sides(), (Team::Reactive, Team::Ours));
+        assert_eq!(all[1].sides(), (Team::Reactive.into(), Entrant::ours()));
     }
 }

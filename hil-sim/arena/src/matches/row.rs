@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use host::strategy::Team;
+use host::strategy::tally::{CapTally, PlayTally};
 use serde::{Deserialize, Serialize};
 
 use super::MatchIdentity;
+use super::entrant::Entrant;
+use super::passes;
 use super::plan::Planned;
 use crate::evaluation::Entry;
 use crate::game::{GameReport, PerTeam};
@@ -16,9 +18,9 @@ pub struct MatchRow {
     /// Its number in the plan, from 0.
     pub number: usize,
     /// Whose numbers are told first.
-    pub own: Team,
+    pub own: Entrant,
     /// Against whom.
-    pub opponent: Team,
+    pub opponent: Entrant,
     /// The first of them played blue.
     pub own_is_blue: bool,
     /// Plays it again.
@@ -53,6 +55,34 @@ pub struct MatchRow {
     pub losses: u32,
     /// Theirs to us.
     pub losses_against: u32,
+    /// Passes of restarts as the host followed them, by kick and fate: `flat.received:3 chip.out:1`.
+    pub restart_passes: String,
+    /// The opponents'.
+    pub restart_passes_against: String,
+    /// Their P(receive) by tenths: tenth, passes, sum of P(receive), received, as in `9:12:11.2:10`.
+    pub calibration: String,
+    /// The opponents'.
+    pub calibration_against: String,
+    /// Passes of the Coerce and Attack Planner that left.
+    pub cap_attempts: u32,
+    /// … that arrived.
+    pub cap_successes: u32,
+    /// … whose receiver had coerced somebody before.
+    pub cap_reuses: u32,
+    /// … of those, that arrived.
+    pub cap_reuse_successes: u32,
+    /// The opponents' that left.
+    pub cap_attempts_against: u32,
+    /// … that arrived.
+    pub cap_successes_against: u32,
+    /// … whose receiver had coerced somebody before.
+    pub cap_reuses_against: u32,
+    /// … of those, that arrived.
+    pub cap_reuse_successes_against: u32,
+    /// How often a robot's role changed while the phase did not.
+    pub role_changes: u32,
+    /// The opponents'.
+    pub role_changes_against: u32,
     /// Offences: `kind:number`, a blank between two.
     pub fouls: String,
     /// The opponents'.
@@ -92,6 +122,20 @@ impl MatchRow {
             passes_against: theirs.passes,
             losses: own.losses,
             losses_against: theirs.losses,
+            restart_passes: passes::fates_column(&own.play.passes),
+            restart_passes_against: passes::fates_column(&theirs.play.passes),
+            calibration: passes::calibration_column(&own.play.passes),
+            calibration_against: passes::calibration_column(&theirs.play.passes),
+            cap_attempts: own.play.cap.attempts,
+            cap_successes: own.play.cap.successes,
+            cap_reuses: own.play.cap.reuses,
+            cap_reuse_successes: own.play.cap.reuse_successes,
+            cap_attempts_against: theirs.play.cap.attempts,
+            cap_successes_against: theirs.play.cap.successes,
+            cap_reuses_against: theirs.play.cap.reuses,
+            cap_reuse_successes_against: theirs.play.cap.reuse_successes,
+            role_changes: own.play.role_changes,
+            role_changes_against: theirs.play.role_changes,
             fouls: listed(fouls),
             fouls_against: listed(fouls_against),
             trace_hash: report.trace_hash.clone(),
@@ -108,6 +152,34 @@ impl MatchRow {
         (self.shots_against > 0).then(|| f64::from(self.shots) / f64::from(self.shots_against))
     }
 
+    /// What the two hosts counted: own, theirs.
+    pub fn play(&self) -> [PlayTally; 2] {
+        let own = CapTally {
+            attempts: self.cap_attempts,
+            successes: self.cap_successes,
+            reuses: self.cap_reuses,
+            reuse_successes: self.cap_reuse_successes,
+        };
+        let theirs = CapTally {
+            attempts: self.cap_attempts_against,
+            successes: self.cap_successes_against,
+            reuses: self.cap_reuses_against,
+            reuse_successes: self.cap_reuse_successes_against,
+        };
+        [
+            PlayTally {
+                passes: passes::read(&self.restart_passes, &self.calibration),
+                cap: own,
+                role_changes: self.role_changes,
+            },
+            PlayTally {
+                passes: passes::read(&self.restart_passes_against, &self.calibration_against),
+                cap: theirs,
+                role_changes: self.role_changes_against,
+            },
+        ]
+    }
+
     /// Share of the time with a team at the ball in which it was ours.
     pub fn possession(&self) -> Option<f64> {
         let both = f64::from(self.possession_s) + f64::from(self.possession_against_s);
@@ -117,7 +189,7 @@ impl MatchRow {
 
 impl Entry for MatchRow {
     type Identity = MatchIdentity;
-    const MARK: &'static str = "# onetwo matches 1 ";
+    const MARK: &'static str = "# onetwo matches 2 ";
     fn number(&self) -> usize {
         self.number
     }

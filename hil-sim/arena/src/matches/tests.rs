@@ -28,7 +28,10 @@ impl Folder {
                 seed: 4,
                 league: "division-b".to_owned(),
                 duration_s: 4.0,
-                pairings: Plan::against(&[Team::Reactive, Team::Zone]),
+                pairings: Plan::against(
+                    Entrant::ours(),
+                    &[Team::Reactive.into(), Entrant::parse("ours-without-second-level").unwrap()],
+                ),
                 matches: 2,
             },
             base,
@@ -70,8 +73,8 @@ fn threads_shards_and_interrupts_change_no_byte() {
 fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> MatchRow {
     MatchRow {
         number,
-        own: Team::Ours,
-        opponent: Team::Zone,
+        own: Entrant::ours(),
+        opponent: Team::Zone.into(),
         own_is_blue: true,
         seed: 1,
         goals: goals[0],
@@ -89,6 +92,20 @@ fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> Mat
         passes_against: 0,
         losses: 0,
         losses_against: 0,
+        restart_passes: "flat.received:3 flat.out:1".to_owned(),
+        restart_passes_against: "chip.received:1".to_owned(),
+        calibration: "9:4:3.6:3".to_owned(),
+        calibration_against: "4:1:0.45:1".to_owned(),
+        cap_attempts: 2,
+        cap_successes: 1,
+        cap_reuses: 1,
+        cap_reuse_successes: 0,
+        cap_attempts_against: 0,
+        cap_successes_against: 0,
+        cap_reuses_against: 0,
+        cap_reuse_successes_against: 0,
+        role_changes: 5,
+        role_changes_against: 0,
         fouls: "bot_pushed_bot:2".to_owned(),
         fouls_against: String::new(),
         trace_hash: String::new(),
@@ -101,7 +118,7 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
         seed: 1,
         league: "ssl-2013".to_owned(),
         duration_s: 600.0,
-        pairings: Plan::against(&[Team::Zone]),
+        pairings: Plan::against(Entrant::ours(), &[Team::Zone.into()]),
         matches: 3,
     };
     let rows = [
@@ -115,7 +132,8 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     // 2, 1 and 3: mean 2, spread 1; t(2) at 97.5 % is 4.3027, over √3 2.4841.
     let offence = outcome.offence_ratio.unwrap();
     assert!((offence.mean - 2.0).abs() < 1e-9);
-    assert!((offence.high.unwrap() - 4.4841).abs() < 1e-3 && (offence.low.unwrap() + 0.4841).abs() < 1e-3);
+    // Its lower end would be −0.4841: a ratio is never below 0.
+    assert!((offence.high.unwrap() - 4.4841).abs() < 1e-3 && offence.low == Some(0.0));
     // 3 and 1; the third match has none.
     let attack = outcome.attack_ratio.unwrap();
     assert!((attack.mean - 2.0).abs() < 1e-9 && attack.matches == 2);
@@ -123,10 +141,67 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     // Differences 2, 0 and 3: mean 5/3, spread 1.5275, t = 1.8898, p of two sides with 2 degrees 0.1994.
     assert!((outcome.goals_p.unwrap() - 0.1994).abs() < 1e-3, "{:?}", outcome.goals_p);
     assert!((outcome.possession.unwrap().mean - 0.75).abs() < 1e-9);
+    let played = |(row, ball_in_play): (&MatchRow, f32)| MatchRow { ball_in_play, ..row.clone() };
+    let in_play: Vec<_> = rows.iter().zip([1.0, 0.5, 1.0]).map(played).collect();
+    // 0.8333 ± 0.7171: no share is more than 1.
+    let in_play = outcomes(&plan, &in_play).remove(0).ball_in_play.unwrap();
+    assert!((in_play.low.unwrap() - 0.1162).abs() < 1e-3 && in_play.high == Some(1.0));
     assert_eq!(outcome.fouls[0]["bot_pushed_bot"], 6);
-    let text = markdown(std::slice::from_ref(&outcome));
+    let ours = our_passes(&rows);
+    let text = markdown(std::slice::from_ref(&outcome), &[], &ours);
     assert!(text.contains("| ours | zone | 3 | 2, 1, 0 | 6 : 1 |"), "{text}");
+    // Twelve flat passes of three matches, nine arrived: Wilson's 0.4677 to 0.9111. Six planned, half of them.
+    assert!(text.contains("| ours | zone | flat | 12 | 12 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
+    assert!(text.contains("| zone | ours | chip | 3 | 3 | 3 | 1.00 (0.44 to 1.00) |"), "{text}");
+    assert!(text.contains("| ours | zone | 3 | 6 | 3 | 0.50 (0.19 to 0.81) | 3 | 0 |"), "{text}");
+    assert!(text.contains("| 0.9 to 1.0 | 12 | 0.90 | 9 | 0.75 (0.47 to 0.91) |"), "{text}");
+    assert!(text.contains("Team F (RR)") && text.contains("| Team H | 1 | 11 | 11 |"), "{text}");
     assert!(plot(&[outcome]).contains("ours – zone"));
+    let drawn = calibration_plot(&ours);
+    assert!(drawn.contains(">12<") && drawn.matches("<ellipse").count() == 1, "{drawn}");
+}
+
+#[test]
+fn a_part_is_worth_what_the_side_with_it_was_ahead() {
+    let without = Entrant::parse("ours-without-second-level").unwrap();
+    let plan = Plan {
+        seed: 1,
+        league: "division-b".to_owned(),
+        duration_s: 600.0,
+        pairings: Plan::against(Entrant::ours(), &[without, Team::Zone.into()]),
+        matches: 2,
+    };
+    let of = |row: MatchRow| MatchRow { opponent: without, ..row };
+    let rows = [
+        of(row(0, [2, 0], [200.0, 100.0], [7, 1])),
+        of(row(1, [0, 1], [50.0, 400.0], [0, 0])),
+        row(2, [9, 0], [9.0, 1.0], [9, 0]),
+    ];
+    let effects = effects(&plan, &rows);
+    assert_eq!(effects.len(), 1, "another team lacks no part");
+    let effect = &effects[0];
+    assert_eq!((&*effect.part, effect.with, effect.matches), ("second-level", Entrant::ours(), 2));
+    // 2 and −1: mean 0.5; 6 and 0: mean 3.
+    assert!(
+        (effect.goals.unwrap().mean - 0.5).abs() < 1e-9 && (effect.shots.unwrap().mean - 3.0).abs() < 1e-9
+    );
+    // √(2 · 1/8) = 0.5; √(7.5/1.5 · 0.5/0.5) = √5.
+    assert!((effect.offence_ratio.unwrap().mean - 0.5).abs() < 1e-9);
+    assert!((effect.attack_ratio.unwrap().mean - 5.0_f64.sqrt()).abs() < 1e-9);
+    // 2 and −1 once more: spread 2.1213, t = 1/3 with 1 degree, p = 0.7952.
+    assert!((effect.goals.unwrap().p.unwrap() - 0.7952).abs() < 1e-4);
+    // The same told from the other side.
+    let turned = Plan { pairings: vec![Pairing { own: without, opponent: Entrant::ours() }], ..plan };
+    let rows = [row(0, [0, 2], [100.0, 200.0], [1, 7])].map(|row| MatchRow {
+        own: without,
+        opponent: Entrant::ours(),
+        ..row
+    });
+    let effect = super::effects(&turned, &rows).remove(0);
+    assert_eq!((effect.with, effect.goals.unwrap().mean), (Entrant::ours(), 2.0));
+    assert!((effect.offence_ratio.unwrap().mean - 2.0).abs() < 1e-9 && effect.goals.unwrap().p.is_none());
+    let text = markdown(&[], &[effect], &our_passes(&[]));
+    assert!(text.contains("| second-level | ours | ours-without-second-level | 1 | 2.00 | – |"), "{text}");
 }
 
 #[test]

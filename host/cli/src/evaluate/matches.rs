@@ -1,4 +1,5 @@
-//! `onetwo evaluate matches`: what does our play come to against other teams? The second paper's Table 2 (Biswas et al. 2014 §6).
+//! `onetwo evaluate matches`: what does our play come to against other teams, and what is each part of it worth? The second paper's
+//! Tables 1 and 2 (Biswas et al. 2014 §6).
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,20 +8,23 @@ use std::process::ExitCode;
 
 use arena::evaluation::{EvaluationError, Shard, csv_hash, merge, to_csv};
 use arena::matches::{
-    MatchIdentity, MatchRow, Matches, Outcome, PAPER, PAPER_PASSES, Plan, markdown, outcomes, plot,
+    Effect, Entrant, MatchIdentity, MatchRow, Matches, Outcome, PAPER, PAPER_PASSES, Passes, Plan,
+    calibration_plot, effects, markdown, our_passes, outcomes, plot,
 };
 use casebase::CaseBase;
 use clap::Args;
-use host::strategy::Team;
+use host::strategy::{Tactics, Team};
+use report::Picture;
 use rules::League;
 use serde_json::json;
 
 use super::merge::shards;
+use super::report::insert;
 use super::work::{self, WorkArgs};
 use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs, VERSION};
 use crate::library::Shelf;
-use crate::play::{cases, league, seconds, team};
+use crate::play::{cases, league, seconds};
 
 /// Which matches, and where to.
 #[derive(Debug, Args)]
@@ -37,9 +41,17 @@ pub(super) struct MatchesArgs {
     /// Where all chance comes from.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Against whom we play, with commas between: reactive, marking, zone, idle, ours.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = team)]
-    opponents: Vec<Team>,
+    /// Who plays against the opponents; as they are named there.
+    #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = Entrant::parse)]
+    team: Entrant,
+    /// Against whom, with commas between: reactive, marking, zone (these three unless told), idle, ours, or ours with other
+    /// tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = Entrant::parse)]
+    opponents: Vec<Entrant>,
+    /// Our team with one part of the second paper more or less, for each part: what is it worth? Instead of the opponents, or
+    /// beside those that are named, or one more each in the round robin.
+    #[arg(long)]
+    ablations: bool,
     /// Each team against each: ours and the opponents.
     #[arg(long)]
     round_robin: bool,
@@ -49,9 +61,12 @@ pub(super) struct MatchesArgs {
     /// Plays nothing: puts the shards together that were written to this folder; may be repeated.
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
-    /// A document to be written of it, its picture in a folder beside it.
+    /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
+    /// Which markers: those of that name.
+    #[arg(long, value_name = "NAME", default_value = "matches", requires = "markdown")]
+    section: String,
     #[command(flatten)]
     work: WorkArgs,
     #[command(flatten)]
@@ -68,7 +83,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
         }
         let (identity, rows) = merge(kept)?;
         let folder = args.work.folder()?;
-        return finish(&identity, &rows, folder, args.markdown.as_deref());
+        return args.finish(&Made::new(&identity, &rows)?, folder);
     }
     let shelf = cases(&args.folder, args.league)?;
     let matches = Matches {
@@ -82,7 +97,7 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
     let pool = args.work.pool()?;
     let rows = work::with_bar(&pool, "playing", |told| matches.play_shard(args.shard, &file, told))?;
     if args.shard == Shard::WHOLE {
-        return finish(&matches.identity(), &rows, folder, args.markdown.as_deref());
+        return args.finish(&Made::new(&matches.identity(), &rows)?, folder);
     }
     let (kept, out) = (file.display(), folder.display());
     work::say(&format!(
@@ -94,12 +109,18 @@ pub(super) fn run(args: &MatchesArgs) -> Result<ExitCode, Failure> {
 
 impl MatchesArgs {
     fn plan(&self) -> Plan {
-        let opponents = if self.opponents.is_empty() { &Team::OPPONENTS[..] } else { &self.opponents };
+        let mut opponents = self.opponents.clone();
+        if opponents.is_empty() && (self.round_robin || !self.ablations) {
+            opponents.extend(Team::OPPONENTS.map(Entrant::from));
+        }
+        if self.ablations {
+            opponents.extend(Entrant::ablations());
+        }
         let pairings = if self.round_robin {
-            let teams: Vec<_> = [Team::Ours].iter().chain(opponents).copied().collect();
+            let teams: Vec<_> = [self.team].into_iter().chain(opponents).collect();
             Plan::round_robin(&teams)
         } else {
-            Plan::against(opponents)
+            Plan::against(self.team, &opponents)
         };
         Plan {
             seed: self.seed,
@@ -109,63 +130,96 @@ impl MatchesArgs {
             matches: self.matches,
         }
     }
-}
 
-/// Writes `matches.csv`, `matches.json` and the plot, and says the tables.
-fn finish(
-    identity: &MatchIdentity,
-    rows: &[MatchRow],
-    folder: &Path,
-    document: Option<&Path>,
-) -> Result<ExitCode, Failure> {
-    let csv = to_csv(rows).map_err(EvaluationError::from)?;
-    let hash = csv_hash(&csv);
-    let outcomes = outcomes(&identity.plan, rows);
-    let json = json!({
-        "identity": identity, "csv_hash": hash, "pairs": outcomes,
-        "paper": { "table_1": PAPER_PASSES, "table_2": PAPER },
-    });
-    let json = serde_json::to_vec_pretty(&json).map_err(|error| Failure::Output(error.into()))?;
-    write(&folder.join("matches.csv"), &csv)?;
-    write(&folder.join("matches.json"), &json)?;
-    write(&folder.join("ratios.svg"), plot(&outcomes).as_bytes())?;
-    if let Some(file) = document {
-        let pictures = file.with_extension("");
-        work::make(&pictures)?;
-        write(&pictures.join("ratios.svg"), plot(&outcomes).as_bytes())?;
-        let beside = pictures.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        write(file, text(identity, &outcomes, &hash, &beside).as_bytes())?;
+    /// Writes `matches.csv`, `matches.json` and the plots, and says the tables.
+    fn finish(&self, made: &Made<'_>, folder: &Path) -> Result<ExitCode, Failure> {
+        write(&folder.join("matches.csv"), &made.csv)?;
+        write(&folder.join("matches.json"), &made.json()?)?;
+        for picture in made.pictures("") {
+            write(&folder.join(&picture.name).with_extension("svg"), picture.svg.as_bytes())?;
+        }
+        if let Some(file) = &self.markdown {
+            let figures = |beside: &str| made.text(beside, &self.section);
+            insert(file, ("matches", &self.section), figures, made.pictures(&format!("{}-", self.section)))?;
+        }
+        let (matches, seed) = (made.matches, made.identity.plan.seed);
+        work::say(&format!(
+            "{}\n{matches} matches, seed {seed}, csv hash {}, in {}\n",
+            made.tables(),
+            made.hash,
+            folder.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
     }
-    let (matches, seed) = (rows.len(), identity.plan.seed);
-    work::say(&format!(
-        "{}\n{matches} matches, seed {seed}, csv hash {hash}, in {}\n",
-        markdown(&outcomes),
-        folder.display()
-    ))?;
-    Ok(ExitCode::SUCCESS)
 }
 
-fn text(identity: &MatchIdentity, outcomes: &[Outcome], hash: &str, pictures: &str) -> String {
-    let plan = &identity.plan;
-    let mut text = String::from(
-        "# Matches\n\nWritten by `cargo xtask matches`; nothing here is typed by hand.\n\n\
-         Means a match, in brackets their 95 % intervals (Student's t); p is the paired t test of goals for and against. \
-         The offence ratio is the time in play with the ball in their half over that in ours, the attack ratio our shots at \
-         the goal over theirs (Biswas et al. 2014 §6): its mean is over the matches in which they shot at all, \"of all shots\" \
-         counts every match. Teams: `ours`; `reactive` chases the ball, `marking` stays with every opponent, `zone` follows the \
-         ball with a wall (`host/src/strategy/opponents`).\n\n",
-    );
-    // Writing to a String cannot fail.
-    let _ = writeln!(
-        text,
-        "{} matches a pair of {} s on {}, seed {}, csv hash {hash}.\n\n![Offence and attack ratios]({pictures}/ratios.svg)\n\n{}",
-        plan.matches,
-        plan.duration_s,
-        plan.league,
-        plan.seed,
-        markdown(outcomes).trim_end()
-    );
-    text
+/// What all matches come to.
+struct Made<'a> {
+    identity: &'a MatchIdentity,
+    matches: usize,
+    csv: Vec<u8>,
+    hash: String,
+    outcomes: Vec<Outcome>,
+    effects: Vec<Effect>,
+    passes: Passes,
+}
+
+impl<'a> Made<'a> {
+    fn new(identity: &'a MatchIdentity, rows: &[MatchRow]) -> Result<Self, Failure> {
+        let csv = to_csv(rows).map_err(EvaluationError::from)?;
+        Ok(Self {
+            identity,
+            matches: rows.len(),
+            hash: csv_hash(&csv),
+            csv,
+            outcomes: outcomes(&identity.plan, rows),
+            effects: effects(&identity.plan, rows),
+            passes: our_passes(rows),
+        })
+    }
+
+    fn json(&self) -> Result<Vec<u8>, Failure> {
+        let json = json!({
+            "identity": self.identity, "csv_hash": self.hash, "pairs": self.outcomes, "effects": self.effects,
+            "restart_passes": self.passes, "paper": { "table_1": PAPER_PASSES, "table_2": PAPER },
+        });
+        serde_json::to_vec_pretty(&json).map_err(|error| Failure::Output(error.into()))
+    }
+
+    fn tables(&self) -> String {
+        markdown(&self.outcomes, &self.effects, &self.passes)
+    }
+
+    fn pictures(&self, prefix: &str) -> Vec<Picture> {
+        let named = |name: &str, svg| Picture { name: format!("{prefix}{name}"), svg };
+        vec![named("ratios", plot(&self.outcomes)), named("calibration", calibration_plot(&self.passes))]
+    }
+
+    /// For a document, whose pictures lie in the folder `beside`.
+    fn text(&self, beside: &str, section: &str) -> String {
+        let MatchIdentity { plan, case_base, .. } = self.identity;
+        let cases = if case_library::LEAGUES.iter().any(|known| known.name == plan.league) {
+            format!("cases {case_base}")
+        } else {
+            "no cases come with this league: robots that the host leaves free play reactively".to_owned()
+        };
+        let mut text = String::new();
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{} matches a pair of {} s on {} ({cases}), seed {}, csv hash {}. `ours` plays {} of the second paper.\n\n\
+             ![Offence and attack ratios]({beside}{section}-ratios.svg)\n\n\
+             ![P(receive) as predicted and seen]({beside}{section}-calibration.svg)\n\n{}",
+            plan.matches,
+            plan.duration_s,
+            plan.league,
+            plan.seed,
+            self.hash,
+            Tactics::default().words().replace(',', ", "),
+            self.tables().trim_end()
+        );
+        text
+    }
 }
 
 fn write(file: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -61,7 +61,9 @@ pub(super) fn write_ablation(ablation: &Ablation<'_>, folder: &Path, args: &Page
         picture::write(&folder.join("plots").join(&drawn.name).with_extension("png"), &drawn.svg)?;
     }
     match &args.markdown {
-        Some(file) => insert(file, "ablations", |pictures| ablation.markdown(pictures), vec![drawn]),
+        Some(file) => {
+            insert(file, ("evaluation", "ablations"), |pictures| ablation.markdown(pictures), vec![drawn])
+        }
         None => Ok(()),
     }
 }
@@ -128,14 +130,14 @@ impl Made {
 
     fn write_markdown(&self, results: &Results, file: &Path) -> Result<(), Failure> {
         let report = self.report(results);
-        insert(file, "figures", |pictures| report.markdown(pictures), report.pictures())
+        insert(file, ("evaluation", "figures"), |pictures| report.markdown(pictures), report.pictures())
     }
 }
 
-/// Figures between the markers of that name in a file, and those of the pictures that they show beside it.
-fn insert(
+/// Figures between the markers of that chore and name in a file, and those of the pictures that they show beside it.
+pub(super) fn insert(
     file: &Path,
-    name: &str,
+    (chore, name): (&str, &str),
     figures: impl Fn(&str) -> String,
     pictures: Vec<Picture>,
 ) -> Result<(), Failure> {
@@ -143,7 +145,7 @@ fn insert(
     let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
     let text = fs::read_to_string(file).map_err(failed)?;
     let figures = figures(&beside);
-    let text = report::between_markers(&text, name, &figures)
+    let text = report::between_markers(&text, chore, name, &figures)
         .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
     let folder = file.with_extension("");
     work::make(&folder)?;

@@ -1,6 +1,7 @@
 //! Does the built `onetwo evaluate` do what DESIGN §8 says, seen from outside? Few trials of each kind.
 
 mod common;
+mod matches;
 mod report;
 
 use std::fs;

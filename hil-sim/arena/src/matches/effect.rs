@@ -1,0 +1,96 @@
+//! What is a part of the second paper worth? Our team with it against our team without, in the same matches (papers-checklist D24).
+//!
+//! Goals by their difference a match; the paper's two ratios (Biswas et al. 2014 §6) by the mean of their logarithms, for 2 and 1/2 are
+//! as far from 1, half a shot added to each side so that a match without shots has a ratio too. Student's 95 % intervals, paired t.
+
+use serde::Serialize;
+
+use super::entrant::Entrant;
+use super::outcome::CONFIDENCE;
+use super::plan::Plan;
+use super::row::MatchRow;
+use crate::evaluation::statistics::{Sample, paired, student};
+
+/// How far the side with the part was ahead.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Change {
+    /// A difference, 0 where the part changes nothing; or a ratio, 1 where it changes nothing.
+    pub mean: f64,
+    /// Lower end of its 95 % interval; none of a single match.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+    /// The chance of as much between equals.
+    pub p: Option<f64>,
+    /// Matches that have the number.
+    pub matches: u32,
+}
+
+impl Change {
+    fn of(values: impl Iterator<Item = f64> + Clone, shown: fn(f64) -> f64) -> Option<Self> {
+        let sample = Sample::of(values)?;
+        let interval = student(sample, CONFIDENCE);
+        Some(Self {
+            mean: shown(sample.mean),
+            low: interval.map(|interval| shown(interval.low)),
+            high: interval.map(|interval| shown(interval.high)),
+            p: paired(sample).map(|test| test.p),
+            matches: sample.n,
+        })
+    }
+}
+
+/// A part's worth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Effect {
+    /// Its name; several with a `+` between.
+    pub part: String,
+    /// Who played with it.
+    pub with: Entrant,
+    /// Who played without.
+    pub without: Entrant,
+    /// Matches.
+    pub matches: u32,
+    /// Goals a match with it, less those without.
+    pub goals: Option<Change>,
+    /// Shots a match, likewise.
+    pub shots: Option<Change>,
+    /// Offence ratio of the side with it.
+    pub offence_ratio: Option<Change>,
+    /// Attack ratio of the side with it.
+    pub attack_ratio: Option<Change>,
+}
+
+/// One of each pair of the plan whose teams differ by parts that one of them has and the other lacks.
+pub fn effects(plan: &Plan, rows: &[MatchRow]) -> Vec<Effect> {
+    let of = |own: Entrant, opponent: Entrant| {
+        let (more, less) = (own.beyond(opponent), opponent.beyond(own));
+        let (part, own_has) = match (&more[..], &less[..]) {
+            ([], []) => return None,
+            (_, []) => (more.join("+"), true),
+            ([], _) => (less.join("+"), false),
+            _ => return None,
+        };
+        let rows = rows.iter().filter(|row| (row.own, row.opponent) == (own, opponent));
+        let sign = if own_has { 1.0 } else { -1.0 };
+        let goals = |row: &MatchRow| f64::from(row.goals) - f64::from(row.goals_against);
+        let shots = |row: &MatchRow| f64::from(row.shots) - f64::from(row.shots_against);
+        let attack =
+            |row: &MatchRow| ((f64::from(row.shots) + HALF) / (f64::from(row.shots_against) + HALF)).ln();
+        let offence = |row: &MatchRow| row.offence_ratio().filter(|ratio| *ratio > 0.0).map(f64::ln);
+        Some(Effect {
+            part,
+            with: if own_has { own } else { opponent },
+            without: if own_has { opponent } else { own },
+            matches: rows.clone().count() as u32,
+            goals: Change::of(rows.clone().map(|row| sign * goals(row)), |x| x),
+            shots: Change::of(rows.clone().map(|row| sign * shots(row)), |x| x),
+            offence_ratio: Change::of(rows.clone().filter_map(offence).map(|x| sign * x), f64::exp),
+            attack_ratio: Change::of(rows.map(|row| sign * attack(row)), f64::exp),
+        })
+    };
+    plan.pairings.iter().filter_map(|pairing| of(pairing.own, pairing.opponent)).collect()
+}
+
+/// Of a shot, added to both sides (Haldane 1956).
+const HALF: f64 = 0.5;

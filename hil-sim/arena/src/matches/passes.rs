@@ -1,0 +1,219 @@
+//! Which passes arrived, and was P(receive) right? What hosts count of their passes in a match, as a row's columns, and its sums over
+//! matches: the second paper's Table 1, passes by kind of kick, and the calibration of its equation 5. Shares with Wilson's 95 % intervals.
+
+use std::fmt::Write as _;
+
+use host::strategy::pass::PassTally;
+use host::strategy::pass::tally::{Bin, Fates};
+use host::strategy::tally::{CapTally, PlayTally};
+use serde::Serialize;
+
+use super::outcome::CONFIDENCE;
+use super::row::counted;
+use crate::evaluation::statistics::{Count, Interval, wilson};
+
+/// How often each kick had each fate: `flat.received:3 chip.out:1`.
+pub(super) fn fates_column(passes: &PassTally) -> String {
+    let mut passes = *passes;
+    let mut text = String::new();
+    for (kind, fates) in kinds(&mut passes) {
+        for (fate, n) in named(fates) {
+            if *n > 0 {
+                // Writing to a String cannot fail.
+                let _ = write!(text, "{}{kind}.{fate}:{n}", if text.is_empty() { "" } else { " " });
+            }
+        }
+    }
+    text
+}
+
+/// P(receive) by tenths: `9:12:11.2:10` are 12 passes of the tenth from 0.9, with 11.2 expected to arrive and 10 that did.
+pub(super) fn calibration_column(passes: &PassTally) -> String {
+    let bins = passes.calibration.iter().enumerate().filter(|(_, bin)| bin.passes > 0);
+    let words: Vec<_> = bins
+        .map(|(tenth, bin)| format!("{tenth}:{}:{}:{}", bin.passes, bin.predicted, bin.received))
+        .collect();
+    words.join(" ")
+}
+
+/// What the two columns hold.
+pub(super) fn read(fates: &str, calibration: &str) -> PassTally {
+    let mut passes = PassTally::default();
+    for (name, n) in counted(fates) {
+        let Some((kind, fate)) = name.split_once('.') else { continue };
+        let of_kind = kinds(&mut passes).into_iter().find(|(word, _)| *word == kind);
+        let count = of_kind.and_then(|(_, fates)| named(fates).into_iter().find(|(word, _)| *word == fate));
+        if let Some((_, count)) = count {
+            *count += n;
+        }
+    }
+    for bin in calibration.split_whitespace() {
+        let mut words = bin.split(':');
+        let tenth = words.next().and_then(|word| word.parse::<usize>().ok());
+        let Some(slot) = tenth.and_then(|tenth| passes.calibration.get_mut(tenth)) else { continue };
+        let mut word = || words.next();
+        slot.passes += word().and_then(|word| word.parse().ok()).unwrap_or(0);
+        slot.predicted += word().and_then(|word| word.parse::<f64>().ok()).unwrap_or(0.0);
+        slot.received += word().and_then(|word| word.parse().ok()).unwrap_or(0);
+    }
+    passes
+}
+
+fn kinds(passes: &mut PassTally) -> [(&'static str, &mut Fates); 2] {
+    [("flat", &mut passes.flat), ("chip", &mut passes.chip)]
+}
+
+fn named(fates: &mut Fates) -> [(&'static str, &mut u32); 7] {
+    let Fates { received, by_mate, intercepted, missed, late, out, no_kick } = fates;
+    [
+        ("received", received),
+        ("by_mate", by_mate),
+        ("intercepted", intercepted),
+        ("missed", missed),
+        ("late", late),
+        ("out", out),
+        ("no_kick", no_kick),
+    ]
+}
+
+/// A share with its interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// So often it was so.
+    pub hits: u32,
+    /// Of so many.
+    pub of: u32,
+    /// 0 to 1; none of none.
+    pub share: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+impl Share {
+    /// Of that many.
+    pub fn new(hits: u32, of: u32) -> Self {
+        let count = Count { hits, of };
+        let interval: Option<Interval> = wilson(count, CONFIDENCE);
+        let (low, high) = (interval.map(|i| i.low), interval.map(|i| i.high));
+        Self { hits, of, share: count.share(), low, high }
+    }
+}
+
+/// Passes of one kind of kick, all matches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Kicked {
+    /// `flat` or `chip`.
+    pub kick: &'static str,
+    /// Begun, kicked or not.
+    pub ordered: u32,
+    /// Of those that were kicked, those that the receiver or another mate had.
+    pub arrived: Share,
+    /// What became of each.
+    pub fates: Fates,
+}
+
+/// Passes whose P(receive) lay in one tenth.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Tenth {
+    /// 0 for 0 to 0.1, …
+    pub tenth: usize,
+    /// Their mean P(receive).
+    pub predicted: f64,
+    /// Those that their receiver had.
+    pub seen: Share,
+}
+
+/// All passes of restarts of one side of a pair.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Passes {
+    /// By kind of kick.
+    pub kinds: Vec<Kicked>,
+    /// Free kicks by the Coerce and Attack Planner.
+    pub cap: CapTally,
+    /// Those of its passes that arrived.
+    pub cap_arrived: Share,
+    /// P(receive) against what was seen; tenths without passes are left out.
+    pub calibration: Vec<Tenth>,
+    /// The mean of |predicted − seen| over the tenths, by passes; none without passes.
+    pub calibration_error: Option<f64>,
+    /// How often a robot's role changed while the phase did not.
+    pub role_changes: u32,
+}
+
+impl Passes {
+    /// Of what all matches counted.
+    pub fn of(play: &PlayTally) -> Self {
+        let mut passes = play.passes;
+        let kinds = kinds(&mut passes).map(|(kick, fates)| Kicked {
+            kick,
+            ordered: fates.ordered(),
+            arrived: Share::new(fates.successful(), fates.kicked()),
+            fates: *fates,
+        });
+        let tenth = |(tenth, bin): (usize, &Bin)| {
+            let predicted = bin.predicted / f64::from(bin.passes);
+            (bin.passes > 0).then(|| Tenth { tenth, predicted, seen: Share::new(bin.received, bin.passes) })
+        };
+        Self {
+            kinds: kinds.to_vec(),
+            cap: play.cap,
+            cap_arrived: Share::new(play.cap.successes, play.cap.attempts),
+            calibration: play.passes.calibration.iter().enumerate().filter_map(tenth).collect(),
+            calibration_error: play.passes.calibration_error(),
+            role_changes: play.role_changes,
+        }
+    }
+}
+
+/// Another match's counts, too.
+pub(super) fn add(sum: &mut PlayTally, more: &PlayTally) {
+    sum.passes.add(&more.passes);
+    sum.cap.attempts += more.cap.attempts;
+    sum.cap.successes += more.cap.successes;
+    sum.cap.reuses += more.cap.reuses;
+    sum.cap.reuse_successes += more.cap.reuse_successes;
+    sum.role_changes += more.role_changes;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 3 + 1 flat passes, one chip; P(receive) 0.95 thrice and 0.25 once.
+    fn passes() -> PassTally {
+        let mut passes = PassTally::default();
+        (passes.flat.received, passes.flat.late, passes.flat.no_kick, passes.chip.out) = (2, 1, 1, 1);
+        passes.calibration[9] = Bin { passes: 3, predicted: 2.850_000_000_000_1, received: 2 };
+        passes.calibration[2] = Bin { passes: 1, predicted: 0.25, received: 0 };
+        passes
+    }
+
+    #[test]
+    fn the_columns_of_a_row_hold_what_was_counted_to_the_bit() {
+        let (fates, calibration) = (fates_column(&passes()), calibration_column(&passes()));
+        assert_eq!(fates, "flat.received:2 flat.late:1 flat.no_kick:1 chip.out:1");
+        assert_eq!(calibration, "2:1:0.25:0 9:3:2.8500000000001:2");
+        assert_eq!(read(&fates, &calibration), passes());
+        assert_eq!(read("", ""), PassTally::default());
+        assert_eq!(read("flat.lost:3 steep.out:1 x", "12:1:1:1 a"), PassTally::default());
+    }
+
+    #[test]
+    fn shares_and_their_intervals_are_those_counted_by_hand() {
+        let cap = CapTally { attempts: 10, successes: 9, reuses: 4, reuse_successes: 3 };
+        let mut play = PlayTally { passes: passes(), cap, role_changes: 7 };
+        let told = Passes::of(&play);
+        // Wilson's interval of 9/10, from any table: 0.5958 to 0.9821.
+        let share = told.cap_arrived;
+        assert!((share.low.unwrap() - 0.5958).abs() < 1e-4 && (share.high.unwrap() - 0.9821).abs() < 1e-4);
+        let flat = &told.kinds[0];
+        assert_eq!((flat.kick, flat.ordered, flat.arrived.hits, flat.arrived.of), ("flat", 4, 2, 3));
+        let tenths: Vec<_> = told.calibration.iter().map(|tenth| (tenth.tenth, tenth.seen.of)).collect();
+        assert_eq!(tenths, [(2, 1), (9, 3)]);
+        assert!((told.calibration[1].predicted - 0.95).abs() < 1e-9);
+        add(&mut play, &PlayTally { passes: passes(), cap, role_changes: 7 });
+        assert_eq!((Passes::of(&play).cap_arrived.of, play.role_changes), (20, 14));
+    }
+}
