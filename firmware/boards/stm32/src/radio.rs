@@ -3,9 +3,11 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::{self, RingBufferedUartRx, Uart, UartTx};
 use embassy_stm32::{bind_interrupts, dma, peripherals};
+use embassy_time::{Duration, Timer};
 use protocol::link::Packet;
 use protocol::serial::{LINE_LEN_MAX, Lines, line};
 use runtime::ports::{RadioReceiver, RadioSender};
@@ -25,6 +27,8 @@ pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
     static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
     let mut config = usart::Config::default();
     config.baudrate = BAUD;
+    // Where no radio is plugged in, the line is at rest.
+    config.rx_pull = Pull::Up;
     let line =
         Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
     let (tx, rx) = line.split();
@@ -49,11 +53,13 @@ impl Ear {
     /// Some bytes, as they come.
     pub async fn bytes(&mut self) -> &[u8] {
         let len = loop {
-            match self.rx.read(&mut self.came).await {
-                Ok(len) => break len,
-                // A line that is pulled out or set to another rate; it goes on with the next read.
-                Err(_) => NOISE.store(noise().wrapping_add(1), Ordering::Relaxed),
+            if let Ok(len) = self.rx.read(&mut self.came).await {
+                break len;
             }
+            // A line that is pulled out or set to another rate. It goes on with the next read, but noise without end must not take
+            // the other tasks' time.
+            NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
+            Timer::after(REST).await;
         };
         self.came.get(..len).unwrap_or_default()
     }
@@ -112,5 +118,7 @@ static NOISE: AtomicU32 = AtomicU32::new(0);
 const BAUD: u32 = 1_000_000;
 /// What comes in 5 ms; the half of it rings. The brain's longest step takes a fifth of a millisecond.
 const RING_LEN: usize = 512;
+/// After an error, before it listens again: shorter than the pause between two of the host's pictures.
+const REST: Duration = Duration::from_millis(1);
 /// Looked at in one go.
 const CHUNK: usize = 64;
