@@ -5,16 +5,17 @@
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
 //! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
 
-use geometry::{GoalEnd, Point, Vector};
+use geometry::{GoalEnd, Point};
 use protocol::frame::{Refusal, TeamKey};
 use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
-use protocol::{Duration, Instant, RobotId, TeamId, Who};
+use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
 use crate::geometry::VisionGeometry;
+use crate::hidden_ball::HiddenBall;
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::{self, Listener};
 use crate::strategy::tally::{Bookkeeper, PlayTally};
@@ -110,10 +111,7 @@ pub struct Host {
     coach: Coach,
     robots: [Known; RobotId::COUNT],
     world: World,
-    /// The ball as it was when last seen.
-    last_ball: Option<Ball>,
-    /// The opponent that hides the ball from all cameras, if one does.
-    hidden_by: Option<Who>,
+    hidden: HiddenBall,
     orders: Orders,
     planned: Option<Instant>,
     undecodable: Undecodable,
@@ -139,8 +137,7 @@ impl Host {
             coach: Coach::new(settings.team, settings.tactics, settings.league),
             robots: Default::default(),
             world: World::default(),
-            last_ball: None,
-            hidden_by: None,
+            hidden: HiddenBall::default(),
             orders: Orders::new(),
             planned: None,
             undecodable: Undecodable::default(),
@@ -317,43 +314,15 @@ impl Host {
         self.radio.offer(now, &self.world, situation, &commands);
     }
 
-    /// A ball that no camera sees is under a robot: of ours, at the one that feels it; of theirs, at the one whose front was at it
-    /// when it vanished; else where it was seen last.
+    /// A ball that no camera sees is put where it must be.
     fn remember_ball(&mut self, now: Instant) {
-        let us = self.settings.us;
-        let mouth =
-            |robot: &crate::world::Robot| robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0));
-        if let Some(ball) = self.world.ball {
-            self.last_ball = Some(ball);
-            let hides = |robot: &&crate::world::Robot| mouth(robot).distance(ball.position) < HIDES;
-            self.hidden_by = self.world.theirs(us).find(hides).map(|robot| robot.who);
-            return;
-        }
-        let feels = |robot: &&crate::world::Robot| {
-            let told = &self.robots[robot.who.id.index()].telemetry;
+        let feels = |robot: RobotId| {
+            let told = &self.robots[robot.index()].telemetry;
             told.as_ref().is_some_and(|(at, told)| {
                 now.since(*at) < TELEMETRY_LEASE && told.condition.has(Condition::BALL_CONTACT)
             })
         };
-        let theirs = |robot: &&crate::world::Robot| Some(robot.who) == self.hidden_by;
-        let hider = self.world.ours(us).find(feels).or_else(|| self.world.theirs(us).find(theirs));
-        let held = hider.map(|robot| (mouth(robot), robot.velocity));
-        let (position, velocity) = match (held, &self.last_ball) {
-            (Some(held), _) => held,
-            (None, Some(last)) => (last.rest(&self.world.models), Vector::default()),
-            (None, None) => return,
-        };
-        self.world.ball = Some(Ball {
-            position,
-            height: 0.0,
-            velocity,
-            climb: 0.0,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 0.0,
-            seen: self.last_ball.map_or(now, |last| last.seen),
-            kicked: None,
-        });
+        self.hidden.fill(now, &mut self.world, self.settings.us, self.listener.game(), feels);
     }
 
     fn our_game(&self) -> Game {
@@ -427,8 +396,6 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 const PLAN_EVERY: Duration = Duration::millis(5);
 /// What a robot told of itself longer ago is not counted on.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
-/// A ball this near the middle of a robot's front may lie in its mouth, m: a mouth's half width and the vision's noise.
-const HIDES: f32 = 0.06;
 /// A ball that was not seen for longer is hidden: the cameras' delay and a few images.
 const PLAINLY: Duration = Duration::millis(120);
 /// The tracker's confidence in a ball that it has followed for a tenth of a second.

@@ -7,6 +7,7 @@
 
 pub mod config;
 pub mod geometry;
+mod hidden_ball;
 mod host;
 pub mod radio;
 pub mod recheck;

@@ -196,3 +196,27 @@ fn a_trace_cut_in_a_record_is_checked_up_to_there() {
     let begin = trace("begin.trace", |bytes, _| bytes.truncate(20));
     assert!(refused(&[&begin]).contains("header"));
 }
+
+#[test]
+fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
+    let name = scratch("decided").display().to_string();
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(["play", "--headless", "--duration", "12", "--seed", "1", "--record", &name])
+        .output()
+        .expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let file = format!("{name}.trace");
+    let moment = json(&[&file, "--at", "11"], 0);
+    for team in ["blue", "yellow"] {
+        let robots = moment[team].as_array().expect("a list");
+        assert_eq!(robots.len(), 6, "{moment}");
+        for robot in robots {
+            for said in ["role", "directive", "why"] {
+                assert!(robot[said].as_str().is_some_and(|words| !words.is_empty()), "{said} of {robot}");
+            }
+        }
+        assert_eq!(robots.iter().filter(|robot| robot["role"] == "keeper").count(), 1, "{moment}");
+    }
+    let told = onetwo(&[&file, "--at", "11"]);
+    assert!(String::from_utf8_lossy(&told.stdout).contains("keeper: go to ("));
+}

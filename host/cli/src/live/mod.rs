@@ -17,7 +17,7 @@ mod tactics;
 #[cfg(test)]
 mod tests;
 mod theatre;
-mod words;
+pub(crate) mod words;
 
 use std::net::SocketAddr;
 use std::sync::Arc;

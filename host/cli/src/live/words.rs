@@ -26,7 +26,7 @@ pub(crate) fn spaced(name: &str) -> String {
     out
 }
 
-pub(super) fn role(role: Role) -> String {
+pub(crate) fn role(role: Role) -> String {
     match role {
         Role::Defender(n) => format!("defender {}", n + 1),
         Role::Support(n) => format!("support {}", n + 1),
@@ -35,7 +35,7 @@ pub(super) fn role(role: Role) -> String {
     }
 }
 
-pub(super) fn why(why: &Why) -> String {
+pub(crate) fn why(why: &Why) -> String {
     match why {
         Why::Referee => "the referee's word leaves nothing else".to_owned(),
         Why::SoonestAtBall { seconds } => format!("soonest at the ball, in {seconds:.2} s"),
@@ -56,7 +56,7 @@ pub(super) fn why(why: &Why) -> String {
     }
 }
 
-pub(super) fn directive(directive: &Directive) -> String {
+pub(crate) fn directive(directive: &Directive) -> String {
     let at = |point: WirePoint| place(point);
     match directive {
         Directive::Stand => "stand".to_owned(),
@@ -161,7 +161,7 @@ fn abort(reason: AbortReason) -> &'static str {
 }
 
 /// The frame that a host's strategy thinks in, turned for the field.
-pub(super) fn flip(host: &host::Host) -> Flip {
+pub(crate) fn flip(host: &host::Host) -> Flip {
     let settings = host.settings();
     Flip::defending(host.game().own_goal(settings.us).unwrap_or(settings.defending))
 }

@@ -177,7 +177,7 @@ impl<'a> Pass<'a> {
     fn moment(&mut self, at: Instant, event: Option<String>) -> Moment {
         let world = self.tracker.world(at);
         self.listener.tick(at, world.ball.map(|ball| ball.position));
-        Moment::new(at.0 as f64 * 1e-6, event, &world, self.listener.game())
+        Moment::new(at.0 as f64 * 1e-6, event, &world, self.listener.game(), &[])
     }
 
     fn not_there(&self, args: &ReplayArgs, damage: Option<&str>) -> String {

@@ -2,6 +2,7 @@
 //!
 //! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
 
+mod decided;
 pub(crate) mod happening;
 mod league_log;
 mod moment;

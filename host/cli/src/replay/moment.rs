@@ -1,10 +1,14 @@
-//! What was the field like at one moment of a recorded match? Tracker and referee as they stood then. SI, field frame.
+//! What was the field like at one moment of a recorded match, and who had what to do and why? Tracker, referee and hosts as they
+//! stood then. SI, field frame.
 
 use geometry::{Field, Point};
+use host::Host;
 use host::referee::Game;
 use host::world::World;
 use rules::{Colour, Phase};
 use serde::Serialize;
+
+use super::decided::Decided;
 
 /// A moment, for people and for JSON.
 #[derive(Debug, Serialize)]
@@ -54,10 +58,13 @@ struct Robot {
     speed: f32,
     /// 0–1.
     confidence: f32,
+    /// By the host of its team, where the file has one.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    decided: Option<Decided>,
 }
 
 impl Moment {
-    pub(super) fn new(at_s: f64, event: Option<String>, world: &World, game: &Game) -> Self {
+    pub(super) fn new(at_s: f64, event: Option<String>, world: &World, game: &Game, hosts: &[&Host]) -> Self {
         let team = |colour| -> Vec<Robot> {
             let robot = |robot: &host::world::Robot| Robot {
                 id: robot.who.id.number(),
@@ -65,6 +72,7 @@ impl Moment {
                 heading_deg: robot.pose.heading.radians().to_degrees(),
                 speed: robot.velocity.norm(),
                 confidence: robot.confidence,
+                decided: Decided::of(hosts, robot.who),
             };
             world.team(colour).map(robot).collect()
         };
@@ -119,6 +127,9 @@ impl Moment {
                     robot.heading_deg,
                     robot.speed
                 ));
+                if let Some(decided) = &robot.decided {
+                    lines.push(format!("{:<8} {}", "", decided.tell()));
+                }
             }
         }
         lines.join("\n") + "\n"

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
+use host::Host;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
 use host::trace::{End, Kind, Reader};
@@ -67,7 +68,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
             && let Some(host) = recheck.host(shown)
         {
             bar.finish_and_clear();
-            return show(args, host, Instant((at * 1e6) as u64), None);
+            return show(args, host, &all(&recheck), Instant((at * 1e6) as u64), None);
         }
         let (first, last) = span.get_or_insert((record.at, record.at));
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
@@ -85,7 +86,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
                     && let Some(host) = recheck.host(shown)
                 {
                     bar.finish_and_clear();
-                    return show(args, host, record.at, Some(happening.name.clone()));
+                    return show(args, host, &all(&recheck), record.at, Some(happening.name.clone()));
                 }
             }
         }
@@ -135,13 +136,20 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     Ok(if report.same_decisions { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
+/// Every host of the recording as it is now.
+fn all(recheck: &Recheck) -> Vec<&Host> {
+    (0..).map_while(|number| recheck.host(number)).collect()
+}
+
+/// The moment as `host` sees it, with what every host decides.
 fn show(
     args: &ReplayArgs,
-    host: &host::Host,
+    host: &Host,
+    hosts: &[&Host],
     at: Instant,
     event: Option<String>,
 ) -> Result<ExitCode, Failure> {
-    let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game());
+    let moment = Moment::new(at.0 as f64 * 1e-6, event, &host.tracker().world(at), host.game(), hosts);
     let words = if args.json {
         serde_json::to_string(&moment).map_err(|error| Failure::Output(error.into()))? + "\n"
     } else {

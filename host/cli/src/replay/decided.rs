@@ -1,0 +1,34 @@
+//! What had each robot to do at that moment, and why? The orders of a host that decides the same again, in words.
+
+use host::Host;
+use protocol::Who;
+use serde::Serialize;
+
+use crate::live::words;
+
+/// A robot's current directive and what decided it; places in m, field frame.
+#[derive(Debug, Serialize)]
+pub(super) struct Decided {
+    role: String,
+    directive: String,
+    why: String,
+}
+
+impl Decided {
+    /// Of the host of its team, where there is one and it commands the robot.
+    pub(super) fn of(hosts: &[&Host], who: Who) -> Option<Self> {
+        let host = hosts.iter().find(|host| host.settings().us == who.colour)?;
+        let order = host.orders().iter().find(|order| order.robot == who.id)?;
+        Some(Self {
+            role: words::role(order.role),
+            directive: words::directive(&order.task.directive(words::flip(host))),
+            why: words::why(&order.why),
+        })
+    }
+
+    /// `taker: kick at (1.20, -0.45), 6.2 m/s (the best target for the ball, 0.80 m of room)`.
+    pub(super) fn tell(&self) -> String {
+        let Self { role, directive, why } = self;
+        format!("{role}: {directive} ({why})")
+    }
+}
