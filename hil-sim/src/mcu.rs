@@ -43,6 +43,8 @@ pub struct Reply {
     pub packets: heapless::Vec<Packet, AIR_OUT_MAX>,
     /// Guest instructions of the tick, where they can be counted; else 0.
     pub instructions: u32,
+    /// Bytes of its stack that were ever used, where that can be seen; else 0.
+    pub stack: u32,
 }
 
 /// Why a robot's computer cannot be used (any more).

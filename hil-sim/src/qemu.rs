@@ -218,6 +218,7 @@ fn owned(answer: &TickOut<'_>) -> Result<Reply, McuError> {
         actuators: answer.actuators,
         packets: packets.collect::<Result<_, _>>()?,
         instructions: answer.instructions,
+        stack: answer.stack,
     })
 }
 
@@ -397,10 +398,10 @@ mod tests {
         assert_eq!(postcard::from_bytes::<ToRobot<'_>>(&hears(&board)).unwrap(), ToRobot::Tick(tick(7)));
         let order = ActuatorFrame::Omni { wheels: [0.5; 4], dribbler: 0.0, kick: OmniKick::None };
         let air = [&b"three"[..]].into_iter().collect();
-        let answer = TickOut { seq: 7, actuators: Some(order), air, instructions: 4_711 };
+        let answer = TickOut { seq: 7, actuators: Some(order), air, instructions: 4_711, stack: 815 };
         says(&board, &FromRobot::Tick(answer));
         let reply = robot.collect().unwrap();
-        assert_eq!((reply.actuators, reply.instructions), (Some(order), 4_711));
+        assert_eq!((reply.actuators, reply.instructions, reply.stack), (Some(order), 4_711, 815));
         assert_eq!((reply.packets.len(), &reply.packets[0][..]), (1, &b"three"[..]));
     }
 
@@ -410,7 +411,13 @@ mod tests {
         robot.post(&tick(7)).unwrap();
         says(
             &board,
-            &FromRobot::Tick(TickOut { seq: 6, actuators: None, air: heapless::Vec::new(), instructions: 0 }),
+            &FromRobot::Tick(TickOut {
+                seq: 6,
+                actuators: None,
+                air: heapless::Vec::new(),
+                instructions: 0,
+                stack: 0,
+            }),
         );
         assert!(matches!(robot.collect(), Err(McuError::Malformed { .. })));
         for len in [0, 1, 13, 15, 16, 60] {

@@ -77,6 +77,8 @@ pub struct TickOut<'a> {
     pub air: heapless::Vec<&'a [u8], AIR_OUT_MAX>,
     /// Guest instructions the tick took, where they can be counted; else 0.
     pub instructions: u32,
+    /// Bytes of its stack that were ever used, as last looked at; 0 where nobody looks.
+    pub stack: u32,
 }
 
 #[cfg(test)]

@@ -6,8 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use arena::game::{Game, GameConfig, GameError, Nobody};
-use brain::BrainConfig;
-use hil_sim::{Backend, Mcu, McuError, NativeBackend, QemuBackend};
+use hil_sim::{ByTeam, McuError, Meter, Metered, NativeBackend, QemuBackend};
 use protocol::TeamId;
 use rules::{Colour, League};
 
@@ -20,9 +19,10 @@ pub enum Side {
     Emulated = 1,
 }
 
-/// Both matches.
+/// Both matches; in the second, blue robots are images, yellow ones native.
 pub struct Pair {
     games: Vec<Game<'static>>,
+    meter: Meter,
     ticks: u32,
 }
 
@@ -35,8 +35,10 @@ pub struct Told {
     pub hashes: [String; 2],
     /// Wall time of each.
     pub took: [Duration; 2],
-    /// The worst step in guest instructions; 0 where none are counted.
-    pub worst_instructions: [u32; 2],
+    /// The worst step of an image, guest instructions.
+    pub worst_instructions: u32,
+    /// The deepest stack of an image, bytes.
+    pub worst_stack: u32,
 }
 
 impl Told {
@@ -55,7 +57,11 @@ impl fmt::Display for Told {
         write!(f, "native {:.1} x real time, ", self.speed(Side::Native))?;
         write!(f, "six images in QEMU {:.2} x, ", self.speed(Side::Emulated))?;
         let ratio = self.speed(Side::Native) / self.speed(Side::Emulated).max(1e-9);
-        write!(f, "{ratio:.0} times slower; worst step {} instructions", self.worst_instructions[1])
+        write!(
+            f,
+            "{ratio:.0} times slower; worst step {} instructions, deepest stack {} B",
+            self.worst_instructions, self.worst_stack
+        )
     }
 }
 
@@ -67,9 +73,12 @@ impl Pair {
         let mut native = NativeBackend::new(base);
         let broken = |error: McuError| GameError::League(error.to_string());
         let qemu = QemuBackend::new(image).with_library(base.bytes()).map_err(broken)?;
-        let mut mixed = Mixed { native: NativeBackend::new(base), qemu };
+        let meter = Meter::default();
+        let team = TeamId::of(Colour::Blue);
+        let its = Metered::new(qemu, &meter);
+        let mut mixed = ByTeam { team, its, others: NativeBackend::new(base) };
         let games = vec![Game::new(&config, &mut native)?, Game::new(&config, &mut mixed)?];
-        Ok(Self { games, ticks: (seconds * 100.0) as u32 })
+        Ok(Self { games, meter, ticks: (seconds * 100.0) as u32 })
     }
 
     /// Plays both; `look` gets both hashes after every tick.
@@ -85,27 +94,8 @@ impl Pair {
             }
             look(tick, [&hashes[0], &hashes[1]]);
         }
-        let worst_instructions = [0, 1].map(|side: usize| self.games[side].worst_instructions());
-        Ok(Told { ticks: self.ticks, hashes, took, worst_instructions })
-    }
-}
-
-/// Blue robots are images, yellow ones native.
-struct Mixed {
-    native: NativeBackend<'static>,
-    qemu: QemuBackend,
-}
-
-impl Backend<'static> for Mixed {
-    fn name(&self) -> &'static str {
-        "mixed"
-    }
-
-    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'static>, McuError> {
-        if config.team == TeamId::of(Colour::Blue) {
-            self.qemu.boot(config)
-        } else {
-            self.native.boot(config)
-        }
+        let (_, worst_instructions) = self.meter.median_and_worst();
+        let worst_stack = self.meter.stack();
+        Ok(Told { ticks: self.ticks, hashes, took, worst_instructions, worst_stack })
     }
 }

@@ -3,25 +3,24 @@
 //! Each robot runs in a QEMU of its own; trace hashes are taken by the simulator, so by the same code for both. Needs QEMU
 //! and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
 
-use std::cell::RefCell;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 use std::sync::LazyLock;
 
 use arena::{CaseNames, TrialConfig, TrialReport, run};
 use brain::{Approach, BrainConfig};
 use hil_sim::{
-    AirSettings, Backend, Configuration, Fault, Mcu, McuError, NativeBackend, QemuBackend, Reply, Scenario,
+    AirSettings, Backend, Configuration, Fault, McuError, Metered, NativeBackend, QemuBackend, Scenario,
     ScheduledFault,
 };
-use protocol::lockstep::TickIn;
 use protocol::{RobotId, TeamId};
 
 /// Of each scenario and configuration of the paper.
 const SEEDS: u64 = 5;
 /// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
 const STEP_BUDGET: u32 = 40_000;
+/// Bytes of stack, painted (DESIGN §9).
+const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 
 #[test]
 fn native_equals_qemu() {
@@ -83,7 +82,7 @@ fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> S
         run(config, backend, &mut []).unwrap_or_else(|error| panic!("{name}: {error}"))
     };
     let native = play(Box::new(NativeBackend::new(config.base)));
-    let emulated = play(Box::new(Metered { qemu, steps: meter.steps.clone() }));
+    let emulated = play(Box::new(Metered::new(qemu, &meter.taken)));
     let which = format!("scenario {} {} seed {}", config.scenario, config.opponents.word(), config.seed);
     assert_eq!(native.trace_hash, emulated.trace_hash, "{which}");
     meter.trials += 1;
@@ -96,54 +95,20 @@ fn both<'a>(config: &TrialConfig<'a>, qemu: QemuBackend, meter: &mut Meter) -> S
 struct Meter {
     trials: u64,
     gameplays: u64,
-    steps: Rc<RefCell<Vec<u32>>>,
+    taken: hil_sim::Meter,
 }
 
 impl Meter {
-    /// The worst step is within its budget; tells it, and the median.
+    /// The worst step and the deepest stack are within their budgets; tells them, and the median step.
     fn check(&self) {
-        let mut steps = self.steps.borrow_mut();
-        steps.sort_unstable();
-        let (median, worst) = (steps[steps.len() / 2], steps[steps.len() - 1]);
-        let (trials, gameplays, count) = (self.trials, self.gameplays, steps.len());
+        let ((median, worst), stack) = (self.taken.median_and_worst(), self.taken.stack());
+        let (trials, gameplays, count) = (self.trials, self.gameplays, self.taken.steps());
         println!(
-            "{trials} trials, {gameplays} gameplays, {count} steps: median {median}, worst {worst} instructions"
+            "{trials} trials, {gameplays} gameplays, {count} steps: median {median}, worst {worst} instructions; \
+             deepest stack {stack} B"
         );
+        assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
         assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
-    }
-}
-
-/// The QEMU back end with an eye on the instructions of every step.
-struct Metered {
-    qemu: QemuBackend,
-    steps: Rc<RefCell<Vec<u32>>>,
-}
-
-impl<'a> Backend<'a> for Metered {
-    fn name(&self) -> &'static str {
-        self.qemu.name()
-    }
-
-    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
-        let robot = self.qemu.boot(config)?;
-        Ok(Box::new(MeteredRobot { robot, steps: self.steps.clone() }))
-    }
-}
-
-struct MeteredRobot<'a> {
-    robot: Box<dyn Mcu + 'a>,
-    steps: Rc<RefCell<Vec<u32>>>,
-}
-
-impl Mcu for MeteredRobot<'_> {
-    fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
-        self.robot.post(tick)
-    }
-
-    fn collect(&mut self) -> Result<Reply, McuError> {
-        let reply = self.robot.collect()?;
-        self.steps.borrow_mut().push(reply.instructions);
-        Ok(reply)
     }
 }
 

@@ -15,6 +15,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use firmware_build::inspect::STACK_BUDGET;
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
 use protocol::frame::TeamKey;
 use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Welcome};
@@ -86,6 +87,23 @@ fn a_task_that_hangs_is_ended_by_the_watchdog() {
     robot.hears_itself_say("watchdog: a task hangs; motors off");
     robot.hears_itself_say("awake after the watchdog's bite");
     robot.hears_itself_say("ready");
+}
+
+#[test]
+fn a_robot_under_a_host_keeps_its_stack_within_the_budget() {
+    let mut robot = Robot::start(Some(&PAGE), 3);
+    robot.hears_itself_say("ready");
+    let mut link = HostLink::new(TEAM, key(), 7);
+    let lost = |condition: Condition| condition.has(Condition::LINK_LOST);
+    assert!(robot.until(&mut link, false, |_| true), "it tells of its life");
+    assert!(robot.until(&mut link, true, |condition| !lost(condition)), "it obeys");
+    // What it said before it was commanded does not count.
+    robot.said.clear();
+    robot.hears_itself_say("stack ");
+    robot.hears_itself_say("\n");
+    let told = robot.said.split("stack ").nth(1).and_then(|rest| rest.get(..10)?.parse().ok());
+    println!("deepest stack of the robot that runs by its own clock: {} B", told.unwrap_or(0));
+    assert!(told.is_some_and(|bytes| (1..=STACK_BUDGET).contains(&bytes)), "{told:?}");
 }
 
 /// The image in an emulator.

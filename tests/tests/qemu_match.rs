@@ -4,7 +4,8 @@
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
 //! compiler for the target (feature `qemu`).
 
-use match_tests::hil::{Pair, Side};
+use firmware_build::inspect::STACK_BUDGET;
+use match_tests::hil::Pair;
 
 /// Simulated seconds, unless told otherwise: kick-off and the first duels.
 const SECONDS: f64 = 4.0;
@@ -20,7 +21,9 @@ fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
     let told = played.unwrap_or_else(|error| panic!("{error}"));
     println!("{told}");
     assert!(told.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{told}");
-    let worst = told.worst_instructions[Side::Emulated as usize];
+    let worst = told.worst_instructions;
     // How many a step may take, `qemu_wheels` says; here they are only counted.
     assert!(worst > 0, "the worst step took {worst} instructions");
+    let stack = told.worst_stack;
+    assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
 }

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use brain::BrainConfig;
 use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
-use hil_sim::{Backend, Mcu, NativeBackend, QemuBackend};
+use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
 use protocol::frame::TeamKey;
 use protocol::host::{
     Command, Directive, Duty, HostMessage, KickOrder, PART_ROBOTS_MAX, Welcome, WireBall, WireRobot, WireWho,
@@ -25,6 +25,8 @@ use rules::{Colour, League, Phase, Side};
 
 /// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
 const STEP_BUDGET: u32 = 40_000;
+/// Bytes of stack, painted.
+const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 /// Of each of the parts below.
 const SECONDS: u64 = 6;
 
@@ -42,10 +44,11 @@ fn wheels_under_qemu_equal_native_ones_and_no_step_takes_more_than_its_budget() 
         })
         .collect();
     let mut steps = Vec::new();
+    let meter = Meter::default();
     for (phase, directives) in parts() {
         let mut of_part = Vec::new();
         for _ in 0..SECONDS * 100 {
-            table.tick(phase, &directives, &mut robots, &mut of_part);
+            table.tick(phase, &directives, &mut robots, &mut of_part, &meter);
         }
         of_part.sort_unstable();
         let (median, worst) = (of_part[of_part.len() / 2], of_part[of_part.len() - 1]);
@@ -54,7 +57,12 @@ fn wheels_under_qemu_equal_native_ones_and_no_step_takes_more_than_its_budget() 
     }
     steps.sort_unstable();
     let (median, worst) = (steps[steps.len() / 2], steps[steps.len() - 1]);
-    println!("{} steps on wheels: median {median}, worst {worst} instructions", steps.len());
+    let stack = meter.stack();
+    println!(
+        "{} steps on wheels: median {median}, worst {worst} instructions; deepest stack {stack} B",
+        steps.len()
+    );
+    assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");
     assert!((1..=STEP_BUDGET).contains(&worst), "the worst step took {worst} instructions");
 }
 
@@ -116,6 +124,7 @@ impl Table {
         directives: &[Directive; 3],
         robots: &mut [(RobotId, [Box<dyn Mcu + 'static>; 2])],
         steps: &mut Vec<u32>,
+        meter: &Meter,
     ) {
         self.ticks += 1;
         let (seq, now) = (self.ticks, Instant(u64::from(self.ticks) * 10_000));
@@ -150,6 +159,7 @@ impl Table {
             let (a, b) = (native.exchange(&tick).expect("native"), emulated.exchange(&tick).expect("QEMU"));
             assert_eq!((&a.actuators, &a.packets), (&b.actuators, &b.packets), "robot {robot}, tick {seq}");
             steps.push(b.instructions);
+            meter.note(&b);
             if let Some(order) = a.actuators {
                 self.world.command(ours(*robot), &order);
             }

@@ -79,6 +79,18 @@ impl Sizes {
         );
         Self { flash, ram, crates: sorted(crates), symbols: sorted(symbols) }
     }
+
+    /// What holds RAM for good: each static of that many bytes or more, the largest first, after the crate it belongs to.
+    pub fn pools(&self, least: u64) -> Vec<(&str, &Part)> {
+        let mut pools: Vec<_> = self
+            .symbols
+            .iter()
+            .filter(|part| part.ram >= least)
+            .map(|part| (crate_of_symbol(&part.name), part))
+            .collect();
+        pools.sort_by(|(_, a), (_, b)| (b.ram, &a.name).cmp(&(a.ram, &b.name)));
+        pools
+    }
 }
 
 fn sorted(parts: BTreeMap<&str, (u64, u64)>) -> Vec<Part> {
@@ -107,6 +119,20 @@ const CONSTANTS: &str = "(constants without a name)";
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pools_are_the_large_statics_in_ram_the_largest_first() {
+        let part = |name: &str, flash, ram| Part { name: name.into(), flash, ram };
+        let symbols = vec![
+            part("a::TABLE", 9_000, 0),
+            part("b::SMALL", 0, 255),
+            part("c::BOX", 0, 256),
+            part("d::D", 0, 300),
+        ];
+        let sizes = Sizes { flash: 0, ram: 0, crates: vec![], symbols };
+        let pools: Vec<_> = sizes.pools(256).into_iter().map(|(owner, part)| (owner, part.ram)).collect();
+        assert_eq!(pools, [("d", 300), ("c", 256)]);
+    }
 
     #[test]
     fn a_value_tells_its_crate() {

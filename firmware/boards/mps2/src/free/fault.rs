@@ -105,7 +105,8 @@ fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
     unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
 }
 
-fn digits(number: u32) -> [u8; 10] {
+/// A number in ten decimal digits.
+pub(crate) fn digits(number: u32) -> [u8; 10] {
     let (mut rest, mut text) = (number, [b'0'; 10]);
     for digit in text.iter_mut().rev() {
         *digit = b'0' + (rest % 10) as u8;

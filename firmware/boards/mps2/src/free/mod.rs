@@ -10,6 +10,8 @@ mod dog;
 mod fault;
 #[path = "../register.rs"]
 mod register;
+#[path = "../stack.rs"]
+mod stack;
 mod trial;
 mod uart;
 

@@ -4,12 +4,19 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use embassy_time::{Duration, Timer};
 
-use super::fault;
+use super::console::say;
+use super::fault::{self, digits};
+use super::stack;
 
-/// Does what the word asks for, once since power came: 1 a panic, 2 a task that hangs; both after 300 ms.
+/// Does what the word asks for: once since power came, 1 a panic, 2 a task that hangs, both after 300 ms; 3 tells the deepest use
+/// of the stack every second.
 pub(crate) async fn run() {
     // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
     let word = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
+    while word == 3 {
+        Timer::after(Duration::from_secs(1)).await;
+        say(&[b"stack ", &digits(stack::used())]);
+    }
     Timer::after(Duration::from_millis(300)).await;
     if fault::is_first_life() {
         match word {

@@ -21,7 +21,7 @@ use runtime::{BrainConfig, Mailboxes, setup, tasks};
 
 use super::clock::Clock;
 use super::eth::{self, Inlet, Outlet};
-use super::{instructions, library};
+use super::{instructions, library, stack};
 
 /// The board's life.
 pub(crate) fn run() -> ! {
@@ -34,6 +34,7 @@ pub(crate) fn run() -> ! {
     start_tasks(clock.spawner(), config, base).expect("every task is started once");
     clock.settle();
     tell(&mut outlet, &FromRobot::Ready);
+    let mut stack = stack::used();
     loop {
         let Some(ToRobot::Tick(tick)) = read(inlet.receive()) else {
             STRANGE.fetch_add(1, Ordering::Relaxed);
@@ -41,9 +42,12 @@ pub(crate) fn run() -> ! {
         };
         let seq = tick.seq;
         let ((), instructions) = instructions::counted(|| live(&clock, tick));
+        if seq % STACK_EVERY == 0 {
+            stack = stack::used();
+        }
         let done = critical_section::with(|cs| DONE.borrow(cs).take());
         let air = done.air.iter().map(|packet| &packet[..]).collect();
-        let answer = TickOut { seq, actuators: done.actuators, air, instructions };
+        let answer = TickOut { seq, actuators: done.actuators, air, instructions, stack };
         tell(&mut outlet, &FromRobot::Tick(answer));
     }
 }
@@ -90,6 +94,9 @@ fn tell(outlet: &mut Outlet, message: &FromRobot<'_>) {
     // Every message fits: `MESSAGE_LEN_MAX` is above six packets and an order.
     outlet.send(|buffer| postcard::to_slice(message, buffer).map_or(0, |bytes| bytes.len()));
 }
+
+/// Ticks between two looks at the stack: a look takes some 80,000 instructions, and its deepest use stays to be seen.
+const STACK_EVERY: u32 = 64;
 
 /// Messages and packets that made no sense, for a debugger to read.
 static STRANGE: AtomicU32 = AtomicU32::new(0);

@@ -12,6 +12,8 @@ mod library;
 mod lockstep;
 #[path = "../register.rs"]
 mod register;
+#[path = "../stack.rs"]
+mod stack;
 
 use cortex_m_rt::{entry, exception};
 

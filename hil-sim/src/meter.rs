@@ -1,0 +1,130 @@
+//! What did the robots' computers take? A back end around another that keeps each step's instructions and the deepest stack
+//! (DESIGN §9), and one that gives a team computers of its own kind.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use brain::BrainConfig;
+use protocol::TeamId;
+use protocol::lockstep::TickIn;
+
+use crate::mcu::{Backend, Mcu, McuError, Reply};
+
+/// What all computers of a back end took together; zeros where nothing can be counted.
+#[derive(Clone, Debug, Default)]
+pub struct Meter(Rc<RefCell<Taken>>);
+
+#[derive(Debug, Default)]
+struct Taken {
+    steps: Vec<u32>,
+    stack: u32,
+}
+
+impl Meter {
+    /// How many steps there were.
+    pub fn steps(&self) -> usize {
+        self.0.borrow().steps.len()
+    }
+
+    /// The step in the middle and the worst one, instructions.
+    pub fn median_and_worst(&self) -> (u32, u32) {
+        let mut taken = self.0.borrow_mut();
+        taken.steps.sort_unstable();
+        let at = |index: usize| taken.steps.get(index).copied().unwrap_or(0);
+        (at(taken.steps.len() / 2), at(taken.steps.len().saturating_sub(1)))
+    }
+
+    /// The deepest use of a stack, bytes.
+    pub fn stack(&self) -> u32 {
+        self.0.borrow().stack
+    }
+
+    /// Takes an answer into account.
+    pub fn note(&self, reply: &Reply) {
+        let mut taken = self.0.borrow_mut();
+        taken.steps.push(reply.instructions);
+        taken.stack = taken.stack.max(reply.stack);
+    }
+}
+
+/// A back end with a meter.
+#[derive(Debug)]
+pub struct Metered<B> {
+    backend: B,
+    meter: Meter,
+}
+
+impl<B> Metered<B> {
+    /// With what its computers take added to that meter.
+    pub fn new(backend: B, meter: &Meter) -> Self {
+        Self { backend, meter: meter.clone() }
+    }
+}
+
+impl<'a, B: Backend<'a>> Backend<'a> for Metered<B> {
+    fn name(&self) -> &'static str {
+        self.backend.name()
+    }
+
+    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
+        Ok(Box::new(MeteredMcu { mcu: self.backend.boot(config)?, meter: self.meter.clone() }))
+    }
+}
+
+struct MeteredMcu<'a> {
+    mcu: Box<dyn Mcu + 'a>,
+    meter: Meter,
+}
+
+impl Mcu for MeteredMcu<'_> {
+    fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
+        self.mcu.post(tick)
+    }
+
+    fn collect(&mut self) -> Result<Reply, McuError> {
+        let reply = self.mcu.collect()?;
+        self.meter.note(&reply);
+        Ok(reply)
+    }
+}
+
+/// One team's computers of one kind, everybody else's of another.
+#[derive(Debug)]
+pub struct ByTeam<A, B> {
+    /// The team.
+    pub team: TeamId,
+    /// Its computers.
+    pub its: A,
+    /// The others'.
+    pub others: B,
+}
+
+impl<'a, A: Backend<'a>, B: Backend<'a>> Backend<'a> for ByTeam<A, B> {
+    fn name(&self) -> &'static str {
+        "mixed"
+    }
+
+    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'a>, McuError> {
+        if config.team == self.team { self.its.boot(config) } else { self.others.boot(config) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn took(instructions: u32, stack: u32) -> Reply {
+        Reply { instructions, stack, ..Reply::default() }
+    }
+
+    #[test]
+    fn a_meter_knows_the_middle_the_worst_and_the_deepest() {
+        let meter = Meter::default();
+        assert_eq!((meter.median_and_worst(), meter.stack()), ((0, 0), 0));
+        let same = meter.clone();
+        for reply in [took(7, 100), took(900, 400), took(8, 300)] {
+            same.note(&reply);
+        }
+        assert_eq!((meter.steps(), meter.median_and_worst(), meter.stack()), (3, (8, 900), 400));
+    }
+}
