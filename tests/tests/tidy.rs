@@ -274,7 +274,7 @@ const PURE: [&str; 10] = [
 ];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 28] = [
+const LOWEST_FIRST: [&str; 29] = [
     "geometry",
     "rules",
     "protocol",
@@ -291,6 +291,7 @@ const LOWEST_FIRST: [&str; 28] = [
     "runtime",
     "board-mps2",
     "board-stm32",
+    "on-target",
     "firmware-build",
     "page",
     "page-browser",

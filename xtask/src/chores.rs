@@ -1,7 +1,9 @@
 //! What can be asked for besides the tests? One row a chore: its words, what it does, and who does it.
 
 use crate::context::{Context, Failure};
-use crate::{bench, cost, evaluation, game_cost, page, pictures, simulator_cost, strategy_cost, trial_cost};
+use crate::{
+    bench, cost, emulate, evaluation, game_cost, page, pictures, simulator_cost, strategy_cost, trial_cost,
+};
 
 /// Something that is done now and then.
 #[derive(Debug)]
@@ -80,7 +82,7 @@ const fn handed_on(
     Chore { name, takes, what, run, free: true }
 }
 
-static CHORES: [Chore; 16] = [
+static CHORES: [Chore; 18] = [
     handed_on(
         "swarm",
         "[--seeds N] [--first N] [--jobs J]",
@@ -92,6 +94,18 @@ static CHORES: [Chore; 16] = [
         "[--seeds N] [--write]",
         "what loss costs a team; --write puts table and picture into docs/faults.md",
         |context, words| bench::start_example(context, "faults", words),
+    ),
+    handed_on(
+        "on-target",
+        "[NAME]...",
+        "run the tests that run on the robot's processor, in QEMU; names choose among them",
+        emulate::on_target,
+    ),
+    handed_on(
+        "emulate",
+        "IMAGE [NAME]...",
+        "run a program for the robot's processor in QEMU; what `cargo run` and `cargo test` for that target call",
+        |_, words| emulate::emulate(words),
     ),
     chore("pictures", "", "draw the documentation's pictures anew", |context, _| pictures::draw(context)),
     chore(

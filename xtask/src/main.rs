@@ -8,6 +8,7 @@ mod chores;
 mod context;
 mod cost;
 mod determinism;
+mod emulate;
 mod evaluation;
 mod game_cost;
 mod images;

@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{determinism, images, page, readme};
+use crate::{determinism, emulate, images, page, readme};
 
 /// One thing that is checked.
 #[derive(Debug)]
@@ -80,12 +80,14 @@ fn clippy_thumb(context: &Context) -> Result<(), Failure> {
     let packages = packages(&ON_ROBOT) + &packages(&BOARDS);
     run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE}{packages} -- -D warnings"))?)?;
     run(&mut context
-        .cargo_thumb(&format!("clippy{FIRMWARE} --package board-stm32 --examples -- -D warnings"))?)
+        .cargo_thumb(&format!("clippy{FIRMWARE} --package board-stm32 --examples -- -D warnings"))?)?;
+    run(&mut context.cargo_thumb(&format!("clippy{FIRMWARE} --package on-target --tests -- -D warnings"))?)
 }
 
 fn qemu(context: &Context) -> Result<(), Failure> {
     images::check(context)?;
     firmware_build::ensure_qemu(Install::SystemWide).map_err(Failure::Qemu)?;
+    emulate::on_target(context, &[])?;
     let line = "test --release --no-fail-fast --features match-tests/qemu --test qemu_*";
     run(&mut context.cargo(line))
 }

@@ -7,7 +7,7 @@
 //! * [`ensure_qemu`]: where is the emulator?
 //! * [`build_image`]: give me the image, fresh.
 //!
-//! [`inspect`] looks into an image: sizes, budgets, places that can panic.
+//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests.
 //!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
 //! done that takes time is told on stderr.
@@ -15,6 +15,7 @@
 mod debian;
 mod image;
 pub mod inspect;
+pub mod on_target;
 mod process;
 mod qemu;
 mod target;

@@ -1,0 +1,169 @@
+//! Which tests does an image of tests hold, and does one of them pass in an emulator of its own?
+//!
+//! Images of `embedded-test` list their tests in a section that is not loaded: a symbol a test, whose name is a JSON object, at a
+//! pair of the test's function and its module's path. The image is told by its command line which function to call (semihosting),
+//! and says by its exit code how it went. That is what `probe-rs run` does with the same image on hardware.
+
+use std::fmt;
+use std::io::Read as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use object::{Object as _, ObjectSection as _, ObjectSymbol as _};
+use serde_json::Value;
+
+use crate::MACHINE;
+
+/// A test in an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OnTarget {
+    /// Module and function.
+    pub name: String,
+    /// Where its function begins.
+    address: u32,
+    should_panic: bool,
+    /// Not to be run.
+    pub ignored: bool,
+    timeout: Duration,
+}
+
+/// How a test went.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// As it should.
+    Passed,
+    /// Otherwise, and what it said.
+    Failed(String),
+}
+
+/// Why an image's tests cannot be told.
+#[derive(Debug, PartialEq, Eq)]
+pub struct NoTests(&'static str);
+
+impl fmt::Display for NoTests {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "its tests cannot be listed: {}", self.0)
+    }
+}
+
+impl std::error::Error for NoTests {}
+
+/// The tests of an image by name; `None` where it is not an image of tests.
+pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
+    let file = object::File::parse(elf).map_err(|_| NoTests("it is no ELF file"))?;
+    let Some(section) = file.section_by_name(SECTION) else { return Ok(None) };
+    let table = section.data().map_err(|_| NoTests("their section cannot be read"))?;
+    let mut tests = Vec::new();
+    for symbol in file.symbols().filter(|symbol| symbol.section_index() == Some(section.index())) {
+        // The others are the section's own, such as the version of its form.
+        let Some(told) = symbol.name().ok().filter(|name| name.starts_with('{')) else { continue };
+        let told: Value = serde_json::from_str(told).map_err(|_| NoTests("a test's name is no JSON"))?;
+        let at = symbol.address().checked_sub(section.address()).and_then(|at| usize::try_from(at).ok());
+        let word = |n: usize| {
+            let bytes = table.get(at? + 4 * n..)?.first_chunk()?;
+            Some(u32::from_le_bytes(*bytes))
+        };
+        let (Some(address), Some(path), Some(len)) = (word(0), word(1), word(2)) else {
+            return Err(NoTests("a test has no function"));
+        };
+        let module = text_at(&file, path, len).unwrap_or_default();
+        // Without the crate's name, and without the module that every file has.
+        let module = module.split_once("::").map_or("", |(_, path)| path).trim_end_matches("::tests");
+        let name = told["name"].as_str().ok_or(NoTests("a test has no name"))?;
+        let flag = |key: &str| told[key].as_bool().unwrap_or(false);
+        tests.push(OnTarget {
+            name: format!("{module}::{name}"),
+            address,
+            should_panic: flag("should_panic"),
+            ignored: flag("ignored"),
+            timeout: told["timeout"].as_u64().map_or(TIMEOUT, Duration::from_secs),
+        });
+    }
+    tests.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(Some(tests))
+}
+
+/// A text of the image's, by the address it has there.
+fn text_at(file: &object::File<'_>, address: u32, len: u32) -> Option<String> {
+    let bytes = file.sections().find_map(|section| section.data_range(address.into(), len.into()).ok()?)?;
+    String::from_utf8(bytes.to_vec()).ok()
+}
+
+/// Runs one test in an emulator of its own.
+pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<Verdict> {
+    let mut child = Command::new(qemu)
+        .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "none"])
+        .arg("-semihosting-config")
+        .arg(format!("enable=on,target=native,arg=run_addr,arg={}", test.address))
+        .arg("-kernel")
+        .arg(image)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    let started = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break Some(status);
+        }
+        if started.elapsed() > test.timeout {
+            child.kill()?;
+            child.wait()?;
+            break None;
+        }
+        std::thread::sleep(LOOK);
+    };
+    let mut said = String::new();
+    // What is no text is not shown; the status is told anyway.
+    if let Some(mut stdout) = child.stdout.take() {
+        let _ = stdout.read_to_string(&mut said);
+    }
+    if let Some(mut stderr) = child.stderr.take() {
+        let _ = stderr.read_to_string(&mut said);
+    }
+    Ok(judged(test, status.map(|status| status.success()), said.trim()))
+}
+
+/// What an end means; `None` is none within the test's time.
+fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
+    match (well, test.should_panic) {
+        (Some(true), false) | (Some(false), true) => Verdict::Passed,
+        (Some(false), false) => Verdict::Failed(said.to_owned()),
+        (Some(true), true) => Verdict::Failed("it should have panicked".to_owned()),
+        (None, _) => Verdict::Failed(format!("it did not end within {} s; {said}", test.timeout.as_secs())),
+    }
+}
+
+/// Where `embedded-test` lists its tests.
+const SECTION: &str = ".embedded_test";
+/// Of a test that names none: a hundred times what the longest takes, for a busy machine.
+const TIMEOUT: Duration = Duration::from_mins(1);
+/// How often an emulator is looked at.
+const LOOK: Duration = Duration::from_millis(5);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn test(should_panic: bool) -> OnTarget {
+        OnTarget { name: "a::b".into(), address: 1, should_panic, ignored: false, timeout: TIMEOUT }
+    }
+
+    #[test]
+    fn a_panic_fails_a_test_unless_it_should_and_a_hang_fails_any() {
+        assert_eq!(judged(&test(false), Some(true), ""), Verdict::Passed);
+        assert_eq!(judged(&test(true), Some(false), "panicked"), Verdict::Passed);
+        assert_eq!(judged(&test(false), Some(false), "why"), Verdict::Failed("why".into()));
+        assert!(matches!(judged(&test(true), Some(true), ""), Verdict::Failed(_)));
+        for should_panic in [false, true] {
+            let Verdict::Failed(words) = judged(&test(should_panic), None, "") else { panic!("passed") };
+            assert!(words.contains("60 s"), "{words}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_image_has_no_tests() {
+        assert!(tests_in(b"no image").is_err());
+    }
+}

@@ -1,0 +1,30 @@
+//! Does the robot's logic do on its own processor what the paper, the specification and the design say? Tests that run there.
+//!
+//! `cargo xtask on-target` builds this as an image of its own and gives every test an emulator of its own; the same image runs on
+//! hardware with `probe-rs run`. Not what the PC's tests say again, but a little of each part: retrieval, a robot's cycle, frames,
+//! timers, what the governor does when something breaks. On the PC this is empty.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[path = "../../../boards/mps2/src/free/clock.rs"]
+mod clock;
+#[cfg(target_os = "none")]
+mod cycle;
+#[cfg(target_os = "none")]
+mod failsafe;
+#[cfg(target_os = "none")]
+mod frames;
+#[cfg(target_os = "none")]
+mod retrieval;
+#[cfg(target_os = "none")]
+mod timers;
+
+// A panic tells its place and ends the emulator with exit code 1.
+#[cfg(target_os = "none")]
+use panic_semihosting as _;
+// For its functions of the run-time ABI.
+#[cfg(target_os = "none")]
+use runtime as _;
+
+#[cfg(not(target_os = "none"))]
+fn main() {}

@@ -1,0 +1,95 @@
+//! How does cargo run a program for the robot's processor here? In QEMU; an image of tests test by test, each in an emulator of its
+//! own, with the words of Rust's own test runner (`.cargo/config.toml` names this as the target's runner).
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use firmware_build::on_target::{OnTarget, Verdict, run_test, tests_in};
+use firmware_build::{Install, MACHINE, ensure_qemu};
+
+use crate::context::{Context, Failure, line_of, run};
+
+/// The tests that run on the robot's processor; words choose among them.
+pub(crate) fn on_target(context: &Context, words: &[String]) -> Result<(), Failure> {
+    let mut command = context.cargo_thumb("test --profile firmware --package on-target")?;
+    run(command.arg("--").args(words))
+}
+
+/// Runs what the first word names.
+pub(crate) fn emulate(words: &[String]) -> Result<(), Failure> {
+    let Some((image, words)) = words.split_first() else {
+        return Err(Failure::Firmware(vec!["emulate needs an image".into()]));
+    };
+    let image = Path::new(image);
+    let unreadable = |why: String| Failure::Firmware(vec![format!("{}: {why}", image.display())]);
+    let qemu = ensure_qemu(Install::ForUser).map_err(Failure::Qemu)?;
+    let bytes = fs::read(image).map_err(|error| unreadable(error.to_string()))?;
+    if let Some(tests) = tests_in(&bytes).map_err(|error| unreadable(error.to_string()))? {
+        return run_tests(&qemu, image, &tests, words);
+    }
+    let mut command = Command::new(qemu);
+    command.args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "stdio"]);
+    command.args(["-semihosting-config", "enable=on,target=native", "-kernel"]).arg(image);
+    let line = line_of(&command);
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(Failure::Command { line, status }),
+        Err(error) => Err(Failure::Start { line, error }),
+    }
+}
+
+fn run_tests(qemu: &Path, image: &Path, tests: &[OnTarget], words: &[String]) -> Result<(), Failure> {
+    // Options of Rust's own runner (`--nocapture`) choose no test.
+    let chosen: Vec<&OnTarget> = tests.iter().filter(|test| is_chosen(&test.name, words)).collect();
+    println!("\nrunning {} tests", chosen.len());
+    let mut failures = Vec::new();
+    let mut ignored = 0;
+    for test in &chosen {
+        if test.ignored {
+            ignored += 1;
+            println!("test {} ... ignored", test.name);
+            continue;
+        }
+        let verdict =
+            run_test(qemu, image, test).map_err(|error| Failure::Start { line: test.name.clone(), error })?;
+        match verdict {
+            Verdict::Passed => println!("test {} ... ok", test.name),
+            Verdict::Failed(said) => {
+                println!("test {} ... FAILED\n{said}", test.name);
+                failures.push(format!("{}: {}", test.name, said.lines().next().unwrap_or("nothing said")));
+            }
+        }
+    }
+    let (failed, passed) = (failures.len(), chosen.len() - failures.len() - ignored);
+    let filtered = tests.len() - chosen.len();
+    let word = if failed == 0 { "ok" } else { "FAILED" };
+    println!(
+        "\ntest result: {word}. {passed} passed; {failed} failed; {ignored} ignored; {filtered} filtered out\n"
+    );
+    if tests.is_empty() {
+        return Err(Failure::Firmware(vec![format!("{} lists no test", image.display())]));
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Failure::Firmware(failures)) }
+}
+
+/// Whether a word names it, or none is given.
+fn is_chosen(name: &str, words: &[String]) -> bool {
+    let mut words = words.iter().filter(|word| !word.starts_with('-')).peekable();
+    words.peek().is_none() || words.any(|word| name.contains(word.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_choose_by_a_part_of_the_name_and_options_choose_nothing() {
+        let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+        assert!(is_chosen("frames::a", &words(&[])) && is_chosen("frames::a", &words(&["--nocapture"])));
+        assert!(
+            is_chosen("frames::a", &words(&["timers", "fram"]))
+                && !is_chosen("frames::a", &words(&["timers"]))
+        );
+    }
+}
