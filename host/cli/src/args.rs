@@ -9,6 +9,7 @@ use crate::Failure;
 use crate::cases::CasesVerb;
 use crate::control::ControlArgs;
 use crate::evaluate::EvaluateArgs;
+use crate::firmware::FirmwareVerb;
 use crate::play::PlayArgs;
 use crate::replay::ReplayArgs;
 use crate::simulate::SimulateArgs;
@@ -42,6 +43,11 @@ pub(crate) enum Verb {
     Cases {
         #[command(subcommand)]
         verb: CasesVerb,
+    },
+    /// The robots' firmware: build, size, run under QEMU, flash, provision.
+    Firmware {
+        #[command(subcommand)]
+        verb: FirmwareVerb,
     },
     /// One robot's brain as a process, in any simulator of the league; `control` starts them.
     #[command(hide = true)]

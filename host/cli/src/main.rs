@@ -9,6 +9,7 @@ mod cases;
 mod control;
 mod evaluate;
 mod failure;
+mod firmware;
 mod library;
 mod live;
 mod net;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Control(args) => control::run(&args),
         Verb::Cases { verb } => cases::run(&verb),
+        Verb::Firmware { verb } => firmware::run(&verb),
         Verb::VirtualRobot(args) => virtual_robot::run(&args),
     };
     outcome.unwrap_or_else(|failure| failure.report())

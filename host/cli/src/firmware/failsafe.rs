@@ -1,0 +1,256 @@
+//! What does a robot on wheels do when something breaks, and after how long? The brain's governor, asked every millisecond
+//! (DESIGN §6); wheels that obey at once.
+
+use std::fmt::Write as _;
+
+use brain::governor::{Circumstances, Governor, Hearing, Ruling, Wanted};
+use geometry::{Twist, Vector};
+use protocol::Instant;
+use protocol::robot_io::{Health, OmniKick};
+use rules::{League, Phase, Side};
+
+/// What is tried: a robot drives with 3 m/s, then one thing is wrong for three seconds.
+const CAUSES: [Cause; 9] = [
+    Cause::Silence,
+    Cause::NoCommand,
+    Cause::Halt,
+    Cause::Lost,
+    Cause::Tipped,
+    Cause::Spinning,
+    Cause::Battery,
+    Cause::WantsNaN,
+    Cause::MeasuresNaN,
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cause {
+    Silence,
+    NoCommand,
+    Halt,
+    Lost,
+    Tipped,
+    Spinning,
+    Battery,
+    WantsNaN,
+    MeasuresNaN,
+}
+
+impl Cause {
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Silence => "no authentic frame of the host",
+            Self::NoCommand => "the host speaks, but not to this robot",
+            Self::Halt => "HALT, or a time-out",
+            Self::Lost => "nobody shows it where it is",
+            Self::Tipped => "it lies on its side",
+            Self::Spinning => "it turns faster than 30 rad/s",
+            Self::Battery => "the battery is below 14 V",
+            Self::WantsNaN => "the brain wants a number that is none",
+            Self::MeasuresNaN => "the wheels measure a number that is none",
+        }
+    }
+}
+
+/// What became of a cause, ms after it began.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Outcome {
+    /// The speed is limited.
+    pub(super) slow: Option<u64>,
+    /// It brakes: dribbler off, kicker discharged.
+    pub(super) brakes: Option<u64>,
+    /// It stands.
+    pub(super) stands: Option<u64>,
+    /// The motors have no current.
+    pub(super) released: Option<u64>,
+    /// It may move again: ms after the cause has ended.
+    pub(super) again: Option<u64>,
+}
+
+/// Before the table, in docs/firmware.md.
+pub(super) const HEAD: &str = "
+## What a robot on wheels does when something breaks
+
+It drives with 3 m/s under a host that speaks every 10 ms; then one thing is wrong for 3 s. Times are counted from that moment, in
+steps of 1 ms (a brain's steps take 10 ms), of the brain's governor over wheels that obey at once. The kicker may be charged again when
+the robot moves again.
+
+";
+/// After the table.
+pub(super) const BELOW: &str = "
+Below the brain, without its governor, each with its tests:
+
+| what is wrong | what happens | after | held by |
+|---|---|---|---|
+| the brain orders nothing any more | the control loop brakes wheels, dribbler off, kicker discharged | 50 ms | `runtime::wheel`, `runtime::hardware` |
+| the control loop says nothing any more | the kicker is discharged | 10 ms | `runtime::hardware` |
+| a panic or a hard fault, in the brain or elsewhere | motors without current, place kept and told, a new life with an epoch of its own | at once | `qemu_free` |
+| control, radio or brain hangs | the watchdog's first time-out takes the current off, its second resets | 100 ms, 200 ms | `qemu_free` |
+| no page with a key, or a damaged one | it never drives and says nothing on the air | – | `qemu_free` |
+";
+
+/// The table for people.
+pub(super) fn table() -> String {
+    let mut text = String::from(
+        "| what is wrong | slower after | brakes, dribbler off, kicker discharged after | stands after | motors released after | moves again, once it is right |\n\
+         |---|---:|---:|---:|---:|---:|\n",
+    );
+    let ms = |time: Option<u64>| time.map_or_else(|| "–".to_owned(), |ms| format!("{ms} ms"));
+    for cause in CAUSES {
+        let Outcome { slow, brakes, stands, released, again } = outcome(cause);
+        let row = [slow, brakes, stands, released, again].map(ms).join(" | ");
+        let _ = writeln!(text, "| {} | {row} |", cause.words());
+    }
+    text
+}
+
+fn outcome(cause: Cause) -> Outcome {
+    let mut governor = Governor::new(League::DivisionB);
+    let go = Wanted {
+        twist: Twist { linear: Vector::new(3.0, 0.0), angular: 0.0 },
+        dribbler: 1.0,
+        kick: OmniKick::None,
+    };
+    let mut found = Outcome::default();
+    // Frames come every 10 ms; the last good one before the cause begins is 0 ms old.
+    let (mut frame, mut command) = (None, None);
+    for ms in 0..BEGINS + LASTS + 2_000 {
+        let now = Instant(ms * 1_000);
+        let wrong = (BEGINS + 1..=BEGINS + LASTS).contains(&ms);
+        if ms % 10 == 0 && !(wrong && cause == Cause::Silence) {
+            governor.hear_host(now);
+            frame = Some(now);
+            command = if wrong && cause == Cause::NoCommand { command } else { Some(now) };
+        }
+        let is = |one: Cause| wrong && cause == one;
+        let health = Health {
+            battery: Some(if is(Cause::Battery) { 13.0 } else { 16.0 }),
+            tipped: is(Cause::Tipped),
+            kicker_ready: true,
+        };
+        let moved = governor.last();
+        let odometry = if is(Cause::MeasuresNaN) {
+            Twist { linear: Vector::new(f32::NAN, 0.0), ..moved }
+        } else if is(Cause::Spinning) {
+            Twist { angular: 31.0, ..moved }
+        } else {
+            moved
+        };
+        let phase = if is(Cause::Halt) { Phase::Halt } else { Phase::<Side>::Run };
+        let circumstances = Circumstances {
+            now,
+            host: Some(Hearing { frame, command }),
+            phase: Some(phase),
+            placed: !is(Cause::Lost),
+            health: &health,
+            odometry,
+        };
+        let mut wanted = go;
+        if is(Cause::WantsNaN) {
+            wanted.twist.angular = f32::NAN;
+        }
+        let (given, ruling) = governor.rule(&circumstances, &wanted);
+        let since = ms.saturating_sub(BEGINS);
+        if wrong {
+            let first = |place: &mut Option<u64>, holds: bool| {
+                if holds {
+                    place.get_or_insert(since);
+                }
+            };
+            first(&mut found.slow, matches!(ruling, Ruling::Limited(_)));
+            let safe = given.kick == OmniKick::Discharge && given.dribbler == 0.0;
+            first(&mut found.brakes, safe && matches!(ruling, Ruling::Braking(_)));
+            first(&mut found.stands, given.twist == Twist::default());
+            first(&mut found.released, governor.has_let_go());
+        } else if since > LASTS && ruling == Ruling::Allowed {
+            found.again.get_or_insert(since - LASTS);
+        }
+    }
+    found
+}
+
+/// When the cause begins, ms: the robot is armed and drives.
+const BEGINS: u64 = 1_000;
+/// For how long it lasts, ms: longer than a robot needs to stand and to release its motors.
+const LASTS: u64 = 3_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_silent_host_slows_after_50_ms_brakes_after_100_and_arms_after_half_a_second() {
+        let found = outcome(Cause::Silence);
+        // 3 m/s is more than the limit, 4 m/s at 50 ms and 0 at 100 ms, from 62.5 ms on.
+        assert_eq!((found.slow, found.brakes), (Some(63), Some(100)));
+        // From 62.5 ms on with 5 m/s² 3 m/s take 600 ms.
+        assert!(found.stands.is_some_and(|ms| (660..=668).contains(&ms)), "{found:?}");
+        assert_eq!(found.released, found.stands.map(|ms| ms + 500));
+        // The first frame comes within 10 ms.
+        assert!(found.again.is_some_and(|ms| (500..=511).contains(&ms)), "{found:?}");
+    }
+
+    /// What holds of every cause: it brakes within its patience, stands, and moves again once things are right.
+    fn ends_well(cause: Cause, patience: u64) -> Outcome {
+        let found = outcome(cause);
+        assert!(found.brakes.is_some_and(|ms| ms <= patience), "{cause:?}: {found:?}");
+        // 3 m/s take 600 ms at 5 m/s².
+        let stands = found.stands.is_some_and(|ms| ms <= patience + 610);
+        assert!(stands, "{cause:?}: {found:?}");
+        found
+    }
+
+    #[test]
+    fn a_host_that_forgets_a_robot_brakes_it_after_100_ms_and_moves_it_with_its_first_word() {
+        let found = ends_well(Cause::NoCommand, 100);
+        // Motors hold: somebody commands the team.
+        assert_eq!((found.brakes, found.released), (Some(100), None));
+        assert!(found.again.is_some_and(|ms| ms <= 10), "{found:?}");
+    }
+
+    #[test]
+    fn halt_brakes_at_once_and_holds_the_place() {
+        let found = ends_well(Cause::Halt, 1);
+        assert_eq!((found.released, found.again), (None, Some(1)));
+    }
+
+    #[test]
+    fn a_robot_that_nobody_sees_brakes_at_once_and_goes_on_when_it_is_seen() {
+        let found = ends_well(Cause::Lost, 1);
+        assert_eq!((found.released, found.again), (None, Some(1)));
+    }
+
+    #[test]
+    fn a_tipped_robot_brakes_at_once_and_lets_its_motors_go_when_they_stand() {
+        let found = ends_well(Cause::Tipped, 1);
+        assert_eq!(found.released, found.stands.map(|ms| ms + 500));
+        assert_eq!(found.again, Some(1));
+    }
+
+    #[test]
+    fn a_robot_that_spins_brakes_at_once() {
+        let found = ends_well(Cause::Spinning, 1);
+        assert_eq!((found.released, found.again), (None, Some(1)));
+    }
+
+    #[test]
+    fn an_empty_battery_is_given_a_second_then_the_robot_brakes_and_lets_go() {
+        // A voltage sinks for a moment when the motors pull.
+        let found = ends_well(Cause::Battery, 1_001);
+        assert_eq!(found.brakes, Some(1_001));
+        assert_eq!(found.released, found.stands.map(|ms| ms + 500));
+    }
+
+    #[test]
+    fn a_number_that_is_none_wanted_or_measured_brakes_at_once_and_ends_with_it() {
+        for cause in [Cause::WantsNaN, Cause::MeasuresNaN] {
+            let found = ends_well(cause, 1);
+            assert_eq!((found.released, found.again), (None, Some(1)), "{cause:?}");
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_every_cause() {
+        let rows = table().lines().count();
+        assert_eq!(rows, CAUSES.len() + 2);
+    }
+}

@@ -1,0 +1,126 @@
+//! How does an image get into a robot? By probe-rs, a program of its own that speaks to debug probes; without it, this says what
+//! to install.
+//!
+//! Nothing here has ever met a probe: that the words handed to probe-rs are right is all a machine without hardware can show.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use clap::Args;
+use firmware_build::Program;
+
+use super::{build, failed};
+use crate::Failure;
+
+/// What goes where.
+#[derive(Debug, Args)]
+pub(crate) struct FlashArgs {
+    /// The image: a board's ELF file; the one for firmware/boards/stm32 unless one is named, built first.
+    #[arg(long, value_name = "FILE", requires = "chip")]
+    elf: Option<PathBuf>,
+    /// The chip, as `probe-rs chip list` names it; that board's unless one is named.
+    #[arg(long, value_name = "CHIP")]
+    chip: Option<String>,
+    /// What `provision` wrote.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
+    /// Where the page belongs in the chip's flash; that board's last sector unless told.
+    #[arg(long, value_name = "ADDRESS", value_parser = address, requires = "page")]
+    page_address: Option<u32>,
+    /// Which probe, where there are several (`probe-rs list`).
+    #[arg(long, value_name = "PROBE")]
+    probe: Option<String>,
+}
+
+/// Flashes image and page, whichever are given.
+pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
+    // Before anything is built for nobody.
+    let there = Command::new(PROGRAM).arg("--version").stdout(Stdio::null()).status();
+    if there.is_err_and(|error| error.kind() == ErrorKind::NotFound) {
+        return Err(failed(MISSING));
+    }
+    let image = match &args.elf {
+        Some(file) => file.clone(),
+        None => build(Program::Stm32)?,
+    };
+    for words in downloads(args, &image) {
+        let line = format!("{PROGRAM} {}", words.join(" "));
+        eprintln!("onetwo: {line}");
+        match Command::new(PROGRAM).args(&words).status() {
+            Ok(status) if status.success() => {}
+            Ok(status) => {
+                return Err(failed(format!("`{line}` failed ({status}); its own words stand above")));
+            }
+            Err(error) => return Err(failed(format!("`{line}` does not start: {error}"))),
+        }
+    }
+    Ok(())
+}
+
+/// The words of each call of probe-rs; the page first, so that a robot never starts its new image without its key.
+fn downloads(args: &FlashArgs, image: &Path) -> Vec<Vec<String>> {
+    let chip = args.chip.as_deref().unwrap_or(CHIP);
+    let call = |file: &Path, more: &[&str]| {
+        let mut words = vec!["download".to_owned(), "--chip".to_owned(), chip.to_owned()];
+        if let Some(probe) = &args.probe {
+            words.extend(["--probe".to_owned(), probe.clone()]);
+        }
+        words.extend(more.iter().map(|word| (*word).to_owned()));
+        words.push(file.display().to_string());
+        words
+    };
+    let page = args.page.as_deref().map(|file| {
+        let address = format!("{:#010x}", args.page_address.unwrap_or(PAGE_ADDRESS));
+        call(file, &["--verify", "--binary-format", "bin", "--base-address", &address])
+    });
+    page.into_iter().chain([call(image, &["--verify", "--preverify"])]).collect()
+}
+
+/// `0x081e0000`, or decimal.
+fn address(text: &str) -> Result<u32, String> {
+    let parsed = match text.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(&digits.replace('_', ""), 16),
+        None => text.parse(),
+    };
+    parsed.map_err(|_| "expected an address such as 0x081e0000".to_owned())
+}
+
+const PROGRAM: &str = "probe-rs";
+/// Of firmware/boards/stm32.
+const CHIP: &str = "STM32H743ZITx";
+/// The last sector of its flash (its `flash.rs`).
+const PAGE_ADDRESS: u32 = 0x081e_0000;
+const MISSING: &str = "\
+probe-rs is not installed; get it from https://probe.rs, or build it with `cargo install probe-rs-tools --locked` (some 30 minutes)";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_goes_first_and_to_its_address() {
+        let args = FlashArgs {
+            elf: None,
+            chip: None,
+            page: Some("robot.page".into()),
+            page_address: None,
+            probe: None,
+        };
+        let lines: Vec<_> =
+            downloads(&args, Path::new("image")).iter().map(|words| words.join(" ")).collect();
+        assert_eq!(
+            lines,
+            [
+                "download --chip STM32H743ZITx --verify --binary-format bin --base-address 0x081e0000 robot.page",
+                "download --chip STM32H743ZITx --verify --preverify image",
+            ]
+        );
+    }
+
+    #[test]
+    fn an_address_is_hexadecimal_or_decimal() {
+        assert_eq!((address("0x10"), address("10")), (Ok(16), Ok(10)));
+        assert!(address("flash").is_err());
+    }
+}

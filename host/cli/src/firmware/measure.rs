@@ -1,0 +1,78 @@
+//! How deep does an image's stack get, and how long is its worst step? It plays under QEMU: a walking robot's a trial of each of the
+//! paper's cells, a wheeled robot's a match of six against six (DESIGN §9).
+//!
+//! Instructions of the guest and bytes: the same on every machine for the same image.
+
+use arena::game::{Game, GameConfig, Nobody};
+use arena::{TrialConfig, run};
+use brain::Approach;
+use firmware_build::{Body, Install, Program, ensure_qemu};
+use hil_sim::{ByTeam, Configuration, Meter, Metered, NativeBackend, QemuBackend, Scenario};
+use protocol::TeamId;
+use rules::{Colour, League};
+
+use super::{build, failed};
+use crate::Failure;
+
+/// What a program took at its deepest and longest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Measured {
+    /// Bytes of stack.
+    pub(super) stack: u32,
+    /// Instructions of the step in the middle.
+    pub(super) median: u32,
+    /// Of the worst step.
+    pub(super) worst: u32,
+    /// Steps looked at.
+    pub(super) steps: usize,
+}
+
+/// Plays; `None` for an image that no simulator leads.
+pub(super) fn measure(program: Program, seconds: f64) -> Result<Option<Measured>, Failure> {
+    let meter = Meter::default();
+    match program {
+        Program::Robot(Body::Legged) => trials(&meter)?,
+        Program::Robot(Body::Omni) => play(&meter, seconds)?,
+        _ => return Ok(None),
+    }
+    let (median, worst) = meter.median_and_worst();
+    Ok(Some(Measured { stack: meter.stack(), median, worst, steps: meter.steps() }))
+}
+
+fn trials(meter: &Meter) -> Result<(), Failure> {
+    let image = emulated(Body::Legged)?;
+    for scenario in Scenario::PAPER {
+        for opponents in [Configuration::DefenderGoalie, Configuration::TwoDefenders] {
+            let config = TrialConfig::new(scenario, opponents, Approach::Cases, SEED);
+            let backend = Metered::new(QemuBackend::new(&image), meter);
+            run(&config, Box::new(backend), &mut []).map_err(Failure::Trial)?;
+        }
+    }
+    Ok(())
+}
+
+fn play(meter: &Meter, seconds: f64) -> Result<(), Failure> {
+    let image = emulated(Body::Omni)?;
+    let config = GameConfig::new(League::DivisionB, SEED, seconds);
+    let base = case_library::division_b();
+    let mut backend = ByTeam {
+        team: TeamId::of(Colour::Blue),
+        its: Metered::new(QemuBackend::new(&image), meter),
+        others: NativeBackend::new(base),
+    };
+    let mut game = Game::new(&config, &mut backend).map_err(failed)?;
+    for _ in 0..(seconds * TICKS_A_SECOND) as u64 {
+        game.step(&mut Nobody).map_err(failed)?;
+    }
+    Ok(())
+}
+
+fn emulated(body: Body) -> Result<std::path::PathBuf, Failure> {
+    ensure_qemu(Install::ForUser).map_err(failed)?;
+    build(Program::Robot(body))
+}
+
+/// One seed, so that two runs of the same image say the same.
+const SEED: u64 = 1;
+/// Of a match (DESIGN §2).
+const TICKS_A_SECOND: f64 = 100.0;

@@ -1,0 +1,120 @@
+//! What can be done with the robots' firmware from here? Build it, see what it takes, run it under QEMU, flash it, and write the
+//! page that tells a robot who it is (DESIGN §8).
+//!
+//! One file per verb: [`size`] (with [`measure`], which runs images under QEMU), [`run`], [`flash`], [`provision`], and [`report`],
+//! which writes docs/firmware.md ([`failsafe`] is its table). Runs on a PC.
+
+mod failsafe;
+mod flash;
+mod measure;
+mod provision;
+mod report;
+mod run;
+mod size;
+
+use std::fmt::{Display, Write as _};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Args, Subcommand, ValueEnum};
+use firmware_build::inspect::{Image, Sizes};
+use firmware_build::{Body, Program, build_program, workspace_root};
+
+use crate::Failure;
+use crate::output::say;
+
+/// What to do with the firmware.
+#[derive(Debug, Subcommand)]
+pub(crate) enum FirmwareVerb {
+    /// Build images and say where they are.
+    Build(ImagesArgs),
+    /// What images take: flash and RAM by crate and symbol, stack and worst step under QEMU, and shares of robots' computers.
+    Size(size::SizeArgs),
+    /// Run a robot under QEMU by its own clock, its radio on a serial line; Ctrl-C ends it.
+    Run(run::RunArgs),
+    /// Put an image, or the page of `provision`, into a robot's flash with probe-rs.
+    Flash(flash::FlashArgs),
+    /// Write the page that tells a robot its number, team and key.
+    Provision(provision::ProvisionArgs),
+    /// What images take, and what robots do when something breaks, as docs/firmware.md has it.
+    Report(report::ReportArgs),
+}
+
+/// Which images.
+#[derive(Debug, Args)]
+pub(crate) struct ImagesArgs {
+    /// The image; all of them unless one is named.
+    #[arg(long, value_enum)]
+    image: Option<ImageWord>,
+}
+
+/// An image by its word.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ImageWord {
+    /// A walking robot, led tick by tick by the simulator.
+    Legged,
+    /// A robot on wheels, led likewise.
+    Omni,
+    /// A robot on wheels that runs by its own clock.
+    Free,
+    /// The same on a real robot's board, STM32H743.
+    Stm32,
+}
+
+impl ImageWord {
+    const fn program(self) -> Program {
+        match self {
+            Self::Legged => Program::Robot(Body::Legged),
+            Self::Omni => Program::Robot(Body::Omni),
+            Self::Free => Program::Free,
+            Self::Stm32 => Program::Stm32,
+        }
+    }
+}
+
+impl ImagesArgs {
+    fn programs(&self) -> Vec<Program> {
+        self.image.map_or_else(|| Program::IMAGES.to_vec(), |word| vec![word.program()])
+    }
+}
+
+/// Does it.
+pub(crate) fn run(verb: &FirmwareVerb) -> Result<ExitCode, Failure> {
+    match verb {
+        FirmwareVerb::Build(args) => {
+            let mut told = String::new();
+            for program in args.programs() {
+                let path = build(program)?;
+                let sizes = sizes_of(&path)?;
+                let _ = writeln!(told, "{}: {} B flash, {} B RAM", path.display(), sizes.flash, sizes.ram);
+            }
+            say(&told)?;
+        }
+        FirmwareVerb::Size(args) => size::run(args)?,
+        FirmwareVerb::Run(args) => run::run(args)?,
+        FirmwareVerb::Flash(args) => flash::run(args)?,
+        FirmwareVerb::Provision(args) => provision::run(args)?,
+        FirmwareVerb::Report(args) => report::run(args)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn failed(error: impl Display) -> Failure {
+    Failure::Firmware(error.to_string())
+}
+
+/// A failure that concerns a file.
+fn at(path: &Path, error: impl Display) -> Failure {
+    failed(format!("{}: {error}", path.display()))
+}
+
+fn build(program: Program) -> Result<PathBuf, Failure> {
+    build_program(&workspace_root(), program).map_err(failed)
+}
+
+fn sizes_of(path: &Path) -> Result<Sizes, Failure> {
+    let bytes = fs::read(path).map_err(|error| at(path, error))?;
+    let image = Image::parse(&bytes).map_err(|error| at(path, error))?;
+    Ok(Sizes::of(&image))
+}

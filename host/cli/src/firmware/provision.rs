@@ -1,0 +1,89 @@
+//! How does a robot learn its number, its team and the team's key? From a page of 64 bytes, written here and put into its flash
+//! beside the image (DESIGN §6).
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use protocol::provision::{PAGE_LEN, Provision, page, read};
+use protocol::{RobotId, TeamId};
+use rules::League;
+
+use super::{at, failed};
+use crate::Failure;
+use crate::output::say;
+
+/// Who the robot shall be.
+#[derive(Debug, Args)]
+pub(crate) struct ProvisionArgs {
+    /// Its number, 0–15.
+    #[arg(long, value_name = "N")]
+    robot: u8,
+    /// Its team's number on the air.
+    #[arg(long, value_name = "N")]
+    team: u8,
+    /// What it plays.
+    #[arg(long, value_enum, default_value_t = LeagueWord::DivisionB)]
+    league: LeagueWord,
+    /// A file with 32 hexadecimal digits, as `openssl rand -hex 16` makes them.
+    #[arg(long, value_name = "FILE")]
+    key_file: PathBuf,
+    /// Where the page goes.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// A league by its word.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum LeagueWord {
+    /// The four-legged league of 2007.
+    FourLegged,
+    /// The Small Size League of 2013.
+    #[value(name = "ssl-2013")]
+    Ssl2013,
+    /// Division B of the Small Size League.
+    DivisionB,
+    /// Division A.
+    DivisionA,
+}
+
+impl LeagueWord {
+    const fn league(self) -> League {
+        match self {
+            Self::FourLegged => League::FourLegged,
+            Self::Ssl2013 => League::Ssl2013,
+            Self::DivisionB => League::DivisionB,
+            Self::DivisionA => League::DivisionA,
+        }
+    }
+}
+
+/// Writes the page.
+pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
+    let robot =
+        RobotId::new(args.robot).ok_or_else(|| failed(format!("robot {} is none of 0–15", args.robot)))?;
+    let key = host::shell::key::read(&args.key_file).map_err(failed)?;
+    if let Some(warning) = &key.warning {
+        eprintln!("onetwo: {warning}");
+    }
+    let who = Provision { robot, team: TeamId(args.team), league: args.league.league(), key: key.key };
+    let bytes: [u8; PAGE_LEN] = page(&who);
+    // The robot's own reading of it: a key of zeros is refused here already.
+    read(&bytes, false).map_err(failed)?;
+    write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
+    say(&format!("{}: robot {robot} of team {}; it holds the team's key\n", args.out.display(), args.team))
+}
+
+/// A file that its owner alone can read, for it holds a key.
+fn write_for_owner(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut options = fs::OpenOptions::new();
+    options.write(true).create(true).truncate(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let mut file = options.open(path)?;
+    // The mode above is for new files; one that was there keeps its own until told.
+    #[cfg(unix)]
+    file.set_permissions(std::os::unix::fs::PermissionsExt::from_mode(0o600))?;
+    file.write_all(bytes)
+}

@@ -1,0 +1,82 @@
+//! How is a robot run here without hardware? The image that runs by its own clock, in QEMU's emulated board, its radio on a serial
+//! line.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use clap::Args;
+use firmware_build::{Install, MACHINE, Program, ensure_qemu};
+use protocol::provision::read;
+use protocol::slot::PAGE_ADDRESS;
+
+use super::{at, build, failed};
+use crate::Failure;
+
+/// How a robot is run.
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// What `provision` wrote; without it nobody commands the robot.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
+    /// Where its radio's line ends, in QEMU's words: `null`, `pty`, `unix:PATH,server=on`, `tcp:HOST:PORT,server=on`.
+    #[arg(long, value_name = "LINE", default_value = "pty")]
+    serial: String,
+}
+
+/// Runs it until it is ended; the robot's words are on stderr.
+pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    // Before anything is built or started.
+    let page = args.page.as_deref().map(|file| check(file).map(|()| file)).transpose()?;
+    let qemu = ensure_qemu(Install::ForUser).map_err(failed)?;
+    let mut command = Command::new(qemu);
+    command.args(words(&build(Program::Free)?, page, &args.serial)).stdin(Stdio::null());
+    let status = command.status().map_err(failed)?;
+    if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
+}
+
+/// Whether a robot could read the page.
+fn check(file: &Path) -> Result<(), Failure> {
+    let bytes = fs::read(file).map_err(|error| at(file, error))?;
+    read(&bytes, false).map(|_| ()).map_err(|error| at(file, error))
+}
+
+/// What QEMU is told.
+fn words(image: &Path, page: Option<&Path>, serial: &str) -> Vec<String> {
+    let mut words: Vec<String> =
+        ["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", serial]
+            .map(str::to_owned)
+            .into();
+    words.extend(["-semihosting-config", "enable=on,target=native", "-kernel"].map(str::to_owned));
+    words.push(image.display().to_string());
+    if let Some(file) = page {
+        // QEMU's options take a doubled comma for one.
+        let path = file.to_string_lossy().replace(',', ",,");
+        words.push("-device".to_owned());
+        words.push(format!("loader,file={path},addr={PAGE_ADDRESS:#x},force-raw=on"));
+    }
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_goes_to_its_address_even_from_a_path_with_a_comma() {
+        let words = words(Path::new("image"), Some(Path::new("a,b.page")), "null");
+        let last = words.last().map(String::as_str);
+        let expected = format!("loader,file=a,,b.page,addr={PAGE_ADDRESS:#x},force-raw=on");
+        assert_eq!(last, Some(expected.as_str()));
+        assert!(words.windows(2).any(|pair| pair == ["-serial", "null"]), "{words:?}");
+    }
+
+    #[test]
+    fn a_page_that_no_robot_could_read_is_refused_before_anything_starts() {
+        let file = std::env::temp_dir().join(format!("onetwo-no-page-{}", std::process::id()));
+        fs::write(&file, [0xff; 64]).expect("a temporary file");
+        let said = check(&file).map_err(|error| error.to_string());
+        fs::remove_file(&file).expect("our own file");
+        assert!(said.is_err_and(|words| words.contains("firmware provision")));
+    }
+}

@@ -1,0 +1,113 @@
+//! Does the built `onetwo firmware` do what its help says, without a compiler for the target and without a probe? (DESIGN §8)
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use protocol::provision::read;
+use protocol::{RobotId, TeamId};
+use rules::League;
+
+fn onetwo(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(arguments)
+        // No probe-rs, wherever one is installed.
+        .env("PATH", "")
+        .output()
+        .expect("the program starts")
+}
+
+/// A folder of this test's own; gone with this value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("onetwo-firmware-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).expect("a temporary folder");
+        Self(folder)
+    }
+
+    fn at(&self, file: &str) -> String {
+        self.0.join(file).display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A temporary folder that stays is a pity, not an error.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
+    let folder = Folder::new("page");
+    let (key, page) = (folder.at("key"), folder.at("robot.page"));
+    fs::write(&key, "000102030405060708090a0b0c0d0e0f\n").expect("a file");
+    let words = ["firmware", "provision", "--robot", "5", "--team", "2", "--key-file", &key, "--out", &page];
+    // A file that was there before, open to all, is closed to others too.
+    fs::write(&page, "old").expect("a file");
+    let told = onetwo(&words);
+    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    let who = read(&fs::read(&page).expect("the page"), false).expect("a robot can read it");
+    assert_eq!((Some(who.robot), who.team, who.league), (RobotId::new(5), TeamId(2), League::DivisionB));
+    assert_eq!(who.key.0, std::array::from_fn(|n| n as u8));
+    assert!(!String::from_utf8_lossy(&told.stdout).contains("0001020304"), "the key is nobody's business");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let mode = fs::metadata(&page).expect("the page").permissions().mode();
+        assert_eq!(mode & 0o777, 0o600);
+    }
+}
+
+#[test]
+fn what_no_robot_could_use_is_refused_with_a_mend() {
+    let folder = Folder::new("refused");
+    let (key, zeros, page) = (folder.at("key"), folder.at("zeros"), folder.at("robot.page"));
+    fs::write(&key, "0123").expect("a file");
+    fs::write(&zeros, "0".repeat(32)).expect("a file");
+    for (robot, key, words) in
+        [("5", &key, "32 hexadecimal digits"), ("5", &zeros, "all zeros"), ("16", &zeros, "none of 0–15")]
+    {
+        let told = onetwo(&[
+            "firmware",
+            "provision",
+            "--robot",
+            robot,
+            "--team",
+            "1",
+            "--key-file",
+            key,
+            "--out",
+            &page,
+        ]);
+        assert_eq!(told.status.code(), Some(1));
+        let said = String::from_utf8_lossy(&told.stderr).into_owned();
+        assert!(said.contains(words), "{said}");
+        assert!(!fs::exists(&page).expect("a folder"), "a page of {words}");
+    }
+}
+
+#[test]
+fn without_probe_rs_flashing_says_what_to_install() {
+    let told = onetwo(&["firmware", "flash", "--chip", "STM32H743ZITx", "--elf", "image"]);
+    assert_eq!(told.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert!(
+        said.contains("probe-rs is not installed") && said.contains("cargo install probe-rs-tools"),
+        "{said}"
+    );
+}
+
+#[test]
+fn wrong_words_are_wrong_usage() {
+    for words in [
+        &["firmware"][..],
+        &["firmware", "flash", "--elf", "image"],
+        &["firmware", "flash", "--page-address", "0x0"],
+        &["firmware", "size", "--image", "stm"],
+    ] {
+        assert_eq!(onetwo(words).status.code(), Some(2), "{words:?}");
+    }
+}
