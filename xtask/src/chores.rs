@@ -163,9 +163,10 @@ static CHORES: [Chore; 18] = [
     ),
     chore(
         "bench page",
-        "",
-        "measure what a frame costs the page's script, full over empty, and count what five viewers cost a match",
-        |context, _| page::bench(context),
+        "[--write]",
+        "measure what a frame costs the page's script, full over empty, and count what five viewers cost a match; --write puts\n\
+        \x20                both into host/page/README.md",
+        |context, words| page::bench(context, writes(words)),
     ),
     chore(
         "bench trial",

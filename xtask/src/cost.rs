@@ -116,6 +116,15 @@ Counted in guest instructions under QEMU, each table written by its own command:
 worst step, the median retrieval and the image's size are held by `cargo xtask test`.
 ";
 
+/// The text with what stands between the marks replaced; unchanged where a mark is missing.
+pub(crate) fn between(text: &str, (begin, end): (&str, &str), table: &str) -> String {
+    let parts = text.split_once(begin).and_then(|(before, rest)| Some((before, rest.split_once(end)?.1)));
+    match parts {
+        Some((before, after)) => format!("{before}{begin}\n{table}{end}{after}"),
+        None => text.into(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,13 +1,14 @@
 //! Does the page work in a real browser, what does it look like, and what does it cost? `cargo xtask test --only page`, `cargo xtask
 //! screenshots` and `cargo xtask bench page`.
 
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
 
 use crate::context::{Context, Failure, run};
+use crate::cost::between;
 
 /// What holds when the step passes.
 pub(crate) const WHAT: &str = "the page works in a real browser";
@@ -34,6 +35,17 @@ fn tour(context: &Context, words: &str) -> Result<(), Failure> {
     run(tour.arg(program).args(words.split_whitespace()))
 }
 
+/// What the tour says of frames: how often an empty frame's cost a full one's is, and after a colon the times of this machine.
+fn frames(context: &Context) -> Result<String, Failure> {
+    let program = built(context)?;
+    let mut tour = context.cargo("run --release --package page-browser --example tour --");
+    tour.arg(program).arg("frames").stderr(Stdio::inherit());
+    let failed = |error| Failure::Start { line: "tour frames".to_owned(), error };
+    let out = tour.output().map_err(failed)?;
+    let said = String::from_utf8_lossy(&out.stdout).trim().to_owned();
+    if out.status.success() && !said.is_empty() { Ok(said) } else { Err(failed(io::Error::other(said))) }
+}
+
 /// The program itself.
 fn built(context: &Context) -> Result<PathBuf, Failure> {
     run(&mut context.cargo("build --release --package onetwo"))?;
@@ -41,17 +53,29 @@ fn built(context: &Context) -> Result<PathBuf, Failure> {
     Ok(target.join("release/onetwo"))
 }
 
-/// What a frame costs the page's script, and what viewers cost the match.
-pub(crate) fn bench(context: &Context) -> Result<(), Failure> {
+/// What a frame costs the page's script, and what viewers cost the match; with `write` both go into host/page/README.md.
+pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     ensure_browser()?;
-    tour(context, "frames")?;
+    let frame = frames(context)?;
+    println!("{frame}");
     run(&mut context.cargo("build --release --package page --example viewers"))?;
     let alone = count(context, 0)?;
     let watched = count(context, 5)?;
-    println!(
-        "the match's thread takes {alone} instructions for {SECONDS} s without viewers and {watched} with five: {:+.3} %",
+    let viewers = format!(
+        "the match's thread takes {:.1} M instructions for {SECONDS} s of match without viewers and {:+.3} % with five",
+        alone as f64 * 1e-6,
         (watched as f64 / alone as f64 - 1.0) * 100.0
     );
+    println!("{viewers}");
+    if write {
+        let file = context.root().join("host/page/README.md");
+        let start = |error| Failure::Start { line: file.display().to_string(), error };
+        let text = fs::read_to_string(&file).map_err(start)?;
+        // Times are this machine's: the ratio alone is kept.
+        let ratio = frame.split(':').next().unwrap_or(&frame);
+        let list = format!("\n- {ratio};\n- {viewers}.\n\n");
+        fs::write(&file, between(&text, MARKS, &list)).map_err(start)?;
+    }
     let more = watched.saturating_sub(alone);
     if more as f64 > alone as f64 * SLACK {
         return Err(Failure::Budget(format!("five viewers cost the match {more} of {alone} instructions")));
@@ -59,6 +83,8 @@ pub(crate) fn bench(context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Around the figures in the page's README.
+const MARKS: (&str, &str) = ("<!-- page figures -->", "<!-- end of page figures -->");
 /// Simulated seconds that are counted.
 const SECONDS: u32 = 4;
 /// How much two runs may differ: sleeping, and when the clock is looked at.

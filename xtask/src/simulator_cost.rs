@@ -5,7 +5,7 @@
 use std::fs;
 
 use crate::context::{Context, Failure};
-use crate::cost::{Row, counted, judge, release, table};
+use crate::cost::{Row, between, counted, judge, release, table};
 
 /// Instructions a simulated second; with `write` the table goes into hil-sim/README.md.
 pub(crate) fn run_bench(context: &Context, write: bool) -> Result<(), Failure> {
@@ -30,13 +30,9 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     PARTS.iter().map(row).collect()
 }
 
-/// The text with what stands between the marks replaced; unchanged where a mark is missing.
+/// The text with its table replaced.
 fn with_table(text: &str, table: &str) -> String {
-    let parts = text.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
-    match parts {
-        Some((before, after)) => format!("{before}{BEGIN}\n{table}{END}{after}"),
-        None => text.into(),
-    }
+    between(text, (BEGIN, END), table)
 }
 
 /// So many and twice as many.

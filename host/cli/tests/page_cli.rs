@@ -74,9 +74,59 @@ fn a_match_is_shown_stopped_and_begun_anew() {
     viewer.ask(r#"{"ask":"restart","seed":6}"#);
     let anew = viewer.until(|scene| scene["seed"] == 6);
     assert!(anew["t"].as_f64().unwrap() < t.max(3.0));
+    // Ways of more than two points: planned ones.
+    viewer.until(|scene| {
+        let ways = scene["robots"].as_array().unwrap().iter().map(|robot| &robot["mind"]["intent"]["path"]);
+        ways.filter_map(Value::as_array).any(|way| way.len() > 3)
+    });
     viewer.ask(r#"{"ask":"fly"}"#);
     let refused = viewer.until(|word| word.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("no request"), "{refused}");
+}
+
+/// Distance of a shape of the layer of truth from a place, m.
+fn off(shape: &Value, at: [f64; 2]) -> f64 {
+    let place = |i: usize| shape["at"][i].as_f64().unwrap();
+    (place(0) - at[0]).hypot(place(1) - at[1])
+}
+
+#[test]
+fn a_case_is_played_from_its_own_situation() {
+    let play = Program::start(&[
+        "play",
+        "--duration",
+        "600",
+        "--seed",
+        "5",
+        "--listen",
+        "127.0.0.1:0",
+        "--speed",
+        "4",
+    ]);
+    let mut viewer = Viewer::of(&play);
+    // Its own side is known once the referee has spoken.
+    viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
+    viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
+    viewer.ask(r#"{"ask":"pause","on":true}"#);
+    viewer.until(|scene| scene["paused"] == true);
+    // Of its file: three robots that build up from the back.
+    let (ball, mates) = ([-3.2, 0.5], [[-3.35, 0.5], [-2.2, 1.7], [-0.9, 0.5]]);
+    viewer.ask(r#"{"ask":"situation","name":"back/build-up"}"#);
+    let there = viewer.until(|scene| {
+        let truth =
+            scene["layers"].as_array().unwrap().iter().find(|layer| layer["name"] == "truth").unwrap();
+        truth["shapes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|shape| shape["tone"] == "ball" && off(shape, ball) < 0.01)
+    });
+    let truth = there["layers"].as_array().unwrap().iter().find(|layer| layer["name"] == "truth").unwrap();
+    for at in mates {
+        assert!(truth["shapes"].as_array().unwrap().iter().any(|shape| off(shape, at) < 0.01), "{at:?}");
+    }
+    viewer.ask(r#"{"ask":"pause","on":false}"#);
+    viewer.until(|scene| scene["game"]["phase"] == "run");
 }
 
 #[test]
@@ -118,6 +168,14 @@ fn a_simulated_field_for_others_is_shown_with_its_truth() {
     viewer.until(|scene| scene["game"]["phase"] == "halt");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
+    // The vision's clock stands with the world's: what was under way is shown before it is asked for more.
+    let t = viewer.until(|scene| scene["paused"] == true)["t"].as_f64().unwrap();
+    viewer.ask(r#"{"ask":"step","ticks":25}"#);
+    let later = viewer.until(|scene| scene["t"].as_f64().is_some_and(|now| now > t + 0.2));
+    assert!((later["t"].as_f64().unwrap() - t - 0.25).abs() < 1e-4, "25 ticks, no more: {t} {}", later["t"]);
+    viewer.ask(r#"{"ask":"restart","seed":9}"#);
+    let anew = viewer.until(|scene| scene["seed"] == 9);
+    assert!(anew["t"].as_f64().unwrap() < t && anew["paused"] == true);
 }
 
 #[test]

@@ -36,6 +36,11 @@ pub struct Settings {
 pub trait Oracle: Send + Sync {
     /// Why that case? A problem as `onetwo cases explain` takes it; the answer as it gives it with `--json`.
     fn explain(&self, problem: &str) -> Result<String, String>;
+
+    /// The situations that a simulation can be put into, by name.
+    fn situations(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Why there is no page.

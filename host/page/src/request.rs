@@ -38,6 +38,11 @@ pub enum Request {
         /// Where chance comes from; none: as before.
         seed: Option<u64>,
     },
+    /// Put ball and robots as a case's author drew them, and let the game go on from there.
+    Situation {
+        /// One of those that the page was told of.
+        name: String,
+    },
     /// Put or pull the ball there.
     Ball {
         /// Where to.
@@ -129,6 +134,7 @@ impl Request {
             Self::Speed { factor } => {
                 (!(SPEED_MIN..=SPEED_MAX).contains(factor)).then_some("speed: 0.05 to 20")
             }
+            Self::Situation { name } => (name.len() > NAME_MAX).then_some("a situation: at most 200 bytes"),
             Self::Loss { share } => (!(0.0..=1.0).contains(share)).then_some("loss: 0 to 1"),
             Self::Ball { at } | Self::Robot { at, .. } => {
                 let far = at.iter().any(|x| !(-FARTHEST..=FARTHEST).contains(x));
@@ -148,6 +154,8 @@ impl Request {
 const SPEED_MIN: f32 = 0.05;
 /// A full match of two teams plays at no more than this on one core, whatever is asked.
 const SPEED_MAX: f32 = 20.0;
+/// No case has a longer name, bytes.
+const NAME_MAX: usize = 200;
 /// No field reaches farther from its middle, m.
 const FARTHEST: f32 = 20.0;
 
@@ -162,6 +170,7 @@ mod tests {
             r#"{"ask":"pause","on":true}"#,
             r#"{"ask":"referee","command":"FORCE_START"}"#,
             r#"{"ask":"ball","at":[0,0]}"#,
+            r#"{"ask":"situation","name":"center/pass-around"}"#,
             r#"{"ask":"power","team":"blue","id":1,"on":false}"#,
         ] {
             assert_eq!(Request::read(other, Powers::Halt), Err(Refused::NotHere(Powers::Halt)), "{other}");
@@ -178,6 +187,7 @@ mod tests {
             r#"{"ask":"loss","share":1.5}"#,
             r#"{"ask":"ball","at":[1e9,0]}"#,
             r#"{"ask":"robot","team":"blue","id":16,"at":[0,0]}"#,
+            &format!(r#"{{"ask":"situation","name":"{}"}}"#, "a".repeat(201)),
         ] {
             assert!(matches!(Request::read(wrong, Powers::Simulation), Err(Refused::Range(_))), "{wrong}");
         }

@@ -132,7 +132,8 @@ pub struct Mind {
 /// Where a robot wants to be.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Intent {
-    /// From where it is to where it will be.
+    /// From where it is to where it will be, a tenth of a second from one point to the next as far as its motion was planned; a
+    /// straight line from there on, and for robots whose motion is not known here.
     pub path: Vec<[f32; 2]>,
     /// Where it wants the ball.
     pub ball_to: Option<[f32; 2]>,

@@ -120,6 +120,7 @@ async fn state(State(shared): State<Arc<Shared>>) -> Response {
         "title": settings.title,
         "recorded": settings.recorded,
         "powers": settings.powers,
+        "situations": shared.oracle.situations(),
         "span": span,
         "life": life,
     });

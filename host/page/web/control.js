@@ -51,12 +51,24 @@ function simulation() {
     set(press("Stand still", () => ({ ask: "pause", on: !store.latest?.paused }), { id: "pause" }), press("One tick", () => ({ ask: "step", ticks: 1 }), { id: "step" }), press("Ten", () => ({ ask: "step", ticks: 10 }))),
     set(el("label", {}, "Speed"), speed, el("span", { id: "speed-now" }), press("1 ×", () => ((speed.value = 0), { ask: "speed", factor: 1 }))),
     set(el("label", {}, "Seed"), seed, press("Begin anew", () => ({ ask: "restart", seed: Number(seed.value) }), { id: "restart" })),
+    ...situations(press, set),
     el("h2", {}, "Referee"),
     set(...COMMANDS.map(([command, words]) => press(words, () => ({ ask: "referee", command }), { "data-command": command }))),
     el("h2", {}, "Faults"),
     set(el("label", {}, "Radio loses"), loss, el("span", { id: "loss-now" }, "0 %")),
     set(el("select", { id: "who", "aria-label": "Robot" }), press("Crash its computer", () => ({ ask: "power", ...who(), on: false }), { id: "crash" }), press("Boot it", () => ({ ask: "power", ...who(), on: true }), { id: "boot" })),
     el("p", { class: "muted" }, "Ball and robots can be dragged on the field."),
+  ];
+}
+
+/** The cases' own situations: chosen by name, set up on the field, played from there. */
+function situations(press, set) {
+  const names = store.state.situations ?? [];
+  if (names.length === 0) return [];
+  const select = el("select", { id: "situation", "aria-label": "Situation" }, ...names.map((name) => el("option", {}, name)));
+  return [
+    el("h2", {}, "Situation"),
+    set(select, press("Play it from here", () => ({ ask: "situation", name: select.value }), { id: "situate" })),
   ];
 }
 

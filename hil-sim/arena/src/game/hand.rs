@@ -36,6 +36,11 @@ impl<'a> Game<'a> {
         }
     }
 
+    /// Puts a robot there, standing.
+    pub fn put_robot(&mut self, who: Who, pose: Pose<Field>) {
+        self.world.put(who, pose);
+    }
+
     /// The referee is told to say that; false where it makes no sense now.
     pub fn command(&mut self, command: Command) -> bool {
         self.referee.command_by_hand(command)

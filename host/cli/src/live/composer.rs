@@ -1,5 +1,7 @@
 //! What does the page show now? One scene from hosts and whatever else is at hand; it remembers only what has to be told over time.
 
+pub(super) mod ways;
+
 use std::collections::VecDeque;
 
 use casebase::CaseBase;
@@ -13,6 +15,7 @@ use protocol::{CaseId, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{AreaForm, Colour, FieldSpec};
 
+use self::ways::Ways;
 use super::cycles::TeamCycles;
 use super::gauges::{self, Rate};
 use super::happenings::News;
@@ -163,6 +166,9 @@ impl Composer {
                 let host = moment.hosts.iter().find(|host| host.settings().us == colour);
                 let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
                 let at = robot.pose.position;
+                let (phase, placement) = (game.phase, game.placement);
+                let ways =
+                    game.own_goal(colour).map(|own| Ways { world, phase, placement, field: &field, own });
                 Robot {
                     team: team(colour),
                     id: robot.who.id.number(),
@@ -170,7 +176,8 @@ impl Composer {
                     heading: milli(robot.pose.heading.radians()),
                     velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
                     confidence: milli(robot.confidence),
-                    mind: host.and_then(|host| minds::mind(host, robot, played, names, clocks, t)),
+                    mind: host
+                        .and_then(|host| minds::mind(host, robot, played, names, clocks, (t, ways.as_ref()))),
                     vitals: host.and_then(|host| minds::vitals(host, robot, now)),
                 }
             })

@@ -8,9 +8,10 @@ use page::{Intent, Mind, Timer, Vitals, milli};
 use protocol::host::Condition;
 use protocol::team::{Progress, Role};
 use protocol::{Instant, RobotId};
-use rules::Colour;
+use rules::{Colour, Duty};
 
 use super::composer::Names;
+use super::composer::ways::Ways;
 use super::layers::Played;
 use super::words;
 
@@ -37,7 +38,7 @@ pub(super) fn mind(
     played: Option<&Played<'_>>,
     names: &Names,
     clocks: &mut Clocks,
-    t: f64,
+    (t, ways): (f64, Option<&Ways<'_>>),
 ) -> Option<Mind> {
     let id = robot.who.id;
     let order = host.orders().iter().find(|order| order.robot == id)?;
@@ -52,6 +53,15 @@ pub(super) fn mind(
     let here = [milli(robot.pose.position.x()), milli(robot.pose.position.y())];
     let (to, ball_to) = words::aims(&directive);
     let place = part.as_ref().filter(|_| matches!(progress, Progress::Adapt { .. })).map(|(_, (_, at))| *at);
+    let duty = match order.role {
+        host::strategy::Role::Keeper => Duty::Keeper,
+        host::strategy::Role::Taker => Duty::Taker,
+        _ => Duty::Player,
+    };
+    let path = place.or(to).map_or_else(Vec::new, |to| match ways {
+        Some(ways) => ways.to(robot, to, duty),
+        None => vec![here, to],
+    });
     let who = (host.settings().us == Colour::Blue, id.number());
     let role = words::role(order.role);
     let timers = vec![
@@ -72,7 +82,7 @@ pub(super) fn mind(
             Some(Role::Supporter) => "backs up".to_owned(),
             Some(Role::None) | None => String::new(),
         },
-        intent: Intent { path: place.or(to).map_or_else(Vec::new, |to| vec![here, to]), ball_to },
+        intent: Intent { path, ball_to },
         timers,
     })
 }

@@ -24,4 +24,8 @@ impl page::Oracle for CaseOracle {
         let shelf = self.shelf.as_ref().ok_or("no cases are played here")?;
         cases::explained(shelf, &self.chosen, problem)
     }
+
+    fn situations(&self) -> Vec<String> {
+        self.shelf.as_ref().map_or_else(Vec::new, Shelf::names)
+    }
 }

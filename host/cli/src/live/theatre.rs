@@ -3,6 +3,8 @@
 //! The match itself is [`arena::game::Game`], tick by tick as without a page: looking on changes nothing. Where the machine is too
 //! slow for the speed asked for, the match goes slower and the page says so.
 
+mod situation;
+
 use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,6 +18,7 @@ use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::Command;
 
+use self::situation::{Sides, of_case};
 use super::gauges::{gauge, tick};
 use super::{Composer, Moment, SCENE_EVERY_S, colour};
 use crate::Failure;
@@ -205,6 +208,11 @@ impl<'s> Theatre<'s> {
                 note("a match that is recorded cannot begin anew".into());
             }
             Request::Restart { seed } => hands.anew = Some(seed.unwrap_or(self.config.seed)),
+            Request::Situation { name } => {
+                if !situate(game, self.shelf, name) {
+                    note(format!("no situation of the name {name} can be set up now"));
+                }
+            }
             Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), hands.paused),
             Request::Robot { team, id, at } => {
                 if let Some(who) = who(*team, *id) {
@@ -235,6 +243,26 @@ impl<'s> Theatre<'s> {
         }
         Ok(())
     }
+}
+
+/// Everybody as the case's author drew them, and the game goes on from there; false where that makes no sense now.
+fn situate(game: &mut Game<'_>, shelf: Option<&Shelf>, name: &str) -> bool {
+    let field = game.config().league.field();
+    let present: Vec<Who> =
+        game.world().robots().iter().filter(|robot| robot.present).map(|robot| robot.who).collect();
+    let keepers = [Colour::Blue, Colour::Yellow].map(|team| game.config().referee.team(team).keeper);
+    let blue_goal = game.host(Colour::Blue).game().own_goal(Colour::Blue);
+    let Some((shelf, blue_goal)) = shelf.zip(blue_goal) else { return false };
+    let sides = Sides { field: &field, blue_goal, present: &present, keepers };
+    let Some(situation) = of_case(shelf, name, &sides) else { return false };
+    if !game.command(Command::ForceStart) {
+        return false;
+    }
+    for (who, pose) in situation.robots {
+        game.put_robot(who, pose);
+    }
+    game.move_ball(situation.ball, true);
+    true
 }
 
 impl Hands {

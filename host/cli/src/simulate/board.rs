@@ -12,6 +12,17 @@ use rules::{Colour, League};
 
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};
 
+/// What viewers ask of the hall.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Wish {
+    /// Another pace; 0 stands still.
+    pub(super) pace: Option<f32>,
+    /// So many ticks of 10 ms more, and then to stand still.
+    pub(super) ticks: u32,
+    /// Another game, from that seed.
+    pub(super) anew: Option<u64>,
+}
+
 /// A page, what fills it, and the eyes it sees through: a host that commands nobody.
 pub(super) struct Board {
     page: Page,
@@ -58,21 +69,30 @@ impl Board {
         self.eyes.handle(now, Input::Referee(bytes));
     }
 
-    /// Shows the moment, if it is time, and does what viewers ask for; a new pace, if they ask for one.
+    /// Another game begins.
+    pub(super) fn anew(&mut self, league: League, seed: u64) {
+        self.eyes = Host::new(HostSettings::new(Colour::Blue, league, 1), protocol::Instant(0));
+        (self.composer, self.shown, self.seed, self.t) = (Composer::new(None), None, seed, 0.0);
+        self.page.clear();
+    }
+
+    /// Shows the moment, if it is time, and does what viewers ask for; what is left is the hall's to do.
     pub(super) fn look(
         &mut self,
         running: Duration,
         server: &mut Server,
         mut referee: Option<&mut InternalReferee>,
-    ) -> Option<f32> {
-        let mut pace = None;
+    ) -> Wish {
+        let mut wish = Wish::default();
         self.t = server.world().time();
         while let Some(request) = self.page.next_request() {
             match request {
-                Request::Pause { on } => pace = Some(if on { 0.0 } else { self.speed }),
+                Request::Pause { on } => wish.pace = Some(if on { 0.0 } else { self.speed }),
+                Request::Step { ticks } => (wish.pace, wish.ticks) = (Some(0.0), wish.ticks + ticks),
+                Request::Restart { seed } => wish.anew = Some(seed.unwrap_or(self.seed)),
                 Request::Speed { factor } => {
                     self.speed = factor;
-                    pace = Some(factor);
+                    wish.pace = Some(factor);
                 }
                 Request::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
                 Request::Robot { team, id, at } => {
@@ -90,8 +110,7 @@ impl Board {
                     }
                 }
                 Request::Halt {}
-                | Request::Step { .. }
-                | Request::Restart { .. }
+                | Request::Situation { .. }
                 | Request::Power { .. }
                 | Request::Loss { .. } => {
                     self.note(
@@ -116,10 +135,10 @@ impl Board {
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
-            let speed = pace.unwrap_or(server.pace());
+            let speed = wish.pace.unwrap_or(server.pace());
             self.page.show(Scene { paused: speed == 0.0, speed: self.speed, seed: Some(self.seed), ..scene });
         }
-        pace
+        wish
     }
 
     fn note(&mut self, words: String) {

@@ -81,8 +81,22 @@ pub(super) fn run(
         advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words);
         if let Some(board) = &mut board {
             whistle.said.drain(..).for_each(|bytes| board.referee(&bytes, running));
-            if let Some(pace) = board.look(running, &mut server, whistle.ours()) {
+            let wish = board.look(running, &mut server, whistle.ours());
+            if let Some(pace) = wish.pace {
                 set_pace(&mut server, pace);
+            }
+            for _ in 0..wish.ticks {
+                (0..REFEREE_EVERY).for_each(|_| server.step());
+                words.extend(whistle.look(server.world_mut()));
+            }
+            if let Some(seed) = wish.anew {
+                let pace = server.pace();
+                server = Server::new(&ServerSettings { seed, ..settings.clone() });
+                set_pace(&mut server, pace);
+                whistle.anew(args, unix_us, seed)?;
+                tracker = args.tracker.map(|to| Tracked::new(to, args));
+                board.anew(args.league, seed);
+                skipped = 0;
             }
         }
         whistle.said.clear();
@@ -173,13 +187,7 @@ impl Referee {
     fn new(args: &SimulateArgs, unix_us: u64) -> Result<Self, Failure> {
         let who = match args.referee {
             Whistle::None => Blower::Nobody,
-            Whistle::Internal => {
-                let settings = RefereeSettings { epoch_us: unix_us, ..RefereeSettings::new(args.league) };
-                let settings =
-                    RefereeSettings { blue_on_positive_half: false, max_robots: args.robots, ..settings };
-                let ours = InternalReferee::new(settings, args.seed);
-                Blower::Ours(Box::new(ours.map_err(|error| Failure::Network(error.to_string()))?))
-            }
+            Whistle::Internal => Blower::Ours(internal(args, unix_us, args.seed)?),
             Whistle::Heard(from) => {
                 let limits = args.league.limits();
                 let limits = limits.ok_or_else(|| Failure::Network("a league without rules".to_owned()))?;
@@ -192,6 +200,16 @@ impl Referee {
         };
         let mouth = Mouth::new(args.referee_to, args.interface.as_deref());
         Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0, said: Vec::new() })
+    }
+
+    /// Another game begins, which our referee leads from its beginning; a game controller of others knows nothing of it.
+    fn anew(&mut self, args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<(), Failure> {
+        if let Blower::Ours(ours) = &mut self.who {
+            *ours = internal(args, unix_us, seed)?;
+        }
+        self.events.clear();
+        self.looked = 0;
+        Ok(())
     }
 
     fn words(&self) -> String {
@@ -261,6 +279,14 @@ impl Referee {
         }
         None
     }
+}
+
+/// The referee of our own.
+fn internal(args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<Box<InternalReferee>, Failure> {
+    let settings = RefereeSettings { epoch_us: unix_us, ..RefereeSettings::new(args.league) };
+    let settings = RefereeSettings { blue_on_positive_half: false, max_robots: args.robots, ..settings };
+    let ours = InternalReferee::new(settings, seed);
+    ours.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
 }
 
 /// Our own tracker's view of the simulated vision.
