@@ -1,11 +1,12 @@
 //! Which plan does the phase of the game ask for? One order per robot of ours, every time the picture changes (DESIGN §3).
 //!
-//! In open play the keeper guards, two defenders stand before the area, and everybody else plays cases; the robots choose them among
-//! themselves. While the ball is not in play everything is said from here. The coach remembers who had which role (so that nobody
+//! In open play the keeper guards, two defenders stand before the area, and whoever is first at the ball shoots or passes where that is
+//! worth it; else it and everybody left play cases, which the robots choose among themselves. While the ball is not in play everything is said from here. The coach remembers who had which role (so that nobody
 //! flickers), since when the phase lasts, and who took our restart (it must not touch the ball twice). [`Tactics`] says which parts of
 //! the second paper it uses.
 
 mod ahead;
+mod attack;
 mod cap;
 mod defence;
 mod open_play;
@@ -29,6 +30,7 @@ use super::threat;
 use super::view::{ROBOTS_MAX, Robot, View, nearest};
 use super::{restart, roles};
 use ahead::Ahead;
+use attack::Intent;
 use cap::Cap;
 use plan::Plan;
 
@@ -80,6 +82,8 @@ pub struct Coach {
     sent: Option<Sent>,
     /// Took our restart; nobody else has touched the ball since.
     barred: Option<RobotId>,
+    /// What the ball of open play is meant for.
+    intent: Option<Intent>,
 }
 
 impl Coach {
@@ -106,6 +110,7 @@ impl Coach {
             attacked: false,
             pass: None,
             barred: None,
+            intent: None,
         }
     }
 
@@ -158,6 +163,7 @@ impl Coach {
             };
             self.phase = Some(view.phase);
             self.aim = None;
+            self.intent = None;
             (self.ahead, self.gave_up) = (None, false);
             self.cap.forget();
             self.since = view.now;

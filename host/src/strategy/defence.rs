@@ -1,7 +1,7 @@
 //! Where do keeper and defenders stand? Between ball and goal: the keeper before the mouth, defenders at the area's edge
 //! (Biswas et al. 2014 §5, its first step; threats beyond the ball are strategy's next part). Attack frame, m.
 
-use geometry::{Attack, Point, Vector};
+use geometry::{Angle, Attack, Point, Vector};
 use protocol::host::KickOrder;
 
 use super::order::{Task, Why};
@@ -49,10 +49,28 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
         .map(|at| (at, room_along(view, ball.position, at)))
         .reduce(|best, next| if next.1 > best.1 { next } else { best });
     let (at, room) = best.unwrap_or((Point::new(0.0, 0.0), 0.0));
-    // Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
+    (at, clearing_kick(ball, at, room), room)
+}
+
+/// The same for a ball that lies before our area: away from the goal, so that the keeper comes up to it from its goal and stays
+/// between the two; turned by up to 30° to where there is room.
+pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
+    let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
+    let turned = |turn: f32| {
+        let at = ball.position + out.rotated(Angle::new(turn)) * CLEAR_AHEAD;
+        let at = view.clamp(at, CLEAR_INSIDE);
+        (at, room_along(view, ball.position, at))
+    };
+    let best = [CLEAR_TURN, -CLEAR_TURN].map(turned);
+    let (at, room) =
+        best.into_iter().fold(turned(0.0), |best, next| if next.1 > best.1 { next } else { best });
+    (at, clearing_kick(ball, at, room), room)
+}
+
+/// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
+fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
-    let kick = if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) };
-    (at, kick, room)
+    if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
 }
 
 /// Distance of the nearest opponent from the way of a ball, m; at most a metre.
@@ -163,11 +181,13 @@ pub fn contested(view: &View, ours: f32) -> bool {
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
 const KEEPER_OUT: f32 = 0.15;
 /// A ball slower than this can be kicked as it lies, m/s.
-const LYING: f32 = 0.8;
+pub(super) const LYING: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
 const ON_THE_GROUND: f32 = 0.1;
 /// How far ahead of the ball a clearance to the wing goes, m.
 const CLEAR_AHEAD: f32 = 2.5;
+/// A clearance from before the area turns from straight out by this much, rad: 30°.
+const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
 /// How far inside the side line, m.
 const CLEAR_INSIDE: f32 = 0.6;
 /// A mate nearer than this gains nothing from a clearance, m.

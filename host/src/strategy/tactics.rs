@@ -18,13 +18,18 @@ pub struct Tactics {
     /// Our free kicks by the Coerce and Attack Planner (§4).
     #[serde(default)]
     pub coerce: bool,
+    /// In open play, whoever is first at the ball shoots or passes by P(goal) where that is worth it; else cases are played.
+    #[serde(default)]
+    pub attack: bool,
 }
 
 impl Tactics {
     /// None of them.
-    pub const NONE: Self = Self { threats: false, second_level: false, pass_ahead: false, coerce: false };
+    pub const NONE: Self =
+        Self { threats: false, second_level: false, pass_ahead: false, coerce: false, attack: false };
     /// All of them.
-    pub const ALL: Self = Self { threats: true, second_level: true, pass_ahead: true, coerce: true };
+    pub const ALL: Self =
+        Self { threats: true, second_level: true, pass_ahead: true, coerce: true, attack: true };
 
     /// None: what a header of before there were any stands for.
     pub fn none() -> Self {
@@ -33,12 +38,13 @@ impl Tactics {
 
     /// As [`Tactics::parse`] reads them.
     pub fn words(&self) -> String {
-        let Self { threats, second_level, pass_ahead, coerce } = *self;
+        let Self { threats, second_level, pass_ahead, coerce, attack } = *self;
         let named = [
             (threats, "threats"),
             (second_level, "second-level"),
             (pass_ahead, "pass-ahead"),
             (coerce, "coerce"),
+            (attack, "attack"),
         ];
         let words: Vec<_> = named.into_iter().filter(|(on, _)| *on).map(|(_, name)| name).collect();
         if words.is_empty() { "none".to_owned() } else { words.join(",") }
@@ -59,9 +65,10 @@ impl Tactics {
                 "second-level" => &mut tactics.second_level,
                 "pass-ahead" => &mut tactics.pass_ahead,
                 "coerce" => &mut tactics.coerce,
+                "attack" => &mut tactics.attack,
                 _ => {
                     return Err(format!(
-                        "`{word}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce"
+                        "`{word}` is no tactic; none, all, usual, or some of threats, second-level, pass-ahead, coerce, attack"
                     ));
                 }
             };
@@ -74,9 +81,10 @@ impl Tactics {
 impl Default for Tactics {
     /// What wins matches: over 40 matches of 600 s (seeds 1 to 20, either colour) against a team with none, threats of both levels gave
     /// 2.1 goals for and 0.7 against, and 16.5 shots for 2.9. Over 8, pass-ahead and coerce gave nothing that could be told from chance,
-    /// rather less.
+    /// rather less. Attack by P(goal), with the keeper's part in the defence mended at the same time, brought offence and attack ratios
+    /// against the chasers of the ball from 0.96 ± 0.28 and 1.01 ± 0.33 (16 matches) to 1.77 ± 0.95 and 2.22 ± 1.85 (10).
     fn default() -> Self {
-        Self { threats: true, second_level: true, ..Self::NONE }
+        Self { threats: true, second_level: true, attack: true, ..Self::NONE }
     }
 }
 

@@ -5,7 +5,7 @@ use rules::Phase;
 
 use super::super::order::{Role, Task, Why};
 use super::super::threat::{self, receiving::comes_at_goal};
-use super::super::view::{RobotSet, View};
+use super::super::view::{Ball, RobotSet, View};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
 
@@ -55,6 +55,11 @@ impl Coach {
         }
     }
 
+    /// Whether the ball before our area is left to our keeper.
+    pub(super) fn is_keepers(&self, view: &View, ball: &Ball) -> bool {
+        self.tactics.threats && view.our(view.keeper).is_some() && lies_before_our_area(view, ball)
+    }
+
     /// The two nearest to where defenders stand; who was one stays one.
     pub(super) fn primaries(&self, plan: &Plan<'_>) -> RobotSet {
         let view = plan.view;
@@ -76,6 +81,10 @@ fn keeper(view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
     if matches!(usual, Why::ClearsArea { .. }) {
         return (task, usual);
     }
+    if let Some(ball) = view.ball.filter(|ball| lies_before_our_area(view, ball)) {
+        let (at, kick, room) = defence::clearance_outwards(view, &ball);
+        return (Task::Kick { at, kick }, Why::ClearsArea { room });
+    }
     match view.ball {
         Some(ball) if ball.velocity.norm() > COMES && comes_at_goal(view, ball.position, ball.velocity) => {
             (task, why)
@@ -85,5 +94,17 @@ fn keeper(view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
     }
 }
 
+/// So near to our area that nobody but the keeper can be behind the ball, and slow enough to be kicked as it lies.
+fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
+    let inside = ball.position.x() > view.our_goal().x();
+    view.phase == Phase::Run
+        && inside
+        && ball.velocity.norm() < defence::LYING
+        && view.in_our_area(ball.position, KEEPERS)
+}
+
+/// Outside our area, but nearer to it than this, the keeper clears the ball, m: a field player's centre is 0.11 m behind the ball it
+/// kicks, 0.18 m when it lines up, and keeps 0.13 m off the area.
+const KEEPERS: f32 = 0.3;
 /// A ball that comes at our goal faster than this is met on its way, m/s: slower ones leave time to walk.
 const COMES: f32 = 0.5;

@@ -3,7 +3,8 @@
 use geometry::{Attack, Point};
 
 use super::super::order::{Role, Task, Why};
-use super::super::view::View;
+use super::super::threat::receiving::comes_at_goal;
+use super::super::view::{Ball, View};
 use super::super::{roles, support};
 use super::{Coach, Plan};
 
@@ -18,6 +19,7 @@ impl Coach {
             let (at, worth) = best_place(view, ball.position);
             plan.order(barred, Role::Barred, plan.facing_ball(at), Why::FreePlace { worth });
         }
+        self.see_pass_leave(view);
         if let Some(pass) = self.pass
             && plan.take(pass.receiver)
         {
@@ -27,13 +29,17 @@ impl Coach {
             self.defend(plan, false);
             return plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
         }
-        if view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0) {
-            // Nobody but a keeper may touch it there.
+        let forbidden = view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0);
+        let keepers = self.is_keepers(view, &ball);
+        if forbidden || keepers || is_shot_at_us(view, &ball) {
+            // Nobody but a keeper may, or can, play it; whoever stands in the way of a shot stays there.
             self.first = None;
-            self.defend(plan, self.attacked);
+            self.defend(plan, self.attacked || keepers);
             return self.support(plan, ball.position);
         }
-        let candidates = view.ours.iter().filter(|robot| plan.free.contains(&robot.id));
+        // A keeper that left its goal for a ball would be the one that it passes.
+        let candidates =
+            view.ours.iter().filter(|robot| plan.free.contains(&robot.id) && robot.id != view.keeper);
         let soonest = roles::choose(candidates, self.first, roles::WORTH, |robot| {
             let bound = if view.in_play.has(robot.id) { BOUND } else { 0.0 };
             roles::time_to(robot, ball.rest) - bound
@@ -43,6 +49,11 @@ impl Coach {
         if let Some((id, seconds)) = soonest
             && plan.take(id)
         {
+            if let Some((task, why)) = self.attack(plan, id, &ball) {
+                plan.order(id, Role::Player, task, why);
+                self.defend(plan, self.attacked);
+                return self.support(plan, ball.position);
+            }
             plan.order(id, Role::Player, Task::Gameplay, Why::SoonestAtBall { seconds: seconds.max(0.0) });
         }
         // Who plays a case plays it to its end.
@@ -65,9 +76,20 @@ impl Coach {
     }
 }
 
+/// A shot at our goal on its way: who ran after it would open the way that it closes.
+fn is_shot_at_us(view: &View, ball: &Ball) -> bool {
+    let goal = view.our_goal();
+    ball.velocity.norm() > SHOT
+        && ball.position.x() < 0.0
+        && ball.rest.x() < goal.x()
+        && comes_at_goal(view, ball.position, ball.velocity)
+}
+
 fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
 
 /// A robot that plays a case counts as this much nearer to the ball, s: changing hands would end the case.
 const BOUND: f32 = 1.0;
+/// A slower ball at our goal can be walked to, m/s.
+const SHOT: f32 = 1.0;

@@ -210,3 +210,99 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
     assert_eq!((sent.to, sent.receiver, sent.planned), (at, id, None));
     assert_eq!(coach.take_sent(), None);
 }
+
+#[test]
+fn a_shot_at_our_goal_makes_nobody_leave_its_place_and_the_keeper_stays_one() {
+    let mut coach = coach();
+    let mut view = view((-1.5, 0.2), &OURS, &[(4.4, 0.0), (-1.3, 0.2)]);
+    let before: Vec<_> = coach.decide(&view).iter().map(|order| order.role).collect();
+    assert_eq!(
+        (before[0], before[1..3].iter().all(|role| matches!(role, Role::Defender(_)))),
+        (Role::Keeper, true)
+    );
+    // 6 m/s towards (−4.5, 0.05): past both defenders, to rest far behind the goal, where the keeper would be soonest.
+    let velocity = Vector::new(-6.0, -0.3);
+    let ball =
+        Ball { position: Point::new(-2.0, 0.175), velocity, rest: Point::new(-20.0, -0.7), height: 0.0 };
+    view.ball = Some(ball);
+    let orders = coach.decide(&view);
+    let roles: Vec<_> = orders.iter().map(|order| order.role).collect();
+    assert_eq!(roles[..3], before[..3]);
+    assert!(matches!(orders[0].task, Task::Block { .. }), "{:?}", orders[0]);
+    assert!(orders.iter().all(|order| order.task != Task::Gameplay), "{orders:?}");
+}
+
+#[test]
+fn a_ball_that_lies_before_our_area_is_the_keepers_because_nobody_else_can_be_behind_it() {
+    let kicks = |ball: (f32, f32)| -> Vec<u8> {
+        let orders = coach().decide(&view(ball, &OURS, &THEIRS));
+        let plays = |order: &&Order| matches!(order.task, Task::Kick { .. } | Task::Gameplay);
+        orders.iter().filter(plays).map(|order| order.robot.number()).collect()
+    };
+    // The area reaches to x = −3.5 and y = ±1.
+    assert_eq!(kicks((-3.3, 0.2)), [0]);
+    assert_eq!(kicks((-4.2, 1.2)), [0]);
+    assert!(!kicks((-3.1, 0.2)).contains(&0));
+    // Without a keeper somebody tries.
+    let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
+    alone.keeper = RobotId::new(9).unwrap();
+    assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
+}
+
+/// Our 3 stands behind the ball at (2, 0), our 4 and 5 at these places; with these opponents.
+fn attack(mates: [(f32, f32); 2], theirs: &[(f32, f32)], tactics: Tactics) -> (Coach, View, Orders) {
+    let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), mates[0], mates[1]];
+    let view = view((2.0, 0.0), &ours, theirs);
+    let mut coach = Coach::new(Team::Ours, tactics, League::DivisionB);
+    let orders = coach.decide(&view);
+    (coach, view, orders)
+}
+
+#[test]
+fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_from_both_a_case_is_played() {
+    let far = [(-2.0, 2.0), (-2.0, -2.0)];
+    let (_, _, shoots) = attack(far, &[(4.4, 0.3)], Tactics::default());
+    assert!(
+        matches!(shoots[3].task, Task::Kick { at, kick } if at.y() < 0.1 && kick == support::SHOT),
+        "{:?}",
+        shoots[3]
+    );
+    assert!(
+        matches!(shoots[3].why, Why::Chances { receive, goal } if receive == 1.0 && goal > WORTH),
+        "{:?}",
+        shoots[3]
+    );
+    // A wall before the ball, and a mate beside it.
+    let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
+    let (_, _, passes) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
+    let Task::Pass { at, receiver, .. } = passes[3].task else { panic!("{:?}", passes[3]) };
+    assert_eq!(receiver.number(), 4);
+    assert!(matches!(passes[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", passes[4]);
+    // Everybody of ours is marked, and the goal closed.
+    let closed = [wall[0], wall[1], wall[2], wall[3], (-1.8, 2.0), (-1.8, -2.0)];
+    let (_, _, case) = attack(far, &closed, Tactics::default());
+    assert_eq!(case[3].task, Task::Gameplay);
+    let without = Tactics { attack: false, ..Tactics::default() };
+    assert_eq!(attack(far, &[(4.4, 0.3)], without).2[3].task, Task::Gameplay);
+}
+/// Less than this is not worth a shot (0.05), by far.
+const WORTH: f32 = 0.1;
+
+#[test]
+fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_told_to_the_books_once() {
+    let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
+    let (mut coach, mut view, orders) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
+    let Task::Pass { at, .. } = orders[3].task else { panic!("{:?}", orders[3]) };
+    assert_eq!(coach.take_sent(), None);
+    let way = (at - Point::new(2.0, 0.0)).unit().unwrap();
+    let position = Point::new(2.0, 0.0) + way * 0.2;
+    view.ball = Some(Ball { position, velocity: way * 3.0, rest: at + way, height: 0.0 });
+    view.now = Instant(view.now.0 + 50_000);
+    let orders = coach.decide(&view);
+    assert!(matches!(orders[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", orders[4]);
+    let sent = coach.take_sent().unwrap();
+    assert_eq!((sent.passer.number(), sent.receiver.number(), sent.to, sent.planned), (3, 4, at, None));
+    assert!(sent.likely > 0.5);
+    coach.decide(&view);
+    assert_eq!(coach.take_sent(), None);
+}

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | Which constants? | [`constants`] |
 //! | How likely is a pass to x a goal, and why? (equations 3–5, c1–c5, c1'–c4') | [`scene`], of [`conditions`], [`intercept`], [`open`], [`reach`], [`kicks`] |
+//! | Is a shot now likelier than all that? | [`shot`] |
 //! | Which x is best for a receiver, near the one of a moment ago? | [`search`] |
 //! | When do passer and receiver start, and when is the ball kicked? (Algorithm 1) | [`ahead`] |
 //! | What became of a pass, and how good was the prediction? | [`watch`], [`tally`] |
@@ -21,6 +22,7 @@ pub mod open;
 pub mod reach;
 pub mod scene;
 pub mod search;
+pub mod shot;
 pub mod tally;
 pub mod watch;
 

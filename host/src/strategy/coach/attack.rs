@@ -1,0 +1,163 @@
+//! What does whoever is first at the ball do with it in open play? Shoots or passes, whichever is likelier to end in a goal (Biswas et
+//! al. 2014 §3); where neither is worth it, nothing is said and the robots play a case. Attack frame, SI units.
+//!
+//! Opponents are at the ball in open play, so nobody waits for a better start: passer and receiver go at once, and the ball leaves as
+//! soon as the receiver would be at x* with it (the last line of Algorithm 1).
+
+use geometry::{Attack, Point};
+use motion::trajectory::CalcMotion;
+use protocol::{Duration, Instant, RobotId};
+
+use super::super::order::{Role, Task, Why};
+use super::super::pass::shot::shot;
+use super::super::pass::{Rating, SAMPLES, Scene};
+use super::super::support;
+use super::super::tally::Sent;
+use super::super::view::{Ball, View};
+use super::{Coach, Pass, Plan};
+
+/// What the ball of open play is meant for, by whom, since when.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Intent {
+    who: RobotId,
+    since: Instant,
+    /// Where the ball was then.
+    from: Point<Attack>,
+    what: What,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum What {
+    /// A shot, and P(goal).
+    Shot { at: Point<Attack>, goal: f32 },
+    /// A pass to where it is likeliest to become a goal.
+    Pass { receiver: RobotId, rating: Rating },
+    /// Neither.
+    Case,
+}
+
+impl Coach {
+    /// What `who`, first at the ball, does with it, its receiver being told too; nothing where it plays a case.
+    pub(super) fn attack(&mut self, plan: &mut Plan<'_>, who: RobotId, ball: &Ball) -> Option<(Task, Why)> {
+        if !self.tactics.attack {
+            return None;
+        }
+        let view = plan.view;
+        match self.intends(view, who, ball) {
+            What::Case => None,
+            What::Shot { at, goal } => {
+                Some((Task::Kick { at, kick: support::SHOT }, Why::Chances { receive: 1.0, goal }))
+            }
+            What::Pass { receiver, rating } => {
+                let mate = view.our(receiver)?;
+                let why = Why::Chances { receive: rating.receive(), goal: rating.goal() };
+                if plan.take(receiver) {
+                    let then = rating.shot.one_touch.then_some(rating.shot.aim);
+                    plan.order(receiver, Role::Receiver, Task::Receive { at: rating.at, then }, why);
+                }
+                let limits = &self.kicks.constants().receiver;
+                let ready =
+                    limits.time(mate.position, mate.velocity, rating.at) <= rating.ball_time + TOGETHER;
+                Some((Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready }, why))
+            }
+        }
+    }
+
+    /// Sees the pass of open play leave: from then on its receiver is told to have it.
+    pub(super) fn see_pass_leave(&mut self, view: &View) {
+        let (Some(Intent { who, from, what: What::Pass { receiver, rating }, .. }), Some(ball), None) =
+            (self.intent, view.ball, self.pass)
+        else {
+            return;
+        };
+        let Some(passer) = view.our(who) else { return };
+        let speed = ball.velocity.norm();
+        let along = (rating.at - from).unit().map_or(0.0, |way| ball.velocity.dot(way));
+        if speed < LEFT_WITH || along < speed * LEFT_ALONG || ball.position.distance(passer.position) < LEFT {
+            return;
+        }
+        self.intent = None;
+        let then = rating.shot.one_touch.then_some(rating.shot.aim);
+        self.pass = Some(Pass { receiver, at: rating.at, then, since: view.now });
+        self.sent = Some(Sent {
+            passer: who,
+            receiver,
+            from,
+            to: rating.at,
+            flight: rating.ball_time,
+            chip: rating.kick.is_chip(),
+            likely: rating.receive(),
+            planned: None,
+        });
+    }
+
+    /// What was meant a moment ago where that still holds, so that whoever walks around the ball does not turn back.
+    fn intends(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
+        if let Some(intent) = self.intent
+            && intent.who == who
+            && intent.from.distance(ball.position) < MOVED
+            && self.stands(view, &intent, ball)
+        {
+            return intent.what;
+        }
+        let what = self.likeliest(view, who, ball);
+        self.intent = Some(Intent { who, since: view.now, from: ball.position, what });
+        what
+    }
+
+    fn stands(&self, view: &View, intent: &Intent, ball: &Ball) -> bool {
+        let age = view.now.since(intent.since);
+        match intent.what {
+            What::Case => age < ASKED_AGAIN,
+            What::Shot { .. } => age < HELD,
+            What::Pass { receiver, rating } => {
+                let receive = view.our(receiver).map_or(0.0, |mate| {
+                    let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), mate);
+                    scene.rate(rating.at).receive()
+                });
+                age < HELD && receive > rating.receive() * STILL_LIKELY
+            }
+        }
+    }
+
+    fn likeliest(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
+        let shot = shot(view, &self.kicks, ball.position);
+        self.searches.forget();
+        let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES);
+        // Who defends goes on defending.
+        let pass = offers
+            .iter()
+            .find(|offer| !self.defenders.contains(&Some(offer.receiver)) && offer.rating.receive() > LIKELY);
+        let goal = shot.value();
+        match pass.map(|pass| (pass, pass.rating.value())) {
+            Some((pass, value)) if value > goal.max(WORTH_IT) => {
+                What::Pass { receiver: pass.receiver, rating: pass.rating }
+            }
+            _ if goal > WORTH_IT => What::Shot { at: shot.aim, goal },
+            _ => What::Case,
+        }
+    }
+}
+
+/// A shot or a pass below this chance of a goal is not worth breaking off a case for. Chosen over 8 matches against chasers of the ball:
+/// 14.8 chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
+const WORTH_IT: f32 = 0.05;
+/// A pass in open play is received rather than not; what is lost there is lost with mates gone forward.
+const LIKELY: f32 = 0.5;
+/// … and is given up below this share of what it was.
+const STILL_LIKELY: f32 = 0.5;
+/// What was chosen is held for so long: to walk around the ball and aim.
+const HELD: Duration = Duration::millis(800);
+/// Where a case is played it is asked again after so long, whether there is something better: as often as the field changes by a robot's
+/// body.
+const ASKED_AGAIN: Duration = Duration::millis(200);
+/// A ball that moved by more than this is another situation, m.
+const MOVED: f32 = 0.3;
+/// The receiver may come this much later than the ball, s: as in pass-ahead at restarts.
+const TOGETHER: f32 = 0.1;
+/// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
+const LEFT: f32 = 0.15;
+/// … this fast, m/s: the slowest pass is kicked with 1, …
+const LEFT_WITH: f32 = 1.0;
+/// … and, by the cosine, rolls where it was meant to: within 26°.
+const LEFT_ALONG: f32 = 0.9;
