@@ -21,7 +21,7 @@ mod tests {
         for _ in 0..75 {
             let before = robot.now;
             if let Some(progress) = robot.step(Point::new(1.2, 0.0), Point::new(1.6, 0.0))
-                && told.last().map(kind) != Some(kind(&progress))
+                && told.last().copied().map(kind) != Some(kind(progress))
             {
                 if matches!(progress, Progress::Adapt { .. }) {
                     first_at.get_or_insert(before);
@@ -31,16 +31,16 @@ mod tests {
         }
         // It listens for one lease, 400 ms, before it proposes (DESIGN §5).
         assert!(first_at.is_some_and(|at| at >= Instant(400_000)), "{first_at:?}: {told:?}");
-        assert_eq!(told.iter().take(2).map(kind).collect::<Vec<_, 2>>()[..], [0, 1], "{told:?}");
+        assert_eq!(told.iter().take(2).copied().map(kind).collect::<Vec<_, 2>>()[..], [0, 1], "{told:?}");
         assert!(robot.playing, "a case was chosen");
         // Now it stands beside the ball: it executes.
         for _ in 0..50 {
             robot.step(Point::new(1.45, 0.0), Point::new(1.6, 0.0));
-            if robot.progress.is_some_and(|progress| kind(&progress) == 2) {
+            if robot.progress.is_some_and(|progress| kind(progress) == 2) {
                 break;
             }
         }
-        assert_eq!(robot.progress.as_ref().map(kind), Some(2), "{:?}", robot.progress);
+        assert_eq!(robot.progress.map(kind), Some(2), "{:?}", robot.progress);
         // Somebody takes the ball away, to the other end of the field.
         for _ in 0..25 {
             robot.step(Point::new(1.45, 0.0), Point::new(-2.2, 1.0));
@@ -48,7 +48,7 @@ mod tests {
         assert_eq!(robot.ends.first(), Some(&AbortReason::BallOutOfScope), "{:?}", robot.ends);
     }
 
-    fn kind(progress: &Progress) -> u8 {
+    fn kind(progress: Progress) -> u8 {
         match progress {
             Progress::Idle => 0,
             Progress::Adapt { .. } => 1,
@@ -95,10 +95,10 @@ mod tests {
                 progress = Some(beacon.progress);
                 match beacon.cycle.map(|cycle| cycle.decision) {
                     Some(Decision::Play(_)) => self.playing = true,
-                    Some(Decision::Closed(Closure::Aborted { reason, .. })) => {
-                        if self.ends.last() != Some(&reason) {
-                            self.ends.push(reason).expect("few ends");
-                        }
+                    Some(Decision::Closed(Closure::Aborted { reason, .. }))
+                        if self.ends.last() != Some(&reason) =>
+                    {
+                        self.ends.push(reason).expect("few ends");
                     }
                     _ => {}
                 }

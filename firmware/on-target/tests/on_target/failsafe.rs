@@ -31,7 +31,7 @@ mod tests {
 
         fn step(&mut self, ms: u64, host: bool, health: Health, wanted: f32) {
             let now = Instant(1_000 * ms);
-            if host && ms % 10 == 0 {
+            if host && ms.is_multiple_of(10) {
                 self.governor.hear_host(now);
                 self.heard = Some(now);
             }

@@ -9,6 +9,7 @@ use crate::clock;
 struct Executor;
 
 impl Executor {
+    #[allow(clippy::unused_self, reason = "the tests' attribute calls it on a value")]
     fn run(&'static mut self, init: impl FnOnce(Spawner)) -> ! {
         let core = cortex_m::Peripherals::take().expect("a test has the board for itself");
         let timer: SYST = core.SYST;

@@ -13,9 +13,11 @@ use super::stack;
 pub(crate) async fn run() {
     // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
     let word = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
-    while word == 3 {
-        Timer::after(Duration::from_secs(1)).await;
-        say(&[b"stack ", &digits(stack::used())]);
+    if word == 3 {
+        loop {
+            Timer::after(Duration::from_secs(1)).await;
+            say(&[b"stack ", &digits(stack::used())]);
+        }
     }
     Timer::after(Duration::from_millis(300)).await;
     if fault::is_first_life() {
