@@ -1,4 +1,5 @@
-//! Does the wiring people read say what the pins are? README.md's table against `src/pins.rs`, and no pin for two things.
+//! Does the wiring people read say what the pins are, and is what they flash what is measured? README.md's table against
+//! `src/pins.rs`, no pin for two things, this folder's `release` against the workspace's `firmware`.
 
 use std::collections::BTreeSet;
 
@@ -66,6 +67,23 @@ fn what_a_panic_turns_off_is_what_the_pins_say() {
         assert!(off.contains(turned_off), "{turned_off}");
     }
     assert!(off.contains("pac::GPIOE.bsrr()"));
+}
+
+#[test]
+fn what_is_flashed_from_this_folder_is_compiled_as_what_is_measured() {
+    let settings = |text: &str, head: &str| -> Option<BTreeSet<String>> {
+        let lines = text.lines().skip_while(|line| *line != head).skip(1);
+        let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| line.contains(" = "));
+        let settings: BTreeSet<_> =
+            lines.filter(|line| !line.starts_with("inherits")).map(str::to_owned).collect();
+        (!settings.is_empty()).then_some(settings)
+    };
+    let (here, workspace) = (include_str!("../.cargo/config.toml"), include_str!("../../../../Cargo.toml"));
+    for package in ["", ".package.board-stm32", ".package.embassy-stm32"] {
+        let measured = settings(workspace, &format!("[profile.firmware{package}]"));
+        assert!(measured.is_some(), "{package}");
+        assert_eq!(settings(here, &format!("[profile.release{package}]")), measured, "{package}");
+    }
 }
 
 #[test]
