@@ -29,6 +29,8 @@ pub(super) fn balance(
     let mut at = first.clamp(EDGE, 1.0 - EDGE);
     let mut best = Balance { x: 1.0, y: 1.0, time: f32::INFINITY };
     let mut side = 0;
+    // Where x takes too long at least, and y at most: only places between could be in time.
+    let (mut x_late_from, mut y_late_to) = (f32::INFINITY, f32::NEG_INFINITY);
     for _ in 0..rounds {
         let scale = 1.0 / math::hypot(1.0 - at, at);
         let (x, y) = ((1.0 - at) * scale, at * scale);
@@ -37,8 +39,13 @@ pub(super) fn balance(
         if time < best.time {
             best = Balance { x, y, time };
         }
-        // The faster axis only gets slower from here.
-        if math::min(tx, ty) > within {
+        if tx > within {
+            x_late_from = math::min(x_late_from, at);
+        }
+        if ty > within {
+            y_late_to = math::max(y_late_to, at);
+        }
+        if y_late_to >= x_late_from {
             break;
         }
         let value = (tx - ty) / (tx + ty);
