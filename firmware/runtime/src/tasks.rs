@@ -24,7 +24,9 @@ pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) 
 
 /// As [`brain()`], with the team's key.
 pub async fn brain_with_key(config: &BrainConfig, base: CaseBase<'_>, key: TeamKey, boxes: &Mailboxes) -> ! {
-    think(Station::with_key(now(), config, base, key), boxes).await
+    // Born where it lives: by value it would lie in this future twice, and on the stack on its way there.
+    let mut station = Station::with_key(now(), config, base, key);
+    think(&mut station, boxes).await
 }
 
 /// From the air into the inbox.
@@ -62,7 +64,7 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 }
 
 /// The brain's task, for any mind.
-pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
+pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
         let time = now();
@@ -71,7 +73,7 @@ pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
         last = if let Some(due) = due.filter(|due| *due < time) {
             mind.handle_timeout(due);
             due
-        } else if take(&mut mind, time, boxes) {
+        } else if take(mind, time, boxes) {
             time
         } else if let Some(due) = deadline_before_arrival(due, last, boxes).await {
             mind.handle_timeout(due);
@@ -79,7 +81,7 @@ pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
         } else {
             continue;
         };
-        empty(&mut mind, last, boxes);
+        empty(mind, last, boxes);
         boxes.progress.mark(Part::Brain);
     }
 }
