@@ -94,7 +94,7 @@ impl<F: Copy> Interception<'_, F> {
     }
 
     /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: once as many motions as `most` were planned in vain, only
-    /// every [`COARSE`]th place is looked at.
+    /// every fourth place is looked at.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
         let best = self.soonest(limits, most);
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)

@@ -117,7 +117,7 @@ impl Drivetrain {
 }
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
-const EFFORT: u32 = 115;
+pub const EFFORT: u32 = 115;
 
 /// Standing with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {
