@@ -6,7 +6,7 @@
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Instant, RobotId};
 use rules::{Phase, Side};
 
 use crate::belief::{Belief, Game};
@@ -33,10 +33,7 @@ enum Restart {
     /// This robot has touched the ball as its taker; the ball lay here.
     Touched(Point<Field>),
     /// And the ball has left it: not again before another robot.
-    Barred {
-        /// Since when.
-        since: Instant,
-    },
+    Barred,
 }
 
 impl Hosted {
@@ -85,13 +82,13 @@ impl Hosted {
         let defending = self.command.as_ref().map_or(belief.game.defending, |(_, command)| command.defending);
         // Who has not been told anything does nothing.
         let phase = self.phase.unwrap_or(Phase::Halt);
-        self.watch_touches(now, phase, duty, belief);
+        self.watch_touches(phase, duty, belief);
         belief.game = Game {
             phase,
             placement: self.picture.placement(),
             duty,
             defending,
-            barred: matches!(self.restart, Restart::Barred { .. }),
+            barred: self.restart == Restart::Barred,
         };
     }
 
@@ -116,8 +113,7 @@ impl Hosted {
         self.picture.own(now).is_some()
     }
 
-    fn watch_touches(&mut self, now: Instant, phase: Phase<Side>, duty: Duty, belief: &Belief) {
-        let barred = Restart::Barred { since: now };
+    fn watch_touches(&mut self, phase: Phase<Side>, duty: Duty, belief: &Belief) {
         let others_touch = || {
             belief.ball.is_some_and(|ball| {
                 belief.others.iter().any(|other| other.pose.position.distance(ball.position) < TOUCHES_WITHIN)
@@ -127,17 +123,15 @@ impl Hosted {
             matches!(phase, Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours)) && duty == Duty::Taker;
         self.restart = match (phase, self.restart) {
             (Phase::Run, Restart::Touched(_)) if belief.contact() => self.restart,
-            (Phase::Run, Restart::Touched(_)) => barred,
-            (Phase::Run, Restart::Barred { .. }) if others_touch() => Restart::None,
+            (Phase::Run, Restart::Touched(_)) => Restart::Barred,
+            (Phase::Run, Restart::Barred) if others_touch() => Restart::None,
             (Phase::Run, same) => same,
             (_, Restart::None) if ours && belief.contact() => {
                 belief.ball.map_or(Restart::None, |ball| Restart::Touched(ball.position))
             }
             // Before the ball is in play it may be touched again: the light barrier alone has sent nothing away.
-            (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => barred,
-            // The referee would have said if it were in play: the mouth only seemed to have sent it away.
-            (_, Restart::Barred { since }) if ours && now.since(since) > REFEREE_SAYS => Restart::None,
-            (_, Restart::Touched(_) | Restart::Barred { .. }) if ours => self.restart,
+            (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => Restart::Barred,
+            (_, Restart::Touched(_) | Restart::Barred) if ours => self.restart,
             _ => Restart::None,
         };
     }
@@ -152,9 +146,6 @@ fn gone(belief: &Belief, lay: Point<Field>) -> bool {
 const TOUCHES_WITHIN: f32 = 0.125;
 /// The ball has left, m: in play after 0.05 m by the rules, and the mouth that told where it lay errs by a centimetre.
 const LEFT: f32 = 0.06;
-/// The referee has said that the ball is in play after so long at most: images, its program, the host and the radio take
-/// 0.1–0.2 s.
-const REFEREE_SAYS: Duration = Duration::millis(500);
 
 #[cfg(test)]
 mod tests {
@@ -163,8 +154,6 @@ mod tests {
     use geometry::{Point, Pose, Twist, Vector};
     use protocol::robot_io::Health;
     use rules::League;
-
-    const BARRED: Restart = Restart::Barred { since: Instant(0) };
 
     fn id(n: u8) -> RobotId {
         RobotId::new(n).unwrap()
@@ -215,38 +204,26 @@ mod tests {
         };
         held.show(Instant(0), &Picture::new(id(3)), &sensors);
         let free_kick = Phase::FreeKick(Side::Ours);
-        hosted.watch_touches(Instant(0), free_kick, Duty::Player, &held);
+        hosted.watch_touches(free_kick, Duty::Player, &held);
         assert_eq!(hosted.restart, Restart::None, "only the taker's touch counts");
-        hosted.watch_touches(Instant(0), free_kick, Duty::Taker, &held);
+        hosted.watch_touches(free_kick, Duty::Taker, &held);
         assert!(matches!(hosted.restart, Restart::Touched(_)));
-        hosted.watch_touches(Instant(0), free_kick, Duty::Taker, &with_ball(0.5));
-        assert_eq!(hosted.restart, BARRED);
-        hosted.watch_touches(Instant(0), Phase::Run, Duty::Player, &with_ball(1.0));
-        assert_eq!(hosted.restart, BARRED, "in play it may still not");
+        hosted.watch_touches(free_kick, Duty::Taker, &with_ball(0.5));
+        assert_eq!(hosted.restart, Restart::Barred);
+        hosted.watch_touches(Phase::Run, Duty::Player, &with_ball(1.0));
+        assert_eq!(hosted.restart, Restart::Barred, "in play it may still not");
         let mut mate_has_it = with_ball(1.0);
         let pose = Pose { position: Point::new(1.1, 0.0), ..Pose::default() };
         let other = Other { side: Side::Theirs, id: id(1), pose, velocity: Vector::default() };
         let _ = mate_has_it.others.push(other);
-        hosted.watch_touches(Instant(0), Phase::Run, Duty::Player, &mate_has_it);
+        hosted.watch_touches(Phase::Run, Duty::Player, &mate_has_it);
         assert_eq!(hosted.restart, Restart::None);
     }
 
     #[test]
-    fn a_taker_whose_touch_sent_nothing_away_may_take_the_free_kick_after_half_a_second() {
-        let mut hosted = Hosted { restart: BARRED, ..Hosted::new(id(3)) };
-        let at = |hosted: &mut Hosted, ms| {
-            let now = Instant(0) + Duration::millis(ms);
-            hosted.watch_touches(now, Phase::FreeKick(Side::Ours), Duty::Taker, &with_ball(1.0));
-            hosted.restart
-        };
-        assert_eq!(at(&mut hosted, 500), BARRED);
-        assert_eq!(at(&mut hosted, 510), Restart::None);
-    }
-
-    #[test]
     fn a_stop_ends_the_bar() {
-        let mut hosted = Hosted { restart: BARRED, ..Hosted::new(id(3)) };
-        hosted.watch_touches(Instant(0), Phase::Stop, Duty::Taker, &with_ball(1.0));
+        let mut hosted = Hosted { restart: Restart::Barred, ..Hosted::new(id(3)) };
+        hosted.watch_touches(Phase::Stop, Duty::Taker, &with_ball(1.0));
         assert_eq!(hosted.restart, Restart::None);
     }
 }
