@@ -50,19 +50,15 @@ fn robots(scene: &Value) -> usize {
     scene["robots"].as_array().map_or(0, Vec::len)
 }
 
+/// A match on a page of its own, four times as fast as the clock.
+fn played() -> Program {
+    let words = "play --duration 600 --seed 5 --listen 127.0.0.1:0 --speed 4";
+    Program::start(&words.split(' ').collect::<Vec<_>>())
+}
+
 #[test]
 fn a_match_is_shown_stopped_and_begun_anew() {
-    let play = Program::start(&[
-        "play",
-        "--duration",
-        "600",
-        "--seed",
-        "5",
-        "--listen",
-        "127.0.0.1:0",
-        "--speed",
-        "4",
-    ]);
+    let play = played();
     let mut viewer = Viewer::of(&play);
     viewer.until(|scene| robots(scene) == 12 && scene["seed"] == 5);
     viewer.ask(r#"{"ask":"pause","on":true}"#);
@@ -92,17 +88,7 @@ fn off(shape: &Value, at: [f64; 2]) -> f64 {
 
 #[test]
 fn a_case_is_played_from_its_own_situation() {
-    let play = Program::start(&[
-        "play",
-        "--duration",
-        "600",
-        "--seed",
-        "5",
-        "--listen",
-        "127.0.0.1:0",
-        "--speed",
-        "4",
-    ]);
+    let play = played();
     let mut viewer = Viewer::of(&play);
     // Its own side is known once the referee has spoken.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);

@@ -20,6 +20,7 @@ pub use size::{Part, Sizes};
 pub struct Image<'a> {
     sections: Vec<Section>,
     symbols: Vec<Symbol>,
+    soft_double: Option<String>,
     lines: addr2line::Context<Reader<'a>>,
 }
 
@@ -107,8 +108,11 @@ impl<'a> Image<'a> {
             })
             .collect();
         symbols.sort_by(|a, b| (a.address, &a.name).cmp(&(b.address, &b.name)));
+        // Before aliases go: the run-time ABI's names stand beside the compiler's own for the same code.
+        let mut names = symbols.iter().map(|symbol| &symbol.name);
+        let soft_double = names.find(|name| SOFT_DOUBLE.contains(&name.as_str())).cloned();
         symbols.dedup_by_key(|symbol| symbol.address);
-        Ok(Self { sections, symbols, lines: lines_of(&file).map_err(ImageError::Dwarf)? })
+        Ok(Self { sections, symbols, soft_double, lines: lines_of(&file).map_err(ImageError::Dwarf)? })
     }
 
     /// The names of all its symbols.
@@ -119,7 +123,7 @@ impl<'a> Image<'a> {
     /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions an operation on a
     /// processor that has single precision only (run-time ABI for the Arm architecture, §5.1.2).
     pub fn soft_double(&self) -> Option<&str> {
-        self.symbol_names().find(|name| SOFT_DOUBLE.contains(name))
+        self.soft_double.as_deref()
     }
 }
 
@@ -152,13 +156,8 @@ fn crate_of(path: &str) -> &str {
     let above = after("src").and_then(|at| segments.get(at.checked_sub(1)?).copied());
     match above {
         Some("library") => "case-library",
-        Some(board @ ("mps2" | "stm32")) => {
-            if board == "mps2" {
-                "board-mps2"
-            } else {
-                "board-stm32"
-            }
-        }
+        Some("mps2") => "board-mps2",
+        Some("stm32") => "board-stm32",
         Some(folder) => folder,
         None => "core",
     }

@@ -9,6 +9,7 @@ use rules::{Colour, Phase};
 use serde::Serialize;
 
 use super::decided::Decided;
+use crate::live::words::spaced;
 
 /// A moment, for people and for JSON.
 #[derive(Debug, Serialize)]
@@ -147,18 +148,6 @@ pub(crate) fn phase_words(phase: Phase<Colour>) -> String {
         Some((name, who)) => format!("{}, {}", spaced(name), spaced(who.trim_end_matches(')'))),
         None => spaced(&debug),
     }
-}
-
-/// `FirstHalfPre` as `first half pre`.
-fn spaced(name: &str) -> String {
-    let mut out = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_uppercase() && !out.is_empty() {
-            out.push(' ');
-        }
-        out.push(letter.to_ascii_lowercase());
-    }
-    out
 }
 
 #[cfg(test)]
