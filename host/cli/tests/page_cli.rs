@@ -3,6 +3,7 @@
 #[path = "page_browser/program.rs"]
 mod program;
 
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -175,4 +176,30 @@ fn a_recording_is_kept_whole_for_who_looks_through_it() {
     viewer.ask(r#"{"ask":"halt"}"#);
     let refused = viewer.until(|word| word.get("refused").is_some());
     assert!(refused["refused"].as_str().unwrap().contains("recording"), "{refused}");
+}
+
+#[test]
+fn a_recording_that_breaks_off_says_so() {
+    let log = concat!(env!("CARGO_MANIFEST_DIR"), "/../../protocol/ssl/tests/data/grsim_divB_22s.log.gz");
+    let whole = std::fs::read(log).unwrap();
+    let cut = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("cut.log.gz");
+    std::fs::write(&cut, &whole[..whole.len() / 2]).unwrap();
+    let replay = Program::start(&["replay", cut.to_str().unwrap(), "--watch", "--listen", "127.0.0.1:0"]);
+    replay.says("the file breaks off: ");
+    // Who looks on has it among what happened.
+    Viewer::of(&replay).until(|scene| scene["t"].as_f64().is_some_and(|t| t > 5.0));
+    let begun = Instant::now();
+    while !happenings(&replay).contains("the file breaks off: ") {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn happenings(program: &Program) -> String {
+    let mut stream = TcpStream::connect(program.address()).unwrap();
+    let host = program.address();
+    write!(stream, "GET /api/happenings HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+    let mut answer = String::new();
+    stream.read_to_string(&mut answer).unwrap();
+    answer
 }

@@ -1,5 +1,5 @@
-//! What was shown before? Scenes are encoded here, once each, off the match's own thread: the newest for viewers, whole seconds
-//! gzipped for those who look back, one sample a second for plots.
+//! What was shown before? Scenes are finished and encoded here, once each, off the match's own thread: the newest for viewers, whole
+//! seconds gzipped for those who look back, one sample a second for plots.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -18,9 +18,11 @@ use tokio::sync::watch;
 
 use crate::happening::Happening;
 use crate::scene::Scene;
+use crate::sketch::Sketch;
 
-/// More scenes than this wait for their encoding: the next one is left out, for they are worth nothing once they are old.
-const WAITING_MAX: usize = 4;
+/// More scenes than this wait to be finished and encoded, a third of a second of them: the next one is left out, for they are worth
+/// nothing once they are old.
+const WAITING_MAX: usize = 8;
 /// So many seconds are kept, an hour: some 25 kB each.
 const SECONDS_MAX: usize = 3_600;
 /// Of happenings, the newest so many: a match has some thousand.
@@ -50,7 +52,7 @@ pub(crate) struct Kept {
 
 /// What comes to the archive.
 enum Mail {
-    Scene(Box<Scene>),
+    Sketch(Box<Sketch>),
     Happening(Box<Happening>),
     Clear,
 }
@@ -74,26 +76,26 @@ impl Archive {
     }
 
     /// Takes a scene, unless it is behind. Never waits.
-    pub(crate) fn show(&self, scene: Scene) -> bool {
+    pub(crate) fn show(&self, sketch: Sketch) -> bool {
         if self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             return false;
         }
-        self.push(scene);
+        self.push(sketch);
         true
     }
 
     /// Takes a scene in any case, and waits for that.
-    pub(crate) fn keep(&self, scene: Scene) {
+    pub(crate) fn keep(&self, sketch: Sketch) {
         while self.waiting.load(Ordering::Relaxed) >= WAITING_MAX {
             thread::sleep(Duration::from_millis(1));
         }
-        self.push(scene);
+        self.push(sketch);
     }
 
-    fn push(&self, scene: Scene) {
+    fn push(&self, sketch: Sketch) {
         self.waiting.fetch_add(1, Ordering::Relaxed);
         // Nobody hears only while the program ends.
-        let _ = self.mail.send(Mail::Scene(Box::new(scene)));
+        let _ = self.mail.send(Mail::Sketch(Box::new(sketch)));
     }
 
     /// Takes a happening.
@@ -127,9 +129,10 @@ impl Worker {
     fn work(self) {
         while let Ok(mail) = self.inbox.recv() {
             match mail {
-                Mail::Scene(scene) => {
+                Mail::Sketch(sketch) => {
+                    let scene = sketch.finished();
                     // Strings, numbers and lists of them: nothing that JSON cannot say.
-                    let text = Utf8Bytes::from(serde_json::to_string(&*scene).unwrap_or_default());
+                    let text = Utf8Bytes::from(serde_json::to_string(&scene).unwrap_or_default());
                     look(&self.kept, |kept| kept.add(&scene, text.clone()));
                     self.newest.send_replace(text);
                     self.waiting.fetch_sub(1, Ordering::Relaxed);

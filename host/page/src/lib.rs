@@ -1,12 +1,13 @@
 //! What is happening on the field, and why? A web page, served by the program itself (runs on the PC).
 //!
-//! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits. Viewers get
-//! the newest one over a WebSocket; the seconds that have passed are kept, so that every viewer can look back for itself. What
-//! viewers ask for comes back as [`Request`]s, which the driver takes when it has time ([`Page::next_request`]).
+//! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits; what takes long
+//! to work out is done to it later, on the page's own thread ([`Sketch`]). Viewers get the newest one over a WebSocket; the seconds
+//! that have passed are kept, so that every viewer can look back for itself. What viewers ask for comes back as [`Request`]s, which
+//! the driver takes when it has time ([`Page::next_request`]).
 //!
 //! ```text
-//! match ── Scene ─► archive: encoded once ─┬─► newest ─► every viewer at its own pace
-//!   ▲                                     └─► seconds, happenings, plots ─► HTTP, on demand
+//! match ── Sketch ─► archive: finished and encoded once ─┬─► newest ─► every viewer at its own pace
+//!   ▲                                                  └─► seconds, happenings, plots ─► HTTP, on demand
 //!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
 //! ```
 //! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and lines are named layers of
@@ -22,6 +23,7 @@ mod request;
 mod scene;
 mod server;
 mod shape;
+mod sketch;
 
 pub use archive::Sample;
 pub use happening::{Happening, Kind};
@@ -32,6 +34,7 @@ pub use scene::{
     Ball, Cycle, Field, Gauge, Intent, Match, Mind, PerTeam, Raw, Robot, Scene, TeamSheet, Timer, Vitals,
 };
 pub use shape::{Heat, Layer, Shape, Tone};
+pub use sketch::Sketch;
 
 /// To a thousandth: what travels needs no more than millimetres, and JSON is shorter for it.
 pub fn milli(x: f32) -> f32 {

@@ -13,8 +13,8 @@ use tokio::sync::watch;
 use crate::archive::Archive;
 use crate::happening::Happening;
 use crate::request::{Powers, Request};
-use crate::scene::Scene;
 use crate::server::{self, Shared};
+use crate::sketch::Sketch;
 
 /// More requests than this wait for the match: viewers are told that it is busy.
 const REQUESTS_MAX: usize = 256;
@@ -118,17 +118,22 @@ impl Page {
         self.address
     }
 
-    /// Shows a moment; where encoding is behind it is left out. Never waits.
-    pub fn show(&mut self, scene: Scene) {
-        let scene = Scene { happened: self.told, ..scene };
-        if !self.archive.show(scene) {
+    /// Shows a moment; where the page's thread is behind it is left out. Never waits.
+    pub fn show(&mut self, sketch: impl Into<Sketch>) {
+        let sketch = self.dated(sketch.into());
+        if !self.archive.show(sketch) {
             self.left_out += 1;
         }
     }
 
     /// Keeps a moment in any case, and waits for that: for recordings.
-    pub fn keep(&mut self, scene: Scene) {
-        self.archive.keep(Scene { happened: self.told, ..scene });
+    pub fn keep(&mut self, sketch: impl Into<Sketch>) {
+        self.archive.keep(self.dated(sketch.into()));
+    }
+
+    fn dated(&self, mut sketch: Sketch) -> Sketch {
+        sketch.scene.happened = self.told;
+        sketch
     }
 
     /// Tells of something that happened. Never waits.
@@ -153,7 +158,7 @@ impl Page {
         self.viewers.load(Ordering::Relaxed)
     }
 
-    /// Scenes that were left out because encoding was behind.
+    /// Scenes that were left out because finishing and encoding them was behind.
     pub fn left_out(&self) -> u64 {
         self.left_out
     }

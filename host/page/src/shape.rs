@@ -115,4 +115,8 @@ pub struct Heat {
     pub columns: u32,
     /// Row by row, least y first, 0 (nothing, not drawn) to 255.
     pub cells: Vec<u8>,
+    /// What 255 means, a probability.
+    pub most: f32,
+    /// Told with the value of a place where somebody points at it: "a pass to here arrives".
+    pub note: String,
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use page::{Happening, Kind, Oracle, Page, PageError, Powers, Request, Scene, Settings, Team};
+use page::{Happening, Kind, Layer, Oracle, Page, PageError, Powers, Request, Scene, Settings, Sketch, Team};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -149,6 +149,23 @@ fn showing_never_waits_whoever_looks_on() {
     let last = (0..5).map(|_| next(&mut reader)).find(|t| (t - 30_000.5).abs() < 1e-9);
     assert!(last.is_some());
     drop(deaf);
+}
+
+#[test]
+fn a_sketch_is_finished_after_the_match_has_gone_on() {
+    let mut page = open(Powers::None);
+    let mut looking = viewer(&page);
+    wait_for(|| page.viewers() == 1);
+    let (gate, opens) = std::sync::mpsc::channel::<()>();
+    page.show(Sketch::new(scene(1.5), move |scene| {
+        // Who shows it is here before it is finished: else this would wait for ever.
+        let _ = opens.recv();
+        scene.layers.push(Layer { name: "late".into(), ..Layer::default() });
+    }));
+    gate.send(()).unwrap();
+    let Message::Text(text) = looking.read().unwrap() else { panic!("no text") };
+    let seen: Scene = serde_json::from_str(&text).unwrap();
+    assert_eq!((seen.t, seen.layers[0].name.as_str()), (1.5, "late"));
 }
 
 #[test]

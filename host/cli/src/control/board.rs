@@ -51,11 +51,11 @@ impl Board {
             let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
-            let scene = self.composer.compose(moment);
+            let sketch = self.composer.compose(moment);
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
-            self.page.show(scene);
+            self.page.show(sketch);
         }
         let mut halt = false;
         while let Some(request) = self.page.next_request() {

@@ -1,7 +1,5 @@
 //! What does the page show now? One scene from hosts and whatever else is at hand; it remembers only what has to be told over time.
 
-pub(super) mod ways;
-
 use std::collections::VecDeque;
 
 use casebase::CaseBase;
@@ -10,20 +8,19 @@ use hil_sim::small_size::referee::InternalReferee;
 use host::Host;
 use host::referee::Game;
 use host::world::{Ball, World};
-use page::{Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, TeamSheet, milli};
+use page::{Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, Sketch, TeamSheet, milli};
 use protocol::{CaseId, Instant};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{AreaForm, Colour, FieldSpec};
 
-use self::ways::Ways;
 use super::cycles::TeamCycles;
 use super::gauges::{self, Rate};
 use super::happenings::News;
 use super::layers;
 use super::minds::{self, Clocks, Faults};
+use super::painter::{Painter, Picture};
 use super::possession::Possession;
 use super::raw::Images;
-use super::tactics::Tactics;
 use super::{spaced, team};
 use crate::library::Shelf;
 use crate::replay::phase_words;
@@ -90,7 +87,7 @@ pub(crate) struct Composer {
     clocks: Clocks,
     faults: Faults,
     possession: Possession,
-    tactics: Tactics,
+    painter: Painter,
     happenings: Vec<Happening>,
 }
 
@@ -108,7 +105,7 @@ impl Composer {
             clocks: Clocks::default(),
             faults: Faults::default(),
             possession: Possession::default(),
-            tactics: Tactics::default(),
+            painter: Painter::default(),
             happenings: Vec::new(),
         }
     }
@@ -128,8 +125,8 @@ impl Composer {
         std::mem::take(&mut self.happenings)
     }
 
-    /// The scene of a moment.
-    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Scene {
+    /// The scene of a moment: what is known at once, and what the page's thread works out of a picture of it.
+    pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Sketch {
         let Moment { t, now, eyes, .. } = moment;
         let (world, game, field) = (eyes.world(), eyes.game(), eyes.field());
         for host in moment.hosts {
@@ -153,12 +150,13 @@ impl Composer {
         let defends = |team: Colour| game.own_goal(team).map(|goal| goal.sign() as i8);
         self.possession.look(t, world, game.phase, defends(Colour::Blue));
 
-        let Self { base, names, cycles, clocks, tactics, .. } = self;
+        let Self { base, names, cycles, clocks, .. } = self;
         let played = |team: Colour| cycles[team as usize].played(base.as_ref(), names);
         let plays: Vec<_> = [Colour::Yellow, Colour::Blue]
             .into_iter()
             .filter_map(|team| Some((team, played(team)?)))
             .collect();
+        let mut aims = Vec::new();
         let robots = world
             .robots()
             .map(|robot| {
@@ -166,9 +164,9 @@ impl Composer {
                 let host = moment.hosts.iter().find(|host| host.settings().us == colour);
                 let played = plays.iter().find(|(team, _)| *team == colour).map(|(_, played)| played);
                 let at = robot.pose.position;
-                let (phase, placement) = (game.phase, game.placement);
-                let ways =
-                    game.own_goal(colour).map(|own| Ways { world, phase, placement, field: &field, own });
+                let mind = host.and_then(|host| minds::mind(host, robot, played, names, clocks, t));
+                let (mind, aim) = mind.unzip();
+                aims.extend(aim.flatten());
                 Robot {
                     team: team(colour),
                     id: robot.who.id.number(),
@@ -176,8 +174,7 @@ impl Composer {
                     heading: milli(robot.pose.heading.radians()),
                     velocity: [milli(robot.velocity.x()), milli(robot.velocity.y())],
                     confidence: milli(robot.confidence),
-                    mind: host
-                        .and_then(|host| minds::mind(host, robot, played, names, clocks, (t, ways.as_ref()))),
+                    mind,
                     vitals: host.and_then(|host| minds::vitals(host, robot, now)),
                 }
             })
@@ -185,7 +182,6 @@ impl Composer {
         let mut layers = Vec::from(layers::of_cases(&plays));
         let ball = world.ball.map(|ball| ball.position);
         layers.push(layers::keep_outs(&field, game.phase, ball, game.placement, game.own_goal(Colour::Blue)));
-        layers.extend(tactics.layers(t, eyes, world, &field));
         layers.extend(moment.truth.map(truth));
         let shown = |host: &&Host| {
             let us = host.settings().us;
@@ -198,7 +194,7 @@ impl Composer {
             self.rate.of(t, self.images.count),
         );
         gauges.extend(moment.gauges);
-        Scene {
+        let scene = Scene {
             t,
             field: field_of(&field),
             ball: world.ball.map(|ball| self.ball(t, &ball, world)),
@@ -209,7 +205,20 @@ impl Composer {
             layers,
             gauges,
             ..Scene::default()
-        }
+        };
+        let picture = Picture {
+            t,
+            world: world.clone(),
+            game: game.clone(),
+            field,
+            league: eyes.settings().league,
+            us: match moment.hosts {
+                [only] => Some(only.settings().us),
+                _ => None,
+            },
+            aims,
+        };
+        self.painter.sketch(scene, picture)
     }
 
     fn ball(&mut self, t: f64, ball: &Ball, world: &World) -> page::Ball {

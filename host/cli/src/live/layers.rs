@@ -11,6 +11,9 @@ use rules::{Colour, Duty, FieldSpec, Phase};
 
 use super::words::spaced;
 
+/// A keep-out zone larger than this share of the field is drawn by its border alone.
+const FILLED: f32 = 0.35;
+
 /// What a team plays.
 pub(super) struct Played<'a> {
     pub(super) case: Case<'a>,
@@ -183,7 +186,9 @@ fn region(shape: &geometry::Shape<geometry::Field>, field: &FieldSpec, note: Str
             let (x, y) = (field.length * 0.5 + field.goal_line_margin, field.width * 0.5 + field.margin);
             let [x0, y0] = [low.x().clamp(-x, x), low.y().clamp(-y, y)].map(milli);
             let [x1, y1] = [high.x().clamp(-x, x), high.y().clamp(-y, y)].map(milli);
-            Shape::Polygon { points: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]], tone, fill: true, note }
+            // Half a field, filled for each team, would hide the whole: its border says enough.
+            let fill = (x1 - x0) * (y1 - y0) < FILLED * field.length * field.width;
+            Shape::Polygon { points: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]], tone, fill, note }
         }
     }
 }

@@ -11,8 +11,8 @@ use protocol::{Instant, RobotId};
 use rules::{Colour, Duty};
 
 use super::composer::Names;
-use super::composer::ways::Ways;
 use super::layers::Played;
+use super::painter::Aim;
 use super::words;
 
 /// Since when robots are in their states: reuse, and what they are told.
@@ -31,15 +31,15 @@ fn since(of: &mut BTreeMap<(bool, u8), (String, f64)>, who: (bool, u8), words: &
     (t - entry.1) as f32
 }
 
-/// The mind of a robot of that host's team.
+/// The mind of a robot of that host's team, and where it is told to be.
 pub(super) fn mind(
     host: &Host,
     robot: &Robot,
     played: Option<&Played<'_>>,
     names: &Names,
     clocks: &mut Clocks,
-    (t, ways): (f64, Option<&Ways<'_>>),
-) -> Option<Mind> {
+    t: f64,
+) -> Option<(Mind, Option<Aim>)> {
     let id = robot.who.id;
     let order = host.orders().iter().find(|order| order.robot == id)?;
     let directive = order.task.directive(words::flip(host));
@@ -58,17 +58,16 @@ pub(super) fn mind(
         host::strategy::Role::Taker => Duty::Taker,
         _ => Duty::Player,
     };
-    let path = place.or(to).map_or_else(Vec::new, |to| match ways {
-        Some(ways) => ways.to(robot, to, duty),
-        None => vec![here, to],
-    });
+    let aim = place.or(to).map(|to| Aim { who: robot.who, to, duty });
+    // A straight line until its way is planned.
+    let path = aim.map_or_else(Vec::new, |aim| vec![here, aim.to]);
     let who = (host.settings().us == Colour::Blue, id.number());
     let role = words::role(order.role);
     let timers = vec![
         Timer { name: format!("as {role}"), seconds: since(&mut clocks.roles, who, &role, t) },
         Timer { name: format!("in {state}"), seconds: since(&mut clocks.states, who, &state, t) },
     ];
-    Some(Mind {
+    let mind = Mind {
         role,
         directive: words::directive(&directive),
         why: words::why(&order.why),
@@ -84,7 +83,8 @@ pub(super) fn mind(
         },
         intent: Intent { path, ball_to },
         timers,
-    })
+    };
+    Some((mind, aim))
 }
 
 /// How a robot and its link are.

@@ -3,6 +3,7 @@
 //! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why a case was chosen.
 //! Everything here looks on: nothing decides.
 
+mod beliefs;
 mod composer;
 mod cycles;
 mod gauges;
@@ -11,12 +12,14 @@ mod layers;
 mod legged;
 mod minds;
 mod oracle;
+mod painter;
 mod possession;
 mod raw;
 mod tactics;
 #[cfg(test)]
 mod tests;
 mod theatre;
+mod ways;
 pub(crate) mod words;
 
 use std::net::SocketAddr;

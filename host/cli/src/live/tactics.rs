@@ -1,64 +1,87 @@
-//! Where would a pass lead to a goal, and from where threatens one? The second paper's pictures of the moment, by strategy's own
-//! functions: a heat map of P(receive) · P(goal) for the team nearer to the ball, threats and open angles for the other.
+//! Where would a pass arrive, where would it lead to a goal, and from where threatens one? The second paper's pictures of the moment, by
+//! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team at the ball, threats and open angles for the
+//! other, and what the one believes of the other ([`super::beliefs`]).
 //!
-//! Worked out five times a second, whoever looks on: a scene costs the same with and without viewers. Field frame, m.
+//! Worked out from a picture, on the page's thread ([`super::painter`]); maps five times a second. Field frame, m.
 
-use geometry::{Attack, GoalEnd, Point};
-use host::Host;
-use host::referee::Game;
+use geometry::{Attack, Point};
 use host::strategy::pass::{Kicks, PassConstants, Scene};
 use host::strategy::threat::angle::Opening;
 use host::strategy::threat::{Memory, Settings, defend};
 use host::strategy::view::{Game as ViewGame, RobotSet};
 use host::strategy::{Flip, View};
-use host::world::World;
 use page::{Heat, Layer, Shape, Tone, milli};
 use protocol::RobotId;
-use rules::{Colour, FieldSpec, Phase};
+use rules::{Colour, Phase};
 
-/// Anew after so long, s.
+use super::beliefs::Beliefs;
+use super::painter::Picture;
+
+/// Maps are made anew after so long, s.
 const EVERY_S: f64 = 0.2;
-/// Length and width of a cell of the map, m: three robots' widths.
+/// Another team has the ball once its robot was the nearest for so long, s: who only passes by changes nothing.
+const TAKEN_S: f64 = 0.4;
+/// Length and width of a cell of the maps, m: three robots' widths.
 const CELL: f32 = 0.3;
-/// A pass that is worth less than this is not drawn.
-const WORTHLESS: f32 = 0.02;
+/// A map whose best place is worth less than this is empty.
+const WORTHLESS: f32 = 0.001;
+/// What is worth less than this share of the best place is not drawn.
+const FAINT: f32 = 0.04;
 
-/// The two layers, and what they were made from.
+/// What is remembered from one moment to the next.
 #[derive(Debug, Default)]
 pub(super) struct Tactics {
     kicks: Option<Kicks>,
     memory: [Memory; 2],
+    beliefs: Beliefs,
+    /// The moment before, s.
+    last: Option<f64>,
+    /// Who has the ball, and since when somebody else is nearer to it.
+    attackers: Option<Colour>,
+    nearer_since: Option<f64>,
+    /// When the maps were made, and they.
     made: Option<f64>,
-    layers: [Layer; 2],
+    maps: [Vec<Shape>; 2],
 }
 
 impl Tactics {
-    /// The layers of a moment.
-    pub(super) fn layers(&mut self, t: f64, eyes: &Host, world: &World, field: &FieldSpec) -> Vec<Layer> {
-        if self.made.is_none_or(|made| t - made >= EVERY_S || t < made) {
-            self.made = Some(t);
-            self.layers = self.make(eyes, world, field);
+    /// The layers of a moment: maps, which lie under everything else, and what lies above.
+    pub(super) fn layers(&mut self, picture: &Picture) -> [[Layer; 2]; 2] {
+        let Picture { t, world, game, us, .. } = picture;
+        // Another match, or a recording from its beginning.
+        if self.last.replace(*t).is_some_and(|last| *t < last) {
+            *self = Self { last: Some(*t), ..Self::default() };
         }
-        self.layers.to_vec()
-    }
-
-    fn make(&mut self, eyes: &Host, world: &World, field: &FieldSpec) -> [Layer; 2] {
-        let kicks = self.kicks.get_or_insert_with(|| {
-            Kicks::new(PassConstants::of(eyes.settings().league), world.models.ground, world.models.chip)
-        });
-        let (mut passes, mut threats) = (Vec::new(), Vec::new());
-        let nearest = world.ball.and_then(|ball| world.nearest(ball.position));
-        if let Some((holder, _)) = nearest {
-            let (game, attackers) = (eyes.game(), holder.who.colour);
-            if let Some(view) = view(world, game, attackers, field) {
-                passes = pass_map(&view, kicks, holder.who.id, defends(game, attackers));
-            }
-            let defenders = attackers.other();
-            if let Some(view) = view(world, game, defenders, field) {
-                let memory = &mut self.memory[defenders as usize];
-                threats = threat_shapes(&view, memory, defends(game, defenders));
+        self.see_who_attacks(picture);
+        let view = |us: Colour| view(picture, us).zip(game.own_goal(us).map(Flip::defending));
+        let views = [Colour::Yellow, Colour::Blue].map(|team| (team, view(team)));
+        let of = |us: Colour| views.iter().find(|(team, _)| *team == us).and_then(|(_, view)| view.as_ref());
+        if self.made.is_none_or(|made| t - made >= EVERY_S) {
+            self.made = Some(*t);
+            let kicks = self.kicks.get_or_insert_with(|| {
+                Kicks::new(PassConstants::of(picture.league), world.models.ground, world.models.chip)
+            });
+            let attack = self.attackers.and_then(of);
+            self.maps = attack.map_or_else(Default::default, |(view, flip)| maps(view, *flip, kicks));
+        }
+        // Where everybody stands says nothing while the game is halted.
+        let plays = !matches!(game.phase, Phase::Halt | Phase::Timeout(_));
+        let mut threats = Vec::new();
+        let defenders = self.attackers.map(Colour::other);
+        if let Some((team, (view, flip))) =
+            defenders.filter(|_| plays).and_then(|team| Some((team, of(team)?)))
+        {
+            threats = threat_shapes(view, *flip, &mut self.memory[team as usize]);
+        }
+        for (team, view) in views.iter().filter(|_| plays) {
+            if let Some((view, _)) = view {
+                self.beliefs.watch(*team, view);
             }
         }
+        // A host of ours beside foreigners tells of them; between two of ours, whoever attacks tells of those who defend.
+        let watcher = us.or(self.attackers).filter(|_| plays);
+        let seen = watcher.and_then(of).map(|(view, flip)| (view, *flip));
+        let [receive, value] = self.maps.clone();
         let layer = |name: &str, label: &str, shapes| Layer {
             name: name.into(),
             label: label.into(),
@@ -66,30 +89,44 @@ impl Tactics {
             shapes,
         };
         [
-            layer("pass-value", "pass that leads to a goal", passes),
-            layer("threats", "threats and open angles", threats),
+            [
+                layer("pass-receive", "where a pass arrives", receive),
+                layer("pass-value", "pass that leads to a goal", value),
+            ],
+            [
+                layer("threats", "threats and open angles", threats),
+                self.beliefs.layer(watcher.unwrap_or(Colour::Blue), seen),
+            ],
         ]
     }
-}
 
-fn defends(game: &Game, team: Colour) -> Option<GoalEnd> {
-    game.own_goal(team)
-}
-
-/// The field as that team's strategy sees it, with every robot that is seen.
-fn view(world: &World, game: &Game, us: Colour, field: &FieldSpec) -> Option<View> {
-    if matches!(game.phase, Phase::Halt | Phase::Timeout(_)) {
-        return None;
+    fn see_who_attacks(&mut self, picture: &Picture) {
+        let ball = picture.world.ball.map(|ball| ball.position);
+        let Some((nearest, _)) = ball.and_then(|ball| picture.world.nearest(ball)) else { return };
+        let team = nearest.who.colour;
+        if self.attackers == Some(team) {
+            self.nearer_since = None;
+            return;
+        }
+        let since = *self.nearer_since.get_or_insert(picture.t);
+        if self.attackers.is_none() || picture.t - since >= TAKEN_S {
+            (self.attackers, self.nearer_since) = (Some(team), None);
+        }
     }
+}
+
+/// The field as that team's strategy sees it, with every robot that is seen; none until it is known who defends which goal.
+fn view(picture: &Picture, us: Colour) -> Option<View> {
+    let game = &picture.game;
     let sheet = ViewGame {
         phase: game.phase.seen_by(us),
         next: game.next.map(|phase| phase.seen_by(us)),
         placement: game.placement,
-        defending: defends(game, us)?,
+        defending: game.own_goal(us)?,
         keeper: game.team(us).keeper.unwrap_or(RobotId::ZERO),
         their_keeper: game.team(us.other()).keeper.unwrap_or(RobotId::ZERO),
     };
-    Some(View::of(world, us, &sheet, *field, everybody(), RobotSet::default()))
+    Some(View::of(&picture.world, us, &sheet, picture.field, everybody(), RobotSet::default()))
 }
 
 fn everybody() -> RobotSet {
@@ -98,18 +135,26 @@ fn everybody() -> RobotSet {
     all
 }
 
-/// For each place the value of a pass to the mate that is nearest to it.
-fn pass_map(view: &View, kicks: &Kicks, passer: RobotId, defends: Option<GoalEnd>) -> Vec<Shape> {
-    let (Some(ball), Some(defends)) = (view.ball, defends) else { return Vec::new() };
-    let mates: Vec<_> = view.ours.iter().filter(|mate| mate.id != passer && mate.id != view.keeper).collect();
+/// A place of the maps.
+struct Rated {
+    place: Point<geometry::Field>,
+    receive: f32,
+    value: f32,
+}
+
+/// For each place how likely a pass by the robot nearest to the ball arrives at the mate nearest to the place, and what it is worth.
+fn maps(view: &View, flip: Flip, kicks: &Kicks) -> [Vec<Shape>; 2] {
+    let Some(ball) = view.ball else { return Default::default() };
+    let off = |mate: &&host::strategy::view::Robot| mate.position.distance(ball.position);
+    let passer = view.ours.iter().min_by(|a, b| off(a).total_cmp(&off(b))).map(|robot| robot.id);
+    let mates: Vec<_> =
+        view.ours.iter().filter(|mate| Some(mate.id) != passer && mate.id != view.keeper).collect();
     let scenes: Vec<_> =
-        mates.iter().map(|mate| Scene::of(view, kicks, ball.position, Some(passer), mate)).collect();
-    let flip = Flip::defending(defends);
+        mates.iter().map(|mate| Scene::of(view, kicks, ball.position, passer, mate)).collect();
     let (half_x, half_y) = (view.field.length * 0.5, view.field.width * 0.5);
     let (columns, rows) =
         ((view.field.length / CELL).round() as u32, (view.field.width / CELL).round() as u32);
-    let mut values = Vec::with_capacity((columns * rows) as usize);
-    let mut best = (WORTHLESS, Point::default());
+    let mut rated = Vec::with_capacity((columns * rows) as usize);
     for row in 0..rows {
         for column in 0..columns {
             let share = |i: u32, n: u32| (i as f32 + 0.5) / n as f32 * 2.0 - 1.0;
@@ -117,33 +162,41 @@ fn pass_map(view: &View, kicks: &Kicks, passer: RobotId, defends: Option<GoalEnd
             let at = flip.point(place);
             let far = |i: &usize| mates[*i].position.distance(at);
             let nearest = (0..mates.len()).min_by(|a, b| far(a).total_cmp(&far(b)));
-            let value = nearest.map_or(0.0, |i| scenes[i].rate(at).value());
-            if value > best.0 {
-                best = (value, place);
-            }
-            values.push(value);
+            let rating = nearest.map(|i| scenes[i].rate(at));
+            let [receive, value] = rating.map_or([0.0; 2], |rating| [rating.receive(), rating.value()]);
+            rated.push(Rated { place, receive, value });
         }
     }
-    let (most, place) = best;
-    let cell = |value: f32| if value < WORTHLESS { 0 } else { (value / most.max(value) * 255.0) as u8 };
-    let heat = Heat {
-        low: [milli(-half_x), milli(-half_y)],
-        high: [milli(half_x), milli(half_y)],
-        columns,
-        cells: values.into_iter().map(cell).collect(),
+    let map = |note: &str, of: fn(&Rated) -> f32| {
+        let best = rated.iter().max_by(|a, b| of(a).total_cmp(&of(b)));
+        let Some((best, most)) =
+            best.map(|best| (best.place, of(best))).filter(|(_, most)| *most > WORTHLESS)
+        else {
+            return Vec::new();
+        };
+        let cell = |value: f32| if value < most * FAINT { 0 } else { (value / most * 255.0) as u8 };
+        let heat = Heat {
+            low: [milli(-half_x), milli(-half_y)],
+            high: [milli(half_x), milli(half_y)],
+            columns,
+            cells: rated.iter().map(|place| cell(of(place))).collect(),
+            most,
+            note: note.to_owned(),
+        };
+        let text =
+            if most < 0.1 { format!("{:.1} %", most * 100.0) } else { format!("{:.0} %", most * 100.0) };
+        let at = [milli(best.x()), milli(best.y())];
+        vec![Shape::Heat(heat), Shape::Text { at, text, tone: Tone::Plain }]
     };
-    if most <= WORTHLESS {
-        return Vec::new();
-    }
-    let at = [milli(place.x()), milli(place.y())];
-    vec![Shape::Heat(heat), Shape::Text { at, text: format!("{most:.2}"), tone: Tone::Plain }]
+    [
+        map("a pass to here arrives", |rated| rated.receive),
+        map("a pass to here and a shot from here end in a goal", |rated| rated.value),
+    ]
 }
 
 /// The open angle of the nearest threat, then of everybody who could have the ball next.
-fn threat_shapes(view: &View, memory: &mut Memory, defends: Option<GoalEnd>) -> Vec<Shape> {
-    let Some(defends) = defends else { return Vec::new() };
+fn threat_shapes(view: &View, flip: Flip, memory: &mut Memory) -> Vec<Shape> {
     let defence = defend(view, everybody(), memory, &Settings::default());
-    let flip = Flip::defending(defends);
     let on_field = |at: Point<Attack>| {
         let at = flip.to_field(at);
         [milli(at.x()), milli(at.y())]
@@ -170,7 +223,99 @@ fn threat_shapes(view: &View, memory: &mut Memory, defends: Option<GoalEnd>) -> 
         let at = on_field(danger.at);
         shapes.push(wedge(danger.at, false, note));
         let text = format!("{:.0}°, {:.1} s", danger.open.to_degrees(), danger.time_to_shoot);
-        shapes.push(Shape::Text { at: [at[0], milli(at[1] + 0.22)], text, tone: Tone::Forbidden });
+        shapes.push(Shape::Text { at, text, tone: Tone::Forbidden });
     }
     shapes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::{Angle, GoalEnd, Pose, Vector};
+    use host::referee::Game;
+    use host::world::{Ball, Robot, World};
+    use protocol::{Instant, Who};
+    use rules::League;
+
+    /// Blue defends −x and has the ball; two of three of each team are field players.
+    fn picture(t: f64, ball: (f32, f32), phase: Phase<Colour>) -> Picture {
+        let mut world = World::default();
+        world.ball = Some(Ball {
+            position: Point::new(ball.0, ball.1),
+            height: 0.0,
+            velocity: Vector::default(),
+            climb: 0.0,
+            rolls_below: f32::INFINITY,
+            bounced: false,
+            confidence: 1.0,
+            seen: Instant(0),
+            kicked: None,
+        });
+        let teams = [
+            (Colour::Blue, [(-4.4, 0.0), (0.1, 0.0), (2.0, 1.5)]),
+            (Colour::Yellow, [(4.4, 0.0), (3.0, -0.5), (1.0, -1.5)]),
+        ];
+        for (colour, places) in teams {
+            for ((x, y), id) in places.into_iter().zip(RobotId::all()) {
+                world.put(Robot {
+                    who: Who { colour, id },
+                    pose: Pose { position: Point::new(x, y), heading: Angle::ZERO },
+                    velocity: Vector::default(),
+                    angular: 0.0,
+                    confidence: 1.0,
+                    seen: Instant(0),
+                });
+            }
+        }
+        let mut game = Game::default();
+        (game.phase, game.blue_goal) = (phase, Some(GoalEnd::Negative));
+        let league = League::DivisionB;
+        Picture { t, world, game, field: league.field(), league, us: None, aims: Vec::new() }
+    }
+
+    fn shapes(layers: &[[Layer; 2]; 2], name: &str) -> Vec<Shape> {
+        layers.iter().flatten().find(|layer| layer.name == name).map(|layer| layer.shapes.clone()).unwrap()
+    }
+
+    #[test]
+    fn a_cell_of_the_map_holds_what_strategy_rates_its_middle_with() {
+        let picture = picture(0.0, (0.2, 0.0), Phase::Run);
+        let layers = Tactics::default().layers(&picture);
+        let Shape::Heat(heat) = &shapes(&layers, "pass-receive")[0] else { panic!("no map") };
+        assert_eq!((heat.columns, heat.cells.len()), (30, 600));
+        let view = view(&picture, Colour::Blue).unwrap();
+        let kicks = Kicks::new(
+            PassConstants::of(League::DivisionB),
+            picture.world.models.ground,
+            picture.world.models.chip,
+        );
+        let scene = Scene::of(&view, &kicks, Point::new(0.2, 0.0), Some(view.ours[1].id), &view.ours[2]);
+        for (column, row) in [(20, 14), (22, 12), (5, 5), (25, 10)] {
+            let middle = Point::new(-4.35 + 0.3 * column as f32, -2.85 + 0.3 * row as f32);
+            let cell = f32::from(heat.cells[row * 30 + column]) / 255.0 * heat.most;
+            let rated = scene.rate(middle).receive();
+            assert!(
+                (cell - rated).abs() < 0.005 || (cell == 0.0 && rated < FAINT * heat.most),
+                "{column} {row}: {cell}, {rated}"
+            );
+        }
+    }
+
+    #[test]
+    fn maps_are_there_in_a_halt_too_but_nobody_is_judged_by_where_he_stands() {
+        let layers = Tactics::default().layers(&picture(0.0, (0.2, 0.0), Phase::Halt));
+        assert!(!shapes(&layers, "pass-receive").is_empty());
+        assert!(shapes(&layers, "threats").is_empty() && shapes(&layers, "believed").is_empty());
+    }
+
+    #[test]
+    fn who_is_near_the_ball_for_a_moment_does_not_attack_yet() {
+        let mut tactics = Tactics::default();
+        tactics.layers(&picture(0.0, (0.2, 0.0), Phase::Run));
+        // Yellow 2 stands there.
+        for (t, team) in [(0.1, Colour::Blue), (0.4, Colour::Blue), (0.6, Colour::Yellow)] {
+            tactics.layers(&picture(t, (1.0, -1.4), Phase::Run));
+            assert_eq!(tactics.attackers, Some(team), "{t}");
+        }
+    }
 }

@@ -24,6 +24,7 @@ impl Watcher for Eyes {
 }
 
 /// What a match left for who looks.
+#[derive(Default)]
 struct Played {
     /// Its last scene.
     scene: Scene,
@@ -32,6 +33,35 @@ struct Played {
     most: usize,
     /// Robots that cameras saw in its last second: one image in a hundred lacks one.
     seen: BTreeSet<(Team, u8)>,
+    /// Scenes with a map of passes, of how many; with somebody's keeper labelled as one, of how many with labels.
+    maps: (u32, u32),
+    keepers: (u32, u32),
+}
+
+impl Played {
+    /// What the labels say of keepers, held against what their own host told them to be.
+    fn judge(&mut self, scene: &Scene) {
+        let shapes = |name: &str| &scene.layers.iter().find(|layer| layer.name == name).unwrap().shapes;
+        self.maps.0 += u32::from(!shapes("pass-receive").is_empty());
+        self.maps.1 += 1;
+        let believed = shapes("believed");
+        let labelled = |at: [f32; 2]| {
+            let label = believed.iter().find_map(|shape| match shape {
+                Shape::Text { at: place, text, .. } if *place == at => Some(text.as_str()),
+                _ => None,
+            });
+            let ring = believed
+                .iter()
+                .any(|shape| matches!(shape, Shape::Ellipse { at: place, .. } if *place == at));
+            ring.then_some(label.unwrap_or_default())
+        };
+        let keepers =
+            scene.robots.iter().filter(|robot| robot.mind.as_ref().is_some_and(|mind| mind.role == "keeper"));
+        for label in keepers.filter_map(|keeper| labelled(keeper.at)) {
+            self.keepers.0 += u32::from(label.starts_with("goalkeeper"));
+            self.keepers.1 += 1;
+        }
+    }
 }
 
 /// So many seconds of a match.
@@ -42,14 +72,13 @@ fn played(seconds: u32) -> Played {
     let config = GameConfig::new(League::DivisionB, 1, 600.0);
     let mut game = Game::new(&config, &mut backend).unwrap();
     let mut eyes = Eyes(Composer::new(shelf.as_ref()));
-    let (mut scene, mut happenings, mut most) = (Scene::default(), Vec::new(), 0);
-    let mut seen = BTreeSet::new();
+    let mut out = Played::default();
     let ticks = seconds * 100;
     for tick in 0..ticks {
         game.step(&mut Crowd(vec![&mut eyes])).unwrap();
         if tick % 4 == 3 {
             let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
-            scene = eyes.0.compose(Moment {
+            let sketch = eyes.0.compose(Moment {
                 t: game.time(),
                 now: game.now(),
                 eyes: hosts[0],
@@ -58,19 +87,25 @@ fn played(seconds: u32) -> Played {
                 referee: Some(game.referee()),
                 gauges: Vec::new(),
             });
-            most = most.max(serde_json::to_string(&scene).unwrap().len());
-            happenings.extend(eyes.0.take_happenings());
+            let scene = sketch.finished();
+            out.most = out.most.max(serde_json::to_string(&scene).unwrap().len());
+            out.happenings.extend(eyes.0.take_happenings());
             if tick + 100 > ticks {
-                seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
+                out.seen.extend(scene.raw.robots.iter().map(|robot| (robot.0, robot.1)));
             }
+            // What is known of the field has settled.
+            if tick >= 500 {
+                out.judge(&scene);
+            }
+            out.scene = scene;
         }
     }
-    Played { scene, happenings, most, seen }
+    out
 }
 
 #[test]
 fn a_match_fills_scenes_that_hold_against_the_truth() {
-    let Played { scene, happenings, most, seen } = played(45);
+    let Played { scene, happenings, most, seen, maps, keepers } = played(45);
     assert_eq!(scene.robots.len(), 12);
     let truth = scene.layers.iter().find(|layer| layer.name == "truth").unwrap();
     for robot in &scene.robots {
@@ -90,6 +125,9 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
     assert!(scene.ball.unwrap().trail.len() > 20);
     let names: BTreeSet<_> = scene.layers.iter().map(|layer| &layer.name).collect();
     assert_eq!(names.len(), scene.layers.len(), "each layer has a name of its own");
+    // Nothing needs to be searched by a robot for the map to be there; and a keeper looks like one, whoever looks.
+    assert_eq!(maps.0, maps.1);
+    assert!(keepers.1 > 500 && keepers.0 * 10 > keepers.1 * 8, "{keepers:?}");
     // 25 of them a second have to go through any network and a browser's parser.
     assert!(most < 40_000, "{most} bytes");
     assert!(happenings.iter().any(|happening| happening.kind == Kind::Command));

@@ -13,7 +13,7 @@ use arena::game::{Crowd, Game, GameConfig, GameReport, TICK_US, Watcher};
 use casebase::CaseBase;
 use geometry::Point;
 use hil_sim::NativeBackend;
-use page::{Happening, Kind, Page, Request, Scene};
+use page::{Happening, Kind, Page, Request};
 use protocol::{RobotId, Who};
 use rules::Colour;
 use rules::state::Command;
@@ -162,7 +162,7 @@ impl<'s> Theatre<'s> {
     fn show(&mut self, game: &Game<'_>, eyes: &mut Eyes, hands: &Hands) {
         let hosts = [game.host(Colour::Blue), game.host(Colour::Yellow)];
         let gauges = vec![tick(hands.took), gauge("program", "speed reached", hands.reached, "×", None)];
-        let scene = eyes.composer.compose(Moment {
+        let mut sketch = eyes.composer.compose(Moment {
             t: game.time(),
             now: game.now(),
             eyes: hosts[0],
@@ -174,12 +174,10 @@ impl<'s> Theatre<'s> {
         for happening in eyes.composer.take_happenings() {
             self.page.tell(happening);
         }
-        self.page.show(Scene {
-            paused: hands.paused,
-            speed: hands.speed,
-            seed: Some(self.config.seed),
-            ..scene
-        });
+        sketch.scene.paused = hands.paused;
+        sketch.scene.speed = hands.speed;
+        sketch.scene.seed = Some(self.config.seed);
+        self.page.show(sketch);
     }
 
     fn obey<'b>(

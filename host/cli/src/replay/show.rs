@@ -10,7 +10,7 @@ use host::recheck::Recheck;
 use host::recording::RecordingHeader;
 use host::trace::{Kind, Reader};
 use host::{Host, HostSettings, Input};
-use page::{Page, Powers};
+use page::{Happening, Kind as Told, Page, Powers};
 use protocol::Instant;
 use rules::{Colour, League};
 use ssl::log::MessageKind;
@@ -50,11 +50,21 @@ impl Projector {
         }
         self.due = t + SCENE_EVERY_S;
         let moment = Moment { t, now, eyes, hosts, truth: None, referee: None, gauges: Vec::new() };
-        let scene = self.composer.compose(moment);
+        let sketch = self.composer.compose(moment);
         for happening in self.composer.take_happenings() {
             self.page.tell(happening);
         }
-        self.page.keep(scene);
+        self.page.keep(sketch);
+    }
+
+    /// The file breaks off: who looks through it sees where, and that it is not the match that ends.
+    fn breaks_off(&mut self, now: Instant, damage: &str, eyes: &Host, hosts: &[&Host]) {
+        let t = now.0 as f64 * 1e-6;
+        let words = format!("the file breaks off: {damage}");
+        eprintln!("{words}");
+        self.page.tell(Happening { t, kind: Told::Fault, team: None, words, at: None, problem: None });
+        self.due = f64::NEG_INFINITY;
+        self.look(now, eyes, hosts);
     }
 
     /// All is read: it stays to be looked at.
@@ -91,6 +101,12 @@ fn show_trace(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
         let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
         if let Some(eyes) = hosts.first() {
             projector.look(now, eyes, &hosts);
+        }
+    }
+    if let Some(damage) = trace::damage_of(reader.end()) {
+        let hosts: Vec<&Host> = (0..header.hosts.len()).filter_map(|i| recheck.host(i)).collect();
+        if let Some(eyes) = hosts.first() {
+            projector.breaks_off(now, &damage, eyes, &hosts);
         }
     }
     recheck.finish(true);
@@ -135,5 +151,9 @@ fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
     if began.is_none() {
         return Err(failed(&args.file, &"holds no message"));
     }
-    Ok(projector.stay("the whole file is there"))
+    if let Some(end) = reader.end().filter(|end| !end.is_whole()) {
+        let hosts = [&host];
+        projector.breaks_off(now, &end.to_string(), &host, if args.team.is_some() { &hosts } else { &[] });
+    }
+    Ok(projector.stay("all that the file holds is there"))
 }

@@ -92,11 +92,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
     }
     bar.finish_and_clear();
-    let damage = match reader.end() {
-        Some(End::Cut) => Some("cut within a record; all before it was read".to_owned()),
-        Some(End::Broken { what }) => Some(format!("{what}; all before it was read")),
-        Some(End::Whole) | None => None,
-    };
+    let damage = damage_of(reader.end());
     if args.at.is_some() || args.event.is_some() {
         let (_, last) = span.unwrap_or_default();
         let asked = args.event.as_ref().map_or_else(
@@ -222,5 +218,14 @@ impl Report<'_> {
             };
         }
         out
+    }
+}
+
+/// What is wrong with a trace that ends so.
+pub(super) fn damage_of(end: Option<&End>) -> Option<String> {
+    match end? {
+        End::Cut => Some("cut within a record; all before it was read".to_owned()),
+        End::Broken { what } => Some(format!("{what}; all before it was read")),
+        End::Whole => None,
     }
 }

@@ -6,7 +6,7 @@ use geometry::Point;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
 use host::{Host, HostSettings, Input};
-use page::{Happening, Kind, Page, Powers, Request, Scene};
+use page::{Happening, Kind, Page, Powers, Request};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
@@ -131,12 +131,15 @@ impl Board {
                 referee: referee.as_deref(),
                 gauges: Vec::new(),
             };
-            let scene = self.composer.compose(moment);
+            let mut sketch = self.composer.compose(moment);
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
             let speed = wish.pace.unwrap_or(server.pace());
-            self.page.show(Scene { paused: speed == 0.0, speed: self.speed, seed: Some(self.seed), ..scene });
+            sketch.scene.paused = speed == 0.0;
+            sketch.scene.speed = self.speed;
+            sketch.scene.seed = Some(self.seed);
+            self.page.show(sketch);
         }
         wish
     }

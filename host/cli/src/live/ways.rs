@@ -21,17 +21,17 @@ const THERE: f32 = 0.03;
 const MARGIN: f32 = 0.03;
 
 /// The ways of one team's robots in a moment.
-pub(in crate::live) struct Ways<'a> {
-    pub(in crate::live) world: &'a World,
-    pub(in crate::live) phase: Phase<Colour>,
-    pub(in crate::live) placement: Option<Point<Field>>,
-    pub(in crate::live) field: &'a FieldSpec,
-    pub(in crate::live) own: GoalEnd,
+pub(super) struct Ways<'a> {
+    pub(super) world: &'a World,
+    pub(super) phase: Phase<Colour>,
+    pub(super) placement: Option<Point<Field>>,
+    pub(super) field: &'a FieldSpec,
+    pub(super) own: GoalEnd,
 }
 
 impl Ways<'_> {
     /// From where the robot is to `to`.
-    pub(in crate::live) fn to(&self, robot: &Robot, to: [f32; 2], duty: Duty) -> Vec<[f32; 2]> {
+    pub(super) fn to(&self, robot: &Robot, to: [f32; 2], duty: Duty) -> Vec<[f32; 2]> {
         let to = Point::<Field>::new(to[0], to[1]);
         let rules = keep_out(&Situation {
             field: self.field,

@@ -1,0 +1,71 @@
+//! What of a scene is worked out beside the match? Planned ways, maps of passes, threats, what opponents are believed to play: from a
+//! picture of the moment, on the page's own thread, so that whoever drives the match pays for the picture alone. m, s, field frame.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use host::referee::Game;
+use host::world::World;
+use page::{Scene, Sketch};
+use protocol::Who;
+use rules::{Colour, Duty, FieldSpec, League};
+
+use super::tactics::Tactics;
+use super::ways::Ways;
+
+/// A robot and where it is told to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Aim {
+    pub(super) who: Who,
+    pub(super) to: [f32; 2],
+    pub(super) duty: Duty,
+}
+
+/// All that painting needs of a moment.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    /// Seconds since the beginning.
+    pub(super) t: f64,
+    pub(super) world: World,
+    pub(super) game: Game,
+    pub(super) field: FieldSpec,
+    pub(super) league: League,
+    /// The one team whose host is ours; none where both are, or none.
+    pub(super) us: Option<Colour>,
+    pub(super) aims: Vec<Aim>,
+}
+
+/// Paints one moment after the other; what it remembers between them is shared by its sketches.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Painter {
+    tactics: Arc<Mutex<Tactics>>,
+}
+
+impl Painter {
+    /// The scene as it is, to be painted when the page's thread has time.
+    pub(super) fn sketch(&self, scene: Scene, picture: Picture) -> Sketch {
+        let tactics = self.tactics.clone();
+        Sketch::new(scene, move |scene| {
+            // Whatever was remembered before somebody failed with it is as good as any.
+            let mut tactics = tactics.lock().unwrap_or_else(PoisonError::into_inner);
+            paint(scene, &picture, &mut tactics);
+        })
+    }
+}
+
+fn paint(scene: &mut Scene, picture: &Picture, tactics: &mut Tactics) {
+    let Picture { world, game, field, .. } = picture;
+    for Aim { who, to, duty } in &picture.aims {
+        let (Some(robot), Some(own)) = (world.robot(*who), game.own_goal(who.colour)) else { continue };
+        let ways = Ways { world, phase: game.phase, placement: game.placement, field, own };
+        let shown = scene
+            .robots
+            .iter_mut()
+            .find(|shown| shown.team == super::team(who.colour) && shown.id == who.id.number());
+        if let Some(mind) = shown.and_then(|shown| shown.mind.as_mut()) {
+            mind.intent.path = ways.to(robot, *to, *duty);
+        }
+    }
+    let [maps, above] = tactics.layers(picture);
+    scene.layers.splice(0..0, maps);
+    scene.layers.extend(above);
+}

@@ -1,0 +1,44 @@
+//! What of a scene can be worked out when the match has already gone on? A sketch is a scene and what still has to be done to it: the
+//! page's own thread does that, so that planned ways, maps and beliefs cost whoever drives the match nothing.
+
+use std::fmt;
+
+use crate::scene::Scene;
+
+/// Finishes a scene from what it has kept of the moment.
+type Finish = Box<dyn FnOnce(&mut Scene) + Send>;
+
+/// A scene, to be finished off the match's thread.
+pub struct Sketch {
+    /// What is known at once.
+    pub scene: Scene,
+    finish: Option<Finish>,
+}
+
+impl Sketch {
+    /// A scene that `finish` completes; sketches are finished in the order in which they are shown.
+    pub fn new(scene: Scene, finish: impl FnOnce(&mut Scene) + Send + 'static) -> Self {
+        Self { scene, finish: Some(Box::new(finish)) }
+    }
+
+    /// The whole scene.
+    pub fn finished(self) -> Scene {
+        let Self { mut scene, finish } = self;
+        if let Some(finish) = finish {
+            finish(&mut scene);
+        }
+        scene
+    }
+}
+
+impl From<Scene> for Sketch {
+    fn from(scene: Scene) -> Self {
+        Self { scene, finish: None }
+    }
+}
+
+impl fmt::Debug for Sketch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Sketch").field("scene", &self.scene).finish_non_exhaustive()
+    }
+}
