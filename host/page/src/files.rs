@@ -36,6 +36,8 @@ files! {
     "field.js": SCRIPT,
     "robots.js": SCRIPT,
     "shapes.js": SCRIPT,
+    "heat.js": SCRIPT,
+    "words.js": SCRIPT,
     "layers.js": SCRIPT,
     "drag.js": SCRIPT,
     "why.js": SCRIPT,

@@ -42,6 +42,6 @@ export function toggleTheme() {
 export function startColours() {
   const asked = new URLSearchParams(location.search).get("theme");
   const system = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
-  take(asked ?? recall("theme", system));
+  take(["light", "dark"].includes(asked) ? asked : recall("theme", system));
   byId("theme").addEventListener("click", toggleTheme);
 }

@@ -3,7 +3,7 @@
 import { byId } from "./dom.js";
 import { shows } from "./layers.js";
 import { ask } from "./link.js";
-import { noteAt } from "./shapes.js";
+import { noteAt, notesOf } from "./shapes.js";
 import { changed, choose, store } from "./store.js";
 import { time } from "./transport.js";
 
@@ -70,6 +70,8 @@ export function startDrag(canvas, camera) {
     if (!moved && fingers.size === 1 && event.type === "pointerup") {
       const found = under(here);
       choose(found?.robot?.team ?? null, found?.robot?.id);
+      // A finger cannot hover: its touch tells what lies there.
+      if (event.pointerType !== "mouse") hover(here);
     }
     fingers.delete(event.pointerId);
     held = null;
@@ -81,18 +83,20 @@ export function startDrag(canvas, camera) {
     camera.zoomAt(spot(event), Math.exp(-event.deltaY * 0.0015));
     changed("frame");
   }, { passive: false });
-  canvas.addEventListener("pointerleave", () => (byId("note").style.display = "none"));
+  canvas.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && (byId("note").style.display = "none"));
 
   function hover(here) {
     const note = byId("note");
     const found = under(here);
     canvas.style.cursor = found ? (store.state.powers === "simulation" && time.live ? "grab" : "pointer") : "default";
-    const words = found?.robot ? robotWords(found.robot) : found?.ball ? ballWords(store.scene.ball) : noteAt(store.scene?.layers ?? [], shows, camera.from(here));
+    const layers = store.scene?.layers ?? [];
+    const words = found?.robot ? [robotWords(found.robot), ...notesOf(layers, shows, found.robot)].join("\n") : found?.ball ? ballWords(store.scene.ball) : noteAt(layers, shows, camera.from(here));
     note.style.display = words ? "block" : "none";
     if (!words) return;
     note.textContent = words;
-    note.style.left = `${Math.min(here[0] + 16, canvas.clientWidth - 200)}px`;
-    note.style.top = `${here[1] + 16}px`;
+    // Beside the hand, within the picture.
+    note.style.left = `${Math.max(4, Math.min(here[0] + 16, canvas.clientWidth - note.offsetWidth - 4))}px`;
+    note.style.top = `${here[1] + 16 + note.offsetHeight < canvas.clientHeight ? here[1] + 16 : Math.max(4, here[1] - note.offsetHeight - 16)}px`;
   }
 }
 

@@ -2,8 +2,9 @@
 
 import { colours, faint } from "./colours.js";
 import { shows } from "./layers.js";
-import { drawRobots, lerp } from "./robots.js";
+import { drawRobots, lerp, robotRadius } from "./robots.js";
 import { drawShapes } from "./shapes.js";
+import { Words } from "./words.js";
 
 /** Draws a frame; the same function for the page and for its bench. */
 export function drawFrame(context, camera, ratio, scene, next, share) {
@@ -15,21 +16,32 @@ export function drawFrame(context, camera, ratio, scene, next, share) {
   context.setTransform(m[0] * ratio, m[1] * ratio, m[2] * ratio, m[3] * ratio, m[4] * ratio, m[5] * ratio);
   // One CSS pixel in metres.
   const pixel = 1 / camera.scale;
+  drawCarpet(context, scene.field);
+  const words = new Words();
+  const pen = { context, pixel, camera, ratio, words, robot: robotRadius(scene.field, pixel) / pixel + 2 };
+  // Maps lie on the carpet, lines on the maps, and all else on the lines.
+  const layers = scene.layers.filter((layer) => shows(layer.name, layer.on));
+  const isMap = (layer) => layer.shapes[0]?.is === "heat";
+  for (const layer of layers) if (isMap(layer)) drawShapes(pen, layer);
   drawLines(context, scene.field, pixel);
-  const pen = { context, pixel, camera, ratio };
-  for (const layer of scene.layers) if (shows(layer.name, layer.on)) drawShapes(pen, layer.shapes);
+  for (const layer of layers) if (!isMap(layer)) drawShapes(pen, layer);
   if (scene.game.placement) drawPlacement(pen, scene);
   if (shows("raw", false)) drawRaw(pen, scene);
   drawRobots(pen, scene, next, share);
   if (scene.ball) drawBall(pen, scene, next, share);
+  words.draw(pen);
 }
 
-function drawLines(context, field, pixel) {
+function drawCarpet(context, field) {
   const [x, y, edge] = [field.length / 2, field.width / 2, field.margin];
   context.fillStyle = colours.margin;
   context.fillRect(-x - edge, -y - edge, 2 * (x + edge), 2 * (y + edge));
   context.fillStyle = colours.carpet;
   context.fillRect(-x, -y, 2 * x, 2 * y);
+}
+
+function drawLines(context, field, pixel) {
+  const [x, y] = [field.length / 2, field.width / 2];
   context.strokeStyle = colours.line;
   context.lineWidth = Math.max(0.01, 1.2 * pixel);
   context.beginPath();

@@ -29,5 +29,6 @@ function vitals(robots) {
   return el("div", { class: "scroll" }, el("table", { class: "tight" },
     el("thead", {}, el("tr", {}, el("th", {}, ""), head("V", "battery"), head("trip", "round trip of the radio, ms"), head("↓ %", "ours that it did not hear"), head("↑ %", "its that we did not hear"),
       head("quiet", "since it was heard, ms"), head("blind", "since a camera saw it, ms"), el("th", {}, "is"))),
-    el("tbody", {}, rows)));
+    el("tbody", {}, rows)),
+    el("p", { class: "muted" }, "V: battery. trip: there and back by radio, ms. ↓ ↑: frames lost on their way to the robot and from it. quiet: not heard for, ms. blind: not seen for, ms."));
 }

@@ -44,12 +44,12 @@ function show() {
   const panel = byId("layers");
   if (panel.hidden) return;
   const list = all();
-  const key = list.map((layer) => `${layer.name}${layer.shown ? 1 : 0}`).join();
+  const key = list.map((layer) => `${layer.name}${layer.shown ? 1 : 0}${layer.count === 0 ? 0 : 1}`).join();
   fill(panel, key, () => {
     const row = (layer) => {
       const box = el("input", { type: "checkbox", "data-layer": layer.name, onchange: (event) => setLayer(layer.name, event.target.checked) });
       box.checked = layer.shown;
-      return el("label", {}, box, layer.label);
+      return el("label", {}, box, layer.label, layer.count === 0 ? el("small", {}, "none now") : null);
     };
     const part = (words, layers) => (layers.length ? [el("h3", {}, words), ...layers.map(row)] : []);
     const every = (shown) => () => list.forEach((layer) => setLayer(layer.name, shown));

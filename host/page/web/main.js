@@ -37,6 +37,7 @@ function frame(now) {
   wanted = false;
   const more = advance(now, Math.min(0.1, Math.max(0, now - drawnAt) / 1000));
   drawnAt = now;
+  byId("waiting").hidden = store.scene !== null;
   if (store.scene) draw();
   if (now - panelsAt >= PANELS_EVERY) {
     panelsAt = now;
@@ -58,7 +59,10 @@ function draw() {
   frames += 1;
 }
 
-function showTab(name) {
+const TABS = ["why", "match", "health", "control"];
+
+function showTab(asked) {
+  const name = TABS.includes(asked) ? asked : TABS[0];
   store.tab = name;
   remember("tab", name);
   for (const button of document.querySelectorAll("#tabs button")) button.setAttribute("aria-selected", String(button.dataset.tab === name));

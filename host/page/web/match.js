@@ -20,7 +20,8 @@ export function showBoard() {
   }
   say(byId("phase-now"), scene.game.phase || "–");
   const left = scene.game.stage_left == null ? "" : ` ${clock(scene.game.stage_left, 0)}`;
-  const act = scene.game.action_left == null || scene.game.action_left <= 0 ? "" : ` · ${number(scene.game.action_left)} s left`;
+  // While play runs the referee's clock for an action says nothing.
+  const act = scene.game.action_left == null || scene.game.action_left <= 0 || ["run", "halt", "stop"].includes(scene.game.phase) ? "" : ` · ${number(scene.game.action_left)} s left`;
   const next = scene.game.next ? ` · then ${scene.game.next}` : "";
   say(byId("phase-more"), `${scene.game.stage}${left}${act}${next}`);
 }

@@ -18,9 +18,12 @@ export function between(robot, next, share) {
   return [lerp(robot.at, later.at, share), turn(robot.heading, later.heading, share)];
 }
 
+/** As large as it is, and never too small for its number, m. */
+export const robotRadius = (field, pixel) => Math.max(field.robot_radius, 7 * pixel);
+
 export function drawRobots(pen, scene, next, share) {
   const { context, pixel } = pen;
-  const radius = Math.max(scene.field.robot_radius, 7 * pixel);
+  const radius = robotRadius(scene.field, pixel);
   const paths = shows("paths", true);
   for (const robot of scene.robots) if (paths && robot.mind) drawIntent(pen, robot, radius);
   const velocities = shows("velocities", true);
@@ -56,14 +59,13 @@ export function drawRobots(pen, scene, next, share) {
 function drawIntent({ context, pixel }, robot, radius) {
   const { path, ball_to: target } = robot.mind.intent;
   if (path.length > 1) {
-    context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.8);
-    context.lineWidth = (isChosen(robot) ? 2.4 : 1.4) * pixel;
-    context.setLineDash([6 * pixel, 4 * pixel]);
+    // Thin and whole: dashes of twenty ways are the dearest strokes of a frame.
+    context.strokeStyle = faint(robot.team, isChosen(robot) ? 1 : 0.6);
+    context.lineWidth = (isChosen(robot) ? 2.4 : 1.2) * pixel;
     context.beginPath();
     context.moveTo(path[0][0], path[0][1]);
     for (const [x, y] of path.slice(1)) context.lineTo(x, y);
     context.stroke();
-    context.setLineDash([]);
     ring(context, path[path.length - 1], radius * 0.45);
   }
   if (target) {
@@ -107,32 +109,22 @@ function drawVelocity({ context, pixel }, robot, at, radius) {
   context.stroke();
 }
 
-function drawWords({ context, camera, ratio }, scene, next, share, radius) {
+function drawWords({ context, camera, ratio, words }, scene, next, share, radius) {
   // Letters stand upright whichever way the field lies: in pixels.
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.textAlign = "center";
   context.textBaseline = "middle";
-  const size = Math.max(9, Math.min(22, radius * camera.scale * 1.15));
+  const size = Math.max(10, Math.min(22, radius * camera.scale * 1.15));
   context.font = `700 ${size}px system-ui, "DejaVu Sans", sans-serif`;
   const roles = shows("roles", true) && camera.scale > 40;
-  const spots = scene.robots.map((robot) => camera.to(between(robot, next, share)[0]));
-  scene.robots.forEach((robot, i) => {
+  for (const robot of scene.robots) {
+    const at = camera.to(between(robot, next, share)[0]);
     context.fillStyle = colours[`${robot.team}-ink`];
-    context.fillText(robot.id, spots[i][0], spots[i][1] + size * 0.04);
-  });
-  if (roles) {
-    context.font = `500 11px system-ui, "DejaVu Sans", sans-serif`;
-    context.fillStyle = colours.text;
-    context.strokeStyle = faint("back", 0.75);
-    context.lineWidth = 3;
-    context.lineJoin = "round";
-    scene.robots.forEach((robot, i) => {
-      if (!robot.mind) return;
-      const words = label(robot.mind);
-      const y = spots[i][1] + radius * camera.scale + 9;
-      context.strokeText(words, spots[i][0], y);
-      context.fillText(words, spots[i][0], y);
-    });
+    context.fillText(robot.id, at[0], at[1] + size * 0.04);
+    words.keepFree(at, radius * camera.scale);
+    if (!roles || !robot.mind) continue;
+    // The chosen robot's word before all others.
+    words.ask({ key: `${robot.team}${robot.id}`, at, text: label(robot.mind), tone: "text", gap: radius * camera.scale + 2, rank: isChosen(robot) ? 2 : 0 });
   }
   const m = camera.matrix().map((x) => x * ratio);
   context.setTransform(m[0], m[1], m[2], m[3], m[4], m[5]);

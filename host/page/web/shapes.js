@@ -1,19 +1,43 @@
 // How are a layer's shapes drawn? Any layer that the program names, from plain shapes; what they mean is the program's affair.
 
 import { colours, faint } from "./colours.js";
+import { drawHeat, heatNote } from "./heat.js";
+import { on } from "./store.js";
 
-export function drawShapes(pen, shapes) {
-  for (const shape of shapes) DRAW[shape.is]?.(pen, shape);
+export function drawShapes(pen, { name, shapes }) {
+  shapes.forEach((shape, i) => DRAW[shape.is]?.(pen, shape, `${name} ${i}`));
 }
 
 function finish({ context, pixel }, shape, fill) {
   if (fill) {
-    context.fillStyle = faint(shape.tone, 0.13);
+    context.fillStyle = shape.tone === "forbidden" ? hatch(context, pixel) : faint(shape.tone, 0.13);
     context.fill();
   }
   context.strokeStyle = faint(shape.tone, 0.85);
   context.lineWidth = 1.3 * pixel;
   context.stroke();
+}
+
+let hatched = null;
+on("colours", () => (hatched = null));
+
+/** What is to be kept out of is hatched: it is told from the rest without any colour. */
+function hatch(context, pixel) {
+  if (!hatched) {
+    const tile = new OffscreenCanvas(8, 8);
+    const pen = tile.getContext("2d");
+    pen.fillStyle = faint("forbidden", 0.08);
+    pen.fillRect(0, 0, 8, 8);
+    pen.strokeStyle = faint("forbidden", 0.4);
+    for (const from of [-8, 0, 8]) {
+      pen.moveTo(from, 8);
+      pen.lineTo(from + 8, 0);
+    }
+    pen.stroke();
+    hatched = context.createPattern(tile, "repeat");
+  }
+  hatched.setTransform(new DOMMatrix([pixel, 0, 0, pixel, 0, 0]));
+  return hatched;
 }
 
 function trace(context, points) {
@@ -60,69 +84,32 @@ const DRAW = {
     }
     context.stroke();
   },
-  text({ context, camera, ratio }, shape) {
-    const [x, y] = camera.to(shape.at);
-    context.save();
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.font = `500 11px system-ui, "DejaVu Sans", sans-serif`;
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.strokeStyle = faint("back", 0.75);
-    context.lineWidth = 3;
-    context.lineJoin = "round";
-    context.strokeText(shape.text, x, y);
-    context.fillStyle = colours[shape.tone];
-    context.fillText(shape.text, x, y);
-    context.restore();
+  text({ camera, words, robot }, shape, key) {
+    words.ask({ key, at: camera.to(shape.at), text: shape.text, tone: shape.tone, gap: robot, above: true, middle: true, rank: 1 });
   },
-  heat({ context }, shape) {
-    const picture = heatPicture(shape);
-    const [[x0, y0], [x1, y1]] = [shape.low, shape.high];
-    context.save();
-    context.imageSmoothingEnabled = true;
-    // Rows run from least y up, as the field does.
-    context.drawImage(picture, x0, y0, x1 - x0, y1 - y0);
-    context.restore();
-  },
+  heat: drawHeat,
 };
-
-const pictures = new WeakMap();
-
-/** A map of values as a picture of one pixel a cell, made once for each map: dark violet over orange to pale yellow. */
-function heatPicture(shape) {
-  if (pictures.has(shape)) return pictures.get(shape);
-  const columns = Math.max(1, shape.columns);
-  const rows = Math.max(1, Math.floor(shape.cells.length / columns));
-  const picture = new OffscreenCanvas(columns, rows);
-  const image = new ImageData(columns, rows);
-  shape.cells.slice(0, columns * rows).forEach((value, i) => {
-    const [r, g, b] = heatColour(value / 255);
-    image.data.set([r, g, b, value === 0 ? 0 : 60 + value * 0.55], i * 4);
-  });
-  picture.getContext("2d").putImageData(image, 0, 0);
-  pictures.set(shape, picture);
-  return picture;
-}
-
-/** Rises in lightness all the way, so that it reads without hue too. */
-const STOPS = [[42, 10, 74], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26], [252, 255, 164]];
-
-function heatColour(x) {
-  const at = Math.min(0.9999, Math.max(0, x)) * (STOPS.length - 1);
-  const [low, share] = [Math.floor(at), at % 1];
-  return STOPS[low].map((from, i) => from + (STOPS[low + 1][i] - from) * share);
-}
 
 /** What is told of the shape under a point, the topmost first. */
 export function noteAt(layers, shown, [x, y]) {
   for (const layer of [...layers].reverse()) {
     if (!shown(layer.name, layer.on)) continue;
     for (const shape of [...layer.shapes].reverse()) {
-      if (shape.note && contains(shape, x, y)) return shape.note;
+      const note = shape.is === "heat" ? heatNote(shape, x, y) : shape.note && contains(shape, x, y) ? shape.note : null;
+      if (note) return note;
     }
   }
   return null;
 }
+
+/** What layers say of a robot: the notes of rings about it. */
+export function notesOf(layers, shown, robot) {
+  const about = (shape) => shape.is === "ellipse" && shape.note && !shape.fill && Math.hypot(shape.at[0] - robot.at[0], shape.at[1] - robot.at[1]) < NEAR;
+  return layers.filter((layer) => shown(layer.name, layer.on)).flatMap((layer) => layer.shapes.filter(about).map((shape) => shape.note));
+}
+
+/** A ring belongs to a robot whose centre is so near to its own, m: what layers were made from may be a moment older. */
+const NEAR = 0.05;
 
 function contains(shape, x, y) {
   if (shape.is === "ellipse") return ((x - shape.at[0]) / shape.radii[0]) ** 2 + ((y - shape.at[1]) / shape.radii[1]) ** 2 <= 1;

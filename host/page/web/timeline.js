@@ -37,7 +37,7 @@ export function drawTimeline(force = false) {
   context.clearRect(0, 0, width, height);
   ruler(context, width, height);
   const step = (height - 15) / ROWS.length;
-  context.font = `10px system-ui, "DejaVu Sans", sans-serif`;
+  context.font = `11px system-ui, "DejaVu Sans", sans-serif`;
   context.textBaseline = "middle";
   ROWS.forEach(([name, kinds], row) => {
     const y = 14 + row * step;
@@ -59,8 +59,8 @@ export function drawTimeline(force = false) {
     }
     context.globalAlpha = 1;
   });
-  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), height, colours.ball, "goal");
-  for (const mark of store.marks) flag(context, x(mark.t, width), height, colours.accent, "");
+  for (const goal of store.happenings.filter((h) => h.kind === "goal")) flag(context, x(goal.t, width), [width, height], colours.ball, "goal");
+  for (const mark of store.marks) flag(context, x(mark.t, width), [width, height], colours.accent, "");
   context.fillStyle = colours.text;
   context.fillRect(x(time.at, width) - 1, 0, 2, height);
 }
@@ -70,25 +70,27 @@ function ruler(context, width) {
   const room = (last - first) / Math.max(1, (width - LEFT) / 70);
   const step = [1, 2, 5, 10, 30, 60, 120, 300, 600].find((s) => s >= room) ?? 1200;
   context.fillStyle = colours.dim;
-  context.font = `10px system-ui, "DejaVu Sans", sans-serif`;
+  context.font = `11px system-ui, "DejaVu Sans", sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "top";
   for (let t = Math.ceil(first / step) * step; t <= last; t += step) context.fillText(clock(t, 0), x(t, width), 1);
 }
 
-function flag(context, at, height, colour, words) {
+function flag(context, at, [width, height], colour, words) {
+  // At the right edge it waves to the left.
+  const side = at > width - 50 ? -1 : 1;
   context.fillStyle = colour;
   context.fillRect(at - 1, 12, 2, height - 12);
   context.beginPath();
   context.moveTo(at, 11);
-  context.lineTo(at + 9, 15);
+  context.lineTo(at + side * 9, 15);
   context.lineTo(at, 19);
   context.fill();
   if (words) {
-    context.textAlign = "left";
+    context.textAlign = side > 0 ? "left" : "right";
     context.textBaseline = "top";
-    context.font = `600 10px system-ui, "DejaVu Sans", sans-serif`;
-    context.fillText(words, at + 11, 10);
+    context.font = `600 11px system-ui, "DejaVu Sans", sans-serif`;
+    context.fillText(words, at + side * 11, 10);
   }
 }
 
@@ -108,7 +110,7 @@ export function startTimeline() {
   canvas.addEventListener("mousemove", (event) => {
     const width = canvas.clientWidth;
     const near = store.happenings.filter((h) => Math.abs(x(h.t, width) - event.offsetX) < 4).slice(-3);
-    canvas.title = near.map((h) => `${clock(h.t)}  ${h.words}`).join("\n");
+    canvas.title = near.map((h) => `${clock(h.t)}  ${h.words}`).join("\n") || "Blue in the upper half of a row, yellow in the lower one; a click goes there";
   });
   on("happenings", () => drawTimeline(true));
   on("colours", () => drawTimeline(true));

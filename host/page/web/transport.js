@@ -55,7 +55,9 @@ async function load(second) {
 function around(t) {
   const second = Math.floor(t);
   load(second);
-  if (t - second > 0.5) load(second + 1);
+  // The scene by then may be the last of the second before.
+  if (t - second < 0.5) load(second - 1);
+  else load(second + 1);
   const list = [...(seconds.get(second - 1) ?? []).slice(-1), ...(seconds.get(second) ?? []), ...(seconds.get(second + 1) ?? []).slice(0, 1)];
   if (list.length === 0) return null;
   let i = list.findIndex((scene) => scene.t > t + 1e-6);
@@ -83,9 +85,26 @@ export function advance(now, passed) {
     if (time.at >= last && !store.state.recorded) goLive();
   }
   time.at = Math.max(first, time.at);
-  const found = around(time.at);
+  const waits = reach(last);
+  const found = around(waits ? last : time.at);
   if (found) [store.scene, store.next, store.share] = found;
-  return time.playing;
+  return time.playing || waits;
+}
+
+/** A recording that is still being read grows: so long without growth, ms, and it is whole. */
+const WHOLE = 2000;
+let end = { at: 0, since: 0 };
+
+/** Whether a moment is waited for that is not there yet. Once it will not come, it is told where the match ends. */
+function reach(last) {
+  const now = performance.now();
+  if (last !== end.at) end = { at: last, since: now };
+  if (last === 0 || time.at <= last) return false;
+  if (now - end.since <= WHOLE) return true;
+  changed("told", `${clock(time.at)} is not there: this ends at ${clock(last)}`);
+  time.at = last;
+  address();
+  return false;
 }
 
 export function seek(t, play = time.playing) {
@@ -160,9 +179,19 @@ function show() {
   fill(byId("clock"), words.join(), () => [document.createTextNode(words[0]), el("small", {}, words[1])]);
 }
 
+/** The moment that the address names, s; none where it names none that there can be. */
+function asked() {
+  const words = /(?:^|[#&])t=([^&]*)/.exec(location.hash)?.[1];
+  if (words === undefined) return null;
+  const t = words.trim() === "" ? NaN : Number(words);
+  if (Number.isFinite(t) && t >= 0) return t;
+  changed("told", `the address names no moment: #t=${words}, seconds are expected, such as #t=12.5`);
+  return null;
+}
+
 export function startTransport() {
-  const asked = /(?:^|[#&])t=([\d.]+)/.exec(location.hash);
-  if (asked) [time.live, time.playing, time.at] = [false, false, Number(asked[1])];
+  const from = asked();
+  if (from !== null) [time.live, time.playing, time.at] = [false, false, from];
   const press = (id, action) => byId(id).addEventListener("click", action);
   press("play", toggle);
   press("live", goLive);
@@ -184,8 +213,10 @@ export function startTransport() {
     event.target.value = "";
   });
   addEventListener("hashchange", () => {
-    const moment = /t=([\d.]+)/.exec(location.hash);
-    if (moment) seek(Number(moment[1]), false);
+    const moment = asked();
+    if (moment === null) return;
+    seek(moment, false);
+    time.at = moment;
   });
   on("state", () => (store.marks = recall(`marks.${store.state.title}`, [])));
   on("panels", show);

@@ -63,9 +63,54 @@ fn a_match_is_watched_asked_and_touched() {
     tab.click("[data-layer=keep-out]").unwrap();
     tab.wait("!onetwo.layers().find((l) => l.name === 'keep-out').shown", 5).unwrap();
 
+    explained_on_the_field(&mut tab);
     control(&mut tab);
     look_back(&mut tab);
     no_errors(&mut tab);
+}
+
+/// What maps and labels say of a place is told where somebody points at it; words do not stand upon each other.
+fn explained_on_the_field(tab: &mut Tab<'_>) {
+    tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, true))").unwrap();
+    tab.wait("onetwo.layers().filter((l) => ['pass-receive', 'believed'].includes(l.name)).every((l) => l.shown && l.count > 0)", 60)
+        .unwrap();
+    // The best place of the map, but for those where a robot stands: a hand there asks the robot.
+    let told = "(() => {
+      const { layers, robots, ball } = onetwo.store.scene;
+      const heat = layers.find((l) => l.name === 'pass-receive').shapes[0];
+      const free = (at) => [...robots.map((r) => r.at), ball.at].every((b) => Math.hypot(at[0] - b[0], at[1] - b[1]) > 0.5);
+      const rows = heat.cells.length / heat.columns;
+      const middle = (i) => [[i % heat.columns, heat.columns], [Math.floor(i / heat.columns), rows]].map(([k, n], axis) => heat.low[axis] + ((k + 0.5) / n) * (heat.high[axis] - heat.low[axis]));
+      const best = heat.cells.map((value, i) => [value, i]).sort((a, b) => b[0] - a[0]).find(([, i]) => free(middle(i)));
+      const [x, y] = onetwo.camera.to(middle(best[1]));
+      const box = document.getElementById('field').getBoundingClientRect();
+      document.getElementById('field').dispatchEvent(new PointerEvent('pointermove', { clientX: box.x + x, clientY: box.y + y, pointerId: 9 }));
+      return document.getElementById('note').textContent;
+    })()";
+    onetwo_says(tab, told, "a pass to here arrives: ");
+    let pointed = "(() => {
+      const { layers } = onetwo.store.scene;
+      const ring = layers.find((l) => l.name === 'believed').shapes.find((s) => s.is === 'ellipse');
+      const [x, y] = onetwo.camera.to(ring.at);
+      const box = document.getElementById('field').getBoundingClientRect();
+      document.getElementById('field').dispatchEvent(new PointerEvent('pointermove', { clientX: box.x + x, clientY: box.y + y, pointerId: 9 }));
+      return document.getElementById('note').textContent;
+    })()";
+    onetwo_says(tab, pointed, "by its places of the last half second: goalkeeper ");
+    tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))").unwrap();
+}
+
+/// Within a few tries: everything moves.
+fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
+    let mut said = String::new();
+    for _ in 0..40 {
+        tab.eval(script).unwrap().as_str().unwrap_or_default().clone_into(&mut said);
+        if said.contains(words) {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    panic!("{words}: not in {said}");
 }
 
 /// Stand still, step, drag the ball, begin anew.
@@ -121,6 +166,16 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     .unwrap();
     assert!(number(&mut tab, "Math.abs(onetwo.store.scene.ball.at[0])") > 2.5, "the ball is in the goal");
     tab.wait("/#t=/.test(location.hash)", 5).unwrap();
+    // A moment that is none, and one after the end: told, and the last one is shown.
+    tab.eval("location.hash = '#t=soon'").unwrap();
+    tab.wait("/names no moment/.test(document.getElementById('note').textContent)", 5).unwrap();
+    tab.eval("location.hash = '#t=9999'").unwrap();
+    tab.wait("/this ends at/.test(document.getElementById('note').textContent)", 10).unwrap();
+    tab.wait(
+        "Math.abs(onetwo.time.at - onetwo.store.latest.t) < 0.01 && Math.abs(onetwo.store.scene.t - onetwo.time.at) < 0.1",
+        5,
+    )
+    .unwrap();
     // What a moment becomes is a problem that retrieval takes.
     let line = tab
         .eval("fetch('/api/freeze', { method: 'POST', body: JSON.stringify({ t: 2, team: 'blue', what: 'problem' }) }).then((a) => a.text())")

@@ -97,9 +97,13 @@ fn pictures(program: &str, folder: &Path) -> Told<()> {
     take(&mut tab, &folder.join("field.png"))?;
     tab.click("#layers-open")?;
     tab.wait("document.querySelector('[data-layer=truth]')", 10)?;
-    tab.click("#layers-all")?;
+    // The list lies over the left half: what happens is turned to the right.
+    if tab.eval("onetwo.store.scene.ball.at[0] < 0")?.as_bool() == Some(true) {
+        tab.key("f")?;
+    }
+    tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, true))")?;
     take(&mut tab, &folder.join("layers.png"))?;
-    tab.eval("['raw', 'truth', 'pass-value', 'threats'].forEach((name) => onetwo.setLayer(name, false))")?;
+    tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, false))")?;
     tab.click("#layers-open")?;
     tab.eval(
         "(document.querySelector('[data-retrieval]') ?? document.querySelector('[data-explain]')).click()",
@@ -143,13 +147,13 @@ fn frames(program: &str) -> Told<()> {
     let shown = Shown::start(program, &["play", "--seed", SEED, "--league", "division-a", "--speed", "20"])?;
     let mut browser = Browser::start()?;
     let mut tab = browser.open(&shown.url(""), 1440, 900)?;
-    tab.wait("window.onetwo?.store.latest?.robots.length === 22 && onetwo.store.latest.t > 20", 300)?;
-    tab.eval("fetch('/api/state')")?;
+    tab.wait(BUSY_FRAME, 300)?;
     tab.eval(&format!("({FILL})()"))?;
     let told = tab.eval("onetwo.bench(onetwo.full)")?;
     let number = |key: &str| told[key].as_f64().unwrap_or_default();
     println!(
-        "a frame with {} robots, {} layers of {} shapes and a heat map costs {:.1} times an empty field's: {:.3} ms and {:.3} ms here, median of 15 rounds",
+        "a frame with {} robots and {} layers of {} shapes, two maps among them, costs {:.1} times an empty field's: {:.3} ms and {:.3} ms \
+         here, median of 15 rounds",
         number("robots"),
         number("layers"),
         number("shapes"),
@@ -157,20 +161,31 @@ fn frames(program: &str) -> Told<()> {
         number("full_ms"),
         number("empty_ms")
     );
+    let parts = told["parts"].as_array().into_iter().flatten();
+    let parts = parts.filter_map(|part| Some(format!("{} {:.1}", part[0].as_str()?, part[1].as_f64()?)));
+    eprintln!("each alone, in empty frames: {}", parts.collect::<Vec<_>>().join(", "));
     Ok(())
 }
 
-/// The scene as it is, with everything that strategy may ever add: a heat map, threats, a case of each team.
+/// The scene as it is, every layer on. Eleven a side have no cases: each team gets one of the second level's size.
 const FILL: &str = "() => {
   const scene = structuredClone(onetwo.store.latest);
-  const named = (name) => scene.layers.find((l) => l.name === name) ?? scene.layers[scene.layers.push({ name, label: name, on: true, shapes: [] }) - 1];
-  const cells = Array.from({ length: 45 * 30 }, (_, i) => (i * 37) % 256);
-  named('heat').shapes.push({ is: 'heat', low: [-6, -4.5], high: [6, 4.5], columns: 45, cells });
-  for (const robot of scene.robots) {
-    named('threats').shapes.push({ is: 'polygon', points: [robot.at, [6, -0.9], [6, 0.9]], tone: 'forbidden', fill: true });
-    named('case-scopes').shapes.push({ is: 'ellipse', at: robot.at, radii: [0.45, 0.25], tone: 'case', fill: true });
-    named('ball-path').shapes.push({ is: 'polygon', points: [[0, 0], robot.at, [1, 1]], tone: 'case', fill: true });
-    named('adapted').shapes.push({ is: 'text', at: robot.at, text: 'adapted', tone: 'case' });
-  }
+  const named = (name) => scene.layers.find((l) => l.name === name).shapes;
+  scene.robots.filter((robot) => robot.id % 3 === 1).forEach((robot, i, all) => {
+    const next = all[(i + 1) % all.length].at;
+    named('case-scopes').push({ is: 'ellipse', at: robot.at, radii: [0.45, 0.25], tone: 'case', fill: true, note: 'scope' });
+    named('ball-path').push({ is: 'polygon', points: [robot.at, next, [next[0], next[1] - 0.2], [robot.at[0], robot.at[1] - 0.2]], tone: 'case', fill: true, note: 'leg' },
+      { is: 'line', points: [robot.at, next], tone: 'case', arrow: true, dashed: false });
+    named('adapted').push({ is: 'ellipse', at: robot.at, radii: [0.12, 0.12], tone: robot.team, fill: true, note: 'place' },
+      { is: 'text', at: [robot.at[0], robot.at[1] + 0.2], text: `${robot.id} → 1`, tone: 'case' });
+  });
   onetwo.full = scene;
 }";
+
+/// Play runs with all that is known of it: maps, threats, beliefs, ways.
+const BUSY_FRAME: &str = "(() => {
+  const scene = window.onetwo?.store.latest;
+  const full = (name) => scene.layers.find((l) => l.name === name)?.shapes.length > 3;
+  return scene?.robots.length === 22 && scene.t > 10 && full('believed') && full('threats') && onetwo.layers().find((l) => l.name === 'pass-value').count > 0
+    && scene.robots.filter((robot) => robot.mind?.intent.path.length > 2).length > 10;
+})()";
