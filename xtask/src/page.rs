@@ -2,7 +2,7 @@
 //! screenshots` and `cargo xtask bench page`.
 
 use std::io::{self, BufRead, BufReader};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use std::{env, fs, thread};
@@ -36,8 +36,7 @@ fn tour(context: &Context, words: &str) -> Result<(), Failure> {
 }
 
 /// What the tour says of frames: how often an empty frame's cost a full one's is, and after a colon the times of this machine.
-fn frames(context: &Context) -> Result<String, Failure> {
-    let program = built(context)?;
+fn frames(context: &Context, program: &Path) -> Result<String, Failure> {
     let mut tour = context.cargo("run --release --package page-browser --example tour --");
     tour.arg(program).arg("frames").stderr(Stdio::inherit());
     let failed = |error| Failure::Start { line: "tour frames".to_owned(), error };
@@ -56,15 +55,21 @@ fn built(context: &Context) -> Result<PathBuf, Failure> {
 /// What a frame costs the page's script, and what viewers cost the match; with `write` both go into host/page/README.md.
 pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
     ensure_browser()?;
-    let frame = frames(context)?;
+    let program = built(context)?;
+    let frame = frames(context, &program)?;
     println!("{frame}");
     run(&mut context.cargo("build --release --package page --example viewers"))?;
-    let alone = count(context, 0)?;
-    let watched = count(context, 5)?;
+    let alone = count(&program, "")?;
+    let watched = count(&program, READING)?;
+    let slow = count(&program, SLOW)?;
+    let more = |with: &Counted| with.instructions as f64 / alone.instructions as f64 - 1.0;
     let viewers = format!(
-        "the match's thread takes {:.1} M instructions for {SECONDS} s of match without viewers and {:+.3} % with five",
-        alone as f64 * 1e-6,
-        (watched as f64 / alone as f64 - 1.0) * 100.0
+        "a tick of the match's thread (simulator, both hosts, the scenes shown) takes {:.0} k instructions without viewers, {:+.3} % with \
+         five that read all they can ({} scenes taken) and {:+.3} % with five of which two are slow, two never read and one vanishes",
+        alone.instructions as f64 / f64::from(SECONDS * TICKS_A_SECOND * 1000),
+        more(&watched) * 100.0,
+        watched.taken,
+        more(&slow) * 100.0
     );
     println!("{viewers}");
     if write {
@@ -76,9 +81,16 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
         let list = format!("\n- {ratio};\n- {viewers}.\n\n");
         fs::write(&file, between(&text, MARKS, &list)).map_err(start)?;
     }
-    let more = watched.saturating_sub(alone);
-    if more as f64 > alone as f64 * SLACK {
-        return Err(Failure::Budget(format!("five viewers cost the match {more} of {alone} instructions")));
+    for (ways, with) in [(READING, &watched), (SLOW, &slow)] {
+        if with.taken == 0 {
+            return Err(Failure::Budget(format!("viewers {ways} took no scene: nothing was measured")));
+        }
+        if more(with) > SLACK {
+            let (with, alone) = (with.instructions, alone.instructions);
+            return Err(Failure::Budget(format!(
+                "with viewers {ways} the match takes {with}, alone {alone}"
+            )));
+        }
     }
     Ok(())
 }
@@ -87,24 +99,35 @@ pub(crate) fn bench(context: &Context, write: bool) -> Result<(), Failure> {
 const MARKS: (&str, &str) = ("<!-- page figures -->", "<!-- end of page figures -->");
 /// Simulated seconds that are counted.
 const SECONDS: u32 = 4;
+/// Ticks of brains and hosts in each.
+const TICKS_A_SECOND: u32 = 100;
 /// How much two runs may differ: sleeping, and when the clock is looked at.
 const SLACK: f64 = 0.005;
+/// Five viewers as the example of the same name takes them.
+const READING: &str = "rrrrr";
+const SLOW: &str = "sdsdv";
 
-/// Instructions of the match's own thread with so many viewers: one reads, one never does, one vanishes, …
-fn count(context: &Context, viewers: u32) -> Result<u64, Failure> {
-    let program = built(context)?;
-    let folder = program.with_file_name(format!("page-{viewers}"));
+/// A match that was looked at.
+struct Counted {
+    /// Of its own thread.
+    instructions: u64,
+    /// Scenes that viewers took.
+    taken: u64,
+}
+
+/// A match under callgrind with viewers of these ways.
+fn count(program: &Path, ways: &str) -> Result<Counted, Failure> {
+    let folder = program.with_file_name(format!("page-{ways}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder)
         .map_err(|error| Failure::Start { line: folder.display().to_string(), error })?;
-    let out = folder.join("out");
     let line = format!("valgrind {} play", program.display());
     let failed = |error| Failure::Start { line: line.clone(), error };
     let mut child = Command::new("valgrind")
         .args(["--tool=callgrind", "--separate-threads=yes"])
-        .arg(format!("--callgrind-out-file={}", out.display()))
-        .arg(&program)
-        .args(["play", "--seed", "1", "--speed", "20", "--listen", "127.0.0.1:0", "--duration"])
+        .arg(format!("--callgrind-out-file={}", folder.join("out").display()))
+        .arg(program)
+        .args(["play", "--seed", "1", "--listen", "127.0.0.1:0", "--duration"])
         .arg(SECONDS.to_string())
         .stdin(Stdio::null())
         .stdout(Stdio::null())
@@ -116,26 +139,29 @@ fn count(context: &Context, viewers: u32) -> Result<u64, Failure> {
         BufReader::new(child.stderr.take().into_iter().next().ok_or_else(|| failed(silent()))?).lines();
     for line in lines.map_while(Result::ok) {
         if let Some(address) = line.strip_prefix("page     http://")
-            && viewers > 0
+            && !ways.is_empty()
         {
             let mut viewing = Command::new(program.with_file_name("examples/viewers"));
-            looking = Some(viewing.args([address, &viewers.to_string(), "600"]).spawn().map_err(failed)?);
+            let viewing = viewing.args([address, ways]).stdin(Stdio::null()).stdout(Stdio::piped());
+            looking = Some(viewing.spawn().map_err(failed)?);
         }
         if line.starts_with("the match is over") {
             break;
         }
     }
     thread::sleep(Duration::from_millis(500));
-    let id = child.id().to_string();
-    run(Command::new("kill").args(["-INT", &id]))?;
+    run(Command::new("kill").args(["-TERM", &child.id().to_string()]))?;
     let _ = child.wait();
-    if let Some(mut looking) = looking {
-        let _ = looking.kill();
-        let _ = looking.wait();
+    let mut taken = 0;
+    if let Some(looking) = looking {
+        // They end with the page.
+        let said = looking.wait_with_output().map_err(failed)?;
+        taken = String::from_utf8_lossy(&said.stdout).trim().parse().unwrap_or(0);
     }
     let main = fs::read_to_string(folder.join("out-01")).map_err(failed)?;
     let totals = main.lines().find_map(|line| line.strip_prefix("totals: "));
-    totals.and_then(|words| words.trim().parse().ok()).ok_or_else(|| failed(silent()))
+    let instructions = totals.and_then(|words| words.trim().parse().ok()).ok_or_else(|| failed(silent()))?;
+    Ok(Counted { instructions, taken })
 }
 
 fn silent() -> std::io::Error {

@@ -1,61 +1,58 @@
-//! Looks on, in many ways at once: for `cargo xtask bench page`. `viewers ADDRESS N SECONDS`: every third one reads, every third one
-//! never does, and the rest vanish without a word.
+//! Looks on, in many ways at once: for `cargo xtask bench page`. `viewers ADDRESS WAYS`, a letter for each viewer: `r` reads as fast as
+//! it can, `s` takes a scene a second, `d` never reads, `v` vanishes without a word. Ends with the page, and says how many were taken.
 
 use std::net::TcpStream;
 use std::process::ExitCode;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
+type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
+
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [address, count, seconds] = &words[..] else {
-        eprintln!("usage: viewers ADDRESS N SECONDS");
+    let [address, ways] = &words[..] else {
+        eprintln!("usage: viewers ADDRESS WAYS, where WAYS is a letter of r, s, d, v for each");
         return ExitCode::from(2);
     };
-    let (Ok(count), Ok(seconds)) = (count.parse::<u32>(), seconds.parse::<u64>()) else {
-        eprintln!("N and SECONDS are numbers");
-        return ExitCode::from(2);
-    };
-    let until = Instant::now() + Duration::from_secs(seconds);
     let url = format!("ws://{address}/socket");
     let mut viewers = Vec::new();
-    for _ in 0..count {
+    for way in ways.chars() {
         match tungstenite::connect(&url) {
-            Ok((viewer, _)) => viewers.push(viewer),
+            Ok((viewer, _)) => viewers.push((way, viewer)),
             Err(error) => {
                 eprintln!("{url}: {error}");
                 return ExitCode::FAILURE;
             }
         }
     }
-    eprintln!("{count} viewers look on");
+    eprintln!("{} viewers look on", viewers.len());
+    // Who never reads learns nothing of the page's end: it stays until the others are done.
+    let (deaf, others): (Vec<_>, Vec<_>) = viewers.into_iter().partition(|(way, _)| *way == 'd');
     let threads: Vec<_> =
-        (0..).zip(viewers).map(|(i, viewer)| thread::spawn(move || look(i, viewer, until))).collect();
+        others.into_iter().map(|(way, viewer)| thread::spawn(move || look(way, viewer))).collect();
     let taken: u64 = threads.into_iter().filter_map(|thread| thread.join().ok()).sum();
-    println!("{taken} scenes taken");
+    drop(deaf);
+    println!("{taken}");
     ExitCode::SUCCESS
 }
 
-fn look(i: u32, mut viewer: WebSocket<MaybeTlsStream<TcpStream>>, until: Instant) -> u64 {
-    let mut taken = 0;
-    match i % 3 {
-        0 => {
-            while Instant::now() < until && viewer.read().is_ok() {
-                taken += 1;
-                if viewer.send(Message::text(".")).is_err() {
-                    break;
-                }
-            }
+/// Until the page ends, or it is gone itself; how many scenes it took.
+fn look(way: char, mut viewer: Viewer) -> u64 {
+    if way == 'v' {
+        thread::sleep(Duration::from_secs(1));
+        if let MaybeTlsStream::Plain(stream) = viewer.get_ref() {
+            let _ = stream.shutdown(std::net::Shutdown::Both);
         }
-        1 => thread::sleep(until.saturating_duration_since(Instant::now())),
-        _ => {
+        return 0;
+    }
+    let mut taken = 0;
+    while viewer.read().is_ok_and(|message| message.is_text()) && viewer.send(Message::text(".")).is_ok() {
+        taken += 1;
+        if way == 's' {
             thread::sleep(Duration::from_secs(1));
-            if let MaybeTlsStream::Plain(stream) = viewer.get_ref() {
-                let _ = stream.shutdown(std::net::Shutdown::Both);
-            }
         }
     }
     taken
