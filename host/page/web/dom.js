@@ -19,11 +19,27 @@ export function say(target, words) {
   if (target.textContent !== words) target.textContent = words;
 }
 
-/** Replaces what is in `target` where `key` differs from last time. */
+/** Where a hand presses now: what lies under it stays until it lets go, or its click would be lost. */
+let pressed = null;
+addEventListener("pointerdown", (event) => (pressed = event.target), true);
+for (const end of ["pointerup", "pointercancel"]) {
+  addEventListener(end, () => {
+    const released = pressed;
+    // After its click; what is pressed anew until then stays pressed.
+    setTimeout(() => pressed === released && (pressed = null));
+  }, true);
+}
+
+/** What an element is known by when it is made anew. */
+const face = (element) => `${element.tagName} ${JSON.stringify(element.dataset)} ${element.id}`;
+
+/** Replaces what is in `target` where `key` differs from last time; true where it did. Focus stays with what is made anew. */
 export function fill(target, key, make) {
-  if (target.dataset.key === key) return false;
+  if (target.dataset.key === key || (pressed && target.contains(pressed))) return false;
   target.dataset.key = key;
-  target.replaceChildren(...[make()].flat().filter(Boolean));
+  const focused = target !== document.activeElement && target.contains(document.activeElement) ? face(document.activeElement) : null;
+  target.replaceChildren(...[make()].flat().filter((child) => child != null && child !== false));
+  if (focused) [...target.querySelectorAll("button, select, input, [tabindex]")].find((one) => face(one) === focused)?.focus({ preventScroll: true });
   return true;
 }
 

@@ -34,10 +34,10 @@ export function startKeys(camera, showTab) {
   byId("fit").addEventListener("click", fit);
   addEventListener("keydown", (event) => {
     if (event.key === "Escape") return closeDialog();
-    const typing = event.target.matches?.("input, select, textarea");
+    const typing = event.target.matches?.("input:not([type=checkbox]), select, textarea");
     if (typing || event.ctrlKey || event.metaKey || event.altKey || byId("dialog").open) return;
-    // A button takes the space itself.
-    if (event.key === " " && event.target.matches?.("button")) return;
+    // A button or a box takes the space itself.
+    if (event.key === " " && event.target.matches?.("button, input")) return;
     const found = keys[event.key];
     if (!found) return;
     event.preventDefault();

@@ -1,6 +1,6 @@
 // Which layers are shown? Those of the page and those that the program names; a viewer's choice is kept.
 
-import { byId, el, fill } from "./dom.js";
+import { byId, el, fill, say } from "./dom.js";
 import { changed, on, recall, remember, store } from "./store.js";
 
 /** The page's own: name, label, shown at first. */
@@ -44,12 +44,12 @@ function show() {
   const panel = byId("layers");
   if (panel.hidden) return;
   const list = all();
-  const key = list.map((layer) => `${layer.name}${layer.shown ? 1 : 0}${layer.count === 0 ? 0 : 1}`).join();
+  const key = list.map((layer) => `${layer.name}${layer.shown ? 1 : 0}`).join();
   fill(panel, key, () => {
     const row = (layer) => {
       const box = el("input", { type: "checkbox", "data-layer": layer.name, onchange: (event) => setLayer(layer.name, event.target.checked) });
       box.checked = layer.shown;
-      return el("label", {}, box, layer.label, layer.count === 0 ? el("small", {}, "none now") : null);
+      return el("label", {}, box, layer.label, el("small", { "data-now": layer.name }));
     };
     const part = (words, layers) => (layers.length ? [el("h3", {}, words), ...layers.map(row)] : []);
     const every = (shown) => () => list.forEach((layer) => setLayer(layer.name, shown));
@@ -60,6 +60,8 @@ function show() {
         el("button", { onclick: every(true), id: "layers-all" }, "all"), el("button", { onclick: every(false), id: "layers-none" }, "none")),
     ];
   });
+  // In its place: a row that is made anew under a finger would lose the click.
+  for (const layer of list) say(panel.querySelector(`[data-now="${CSS.escape(layer.name)}"]`), layer.count === 0 ? "none now" : "");
 }
 
 export function startLayers() {

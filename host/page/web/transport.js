@@ -100,6 +100,12 @@ function reach(last) {
   const now = performance.now();
   if (last !== end.at) end = { at: last, since: now };
   if (last === 0 || time.at <= last) return false;
+  if (store.state.span === undefined) return true;
+  if (!store.state.recorded) {
+    changed("told", `${clock(time.at)} is not played yet: this is the newest moment`);
+    goLive();
+    return false;
+  }
   if (now - end.since <= WHOLE) return true;
   changed("told", `${clock(time.at)} is not there: this ends at ${clock(last)}`);
   time.at = last;

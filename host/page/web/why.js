@@ -51,7 +51,8 @@ function card(robot) {
   const { mind } = robot;
   const chosen = isChosen(robot);
   const state = mind.part ? `${mind.state}${mind.step ? `, ${mind.step}` : ""}` : mind.reactive;
-  return el("div", { class: `card ${robot.team}${chosen ? " chosen" : ""}`, "data-robot": `${robot.team}${robot.id}`, onclick: () => choose(robot.team, robot.id) },
+  return el("div", { class: `card ${robot.team}${chosen ? " chosen" : ""}`, "data-robot": `${robot.team}${robot.id}`, tabindex: "0", role: "button", "aria-pressed": String(chosen),
+    onclick: () => choose(robot.team, robot.id), onkeydown: (event) => event.key === "Enter" && choose(robot.team, robot.id) },
     el("div", { class: "top" }, el("b", {}, String(robot.id)), el("span", {}, mind.role), el("span", { class: "state" }, state)),
     el("p", {}, mind.directive),
     mind.why ? el("p", { class: "why" }, mind.why) : null,

@@ -50,6 +50,16 @@ fn a_match_is_watched_asked_and_touched() {
     tab.wait("document.querySelectorAll('#tab-why .card').length === 12", 20).unwrap();
     tab.click("[data-robot=blue2]").unwrap();
     tab.wait("onetwo.store.chosen?.id === 2", 5).unwrap();
+    // Words on cards change many times a second: what a hand presses stays until it lets go.
+    let pressed = "(async () => {
+      const card = document.querySelector('[data-robot=blue3]');
+      card.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }));
+      await new Promise((later) => setTimeout(later, 800));
+      const stays = card.isConnected;
+      card.dispatchEvent(new PointerEvent('pointerup', { bubbles: true }));
+      return stays;
+    })()";
+    assert_eq!(tab.eval(pressed).unwrap().as_bool(), Some(true));
     tab.click("[data-explain=blue]").unwrap();
     tab.wait("document.getElementById('dialog').open && document.querySelectorAll('#explanation tbody tr').length > 5", 20).unwrap();
     tab.click("#dialog button").unwrap();
@@ -148,6 +158,10 @@ fn look_back(tab: &mut Tab<'_>) {
     tab.wait("!onetwo.time.live && Math.abs(onetwo.store.scene.t - 1) < 0.1", 20).unwrap();
     tab.key("l").unwrap();
     tab.wait("onetwo.time.live && onetwo.store.scene.t > 2", 10).unwrap();
+    // What is not played yet cannot be shown.
+    tab.eval("location.hash = '#t=9999'").unwrap();
+    tab.wait("onetwo.time.live && /not played yet/.test(document.getElementById('note').textContent)", 10)
+        .unwrap();
 }
 
 #[test]
