@@ -1,5 +1,6 @@
 //! What tests that cross crates share. Runs on the developer's machine only.
 
+pub mod bad_line;
 pub mod carpet;
 pub mod hil;
 pub mod hostile;

@@ -152,14 +152,15 @@ pub fn picture(rows: &[Row]) -> String {
     ];
     for (place, (title, measure)) in panels.into_iter().enumerate() {
         let left = 60.0 + 320.0 * place as f64;
-        let most = rows.iter().filter_map(measure).fold(1.0, f64::max) * 1.1;
+        let (step, steps) = round_steps(rows.iter().filter_map(measure).fold(1.0, f64::max));
+        let most = f64::from(steps) * step;
         let font = Font { size: 13.0, fill: colors.ink, bold: false, halo: None };
         svg.text([left, 290.0], title, Anchor::Start, Font { bold: true, ..font });
         let line = format!(r#"stroke="{}" stroke-width="1""#, colors.faint);
-        for tick in 0..=4 {
-            let (value, y) = (most * f64::from(tick) / 4.0, 60.0 + 50.0 * f64::from(tick));
+        for tick in 0..=steps {
+            let (value, y) = (step * f64::from(tick), 60.0 + 200.0 * f64::from(tick) / f64::from(steps));
             svg.line([left, y], [left + 250.0, y], &line);
-            svg.text([left - 6.0, y - 4.0], &format!("{value:.0}"), Anchor::End, font);
+            svg.text([left - 6.0, y - 4.0], &value.to_string(), Anchor::End, font);
         }
         for percent in PERCENT {
             let x = left + 5.0 * f64::from(percent);
@@ -194,6 +195,14 @@ pub fn picture(rows: &[Row]) -> String {
     svg.finish([0.0, 0.0], [1_000.0, 350.0], 1.0, colors.paper, "What loss costs a team")
 }
 
+/// An axis up to `most` at least: round steps (1, 2, 2.5 or 5 times a power of ten), five or fewer, and how many.
+fn round_steps(most: f64) -> (f64, u32) {
+    let power = 10_f64.powf((most / 5.0).log10().floor());
+    let steps = [1.0, 2.0, 2.5, 5.0].map(|factor| factor * power);
+    let step = steps.into_iter().find(|step| step * 5.0 >= most).unwrap_or(10.0 * power);
+    (step, (most / step).ceil() as u32)
+}
+
 /// Dark enough for white paper, and told apart by those who see no red.
 const LINES: [(Squad, Kind, &str, &str); 4] = [
     (Squad::Legged, Kind::Independent, "#0072b2", "none"),
@@ -207,3 +216,17 @@ pub const PERCENT: [u32; 7] = [0, 5, 10, 20, 30, 40, 50];
 const RUN_MS: u32 = 15_000;
 /// Mean length of a dead stretch, ms: a body in the way for a moment, and as long as a robot waits for its host.
 pub const BURST_MS: f32 = 100.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_has_round_numbers_and_holds_what_it_shows() {
+        for (most, axis) in
+            [(62.3, (20.0, 4)), (26.4, (10.0, 3)), (111.4, (25.0, 5)), (1.0, (0.2, 5)), (50.0, (10.0, 5))]
+        {
+            assert_eq!(round_steps(most), axis);
+        }
+    }
+}

@@ -17,8 +17,9 @@ use std::time::{Duration, Instant};
 
 use firmware_build::inspect::STACK_BUDGET;
 use firmware_build::{Install, MACHINE, Program, build_program, ensure_qemu, workspace_root};
+use match_tests::bad_line::{BadLine, Trouble};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Welcome};
+use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Telemetry, Welcome};
 use protocol::host_link::HostLink;
 use protocol::serial::{Lines, line};
 use protocol::slot::{PAGE_ADDRESS, TRIAL_ADDRESS};
@@ -39,10 +40,9 @@ const PATIENCE: Duration = Duration::from_mins(1);
 fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
     let mut robot = Robot::start(Some(&PAGE), 0);
     robot.hears_itself_say("robot: ready");
-    let lost = |condition: Condition| condition.has(Condition::LINK_LOST);
     let mut ours = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut ours, false, lost), "before the host speaks");
-    assert!(robot.until(&mut ours, true, |condition| !lost(condition)), "the host speaks");
+    assert!(robot.until(&mut ours, true, |told| !lost(told)), "the host speaks");
     assert!(robot.until(&mut ours, false, lost), "the host falls silent");
     // Another key: its words change nothing in a second and a half, in which half a second would do.
     let mut theirs = HostLink::new(TEAM, TeamKey([9; 16]), 8);
@@ -53,7 +53,28 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
     }
     robot.heard.try_iter().for_each(drop);
     assert!(robot.until(&mut ours, false, |_| true), "it still speaks");
-    assert!(robot.last.is_some_and(lost), "a stranger's host moved it");
+    assert!(robot.last.as_ref().is_some_and(lost), "a stranger's host moved it");
+}
+
+#[test]
+fn a_serial_line_that_corrupts_bytes_makes_a_robot_brake_at_worst_and_it_obeys_again_when_the_line_is_good() {
+    let mut robot = Robot::start(Some(&PAGE), 0);
+    robot.hears_itself_say("ready");
+    let mut link = HostLink::new(TEAM, key(), 7);
+    assert!(robot.until(&mut link, true, |told| !lost(told)), "the line is good");
+    // Of frames of some forty bytes three in four still come through; others are told apart by their tag.
+    robot.trouble(Trouble::of_each(2.0));
+    let refuses = |told: &Telemetry| told.refused.iter().any(|count| *count > 0);
+    assert!(
+        robot.until(&mut link, true, |told| refuses(told) && !lost(told)),
+        "it is commanded in spite of it"
+    );
+    // Hardly one in a thousand comes down; what it says is still heard.
+    robot.down.trouble = Trouble::of_each(60.0);
+    assert!(robot.until(&mut link, true, lost), "a line of nonsense must not drive it");
+    robot.trouble(Trouble::default());
+    assert!(robot.until(&mut link, true, |told| !lost(told)), "the line is good again");
+    assert!(!robot.said.contains("awake after a panic"), "{}", robot.said);
 }
 
 #[test]
@@ -75,10 +96,11 @@ fn a_panic_takes_the_current_off_tells_its_place_and_starts_anew_in_a_new_life()
     let mut link = HostLink::new(TEAM, key(), 7);
     assert!(robot.until(&mut link, false, |_| true));
     let began = Instant::now();
-    while link.life(id()) != Some(2) && began.elapsed() < PATIENCE {
+    while link.life(id()).is_none_or(|life| life < 2) && began.elapsed() < PATIENCE {
         robot.until(&mut link, false, |_| true);
     }
-    assert_eq!(link.life(id()), Some(2), "the second life has an epoch of its own");
+    // On a machine too busy for real time the watchdog may have bitten since: later lives count on.
+    assert!(link.life(id()) >= Some(2), "the second life has an epoch of its own: {:?}", link.life(id()));
 }
 
 #[test]
@@ -94,9 +116,8 @@ fn a_robot_under_a_host_keeps_its_stack_within_the_budget() {
     let mut robot = Robot::start(Some(&PAGE), 3);
     robot.hears_itself_say("ready");
     let mut link = HostLink::new(TEAM, key(), 7);
-    let lost = |condition: Condition| condition.has(Condition::LINK_LOST);
     assert!(robot.until(&mut link, false, |_| true), "it tells of its life");
-    assert!(robot.until(&mut link, true, |condition| !lost(condition)), "it obeys");
+    assert!(robot.until(&mut link, true, |told| !lost(told)), "it obeys");
     // What it said before it was commanded does not count.
     robot.said.clear();
     robot.hears_itself_say("stack ");
@@ -115,8 +136,11 @@ struct Robot {
     console: Receiver<Vec<u8>>,
     heard: Receiver<Vec<u8>>,
     lines: Lines,
-    last: Option<Condition>,
+    last: Option<Telemetry>,
     page: PathBuf,
+    /// What its line makes of bytes, either way.
+    down: BadLine,
+    up: BadLine,
 }
 
 impl Robot {
@@ -139,7 +163,22 @@ impl Robot {
             .expect("the emulator that was just found");
         let heard = pumped(child.stdout.take().expect("piped"));
         let console = pumped(child.stderr.take().expect("piped"));
-        Self { child, said: String::new(), console, heard, lines: Lines::new(), last: None, page: file }
+        Self {
+            child,
+            said: String::new(),
+            console,
+            heard,
+            lines: Lines::new(),
+            last: None,
+            page: file,
+            down: BadLine::new(1, "line down"),
+            up: BadLine::new(1, "line up"),
+        }
+    }
+
+    /// Its line is as bad as that from now on, both ways.
+    fn trouble(&mut self, trouble: Trouble) {
+        (self.down.trouble, self.up.trouble) = (trouble, trouble);
     }
 
     /// Waits for words on the console.
@@ -165,24 +204,28 @@ impl Robot {
         let messages = [HostMessage::Welcome(Welcome { to: id(), life }), HostMessage::Command(command)];
         let stdin = self.child.stdin.as_mut().expect("piped");
         for message in messages {
-            stdin.write_all(&line(&link.seal(&message))).expect("it listens");
+            let bytes: Vec<u8> =
+                line(&link.seal(&message)).iter().flat_map(|byte| self.down.carry(*byte)).collect();
+            stdin.write_all(&bytes).expect("it listens");
         }
         stdin.flush().expect("it listens");
     }
 
     /// Goes on, with the host speaking or not, until telemetry of a condition like that comes.
-    fn until(&mut self, link: &mut HostLink, speaking: bool, like: impl Fn(Condition) -> bool) -> bool {
+    fn until(&mut self, link: &mut HostLink, speaking: bool, like: impl Fn(&Telemetry) -> bool) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
             if let (true, Some(life)) = (speaking, link.life(id())) {
                 self.say(link, life);
             }
             let Ok(bytes) = self.heard.recv_timeout(Duration::from_millis(5)) else { continue };
-            let packets: Vec<_> = bytes.iter().filter_map(|byte| self.lines.push(*byte)).collect();
+            let carried: Vec<u8> = bytes.iter().flat_map(|byte| self.up.carry(*byte)).collect();
+            let packets: Vec<_> = carried.iter().filter_map(|byte| self.lines.push(*byte)).collect();
             for packet in packets {
                 if let Ok((_, TeamMessage::Telemetry(telemetry))) = link.open(&packet) {
-                    self.last = Some(telemetry.condition);
-                    if like(telemetry.condition) {
+                    let liked = like(&telemetry);
+                    self.last = Some(telemetry);
+                    if liked {
                         return true;
                     }
                 }
@@ -213,6 +256,10 @@ fn pumped(mut pipe: impl Read + Send + 'static) -> Receiver<Vec<u8>> {
         }
     });
     receiver
+}
+
+fn lost(told: &Telemetry) -> bool {
+    told.condition.has(Condition::LINK_LOST)
 }
 
 fn key() -> TeamKey {

@@ -8,6 +8,7 @@ use geometry::{GoalEnd, Pose, Twist};
 use hil_sim::Stream;
 use host::radio::{Radio, RadioSettings, Situation};
 use host::world::{BallModels, Robot, World};
+use match_tests::bad_line::{BadLine, Trouble};
 use match_tests::swarm::guard::Guard;
 use match_tests::swarm::honest::Sayings;
 use protocol::frame::TeamKey;
@@ -25,34 +26,24 @@ const TICK: u32 = 10;
 
 /// One direction of the line: bytes with the tick in which they come out.
 struct Uart {
-    chance: Stream,
+    line: BadLine,
+    delay: Stream,
     bytes: VecDeque<(u32, u8)>,
-    /// Of a thousand bytes so many are dropped, changed in a bit, doubled.
-    bad: [f32; 3],
     /// Bytes come out so many ticks late at most; none overtakes another.
     late: u32,
 }
 
 impl Uart {
     fn new(seed: u64, name: &str) -> Self {
-        Self { chance: Stream::new(seed, name), bytes: VecDeque::new(), bad: [0.0; 3], late: 0 }
+        let delay = Stream::new(seed, &format!("{name}, delay"));
+        Self { line: BadLine::new(seed, name), delay, bytes: VecDeque::new(), late: 0 }
     }
 
     fn send(&mut self, tick: u32, packet: &[u8]) {
-        let [drop, flip, double] = self.bad.map(|share| share * 1e-3);
         for byte in line(packet) {
-            if self.chance.chance(drop) {
-                continue;
-            }
-            let mut byte = byte;
-            if self.chance.chance(flip) {
-                byte ^= 1 << self.chance.whole(0, 7);
-            }
-            let due = tick + self.chance.whole(0, self.late);
+            let due = tick + self.delay.whole(0, self.late);
             let due = self.bytes.back().map_or(due, |(last, _)| due.max(*last));
-            for _ in 0..=u8::from(self.chance.chance(double)) {
-                self.bytes.push_back((due, byte));
-            }
+            self.bytes.extend(self.line.carry(byte).map(|byte| (due, byte)));
         }
     }
 
@@ -73,7 +64,7 @@ struct Told {
 }
 
 /// Ten seconds: good, bad from the second to the sixth, good.
-fn run(seed: u64, bad: [f32; 3], late: u32) -> Told {
+fn run(seed: u64, bad: Trouble, late: u32) -> Told {
     let id = RobotId::new(3).unwrap();
     let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
     let mut station = Station::with_key(Instant(0), &config, case_library::division_b(), KEY);
@@ -87,7 +78,7 @@ fn run(seed: u64, bad: [f32; 3], late: u32) -> Told {
         let (ms, now) = (tick * TICK, Instant(u64::from(tick * TICK) * 1000));
         let trouble = (2_000..6_000).contains(&ms);
         for uart in [&mut down, &mut up] {
-            (uart.bad, uart.late) = if trouble { (bad, late) } else { ([0.0; 3], 0) };
+            (uart.line.trouble, uart.late) = if trouble { (bad, late) } else { (Trouble::default(), 0) };
         }
         for packet in up.receive(tick, &mut hosts_lines) {
             // What is broken is refused.
@@ -171,7 +162,13 @@ fn field(now: Instant, id: RobotId) -> World {
 fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_never_makes_it_dangerous() {
     for seed in 0..8 {
         // Each for itself, then all together.
-        for bad in [[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 10.0], [4.0, 4.0, 4.0]] {
+        let good = Trouble::default();
+        for bad in [
+            Trouble { dropped: 10.0, ..good },
+            Trouble { changed: 10.0, ..good },
+            Trouble { doubled: 10.0, ..good },
+            Trouble::of_each(4.0),
+        ] {
             let told = run(seed, bad, 2);
             assert!(told.believed < told.frames && told.dropped > 0, "{told:?}");
             assert!(told.drove > 0, "{told:?}");
@@ -182,7 +179,7 @@ fn a_line_that_drops_doubles_and_corrupts_a_byte_in_a_hundred_slows_a_robot_and_
 #[test]
 fn a_line_so_bad_that_hardly_a_frame_survives_makes_it_brake() {
     for seed in 0..8 {
-        let told = run(seed, [60.0, 60.0, 60.0], 5);
+        let told = run(seed, Trouble::of_each(60.0), 5);
         assert!(told.braked > 300 && told.drove < 100, "{told:?}");
     }
 }
@@ -190,7 +187,7 @@ fn a_line_so_bad_that_hardly_a_frame_survives_makes_it_brake() {
 #[test]
 fn bytes_that_come_late_but_whole_are_no_trouble_up_to_three_ticks() {
     for seed in 0..8 {
-        let told = run(seed, [0.0; 3], 3);
+        let told = run(seed, Trouble::default(), 3);
         assert_eq!((told.braked, told.dropped), (0, 0), "{told:?}");
     }
 }

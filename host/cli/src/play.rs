@@ -17,7 +17,7 @@ use protocol::Instant;
 use rules::{Colour, League};
 
 use crate::Failure;
-use crate::args::{FolderArgs, LibraryArgs, SettingsArgs};
+use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
 
@@ -198,13 +198,11 @@ impl Watcher for Watched {
 
 /// The league's cases; a league without any plays by the reactive behaviour where the host leaves robots free.
 pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
-    let known = case_library::LEAGUES.iter().any(|known| known.name == league.name());
-    if folder.library.is_none() && !known {
+    let shelf = shelf_of(league, folder.library.as_deref())?;
+    if shelf.is_none() {
         eprintln!("no cases come with {}: robots that are left free play reactively", league.name());
-        return Ok(None);
     }
-    let folder = FolderArgs { library: folder.library.clone() };
-    Shelf::open(&LibraryArgs { folder, league: league.name().to_owned() }).map(Some)
+    Ok(shelf)
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {

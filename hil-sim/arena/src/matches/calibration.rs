@@ -35,7 +35,7 @@ pub fn calibration_plot(passes: &Passes) -> String {
     }
     svg.text([SIDE / 2.0, -42.0], "P(receive) as predicted", Anchor::Middle, font(colors.ink));
     let bold = Font { bold: true, ..font(colors.ink) };
-    svg.text([-ROOM, SIDE + 30.0], "share received; above it, the number of passes", Anchor::Start, bold);
+    svg.text([0.0, SIDE + 30.0], "share received; above it, the number of passes", Anchor::Start, bold);
     let title = "P(receive) as predicted against the share of passes that arrived";
     svg.finish([-ROOM, -56.0], [SIDE + 20.0, SIDE + 68.0], 1.0, colors.paper, title)
 }

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use host::Host;
 use page::{Page, Powers, Request};
-use rules::League;
 
-use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_of, tick};
+use crate::library::Shelf;
+use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
 
 /// A page and what fills it.
 pub(super) struct Board {
@@ -19,12 +19,15 @@ pub(super) struct Board {
 
 impl Board {
     /// Opens it. Without a page the robots are led all the same: what is wrong with it is said.
-    pub(super) fn open(args: &PageArgs, title: String, league: League) -> Option<Self> {
+    pub(super) fn open(
+        args: &PageArgs,
+        title: String,
+        shelf: Option<Shelf>,
+        settings: casebase::Settings,
+    ) -> Option<Self> {
         let open = || {
-            let shelf = shelf_of(league, None)?;
             let composer = Composer::new(shelf.as_ref());
-            let page =
-                args.open(title, false, Powers::Halt, CaseOracle::new(shelf, casebase::Settings::default()))?;
+            let page = args.open(title, false, Powers::Halt, CaseOracle::new(shelf, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
         };
         open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()

@@ -3,6 +3,7 @@
 //! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock, which shows 0 when
 //! the program starts.
 
+use std::ffi::OsString;
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
@@ -29,7 +30,7 @@ use ssl::net::Interfaces;
 use super::board::Board;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
-use super::{port_for_teams, simulator};
+use super::{Cases, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
@@ -46,13 +47,15 @@ const HALT_EVERY: Duration = Duration::from_millis(10);
 pub(super) fn run(
     config: &TeamConfig,
     robots: &[RobotId],
+    cases: Cases,
     record: Option<&Path>,
     duration: Option<f64>,
     page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
     let key = team_key(config)?;
-    let link = open_link(config, robots, key)?;
+    let Cases { shelf, settings: retrieval, words } = cases;
+    let link = open_link(config, robots, key, words)?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let usual = HostSettings::new(config.colour, config.league, unix.as_secs() as u32);
     let settings = HostSettings {
@@ -74,7 +77,7 @@ pub(super) fn run(
     );
 
     let title = format!("{}, {}", config.name, config.colour.word());
-    let board = page.and_then(|args| Board::open(args, title, config.league));
+    let board = page.and_then(|args| Board::open(args, title, shelf, retrieval));
 
     let (mail, inbox) = mpsc::channel();
     let (out, frames) = mpsc::channel();
@@ -172,6 +175,7 @@ fn open_link(
     config: &TeamConfig,
     robots: &[RobotId],
     key: TeamKey,
+    more: Vec<OsString>,
 ) -> Result<Box<dyn host::shell::Link>, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Network(error.to_string());
     let at = match &config.robots {
@@ -186,7 +190,7 @@ fn open_link(
         robots: robots.to_vec(),
         simulator: at,
         key,
-        more: Vec::new(),
+        more,
     };
     host::shell::open(&config.robots, sim).map_err(|error| failed(&error))
 }

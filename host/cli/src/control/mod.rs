@@ -9,6 +9,7 @@ mod port_for_teams;
 mod threads;
 mod watch;
 
+use std::ffi::OsString;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,7 +22,9 @@ use rules::Colour;
 use ssl::net::addresses;
 
 use crate::Failure;
-use crate::live::PageArgs;
+use crate::args::{FolderArgs, SettingsArgs};
+use crate::library::Shelf;
+use crate::live::{PageArgs, shelf_of};
 use crate::simulate::seconds;
 
 /// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
@@ -70,6 +73,8 @@ pub(crate) struct ControlArgs {
     /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
+    #[command(flatten)]
+    cases: CasesArgs,
     /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
     #[arg(long, value_name = "NAME")]
     record: Option<PathBuf>,
@@ -81,6 +86,15 @@ pub(crate) struct ControlArgs {
     /// End after so many seconds; else Ctrl-C ends it, and robots are halted first.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
+}
+
+/// Which cases robots in a simulator retrieve, and how; the page explains by them. Robots on a field have theirs in flash.
+#[derive(Debug, Args)]
+pub(crate) struct CasesArgs {
+    #[command(flatten)]
+    folder: FolderArgs,
+    #[command(flatten)]
+    settings: SettingsArgs,
 }
 
 /// Robots' numbers, each once, rising.
@@ -96,7 +110,28 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
         None => (0..usual).filter_map(RobotId::new).collect(),
     };
     let page = (!args.headless).then_some(&args.page);
-    desk::run(&config, &robots, args.record.as_deref(), args.duration, page)
+    let cases = Cases::choose(&args.cases, config.league)?;
+    desk::run(&config, &robots, cases, args.record.as_deref(), args.duration, page)
+}
+
+/// The cases, read, and how a robot of ours is told of them.
+struct Cases {
+    shelf: Option<Shelf>,
+    settings: casebase::Settings,
+    words: Vec<OsString>,
+}
+
+impl Cases {
+    fn choose(args: &CasesArgs, league: rules::League) -> Result<Self, Failure> {
+        let library = args.folder.library.as_deref();
+        let named = library.map(|folder| [OsString::from("--library"), folder.into()]);
+        let set = |(name, value): &(String, String)| ["--set".into(), format!("{name}={value}").into()];
+        Ok(Self {
+            shelf: shelf_of(league, library)?,
+            settings: args.settings.choose()?.settings,
+            words: named.into_iter().flatten().chain(args.settings.given().iter().flat_map(set)).collect(),
+        })
+    }
 }
 
 /// Flags over the file over what is usual.
@@ -178,6 +213,20 @@ fn kick(text: &str) -> Result<Calibration, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn robots_in_a_simulator_are_told_of_cases_and_settings_in_their_own_words() {
+        #[derive(Debug, clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            cases: CasesArgs,
+        }
+        let line = <Line as clap::Parser>::parse_from(["control", "--set", "free_path=fuzzy"]);
+        let cases = Cases::choose(&line.cases, rules::League::DivisionB).unwrap();
+        assert_eq!(cases.words, ["--set", "free_path=fuzzy"].map(OsString::from));
+        let line = <Line as clap::Parser>::parse_from(["control", "--library", "/nowhere"]);
+        assert!(Cases::choose(&line.cases, rules::League::DivisionB).is_err());
+    }
 
     #[test]
     fn robots_are_named_by_ranges_and_lists() {
