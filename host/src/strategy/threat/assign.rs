@@ -47,11 +47,13 @@ pub(super) fn assign(
     };
     let guards =
         Guards::FirstLevel { case: cover.case, open: cover.opening.angle(), uncovered: cover.uncovered };
-    if view.our(view.keeper).is_some() {
-        giving.give(view.keeper, cover.keeper, guards);
-    }
     let held = held_task(threat, memory).and_then(|kept| giving.take(kept.robot).map(|_| kept));
     let primaries = giving.primaries(cover, memory.primaries);
+    if view.our(view.keeper).is_some() {
+        let bodies = view.ours.iter().filter(|robot| robot.id != view.keeper).map(|robot| robot.position);
+        let at = cover.keeper_meanwhile(view, bodies, settings);
+        giving.give(view.keeper, at, guards);
+    }
     for primary in primaries.iter().filter(|primary| primary.needed) {
         giving.give(primary.robot, primary.place, guards);
     }

@@ -13,7 +13,7 @@ use geometry::{Angle, Attack, Point, Vector};
 
 use super::super::view::View;
 use super::Settings;
-use super::angle::{Opening, distance_for, half_shadow};
+use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
 /// Which of the three placements.
@@ -133,10 +133,13 @@ impl<'v> Placing<'v> {
         let goal = self.view.our_goal();
         let out = |x: f32| (goal.x() + x - from.x()) / direction.x().min(-LEAST_SLOPE);
         let (back, front) = (out(self.settings.keeper_back).max(0.0), out(self.settings.keeper_out).max(0.0));
-        let mut at = from + direction * distance_for(half).max(front).min(back);
-        // A shot along the goal line is met before the near post, not beside the goal.
+        // No farther aside than the posts: on this ray, not beside it.
         let post = self.view.field.goal_width * 0.5;
-        at = Point::new(at.x().max(goal.x() + self.settings.keeper_back), at.y().clamp(-post, post));
+        let aside = from.y().abs() - post;
+        let between = if aside > 0.0 { aside / direction.y().abs().max(LEAST_SLOPE) } else { 0.0 };
+        let at = from + direction * distance_for(half).max(front).max(between).min(back);
+        // A shot along the goal line is met before the near post, not beside the goal.
+        let at = Point::new(at.x().max(goal.x() + self.settings.keeper_back), at.y().clamp(-post, post));
         (at, half_shadow(self.distance(at)))
     }
 
@@ -200,6 +203,31 @@ impl<'v> Placing<'v> {
 }
 
 impl Cover {
+    /// Where the keeper stands while the primaries are still on their way to their places: where it takes the most of what `bodies`,
+    /// where they are now, leave of the open angle. The more nearly they take what they will, the nearer to its own place.
+    pub fn keeper_meanwhile(
+        &self,
+        view: &View,
+        bodies: impl Iterator<Item = Point<Attack>>,
+        settings: &Settings,
+    ) -> Point<Attack> {
+        let gaps = self.opening.gaps(bodies, f32::INFINITY);
+        let then = self.opening.gaps(self.primaries.iter().copied(), f32::INFINITY);
+        let more = widest(&gaps) - widest(&then) - settings.open_worth;
+        if more <= 0.0 {
+            return self.keeper;
+        }
+        // Wide gaps count far more than narrow ones, but none alone: which is the widest may change with noise.
+        let (weight, off) = gaps.iter().fold((0.0, 0.0), |(weight, off), gap| {
+            let cubed = gap.width() * gap.width() * gap.width();
+            (weight + cubed, off + cubed * gap.middle())
+        });
+        let edge = Edge::of(&view.field, settings.off_area);
+        let place = Placing { view, settings, opening: self.opening, edge, upper_post: self.upper_post };
+        let at = place.keeper(off / weight, 0.5 * widest(&gaps)).0;
+        self.keeper + (at - self.keeper) * (more * (1.0 / settings.meanwhile)).min(1.0)
+    }
+
     /// Where a primary defender stands that is not needed: beside the one that is, on the side of the field's middle.
     pub fn spare_place(&self, edge: &Edge, settings: &Settings) -> Point<Attack> {
         let along = self.primaries.first().map_or(0.5 * edge.length(), |place| edge.along(*place));

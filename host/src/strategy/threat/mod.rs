@@ -45,10 +45,14 @@ pub struct Settings {
     pub off_area: f32,
     /// Primary defenders stand this far, each, from the middle between them, m: bodies side by side and a finger between.
     pub shoulder: f32,
-    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it.
+    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and less than a ball, so that
+    /// none rolls along the line behind it.
     pub keeper_back: f32,
     /// … and no farther from it, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
+    /// Primaries on their way that leave a gap wider by this than they will have the keeper wholly at what they leave, rad: what a
+    /// body takes from the halfway line.
+    pub meanwhile: f32,
     /// A placement of fewer bodies than now must take this many times the angle that it needs.
     pub to_spare: f32,
     /// This near to the axis the nearer post stays what it was, m.
@@ -85,8 +89,9 @@ impl Default for Settings {
             risk_worth: 0.2,
             off_area: 0.13,
             shoulder: 0.105,
-            keeper_back: 0.15,
+            keeper_back: 0.125,
             keeper_out: 0.5,
+            meanwhile: 0.05,
             to_spare: 1.1,
             axis: 0.15,
             near: 0.0,

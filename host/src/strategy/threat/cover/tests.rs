@@ -30,7 +30,7 @@ fn one_defender_suffices_where_the_open_angle_is_narrow() {
     // From (−4.2, 2.5): the goal's angle is 3.5°, far below what a body takes at 1.4 m.
     let (view, cover) = at(League::DivisionB, (-4.2, 2.5), 2);
     assert_eq!(cover.case, Case::Defender);
-    assert_eq!(cover.keeper, view.our_goal() + Vector::new(0.15, 0.0));
+    assert_eq!(cover.keeper, view.our_goal() + Vector::new(0.125, 0.0));
     // On the bisector: its direction from the threat is the opening's middle.
     let off = (cover.opening.from.direction_to(cover.primaries[0]) - cover.opening.middle).abs();
     assert!(off < 1e-3 && cover.uncovered == 0.0 && free_rays(&view, &cover) == 0.0, "{cover:?}");
@@ -49,7 +49,7 @@ fn a_defender_at_the_nearer_post_and_the_keeper_share_a_wider_one() {
     assert!(cover.uncovered < 1e-3 && free_rays(&view, &cover) < 0.005, "{cover:?}");
     let back = cover.keeper + (cover.keeper - cover.opening.from).unit().unwrap() * 0.03;
     let lazy = Cover { keeper: back, ..cover.clone() };
-    let on_the_line = cover.keeper.x() - view.our_goal().x() < 0.151;
+    let on_the_line = cover.keeper.x() - view.our_goal().x() < 0.126;
     assert!(on_the_line || free_rays(&view, &lazy) > 0.0, "{cover:?}");
 }
 
@@ -66,6 +66,26 @@ fn else_two_defenders_stand_on_the_bisectors_of_what_the_keeper_leaves() {
         assert!((off - rest).abs() < 2e-3, "{off} {rest}");
     }
     assert!(free_rays(&view, &cover) < 0.005, "{cover:?}");
+}
+
+#[test]
+fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
+    let settings = Settings::default();
+    // A ball on the flank: one defender will take all; until it is there, the keeper is before the near post, not the middle.
+    let (view, cover) = at(League::DivisionB, (-3.65, -1.89), 2);
+    assert_eq!(cover.case, Case::Defender);
+    let keeper = |body: Point<Attack>| cover.keeper_meanwhile(&view, [body].into_iter(), &settings);
+    let away = keeper(Point::new(-3.37, -1.31));
+    let opening = cover.opening;
+    let on_bisector = opening.shadow(away, f32::INFINITY).unwrap().middle().abs() < 1e-3;
+    assert!(on_bisector && (-0.501..-0.3).contains(&away.y()), "{away:?}");
+    // Half there: what is left is on one side, and to there the keeper goes.
+    let half = cover.primaries[0] + Vector::new(0.1, 0.0);
+    let left = opening.gaps([half].into_iter(), f32::INFINITY);
+    let side = |at: Point<Attack>| (opening.from.direction_to(at) - opening.middle).radians();
+    assert!(left.len() == 1 && side(keeper(half)) * left[0].middle() > 0.0, "{left:?} {:?}", keeper(half));
+    // There: the paper's place.
+    assert_eq!(keeper(cover.primaries[0]), cover.keeper);
 }
 
 #[test]
