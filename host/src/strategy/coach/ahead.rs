@@ -68,21 +68,23 @@ impl Coach {
     pub(super) fn pass_ahead(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
         let mut ahead = self.ahead?;
         let passer = view.our(taker)?;
-        let Some(receiver) = view.our(ahead.receiver) else { return self.give_up() };
+        let Some(receiver) = view.our(ahead.receiver) else { return self.give_up(view) };
         let now = Scene::of(view, &self.kicks, ball.position, Some(taker), receiver).rate(ahead.rating.at);
-        if ahead.steps.shot().is_none() && now.receive() < ahead.rating.receive() * STILL_LIKELY {
-            return self.give_up();
+        let planned = ahead.planned.is_some();
+        let least = if planned { SURE } else { ahead.rating.receive() * STILL_LIKELY };
+        if ahead.steps.shot().is_none() && now.receive() < least {
+            return self.give_up(view);
         }
         let times = times(ball, passer, receiver, &ahead.rating, &self.kicks.constants().receiver);
         let moves = ahead.steps.step(view.now, &times);
         self.ahead = Some(ahead);
         let task = match moves.passer {
-            PasserMove::GivesUp { .. } => return self.give_up(),
-            PasserMove::Waits => {
+            PasserMove::GivesUp { .. } => return self.give_up(view),
+            PasserMove::Waits if !planned => {
                 let at = restart::taker_waits(view, ball.position);
                 Task::GoTo { at, face: at.direction_to(ball.position) }
             }
-            PasserMove::Goes | PasserMove::Shoots => Task::Pass {
+            PasserMove::Waits | PasserMove::Goes | PasserMove::Shoots => Task::Pass {
                 at: ahead.rating.at,
                 receiver: ahead.receiver,
                 kick: ahead.rating.kick.order(),
@@ -109,8 +111,10 @@ impl Coach {
         })
     }
 
-    fn give_up(&mut self) -> Option<(Task, Why)> {
-        (self.ahead, self.aim, self.gave_up) = (None, None, true);
+    fn give_up(&mut self, view: &View) -> Option<(Task, Why)> {
+        let planned = self.ahead.is_some_and(|ahead| ahead.planned.is_some());
+        let again = planned && self.reconsider(view);
+        (self.ahead, self.aim, self.gave_up) = (None, None, !again);
         None
     }
 }
@@ -134,6 +138,9 @@ fn times(
 const LIKELY: f32 = 0.3;
 /// A pass whose P(receive) falls below this share of what it was is given up.
 const STILL_LIKELY: f32 = 0.5;
+/// A planned one does not leave with less: of 137 that left with more 85 % arrived (62 of 69 against ours, 54 of 68 against the zone,
+/// seed 100), of 59 that left with less than 0.5, 37 %.
+const SURE: f32 = 0.6;
 /// This near to x_p a passer waits for its receiver, m: the 0.04 m that the robot leaves to the ball, and what it stands off by.
 const WAITS_WITHIN: f32 = 0.09;
 /// Looks at x* this exactly, rad: the robot itself turns the rest before it kicks.

@@ -6,11 +6,11 @@ use rules::{League, Phase, Side};
 
 use super::super::coerce::tactics::Models;
 use super::super::coerce::{ByPassLocation, FinalAttack, Part, Planner, Progress, Settings};
+use super::super::defence;
 use super::super::order::{Role, Task, Why};
 use super::super::pass::{Kicks, Scene};
 use super::super::support::{self, Target};
 use super::super::view::{Ball, View};
-use super::super::{defence, restart};
 use super::{Ahead, Coach, Plan};
 
 /// The planner, and what was asked of it at this free kick.
@@ -35,6 +35,11 @@ impl Cap {
 }
 
 impl Coach {
+    /// Whether another attack is sought in place of one that has become unlikely.
+    pub(super) fn reconsider(&mut self, view: &View) -> bool {
+        self.cap.planner.reconsider(view.now)
+    }
+
     /// Sees what opponents do before our free kick (step 1).
     pub(super) fn observe(&mut self, view: &View) {
         let before = matches!(view.phase, Phase::Stop | Phase::BallPlacement(Side::Ours));
@@ -85,8 +90,12 @@ impl Coach {
             }
         }
         let Progress::Coercing { arrived, of, .. } = progress else { return None };
-        let at = restart::taker_waits(view, ball.position);
-        Some((Task::GoTo { at, face: at.direction_to(ball.position) }, Why::Coercing { arrived, of }))
+        let why = Why::Coercing { arrived, of };
+        let attack = self.cap.planner.current()?.optimistic;
+        Some((
+            Task::Pass { at: attack.at, receiver: attack.receiver, kick: attack.worth.kick, ready: false },
+            why,
+        ))
     }
 }
 

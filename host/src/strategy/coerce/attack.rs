@@ -69,7 +69,23 @@ pub struct AttackPlan {
 /// The best value found in each cell, 0 where nobody can receive, in the order of [`Cell::all`].
 pub type CellValues = [f32; CELLS];
 
-/// The best attack by one of `receivers` in this view, and the value of every cell.
+/// What an attack must come to, or it is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Least {
+    /// P(receive | x).
+    pub receive: f32,
+    /// P(goal | x).
+    pub value: f32,
+}
+
+impl Least {
+    /// Whether it does.
+    pub fn allows(self, worth: &Worth) -> bool {
+        worth.receive >= self.receive && worth.value() > self.value
+    }
+}
+
+/// The best attack by one of `receivers` in this view that comes to `least`, and the value of every cell.
 ///
 /// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn from `seed`.
 pub fn best_attack(
@@ -77,6 +93,7 @@ pub fn best_attack(
     value: &dyn PassValue,
     taker: RobotId,
     receivers: &[RobotId],
+    least: Least,
     seed: u64,
 ) -> (Option<AttackPlan>, CellValues) {
     let mut values = [0.0; CELLS];
@@ -89,7 +106,7 @@ pub fn best_attack(
         value.worths(view, ball.position, taker, receiver, &mut middles, &mut |at, worth| {
             let Some(cell) = cells.next() else { return };
             values[cell.index()] = values[cell.index()].max(worth.value());
-            if best.is_none_or(|best| worth.value() > best.worth.value()) {
+            if least.allows(&worth) && best.is_none_or(|best| worth.value() > best.worth.value()) {
                 best = Some(AttackPlan { receiver: *id, cell, at, worth, against: view.theirs.len() });
             }
         });
@@ -105,7 +122,7 @@ pub fn best_attack(
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });
     value.worths(view, ball.position, taker, receiver, &mut around, &mut |at, worth| {
-        if worth.value() > found.worth.value() {
+        if least.allows(&worth) && worth.value() > found.worth.value() {
             (found.at, found.worth) = (at, worth);
         }
     });

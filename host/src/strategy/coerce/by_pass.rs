@@ -71,6 +71,7 @@ impl PassValue for ByPassLocation<'_> {
 mod tests {
     use super::super::super::pass::PassConstants;
     use super::super::super::view::tests::view;
+    use super::super::attack::Least;
     use super::super::grid::Cell;
     use super::super::{Planner, Settings, tactics::Models};
     use super::*;
@@ -140,7 +141,9 @@ mod tests {
                 [at(2.82, -0.1), at(2.2, -0.42), at(1.04, 0.12), at(1.86, 0.38), at(1.17, 1.0), at(0.0, 1.9)];
             let mut scene = view(ball, &ours, &theirs);
             scene.field = league.field();
-            let mut planner = Planner::new(Settings::of(league), Models::default());
+            // What it comes to is compared here, however much it is.
+            let settings = Settings { least: Least::default(), ..Settings::of(league) };
+            let mut planner = Planner::new(settings, Models::default());
             let taker = scene.ours[1].id;
             planner.observe(&scene, taker);
             let plan = planner.plan(&scene, &value, taker, 1).unwrap();

@@ -6,7 +6,7 @@ use rules::{Phase, Side};
 
 use super::super::view::{ROBOTS_MAX, View};
 use super::Settings;
-use super::attack::{AttackPlan, CellValues, PassValue, best_attack};
+use super::attack::{AttackPlan, CellValues, PassValue, Worth, best_attack};
 use super::coercing::{CoercePlan, Coercer, Pair, coerce, pairs};
 use super::detect::{Detected, Detector};
 use super::tactics::{Models, Situation};
@@ -49,6 +49,11 @@ pub enum Followed {
         opponent: RobotId,
         /// How far from where it was expected, m.
         off: f32,
+    },
+    /// They are, but others have come in the way of the pass: a new attack.
+    Unlikely {
+        /// P(receive | x) against everybody.
+        receive: f32,
     },
     /// They are, but the attack's receiver, a coercer to be used again, is marked: a new attack.
     ReceiverMarked {
@@ -197,11 +202,21 @@ impl Planner {
         // All of them coerce: one will be used again.
         let receivers = if attackers.is_empty() { &players } else { &attackers };
         let imagined = optimistic(view, &detected, taker, receivers);
-        let (attack, values) = best_attack(&imagined, value, taker, receivers, self.seed);
+        let (attack, values) =
+            best_attack(&imagined, value, taker, receivers, self.settings.least, self.seed);
         let attack = attack?;
         let situation = Situation::new(view, *self.detector.models(), Some(taker));
         let coerce = coerce(view, value, &situation, &pairs, &attack, &self.settings);
         Some(CapPlan { taker, detected, optimistic: attack, values, coerce, attackers })
+    }
+
+    /// The attack has become unlikely before the ball left: another one is sought while there is time to coerce; false where there is none.
+    pub fn reconsider(&mut self, now: Instant) -> bool {
+        let left = self.begun.is_some_and(|begun| now.since(begun).as_secs_f32() < self.settings.coerce_time);
+        if self.over.is_none() && left {
+            self.attack = None;
+        }
+        self.over.is_none() && left
     }
 
     /// Steps 4 to 7: how far the plan is in this picture.
@@ -253,13 +268,17 @@ impl Planner {
         if let Some(attack) = attack {
             return Progress::Attacking(attack);
         }
+        if left > 0.0 {
+            // Who moves may still open a way.
+            return Progress::Coercing { arrived, of, left };
+        }
         self.over = Some(End::NoAttack);
         Progress::Over(End::NoAttack)
     }
 
     /// Step 6.
     fn attack_now(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Option<FinalAttack> {
-        let followed = self.verify(view, plan);
+        let followed = self.verify(view, value, plan);
         let coerced = |id: RobotId| plan.coercer(id).is_some();
         if matches!(followed, Followed::AsExpected { .. }) && view.our(plan.optimistic.receiver).is_some() {
             let reused = coerced(plan.optimistic.receiver);
@@ -272,12 +291,12 @@ impl Planner {
         if receivers.is_empty() {
             receivers.extend(coercers());
         }
-        let (attack, _) = best_attack(view, value, plan.taker, &receivers, self.seed);
+        let (attack, _) = best_attack(view, value, plan.taker, &receivers, self.settings.least, self.seed);
         attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
     }
 
     /// Step 5.
-    fn verify(&self, view: &View, plan: &CapPlan) -> Followed {
+    fn verify(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Followed {
         let mut worst: Option<(RobotId, f32)> = None;
         for coercer in &plan.coerce.coercers {
             // Whoever left the field is in nobody's way.
@@ -298,6 +317,16 @@ impl Planner {
             && let Some((opponent, near)) = self.marked(view, receiver)
         {
             return Followed::ReceiverMarked { opponent, near };
+        }
+        let mut worth: Option<Worth> = None;
+        if let (Some(ball), Some(receiver)) = (view.ball, view.our(receiver)) {
+            let mut place = [plan.optimistic.at].into_iter();
+            value.worths(view, ball.position, plan.taker, receiver, &mut place, &mut |_, now| {
+                worth = Some(now);
+            });
+        }
+        if let Some(worth) = worth.filter(|worth| !self.settings.least.allows(worth)) {
+            return Followed::Unlikely { receive: worth.receive };
         }
         Followed::AsExpected { worst: worst.map_or(0.0, |(_, off)| off) }
     }

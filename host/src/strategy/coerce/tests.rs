@@ -76,8 +76,11 @@ fn free_kick(mates: &[(f32, f32)], marked: &[usize]) -> View {
     view
 }
 
+/// Passes that are worth anything.
+const ANY: attack::Least = attack::Least { receive: 0.0, value: 0.0 };
+
 fn planner() -> Planner {
-    Planner::new(Settings::default(), Models::default())
+    Planner::new(Settings { least: ANY, ..Settings::default() }, Models::default())
 }
 
 fn run(mates: &[(f32, f32)], marked: &[usize]) -> (Planner, CapPlan, View) {
@@ -119,7 +122,7 @@ fn the_optimistic_attack_sees_ball_followers_only() {
     assert_eq!(plan.optimistic.against, 3);
     // Worth more than against everybody, and the best of all cells by hand.
     let mut seen = view.clone();
-    let (_, everybody) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], 1);
+    let (_, everybody) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], ANY, 1);
     assert!(everybody.iter().zip(&plan.values).all(|(all, some)| all <= some));
     assert!(everybody.iter().zip(&plan.values).any(|(all, some)| all < some));
     seen.theirs.truncate(3);
@@ -218,7 +221,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everybody() {
     assert!(off > 0.5 && attack.plan.against == 6);
     // Coercers whom nobody followed are free: they may be used again.
     let candidates = [id(2), id(3), id(4), id(5)];
-    let (best, _) = attack::best_attack(&view, &ByDistance, id(1), &candidates, 1);
+    let (best, _) = attack::best_attack(&view, &ByDistance, id(1), &candidates, ANY, 1);
     assert!(attack.plan.worth.value() <= best.unwrap().worth.value() + 1e-6);
     assert_eq!(attack.reused, attack.plan.receiver != id(5));
 }
@@ -285,6 +288,47 @@ fn without_a_ball_or_mates_there_is_no_plan() {
     assert_eq!(planner.plan(&lonely, &ByDistance, id(1), 1), None);
     let mut idle = Planner::new(Settings::default(), Models::default());
     assert_eq!(idle.watch(&lonely, &ByDistance), Progress::Idle);
+}
+
+#[test]
+fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to_coerce_is_over() {
+    let likely = |receive| Settings { least: attack::Least { receive, value: 0.0 }, ..Settings::default() };
+    let mut view = free_kick(&MATES, &[0, 1, 2]);
+    let mut strict = Planner::new(likely(1.1), Models::default());
+    assert_eq!(strict.plan(&view, &ByDistance, id(1), 1), None);
+    let mut planner = Planner::new(likely(0.7), Models::default());
+    let plan = planner.plan(&view, &ByDistance, id(1), 1).unwrap().clone();
+    assert!(plan.optimistic.worth.receive >= 0.7);
+    // One stands at the ball: no pass arrives anywhere.
+    let mut closed = view.clone();
+    closed.theirs[1].position = Point::new(0.5, 1.8);
+    let (mut sought, mut over) = (0, None);
+    for ms in (0..4_500).step_by(100) {
+        closed.now = view.now + protocol::Duration::millis(ms);
+        match planner.watch(&closed, &ByDistance) {
+            Progress::Coercing { .. } => sought = ms,
+            Progress::Over(end) => {
+                over.get_or_insert((ms, end));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert_eq!((sought, over), (3_900, Some((4_000, End::NoAttack))));
+    // It goes away in time: then there is one, and it is sought anew as long as there is time.
+    planner.plan(&view, &ByDistance, id(1), 1).unwrap();
+    let begun = view.now;
+    planner.watch(&view, &ByDistance);
+    for robot in &mut view.ours {
+        robot.position = plan.coercer(robot.id).map_or(robot.position, |coercer| coercer.at);
+    }
+    planner.watch(&view, &ByDistance);
+    view.now += protocol::Duration::millis(600);
+    let Progress::Attacking(first) = planner.watch(&view, &ByDistance) else { panic!() };
+    assert!(first.plan.worth.receive >= 0.7);
+    assert!(planner.reconsider(view.now));
+    let Progress::Attacking(again) = planner.watch(&view, &ByDistance) else { panic!() };
+    assert_eq!(again.plan, first.plan);
+    assert!(!planner.reconsider(begun + protocol::Duration::millis(4_000)));
 }
 
 /// Counts what is asked of it.
