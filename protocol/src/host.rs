@@ -6,12 +6,15 @@
 //! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
 //! believes a host it must have had its [`Welcome`]: nobody can command it with a recording of an earlier life.
 
+mod read;
+
 use geometry::GoalEnd;
 pub use rules::Duty;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Refusal;
+use crate::link::Pile;
 use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
@@ -41,6 +44,17 @@ impl HostMessage {
         match self {
             Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
             Self::Command(_) | Self::Welcome(_) => true,
+        }
+    }
+
+    /// Where a payload that is one of these belongs, as far as its first bytes tell: the variant's number, then the picture's or
+    /// whom it is to. `said` are epoch and counter of its frame.
+    pub(crate) fn pile_of(payload: &[u8], said: [u32; 2], me: RobotId) -> Pile {
+        match *payload {
+            [0, picture, ..] => Pile::Picture(said, picture),
+            [1, to, ..] if to == me.number() => Pile::Command(said),
+            [2, to, ..] if to == me.number() => Pile::Welcome,
+            _ => Pile::Others,
         }
     }
 }

@@ -28,6 +28,13 @@ pub enum TeamMessage {
     Greeting(Greeting),
 }
 
+impl TeamMessage {
+    /// Whether a payload that is one of these is meant for the host alone, as its first byte tells: the variant's number.
+    pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
+        matches!(*payload, [1, ..])
+    }
+}
+
 /// Mates' lives that the sender has heard: who is named in its present life knows that this is no recording.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Greeting {

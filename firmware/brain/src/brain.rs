@@ -123,7 +123,7 @@ impl<'a> Brain<'a> {
         }
         self.coordinate(now);
         // Where steps are short, one of them is not for retrieving and planning a way both: it brakes for 10 ms.
-        let pondered = core::mem::take(&mut self.pondered) && self.limbs.has_short_steps();
+        let pondered = core::mem::take(&mut self.pondered) && self.has_short_steps();
         let intent = if pondered { Intent::Stand { face: None } } else { self.act(now) };
         let Self { limbs, belief, mates, host, .. } = self;
         self.actuators = Some(limbs.act(now, belief, mates, host.as_ref(), sensors, intent));
@@ -135,6 +135,10 @@ impl<'a> Brain<'a> {
     /// A deadline has come.
     pub fn handle_timeout(&mut self, now: Instant) {
         self.timers.advance(now);
+        // What follows from it is the next step's where that is near.
+        if self.has_short_steps() {
+            return;
+        }
         self.mates.forget_the_silent(now);
         self.coordinate(now);
     }
@@ -149,7 +153,10 @@ impl<'a> Brain<'a> {
         if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
             // The end is told before the next cycle begins: who hears only the beginning would not know why.
             self.told_end_of = self.cycle.id();
-            self.coordinate(now);
+            // One word a step where steps are short: sealing costs, and the next step is near.
+            if !self.has_short_steps() {
+                self.coordinate(now);
+            }
         }
         Some(TeamMessage::Beacon(beacon))
     }
@@ -162,6 +169,11 @@ impl<'a> Brain<'a> {
     /// When [`Brain::handle_timeout`] wants to be called.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.timers.next()
+    }
+
+    /// Whether its body's steps are short, so that not everything need happen in each.
+    pub(crate) fn has_short_steps(&self) -> bool {
+        self.limbs.has_short_steps()
     }
 
     /// What it believes.

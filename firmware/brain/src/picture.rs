@@ -210,6 +210,9 @@ impl Picture {
     /// The host's word and the odometry's, weighed: the host's noise is a millimetre, the odometry's drift grows.
     fn correct_own(&mut self, now: Instant, shown: Pose<Field>) {
         self.carry_own_to(now);
+        // A part that waited shows where it was then: the pose has gone on since.
+        let carried_to = self.own.map_or(now, |own| own.carried_to.max(now));
+        let shown = self.carried(shown, carried_to.since(now).as_secs_f32());
         let near = |own: &Own| {
             own.pose.position.distance(shown.position) < JUMP
                 && (own.pose.heading - shown.heading).abs() < JUMP_TURN
@@ -223,21 +226,26 @@ impl Picture {
             },
             None => shown,
         };
-        self.own = Some(Own { pose, shown: now, carried_to: now });
+        self.own = Some(Own { pose, shown: now, carried_to });
     }
 
     fn carry_own_to(&mut self, now: Instant) {
-        let Some(own) = &mut self.own else { return };
-        let time = now.since(own.carried_to).as_secs_f32();
-        if time <= 0.0 {
-            return;
+        if let Some(own) = self.own.filter(|own| own.carried_to < now) {
+            let pose = self.carried(own.pose, now.since(own.carried_to).as_secs_f32());
+            self.own = Some(Own { pose, carried_to: now, ..own });
         }
-        let Twist { linear, angular } = self.odometry;
-        let turned = angular * time;
-        let midway = Pose { heading: own.pose.heading + geometry::Angle::new(0.5 * turned), ..own.pose };
-        own.pose.position += midway.vector_to_field(linear * time);
-        own.pose.heading = own.pose.heading + geometry::Angle::new(turned);
-        own.carried_to = now;
+    }
+
+    /// The pose after so many seconds of the motion that was measured last.
+    fn carried(&self, mut pose: Pose<Field>, time: f32) -> Pose<Field> {
+        if time > 0.0 {
+            let Twist { linear, angular } = self.odometry;
+            let turned = angular * time;
+            let midway = Pose { heading: pose.heading + geometry::Angle::new(0.5 * turned), ..pose };
+            pose.position += midway.vector_to_field(linear * time);
+            pose.heading = pose.heading + geometry::Angle::new(turned);
+        }
+        pose
     }
 }
 

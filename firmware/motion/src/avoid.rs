@@ -5,7 +5,7 @@
 //! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left by a short way
 //!    ([`Verdict::Escape`]).
 //! 2. **Route.** The straight way, or the cheapest way found over tangent points of what stands in it: a search of at most
-//!    [`CHECKS_MAX`] straight pieces, in a fixed order. Cost is length, and what turning the present velocity costs.
+//!    [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed order. Cost is length, and what turning the present velocity costs.
 //! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can still brake
 //!    straight to rest without touching anything afterwards; else one that first loses its sideways speed; else braking.
 //!    So a robot that could brake before its first step can after every step: **it enters no obstacle that stands still.**
@@ -61,6 +61,9 @@ pub struct Course<'o, F> {
     pub within: Option<Shape<F>>,
     /// Until it asks again, s, at most 1.
     pub step: f32,
+    /// Most that is spent on looking for a free goal and a way: a unit for one straight piece and one obstacle, about forty
+    /// instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
+    pub effort: u32,
 }
 
 /// Which way it goes.
@@ -126,7 +129,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
         let (verdict, restraint) = (Verdict::Blocked { at: next.position }, Restraint::Braked);
         return Way { verdict, goal: next.position, length: 0.0, restraint, next, motion };
     }
-    let mut scene = Scene::new(course.obstacles, within);
+    let mut scene = Scene::new(course.obstacles, within, course.effort);
     scene.look();
     let goal = scene.nearest_free(to);
     if scene.is_inside(from) {
@@ -225,6 +228,8 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
 pub const OBSTACLES_MAX: usize = 40;
 /// Most straight pieces that a search looks at.
 pub const CHECKS_MAX: u32 = 12;
+/// More is never worth it: twelve pieces among forty obstacles.
+pub const EFFORT_MAX: u32 = 624;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.

@@ -87,9 +87,16 @@ impl<F: Copy> Interception<'_, F> {
     /// Finds the place.
     pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
         let best = match wish {
-            Wish::Soonest => self.soonest(limits),
+            Wish::Soonest => self.soonest(limits, u32::MAX),
             Wish::Safest => self.safest(limits),
         };
+        best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
+    }
+
+    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: once as many motions as `most` were planned in vain, only
+    /// every fourth place is looked at.
+    pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
+        let best = self.soonest(limits, most);
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
     }
 
@@ -102,21 +109,26 @@ impl<F: Copy> Interception<'_, F> {
         (self.horizon() * (1.0 / STEP)) as u32
     }
 
-    fn soonest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
+    fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<Meeting<F>> {
         let steps = self.steps();
+        let mut planned = 0;
         let mut begins = 0.0;
         for block in 0..=steps / BLOCK {
             let (first, last) = (block * BLOCK, steps.min(block * BLOCK + BLOCK - 1));
             let time = if last == steps { self.horizon() } else { last as f32 * STEP };
             let (ends, _) = self.ball.progress(time);
             if !self.is_out_of_reach(limits, [begins, ends], time) {
-                for step in first..=last {
-                    if let Some(meeting) = self.look(limits, step as f32 * STEP, 0.0) {
-                        return Some(meeting);
+                let mut step = first;
+                while step <= last {
+                    match self.look(limits, step as f32 * STEP, 0.0) {
+                        Look::Meets(meeting) => return Some(meeting),
+                        Look::TooLate => planned += 1,
+                        Look::OutOfReach => {}
                     }
+                    step += if planned < most { 1 } else { COARSE };
                 }
                 if last == steps {
-                    return self.look(limits, time, 0.0);
+                    return self.look(limits, time, 0.0).meeting();
                 }
             }
             begins = ends;
@@ -127,11 +139,11 @@ impl<F: Copy> Interception<'_, F> {
     /// From the end backwards, as slack mostly grows to the end, after some probes for what is there to be had.
     fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
-        let mut best = self.look(limits, horizon, 0.0);
+        let mut best = self.look(limits, horizon, 0.0).meeting();
         let mut least = best.as_ref().map_or(0.0, Meeting::slack);
         for probe in 1..PROBES {
             let step = steps * probe / PROBES;
-            if let Some(meeting) = self.look(limits, step as f32 * STEP, least) {
+            if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
                 least = meeting.slack();
             }
         }
@@ -147,7 +159,7 @@ impl<F: Copy> Interception<'_, F> {
             }
             for step in (first..=last).rev() {
                 // Of equal ones the first.
-                if let Some(meeting) = self.look(limits, step as f32 * STEP, least) {
+                if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
                     least = meeting.slack();
                     best = Some(meeting);
                 }
@@ -165,17 +177,19 @@ impl<F: Copy> Interception<'_, F> {
     }
 
     /// The meeting at a time, if its slack is `least` at least.
-    fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Option<Meeting<F>> {
+    fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Look<F> {
         let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
         let place = kick_place(ball, self.target, self.reach);
         if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
-            return None;
+            return Look::OutOfReach;
         }
         // A little more than is asked, as both differences are rounded.
         let within = time - least + ROUNDING;
-        let robot_time = limits.time_within(self.robot, self.velocity, place, within)?;
+        let Some(robot_time) = limits.time_within(self.robot, self.velocity, place, within) else {
+            return Look::TooLate;
+        };
         let meeting = Meeting { ball, place, ball_time: time, robot_time };
-        (meeting.slack() >= least).then_some(meeting)
+        if meeting.slack() >= least { Look::Meets(meeting) } else { Look::TooLate }
     }
 
     fn chase<L: CalcMotion>(&self, limits: &L, horizon: f32) -> Verdict<F> {
@@ -185,10 +199,31 @@ impl<F: Copy> Interception<'_, F> {
     }
 }
 
+/// What a look at one place tells.
+enum Look<F> {
+    /// The robot meets the ball there.
+    Meets(Meeting<F>),
+    /// It does not, as a planned motion shows.
+    TooLate,
+    /// It cannot; no motion was planned.
+    OutOfReach,
+}
+
+impl<F> Look<F> {
+    fn meeting(self) -> Option<Meeting<F>> {
+        match self {
+            Self::Meets(meeting) => Some(meeting),
+            Self::TooLate | Self::OutOfReach => None,
+        }
+    }
+}
+
 /// Between two future places of the ball, s.
 pub const STEP: f32 = 0.02;
 /// Places that are ruled out together.
 const BLOCK: u32 = 8;
+/// In bounded time, the distance of places in [`STEP`]s after too many were in vain.
+const COARSE: u32 = 4;
 /// s.
 const ROUNDING: f32 = 1e-5;
 /// Shares of the horizon that are tried first for how much slack there is.
@@ -223,6 +258,40 @@ mod tests {
             }
         }
         best.map_or_else(|| asked.chase(limits, horizon), Verdict::Meets)
+    }
+
+    #[test]
+    fn in_bounded_time_a_meeting_is_found_at_most_three_places_later() {
+        let mut rng = Xoshiro128PlusPlus::seed_from_u64(3);
+        let mut within = |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
+        let (mut same, mut later, mut none) = (0, 0, 0);
+        for _ in 0..2_000 {
+            let from = Point::new(within(3.0), within(2.0));
+            let velocity = Vector::polar(0.8 + within(0.7), Angle::new(within(3.0)));
+            let path = BallModel::default().rolling(from, velocity);
+            let asked = Interception {
+                robot: Point::<Field>::new(within(3.0), within(2.0)),
+                velocity: Vector::new(within(1.0), within(1.0)),
+                ball: &path,
+                target: from - velocity,
+                reach: 0.1,
+                until: 2.0,
+            };
+            let limits = FreeLimits::default();
+            match (asked.find(&limits, Wish::Soonest), asked.find_within(&limits, 4)) {
+                (Verdict::Meets(best), Verdict::Meets(found)) if best == found => same += 1,
+                (Verdict::Meets(best), Verdict::Meets(found)) => {
+                    let by = found.ball_time - best.ball_time;
+                    assert!(by > 0.0 && by < (COARSE as f32 - 0.5) * STEP, "{by} s later: {asked:?}");
+                    later += 1;
+                }
+                (exact, found) => {
+                    assert!(matches!(found, Verdict::Chase { .. }), "{exact:?} {found:?}");
+                    none += 1;
+                }
+            }
+        }
+        assert!(same > 500 && later > 10 && none < 1_300, "{same} the same, {later} later, {none} none");
     }
 
     #[test]

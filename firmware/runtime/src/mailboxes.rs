@@ -65,6 +65,16 @@ impl Mailboxes {
         self.undelivered.load(Ordering::Relaxed)
     }
 
+    /// A packet of the air, for a board that is handed them without a radio; whether there was room for it.
+    pub fn hear(&self, packet: Packet) -> bool {
+        self.inbox.try_send(Arrival::Packet(packet)).is_ok()
+    }
+
+    /// Whether the next arrival has to wait.
+    pub fn is_full(&self) -> bool {
+        self.inbox.is_full()
+    }
+
     /// Waits until [`Mailboxes::deliver`] has room for one arrival.
     pub(crate) async fn room_for_arrival(&self) {
         poll_fn(|context| self.inbox.poll_ready_to_send(context)).await;

@@ -24,7 +24,9 @@ pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) 
 
 /// As [`brain()`], with the team's key.
 pub async fn brain_with_key(config: &BrainConfig, base: CaseBase<'_>, key: TeamKey, boxes: &Mailboxes) -> ! {
-    think(Station::with_key(now(), config, base, key), boxes).await
+    // Born where it lives: by value it would lie in this future twice, and on the stack on its way there.
+    let mut station = Station::with_key(now(), config, base, key);
+    think(&mut station, boxes).await
 }
 
 /// From the air into the inbox.
@@ -62,42 +64,45 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
 }
 
 /// The brain's task, for any mind.
-pub(crate) async fn think(mut mind: impl Mind, boxes: &Mailboxes) -> ! {
+pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
-        if let Some(due) = deadline_before_arrival(&mind, last, boxes).await {
+        let time = now();
+        let due = mind.poll_timeout().map(|due| due.max(last));
+        // However much arrives, a missed deadline waits for one arrival at most.
+        last = if let Some(due) = due.filter(|due| *due < time) {
             mind.handle_timeout(due);
-            last = due;
+            due
+        } else if take(mind, time, boxes) {
+            time
+        } else if let Some(due) = deadline_before_arrival(due, last, boxes).await {
+            mind.handle_timeout(due);
+            due
         } else {
-            last = now();
-            // An arrival is not handed around: it is large, and every hand would copy it.
-            match &boxes.inbox.try_receive() {
-                Ok(Arrival::Packet(packet)) => mind.handle_packet(last, packet),
-                Ok(Arrival::Sensors(picture)) => mind.handle_sensors(last, picture),
-                // Nobody else takes from the inbox.
-                Err(TryReceiveError::Empty) => continue,
-            }
-        }
-        empty(&mut mind, last, boxes);
+            continue;
+        };
+        empty(mind, last, boxes);
         boxes.progress.mark(Part::Brain);
     }
 }
 
+/// Gives the mind what has waited longest; whether anything did.
+fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
+    // An arrival is not handed around: it is large, and every hand would copy it.
+    match &boxes.inbox.try_receive() {
+        Ok(Arrival::Packet(packet)) => mind.handle_packet(now, packet),
+        Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, picture),
+        Err(TryReceiveError::Empty) => return false,
+    }
+    true
+}
+
 /// Waits for what comes next: the mind's deadline, or (`None`) something that arrives.
-async fn deadline_before_arrival(mind: &impl Mind, last: Instant, boxes: &Mailboxes) -> Option<Instant> {
-    let Some(due) = mind.poll_timeout() else {
+async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Mailboxes) -> Option<Instant> {
+    let Some(due) = due else {
         boxes.inbox.ready_to_receive().await;
         return None;
     };
-    let due = due.max(last);
-    // However much arrives, a missed deadline waits for one arrival at most.
-    if due < now() {
-        return Some(due);
-    }
-    // Setting an alarm only to take it back costs some 250 instructions an arrival.
-    if !boxes.inbox.is_empty() {
-        return None;
-    }
     let Instant(alarm) = due.max(last + CLOCK_STEP);
     let alarm = embassy_time::Instant::from_ticks(alarm);
     with_deadline(alarm, boxes.inbox.ready_to_receive()).await.err().map(|_| due)

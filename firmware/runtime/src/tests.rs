@@ -49,7 +49,7 @@ fn a_deadline_that_was_missed_runs_before_what_waits_in_the_inbox() {
     let boxes: &'static Mailboxes = Box::leak(Box::default());
     let mut world = World::new();
     let slow = Clerk { packet_takes: 4, ..Clerk::new(&diary, &[]) };
-    world.spawn(tasks::think(slow, boxes));
+    world.spawn(tasks::think(Box::leak(Box::new(slow)), boxes));
     for bytes in [&[1, 5][..], &[2], &[3]] {
         boxes.inbox.try_send(Arrival::Packet(packet(bytes))).unwrap();
     }
@@ -116,7 +116,7 @@ fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
         clerk.handle_packet(Instant(0), &[n]);
     }
     let mut world = World::new();
-    world.spawn(tasks::think(clerk, boxes));
+    world.spawn(tasks::think(Box::leak(Box::new(clerk)), boxes));
     boxes.inbox.try_send(Arrival::Sensors(picture(0.0))).unwrap();
     world.settle();
     assert_eq!(boxes.unsent(), 3);
@@ -159,7 +159,7 @@ impl Robot {
         robot.world.spawn(tasks::sensors(Eyes(robot.sights), boxes));
         robot.world.spawn(tasks::radio_receive(Ear(robot.air), boxes));
         robot.world.spawn(tasks::radio_send(Mouth(robot.sent), boxes));
-        robot.world.spawn(tasks::think(mind, boxes));
+        robot.world.spawn(tasks::think(Box::leak(Box::new(mind)), boxes));
         robot.world.settle();
         robot
     }

@@ -1,5 +1,7 @@
 //! Does a straight piece of way touch an obstacle, and where is one out of it? Points and segments against shapes; m, s.
 
+use core::cell::Cell;
+
 use geometry::{Point, Segment, Shape, Vector, math};
 
 use super::{FORESIGHT, OBSTACLES_MAX, Obstacle};
@@ -24,13 +26,15 @@ pub(super) struct Scene<'o, F> {
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
     within: Option<Shape<F>>,
+    /// What may still be spent on looking.
+    effort: Cell<u32>,
 }
 
 impl<'o, F: Copy> Scene<'o, F> {
     /// Without its obstacles: [`Scene::look`] comes next, where it stands, for it is large to be handed around.
-    pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>) -> Self {
+    pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>, effort: u32) -> Self {
         let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
-        Self { obstacles, items: heapless::Vec::new(), moves: false, within }
+        Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
     }
 
     /// Takes in the obstacles.
@@ -85,6 +89,17 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.all().find(|(item, obstacle)| near(item, obstacle)).map(|(_, obstacle)| obstacle)
     }
 
+    /// Notes that every obstacle was looked at, at so much for each three, and so much besides.
+    fn spend(&self, a_third: u32, besides: u32) {
+        let looked = self.items.len() as u32 * a_third / 3;
+        self.effort.set(self.effort.get().saturating_sub(looked + besides));
+    }
+
+    /// Whether a plan has had its share of a step.
+    pub(super) fn is_spent(&self) -> bool {
+        self.effort.get() == 0
+    }
+
     pub(super) fn is_inside(&self, point: Point<F>) -> bool {
         self.nearer(point, 0.0).is_some()
     }
@@ -100,6 +115,7 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// The first obstacle that a piece of way touches, by its number, when it takes from `at` to `at + time` s.
     pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
+        self.spend(3, PIECE);
         let mut first = None;
         let mut least = f32::INFINITY;
         let seen =
@@ -141,9 +157,10 @@ impl<'o, F: Copy> Scene<'o, F> {
             }
         }
         // Between obstacles that overlap: the first free point on growing rings.
-        for ring in 1..=RINGS {
+        for ring in RINGS {
             for [x, y] in COMPASS {
-                let at = start + Vector::new(x, y) * (ring as f32 * RING_STEP);
+                let at = start + Vector::new(x, y) * ring;
+                self.spend(1, 1);
                 if self.stays_within(at) && self.nearer(at, FREE).is_none() {
                     return at;
                 }
@@ -361,9 +378,10 @@ const FREE: f32 = 0.002;
 const SPEED_MIN: f32 = 0.02;
 /// Out of one obstacle after another.
 const PUSHES_MAX: usize = 6;
-/// Rings of 8 points around a covered point, m apart.
-const RINGS: u32 = 8;
-const RING_STEP: f32 = 0.15;
+/// Rings of 8 points around a covered point, m.
+const RINGS: [f32; 4] = [0.15, 0.3, 0.6, 1.2];
+/// What a piece of way takes besides looking at obstacles: its corner and its place in the search.
+const PIECE: u32 = 12;
 const COMPASS: [[f32; 2]; 8] = {
     let h = core::f32::consts::FRAC_1_SQRT_2;
     [[1.0, 0.0], [h, h], [0.0, 1.0], [-h, h], [-1.0, 0.0], [-h, -h], [0.0, -1.0], [h, -h]]

@@ -70,7 +70,7 @@ impl<F: Copy> Route<F> {
 impl<F: Copy> Search<'_, F> {
     /// The number of the corner from which the goal is straight ahead.
     fn run(&mut self) -> Option<usize> {
-        while self.checks < CHECKS_MAX {
+        while self.checks < CHECKS_MAX && !self.scene.is_spent() {
             let (number, node) = self.cheapest()?;
             self.nodes.get_mut(number)?.estimate = f32::INFINITY;
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
@@ -124,7 +124,7 @@ impl<F: Copy> Search<'_, F> {
 
     /// Adds a corner that can be reached from the node; else the number of what stands before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
-        if !self.scene.stays_within(at) || self.checks >= CHECKS_MAX {
+        if !self.scene.stays_within(at) || self.checks >= CHECKS_MAX || self.scene.is_spent() {
             return None;
         }
         if let Some(hit) = self.first_hit(node, at) {
@@ -319,8 +319,8 @@ fn around<F: Copy>(
 
 /// Most turns that are tried from a corner.
 const TURNS_MAX: usize = 12;
-/// Most corners of a search.
-const NODES_MAX: usize = 24;
+/// Most corners of a search: one a piece, and the start.
+const NODES_MAX: usize = CHECKS_MAX as usize + 1;
 /// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
 /// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.

@@ -19,7 +19,16 @@ fn disc(x: f32, y: f32, radius: f32) -> Obstacle<Field> {
 
 fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -> Course<'_, Field> {
     let limits = FreeLimits::default();
-    Course { from, velocity: Vector::default(), to, limits, obstacles, within: None, step: STEP }
+    Course {
+        from,
+        velocity: Vector::default(),
+        to,
+        limits,
+        obstacles,
+        within: None,
+        step: STEP,
+        effort: EFFORT_MAX,
+    }
 }
 
 /// What came of driving it.
@@ -138,7 +147,7 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
         // Moving already, where it could still brake.
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
-        let (mut free, way) = (Scene::new(&scene, None), Segment::new(from, from + stop));
+        let (mut free, way) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));
         free.look();
         if free.is_clear(way.from, way.vector(), 0.0, 1.0) && CARPET.contains(way.to) {
             course.velocity = velocity;
@@ -324,7 +333,16 @@ fn nothing_that_comes_in_makes_it_fall_over() {
         let limits = if round % 3 == 0 { limits } else { FreeLimits::default() };
         let within = (round % 2 == 0).then(|| Shape::Box { low: point(), high: point() });
         let step = if round % 5 == 0 { point().x() } else { STEP };
-        let way = plan(&Course { from, velocity, to, limits, obstacles: &obstacles, within, step });
+        let way = plan(&Course {
+            from,
+            velocity,
+            to,
+            limits,
+            obstacles: &obstacles,
+            within,
+            step,
+            effort: EFFORT_MAX,
+        });
         assert!(
             way.next.velocity.is_finite() && way.next.position.is_finite(),
             "{from:?} {velocity:?} {to:?} {obstacles:?} {within:?}"

@@ -2,7 +2,7 @@
 //! where the rules forbid it; others taken to keep their velocity. Robots do not tell their plans, so it is the host's reckoning of
 //! them. m, s, field frame.
 
-use brain::body::omni::LIMITS;
+use brain::body::omni::{EFFORT, LIMITS};
 use geometry::{Field, GoalEnd, Point};
 use host::world::{Robot, World};
 use motion::avoid::{Course, OBSTACLES_MAX, Obstacle, plan};
@@ -53,8 +53,16 @@ impl Ways<'_> {
         let mut points = vec![from];
         for _ in 0..STEPS {
             let within = Some(rules.within.grown(-ROBOT_RADIUS));
-            let course =
-                Course { from, velocity, to, limits: LIMITS, obstacles: &obstacles, within, step: STEP };
+            let course = Course {
+                from,
+                velocity,
+                to,
+                limits: LIMITS,
+                obstacles: &obstacles,
+                within,
+                step: STEP,
+                effort: EFFORT,
+            };
             let way = plan(&course);
             (from, velocity) = (way.next.position, way.next.velocity);
             points.push(from);

@@ -1,7 +1,7 @@
 //! What does the board do with a tick? It lets the robot live up to that moment and tells what came of it (DESIGN §7).
 //!
-//! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets one by one, its picture of the
-//! world, and after each of them the tasks run until all of them wait. The robot is born with its set-up, at time zero.
+//! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets in their order, its picture of
+//! the world, and after each kind the tasks run until all of them wait. The robot is born with its set-up, at time zero.
 //! A message that makes no sense where it comes is counted and gets no answer; another life needs another process.
 
 use core::cell::RefCell;
@@ -16,7 +16,7 @@ use heapless::Vec;
 use protocol::link::Packet;
 use protocol::lockstep::{AIR_OUT_MAX, FromRobot, TickIn, TickOut, ToRobot};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use runtime::ports::{Body, RadioReceiver, RadioSender, Senses};
+use runtime::ports::{Body, RadioSender, Senses};
 use runtime::{BrainConfig, Mailboxes, setup, tasks};
 
 use super::clock::Clock;
@@ -66,17 +66,20 @@ fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseB
     }
 }
 
-/// One tick: time, then packets, then the picture, each worked off before the next.
+/// One tick: time, then packets, then the picture.
 fn live(clock: &Clock, tick: TickIn<'_>) {
     clock.advance(tick.now);
     for packet in &tick.air {
+        if BOXES.is_full() {
+            clock.settle();
+        }
         // A packet longer than any frame is none of ours; a radio would not have taken it either.
-        let heard = Packet::from_slice(packet).is_ok_and(|packet| HEARD.try_send(packet).is_ok());
-        if !heard {
+        if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.hear(packet)) {
             STRANGE.fetch_add(1, Ordering::Relaxed);
         }
-        clock.settle();
     }
+    // All before the picture.
+    clock.settle();
     if SEEN.try_send(tick.sensors).is_err() {
         STRANGE.fetch_add(1, Ordering::Relaxed);
     }
@@ -103,8 +106,7 @@ static STRANGE: AtomicU32 = AtomicU32::new(0);
 /// Packets said beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
 static UNHEARD: AtomicU32 = AtomicU32::new(0);
 
-/// What the tick hands to the tasks, one at a time.
-static HEARD: Channel<CriticalSectionRawMutex, Packet, 1> = Channel::new();
+/// What the tick hands to the senses; its packets go straight into the inbox, as there is no radio here.
 static SEEN: Channel<CriticalSectionRawMutex, SensorFrame, 1> = Channel::new();
 /// What the tasks made of the tick.
 static DONE: Mutex<RefCell<Done>> = Mutex::new(RefCell::new(Done { air: Vec::new(), actuators: None }));
@@ -113,13 +115,6 @@ static DONE: Mutex<RefCell<Done>> = Mutex::new(RefCell::new(Done { air: Vec::new
 struct Done {
     air: Vec<Packet, AIR_OUT_MAX>,
     actuators: Option<ActuatorFrame>,
-}
-
-struct Ear;
-impl RadioReceiver for Ear {
-    async fn receive(&mut self) -> Packet {
-        HEARD.receive().await
-    }
 }
 
 struct Eyes;
@@ -152,7 +147,6 @@ static BOXES: Mailboxes = Mailboxes::new();
 fn start_tasks(spawner: Spawner, config: BrainConfig, base: CaseBase<'static>) -> Result<(), SpawnError> {
     spawner.spawn(body()?);
     spawner.spawn(radio_send()?);
-    spawner.spawn(radio_receive()?);
     spawner.spawn(sensors()?);
     spawner.spawn(brain(config, base)?);
     Ok(())
@@ -161,11 +155,6 @@ fn start_tasks(spawner: Spawner, config: BrainConfig, base: CaseBase<'static>) -
 #[embassy_executor::task]
 async fn brain(config: BrainConfig, base: CaseBase<'static>) -> ! {
     tasks::brain(&config, base, &BOXES).await
-}
-
-#[embassy_executor::task]
-async fn radio_receive() -> ! {
-    tasks::radio_receive(Ear, &BOXES).await
 }
 
 #[embassy_executor::task]

@@ -82,6 +82,7 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
+            effort: EFFORT,
         });
         let there = rests && from.distance(way.goal) < THERE;
         let velocity = if there { Vector::default() } else { way.next.velocity };
@@ -114,6 +115,9 @@ impl Drivetrain {
         Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick: drive.kick }
     }
 }
+
+/// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
+pub const EFFORT: u32 = 115;
 
 /// Standing with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {

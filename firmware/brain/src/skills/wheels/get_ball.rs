@@ -5,7 +5,7 @@
 
 use geometry::{Angle, Field, Point, Segment, Vector, math};
 use motion::ball::{BallModel, BallPath};
-use motion::intercept::{Interception, Verdict, Wish};
+use motion::intercept::{Interception, Verdict};
 
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
@@ -86,7 +86,7 @@ pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
         reach: BALL_AT,
         until,
     };
-    let place = match question.find(&LIMITS, Wish::Soonest) {
+    let place = match question.find_within(&LIMITS, PLANS_MAX) {
         Verdict::Meets(meeting) => meeting.place,
         Verdict::Chase { place, .. } => place,
     };
@@ -163,6 +163,8 @@ const ALIGNED: f32 = 0.15;
 const LEAD: f32 = 0.05;
 /// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew before.
 pub(super) const LOOKS_AHEAD: f32 = 0.8;
+/// Motions that are planned in vain before it looks less closely where to meet the ball: a step is bounded.
+const PLANS_MAX: u32 = 4;
 /// A point far back on the ball's line, m.
 const FAR_BACK: f32 = 20.0;
 /// So long before the ball comes the dribbler turns and the robot gives way, s.
