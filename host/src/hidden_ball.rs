@@ -1,8 +1,9 @@
 //! Where is a ball that no camera sees? Under a robot, or where it was put; field frame, SI.
 //!
-//! Of ours, it is at the robot that feels it; of theirs, at the one whose front was at it when it vanished. At a restart after a
-//! placement it lies where it was placed: who brought it there hid it on the way, and where it was seen last is metres off. Else it
-//! lies where it was going to rest. Without this a robot that may not come near the ball would walk up to it as soon as it is hidden.
+//! Of ours, it is at the robot that feels it, and where that robot felt it last once it has let go; of theirs, at the one whose
+//! front was at it when it vanished. At a restart after a placement it lies where it was placed: who brought it there hid it on the
+//! way, and where it was seen last is metres off. Else it lies where it was going to rest. Without this a robot that may not come
+//! near the ball would walk up to it as soon as it is hidden, and one that backs off a ball it hides would look for it elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Instant, RobotId, Who};
@@ -14,7 +15,7 @@ use crate::world::{Ball, Robot, World};
 /// What is remembered of the ball while it is seen, and of its placement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HiddenBall {
-    /// The ball as it was when last seen.
+    /// The ball as it was when last seen, or felt by a robot of ours since.
     last: Option<Ball>,
     /// The opponent that hides it from all cameras, if one does.
     by: Option<Who>,
@@ -43,9 +44,15 @@ impl HiddenBall {
             self.by = world.theirs(us).find(hides).map(|robot| robot.who);
             return;
         }
+        let holder = world.ours(us).find(|robot| feels(robot.who.id));
+        if let (Some(robot), Some(last)) = (holder, &mut self.last) {
+            // Where it lies if it is let go: what is let go at speed is soon seen.
+            (last.position, last.velocity) = (mouth(robot), Vector::default());
+            (last.height, last.climb) = (0.0, 0.0);
+            self.by = None;
+        }
         let theirs = |robot: &&Robot| Some(robot.who) == self.by;
-        let has = |robot: &&Robot| feels(robot.who.id);
-        let hider = world.ours(us).find(has).or_else(|| world.theirs(us).find(theirs));
+        let hider = holder.or_else(|| world.theirs(us).find(theirs));
         let lies = matches!(game.phase, Phase::Stop | Phase::FreeKick(_));
         let (position, velocity) = match (hider, self.placed, &self.last) {
             (Some(robot), ..) => (mouth(robot), robot.velocity),
@@ -134,6 +141,7 @@ mod tests {
         world.ball = None;
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
         assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| true), Some(1.09));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(1.09), "let go, and still hidden");
         world.ball = Some(ball(2.1));
         x_of(&mut hidden, &world, Phase::Run, NOBODY);
         world.ball = None;

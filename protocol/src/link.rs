@@ -296,8 +296,10 @@ pub(crate) fn packet(frame: &Frame<'_>, key: &TeamKey) -> Packet {
 }
 
 pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {
-    let count = &mut refused[refusal.kind()];
-    *count = count.saturating_add(1);
+    // There is one for each kind.
+    if let Some(count) = refused.get_mut(refusal.kind()) {
+        *count = count.saturating_add(1);
+    }
 }
 
 /// The message, if the payload is one to its last byte and its ids exist.
