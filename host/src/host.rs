@@ -5,6 +5,7 @@
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
 //! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
 
+use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::frame::{Refusal, TeamKey};
 use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
@@ -16,8 +17,10 @@ use ssl::Message;
 
 use crate::geometry::VisionGeometry;
 use crate::hidden_ball::HiddenBall;
+use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::{self, Listener};
+use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::{Bookkeeper, PlayTally};
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
@@ -104,6 +107,8 @@ pub struct Undecodable {
 #[derive(Clone, Debug)]
 pub struct Host {
     settings: HostSettings,
+    /// The case base in the robots, to look up what they say they play.
+    cases: CaseBase<'static>,
     tracker: Tracker,
     geometry: VisionGeometry,
     listener: Listener,
@@ -143,6 +148,7 @@ impl Host {
             undecodable: Undecodable::default(),
             halted: false,
             books: Bookkeeper::default(),
+            cases: cases_of(settings.league),
             settings,
         }
     }
@@ -298,7 +304,8 @@ impl Host {
         let us = self.settings.us;
         let game = self.our_game();
         let view = View::of(&self.world, us, &game, self.field(), self.fit(now), self.in_play(now))
-            .allowing(self.allowed());
+            .allowing(self.allowed())
+            .proposing(self.proposed(now, Flip::defending(game.defending)));
         self.orders = self.coach.decide(&view);
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
@@ -367,6 +374,19 @@ impl Host {
             }
         }
         playing
+    }
+
+    /// The next pass of the case that our robots play, where the bridge is played.
+    fn proposed(&self, now: Instant, flip: Flip) -> Option<CasePass> {
+        if !self.settings.tactics.bridge {
+            return None;
+        }
+        let fresh = RobotId::all().filter_map(|robot| {
+            let (heard, beacon) = self.robots[robot.index()].beacon.as_ref()?;
+            (now.since(*heard) < BEACON_LEASE).then_some((robot, beacon))
+        });
+        let told: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
+        proposal(&self.cases, &told, flip)
     }
 
     /// The same directive for a kicker that kicks harder or softer than it is told.

@@ -9,6 +9,7 @@ pub mod config;
 pub mod geometry;
 mod hidden_ball;
 mod host;
+mod proposal;
 pub mod radio;
 pub mod recheck;
 pub mod recording;
@@ -20,3 +21,4 @@ pub mod tracking;
 pub mod world;
 
 pub use host::{Host, HostSettings, Input, Undecodable, Verdict};
+pub use proposal::cases_of;

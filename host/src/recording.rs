@@ -12,6 +12,7 @@ use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
 use crate::HostSettings;
+use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
 use crate::strategy::{Tactics, Team};
 
@@ -65,6 +66,9 @@ pub struct HostHeader {
     /// Which tactics it played.
     #[serde(default = "Tactics::none")]
     pub tactics: Tactics,
+    /// The hash of the case base by which it understood its robots, where its tactics asked for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cases: Option<String>,
 }
 
 /// Why a header builds no host.
@@ -109,6 +113,10 @@ impl RecordingHeader {
     }
 }
 
+fn hash_of_cases(league: League) -> String {
+    format!("{:08x}", cases_of(league).hash())
+}
+
 const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
 
 impl HostHeader {
@@ -133,6 +141,7 @@ impl HostHeader {
             way_us: radio.way.0,
             keyed: radio.key != TeamKey::ZERO,
             tactics: Tactics::NONE,
+            cases: None,
         }
     }
 
@@ -142,12 +151,19 @@ impl HostHeader {
         Self {
             plays: settings.team,
             tactics: settings.tactics,
+            cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
             ..Self::new(who, &settings.kick, &settings.radio, began)
         }
     }
 
     /// The settings it began with; the key is for the caller to bring.
     pub fn settings(&self, league: League, key: TeamKey) -> Result<HostSettings, HeaderError> {
+        let ours = hash_of_cases(league);
+        if let Some(theirs) = self.cases.as_ref().filter(|hash| self.tactics.bridge && **hash != ours) {
+            return Err(wrong(format!(
+                "cases: it understood its robots by case base {theirs}, this program's is {ours}; take the program of the recording"
+            )));
+        }
         Ok(HostSettings {
             us: self.colour()?,
             league,
@@ -267,6 +283,20 @@ mod tests {
         let tactics = told.find(",\"tactics\"").unwrap();
         let old: HostHeader = serde_json::from_str(&format!("{}}}", &told[..tactics])).unwrap();
         assert_eq!(old.tactics, Tactics::NONE);
+    }
+
+    #[test]
+    fn whoever_played_the_bridge_between_the_papers_says_by_which_cases_and_others_do_not_do() {
+        let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
+        settings.tactics = Tactics { bridge: false, ..Tactics::ALL };
+        assert_eq!(HostHeader::of(&settings, Instant(0)).cases, None);
+        settings.tactics.bridge = true;
+        let mut told = HostHeader::of(&settings, Instant(0));
+        assert_eq!(told.cases, Some(format!("{:08x}", case_library::division_b().hash())));
+        assert!(told.settings(League::DivisionB, TeamKey::ZERO).is_ok());
+        told.cases = Some("01234567".to_owned());
+        let words = told.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        assert!(words.contains("01234567"), "{words}");
     }
 
     #[test]

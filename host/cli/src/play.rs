@@ -103,6 +103,7 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     }
     let shelf = cases(&args.folder, args.league)?;
     let base = shelf.as_ref().map_or_else(CaseBase::default, Shelf::base);
+    hint_at_foreign_cases(&config, &base);
     let mut backend = NativeBackend::new(base);
     let mut recording = args.record.as_ref().map(|stem| record(stem, &config)).transpose()?;
     let mut teller = Teller::new(args);
@@ -203,6 +204,16 @@ pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>
         eprintln!("no cases come with {}: robots that are left free play reactively", league.name());
     }
     Ok(shelf)
+}
+
+/// Hosts know the cases that come with the league, and no others.
+fn hint_at_foreign_cases(config: &GameConfig, base: &CaseBase<'_>) {
+    let foreign = host::cases_of(config.league).hash() != base.hash();
+    if foreign && config.teams.iter().any(|team| team.tactics.bridge) {
+        eprintln!(
+            "the bridge refines passes of cases that come with the league: those of --library are played as they are"
+        );
+    }
 }
 
 fn record(stem: &std::path::Path, config: &GameConfig) -> Result<Recorder, Failure> {

@@ -1,14 +1,18 @@
 //! Does the built `onetwo replay` do what its help says, on recordings of the league's own programs, seen from outside?
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use host::radio::To;
+use host::recheck::Recheck;
 use host::recording::{HostHeader, RecordingHeader};
-use host::trace::{Kind, Writer};
+use host::strategy::Why;
+use host::trace::{Kind, Reader, Writer};
 use host::{Host, HostSettings, Input};
 use protocol::Instant;
+use protocol::frame::TeamKey;
 use rules::{Colour, League};
 use serde_json::Value;
 use ssl::log::{MessageKind, open};
@@ -219,4 +223,51 @@ fn a_moment_of_a_match_says_what_each_robot_has_to_do_and_why() {
     }
     let told = onetwo(&[&file, "--at", "11"]);
     assert!(String::from_utf8_lossy(&told.stdout).contains("keeper: go to ("));
+}
+
+/// Plays with the bridge between the papers and records it.
+fn bridged(seed: u32) -> PathBuf {
+    let stem = scratch(&format!("bridged-{seed}"));
+    let tactics = "threats,second-level,attack,bridge";
+    let out = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+        .args(["play", "--headless", "--duration", "60", "--seed", &seed.to_string(), "--record"])
+        .arg(&stem)
+        .args(["--blue-tactics", tactics, "--yellow-tactics", tactics])
+        .output()
+        .expect("the program starts");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    stem.with_extension("trace")
+}
+
+/// The reasons of every order of a case's pass while a trace is decided again: the case and its robots, each once.
+fn parts_in_passes_of_cases(file: &Path) -> BTreeSet<(u16, usize)> {
+    let unpacked = flate2::read::MultiGzDecoder::new(fs::File::open(file).expect("the trace"));
+    let mut reader = Reader::new(unpacked).expect("a trace");
+    let header = RecordingHeader::from_json(reader.header()).expect("a header");
+    assert!(header.hosts.iter().all(|host| host.cases.is_some()), "{header:?}");
+    let mut recheck = Recheck::new(&header, TeamKey::ZERO).expect("hosts");
+    let mut parts = BTreeSet::new();
+    for record in reader.by_ref() {
+        recheck.feed(&record);
+        let Some(host) = recheck.host(usize::from(record.host)) else { continue };
+        parts.extend(host.orders().iter().filter_map(|order| match order.why {
+            Why::OfCase { case, part, .. } => Some((case.0, part.index())),
+            _ => None,
+        }));
+    }
+    parts
+}
+
+#[test]
+fn hosts_that_refine_passes_of_cases_decide_the_same_again() {
+    for seed in 1..8 {
+        let file = bridged(seed);
+        let parts = parts_in_passes_of_cases(&file);
+        // Such passes are few: not every minute has one.
+        let Some((case, _)) = parts.first() else { continue };
+        assert!(parts.iter().filter(|(of, _)| of == case).count() >= 2, "passer and receiver: {parts:?}");
+        assert_eq!(json(&[&file.display().to_string(), "--check"], 0)["same_decisions"], true);
+        return;
+    }
+    panic!("no case's pass in seven minutes");
 }

@@ -2,9 +2,10 @@
 
 use core::fmt;
 
+use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point};
-use protocol::RobotId;
 use protocol::host::{Directive, Duty, KickOrder};
+use protocol::{CaseId, RobotId};
 
 use super::threat::Guards;
 use super::view::Flip;
@@ -88,6 +89,19 @@ pub enum Why {
     Threat(Guards),
     /// The likeliest pass found.
     Chances {
+        /// P(receive).
+        receive: f32,
+        /// P(goal | receive).
+        goal: f32,
+    },
+    /// The pass of a case, refined near the place that the case has for it.
+    OfCase {
+        /// Which case.
+        case: CaseId,
+        /// What the robot is in it.
+        part: CaseRobot,
+        /// How far from its own place the pass is received, m.
+        moved: f32,
         /// P(receive).
         receive: f32,
         /// P(goal | receive).
@@ -211,6 +225,10 @@ impl fmt::Display for Why {
             Self::Chances { receive, goal } => {
                 write!(f, "the best pass: received with {receive:.2}, then a goal with {goal:.2}")
             }
+            Self::OfCase { case, part, moved, receive, goal } => write!(
+                f,
+                "{part} of case {case}, its pass moved by {moved:.2} m: received with {receive:.2}, then a goal with {goal:.2}"
+            ),
             Self::Coerces { marker } => write!(f, "opponent {marker} follows it, out of the way"),
             Self::Coercing { arrived, of } => {
                 write!(f, "{arrived} of {of} are where opponents shall follow them")
@@ -247,6 +265,10 @@ mod tests {
         assert_eq!(Why::Coerces { marker }.to_string(), "opponent 3 follows it, out of the way");
         let chances = Why::Chances { receive: 0.75, goal: 0.2 };
         assert_eq!(chances.to_string(), "the best pass: received with 0.75, then a goal with 0.20");
+        let part = CaseRobot::new(1).unwrap();
+        let of_case = Why::OfCase { case: CaseId(12), part, moved: 0.31, receive: 0.75, goal: 0.2 };
+        let words = "tm2 of case 12, its pass moved by 0.31 m: received with 0.75, then a goal with 0.20";
+        assert_eq!(of_case.to_string(), words);
         let held = Why::Threat(Guards::Held { opponent: marker, primaries_off: 0.5 });
         assert!(held.to_string().contains("0.50 m"), "{held}");
     }

@@ -5,6 +5,7 @@ use protocol::quantized::{WirePoint, WirePose};
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
 
+use super::pass::bridge::CasePass;
 use crate::world::World;
 
 /// Robots of a team that strategy can see: one per id.
@@ -135,6 +136,8 @@ pub struct View {
     pub allowed: usize,
     /// Our robots that play a case right now, by what they say.
     pub in_play: RobotSet,
+    /// The next pass of that case, where the bridge between the papers is played.
+    pub proposal: Option<CasePass>,
     /// The field's lines.
     pub field: FieldSpec,
 }
@@ -173,6 +176,7 @@ impl View {
             their_keeper: game.their_keeper,
             allowed: ROBOTS_MAX,
             in_play,
+            proposal: None,
             field,
         }
     }
@@ -198,6 +202,7 @@ impl View {
             their_keeper: RobotId::ZERO,
             allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),
+            proposal: None,
             field,
         }
     }
@@ -205,6 +210,11 @@ impl View {
     /// The same, with a limit on how many of us may be on the field.
     pub fn allowing(self, robots: usize) -> Self {
         Self { allowed: robots, ..self }
+    }
+
+    /// The same, with the next pass of the case that robots play.
+    pub fn proposing(self, proposal: Option<CasePass>) -> Self {
+        Self { proposal, ..self }
     }
 
     /// Our robot of that number.

@@ -50,7 +50,11 @@ pub(crate) fn why(why: &Why) -> String {
         Why::BestTarget { room } => format!("the best target for the ball, {room:.2} m of room"),
         Why::DoubleTouch => "it took our restart and must not touch the ball again yet".to_owned(),
         Why::TooMany { allowed } => format!("the referee lets us have {allowed}"),
-        Why::Threat(_) | Why::Chances { .. } | Why::Coerces { .. } | Why::Coercing { .. } => why.to_string(),
+        Why::Threat(_)
+        | Why::Chances { .. }
+        | Why::OfCase { .. }
+        | Why::Coerces { .. }
+        | Why::Coercing { .. } => why.to_string(),
         // What strategy learns to say next is told in its own words.
         other => spaced(&format!("{other:?}")),
     }

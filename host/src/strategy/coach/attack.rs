@@ -9,6 +9,7 @@ use motion::trajectory::CalcMotion;
 use protocol::{Duration, Instant, RobotId};
 
 use super::super::order::{Role, Task, Why};
+use super::super::pass::bridge::{CasePass, RADIUS, refine};
 use super::super::pass::shot::shot;
 use super::super::pass::{Rating, SAMPLES, Scene};
 use super::super::support;
@@ -32,8 +33,21 @@ enum What {
     Shot { at: Point<Attack>, goal: f32 },
     /// A pass to where it is likeliest to become a goal.
     Pass { receiver: RobotId, rating: Rating },
-    /// Neither.
+    /// The pass of the case that is played, and how far from its place.
+    OfCase { pass: CasePass, rating: Rating, moved: f32 },
+    /// None of these.
     Case,
+}
+
+impl What {
+    /// To whom it passes, and how good that is.
+    fn pass(self) -> Option<(RobotId, Rating)> {
+        match self {
+            Self::Pass { receiver, rating } => Some((receiver, rating)),
+            Self::OfCase { pass, rating, .. } => Some((pass.receiver.0, rating)),
+            Self::Shot { .. } | Self::Case => None,
+        }
+    }
 }
 
 impl Coach {
@@ -49,27 +63,42 @@ impl Coach {
                 Some((Task::Kick { at, kick: support::SHOT }, Why::Chances { receive: 1.0, goal }))
             }
             What::Pass { receiver, rating } => {
-                let mate = view.our(receiver)?;
                 let why = Why::Chances { receive: rating.receive(), goal: rating.goal() };
-                if plan.take(receiver) {
-                    let then = rating.shot.one_touch.then_some(rating.shot.aim);
-                    plan.order(receiver, Role::Receiver, Task::Receive { at: rating.at, then }, why);
-                }
-                let limits = &self.kicks.constants().receiver;
-                let ready =
-                    limits.time(mate.position, mate.velocity, rating.at) <= rating.ball_time + TOGETHER;
-                Some((Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready }, why))
+                Some((self.pass_to(plan, receiver, &rating, why)?, why))
+            }
+            What::OfCase { pass, rating, moved } => {
+                let why = |part| Why::OfCase {
+                    case: pass.case,
+                    part,
+                    moved,
+                    receive: rating.receive(),
+                    goal: rating.goal(),
+                };
+                let (receiver, part) = pass.receiver;
+                Some((self.pass_to(plan, receiver, &rating, why(part))?, why(pass.passer.1)))
             }
         }
     }
 
+    /// The passer's task, its receiver being told, too; nothing where there is no receiver any more.
+    fn pass_to(&self, plan: &mut Plan<'_>, receiver: RobotId, rating: &Rating, why: Why) -> Option<Task> {
+        let mate = plan.view.our(receiver)?;
+        if plan.take(receiver) {
+            let then = rating.shot.one_touch.then_some(rating.shot.aim);
+            plan.order(receiver, Role::Receiver, Task::Receive { at: rating.at, then }, why);
+        }
+        let limits = &self.kicks.constants().receiver;
+        let ready = limits.time(mate.position, mate.velocity, rating.at) <= rating.ball_time + TOGETHER;
+        Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
+    }
+
     /// Sees the pass of open play leave: from then on its receiver is told to have it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
-        let (Some(Intent { who, from, what: What::Pass { receiver, rating }, .. }), Some(ball), None) =
-            (self.intent, view.ball, self.pass)
+        let (Some(Intent { who, from, what, .. }), Some(ball), None) = (self.intent, view.ball, self.pass)
         else {
             return;
         };
+        let Some((receiver, rating)) = what.pass() else { return };
         let Some(passer) = view.our(who) else { return };
         let speed = ball.velocity.norm();
         let along = (rating.at - from).unit().map_or(0.0, |way| ball.velocity.dot(way));
@@ -106,18 +135,20 @@ impl Coach {
     }
 
     fn stands(&self, view: &View, intent: &Intent, ball: &Ball) -> bool {
-        let age = view.now.since(intent.since);
-        match intent.what {
-            What::Case => age < ASKED_AGAIN,
-            What::Shot { .. } => age < HELD,
-            What::Pass { receiver, rating } => {
-                let receive = view.our(receiver).map_or(0.0, |mate| {
-                    let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), mate);
-                    scene.rate(rating.at).receive()
-                });
-                age < HELD && receive > rating.receive() * STILL_LIKELY
-            }
-        }
+        let held = match intent.what {
+            What::Case => ASKED_AGAIN,
+            What::Shot { .. } | What::Pass { .. } => HELD,
+            What::OfCase { .. } => CASE_HELD,
+        };
+        let likely = || {
+            let Some((receiver, rating)) = intent.what.pass() else { return true };
+            let receive = view.our(receiver).map_or(0.0, |mate| {
+                let scene = Scene::of(view, &self.kicks, ball.position, Some(intent.who), mate);
+                scene.rate(rating.at).receive()
+            });
+            receive > rating.receive() * STILL_LIKELY
+        };
+        view.now.since(intent.since) < held && likely()
     }
 
     fn likeliest(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
@@ -134,8 +165,19 @@ impl Coach {
                 What::Pass { receiver: pass.receiver, rating: pass.rating }
             }
             _ if goal > WORTH_IT => What::Shot { at: shot.aim, goal },
-            _ => What::Case,
+            _ => self.of_the_case(view, who, ball).unwrap_or(What::Case),
         }
+    }
+
+    /// The next pass of the case that `who` plays, refined near the place that the case has for it, where it is then likely to arrive.
+    fn of_the_case(&self, view: &View, who: RobotId, ball: &Ball) -> Option<What> {
+        let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
+        let receiver = pass.receiver.0;
+        let mate = view.our(receiver).filter(|_| !self.defenders.contains(&Some(receiver)))?;
+        let scene = Scene::of(view, &self.kicks, ball.position, Some(who), mate);
+        let refined = refine(&scene, pass.at, RADIUS);
+        let rating = refined.best;
+        (rating.receive() > LIKELY).then_some(What::OfCase { pass, rating, moved: refined.moved() })
     }
 }
 
@@ -148,6 +190,9 @@ const LIKELY: f32 = 0.5;
 const STILL_LIKELY: f32 = 0.5;
 /// What was chosen is held for so long: to walk around the ball and aim.
 const HELD: Duration = Duration::millis(800);
+/// A case's pass is held for longer, until its passer is at the ball: who has left the case for it does not propose it again. Scopes
+/// of the cases' robots are less than two seconds' walk.
+const CASE_HELD: Duration = Duration::millis(2000);
 /// Where a case is played it is asked again after so long, whether there is something better: as often as the field changes by a robot's
 /// body.
 const ASKED_AGAIN: Duration = Duration::millis(200);

@@ -1,10 +1,13 @@
 //! Does everybody have one sensible order in every phase of the game?
 
 use super::*;
+use crate::strategy::pass::bridge::{CasePass, RADIUS};
 use crate::strategy::threat::Guards;
 use crate::strategy::view::Ball;
 use crate::strategy::view::tests::view;
+use casebase::CaseRobot;
 use geometry::Vector;
+use protocol::CaseId;
 
 const OURS: [(f32, f32); 6] = [(-4.4, 0.0), (-3.0, 0.5), (-3.0, -0.5), (-0.5, 0.0), (0.5, 1.5), (0.5, -1.5)];
 const THEIRS: [(f32, f32); 3] = [(4.4, 0.0), (2.0, 1.0), (1.0, -1.0)];
@@ -284,6 +287,37 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
     assert_eq!(case[3].task, Task::Gameplay);
     let without = Tactics { attack: false, ..Tactics::default() };
     assert_eq!(attack(far, &[(4.4, 0.3)], without).2[3].task, Task::Gameplay);
+}
+
+#[test]
+fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_bridge_is_played() {
+    // The goal is closed and nobody may be worth a pass; the case has 5 receive it in free space.
+    let closed = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2), (-1.8, 2.0)];
+    let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), (-2.0, 2.0), (-0.8, -2.0)];
+    let at = Point::new(-0.8, -1.8);
+    let decide = |bridge, passer| {
+        let seen = view((2.0, 0.0), &ours, &closed);
+        let part = |part, robot: usize| (seen.ours[robot].id, CaseRobot::new(part).unwrap());
+        let pass = CasePass { case: CaseId(12), passer: part(0, passer), receiver: part(1, 5), at };
+        let seen = seen.proposing(Some(pass));
+        let tactics = Tactics { bridge, ..Tactics::default() };
+        Coach::new(Team::Ours, tactics, League::DivisionB).decide(&seen)
+    };
+    let orders = decide(true, 3);
+    let Task::Pass { at: there, receiver, .. } = orders[3].task else { panic!("{:?}", orders[3]) };
+    assert_eq!(receiver.number(), 5);
+    assert!(there.distance(at) <= RADIUS);
+    assert!(matches!(orders[5].task, Task::Receive { at, .. } if at == there), "{:?}", orders[5]);
+    for (robot, part) in [(3, 0), (5, 1)] {
+        let Why::OfCase { case, part: told, moved, receive, .. } = orders[robot].why else {
+            panic!("{:?}", orders[robot])
+        };
+        assert_eq!((case, told.index()), (CaseId(12), part));
+        assert!((moved - there.distance(at)).abs() < 1e-6 && receive > 0.5, "{:?}", orders[robot]);
+    }
+    // Another robot's pass is not this one's, and without the bridge the case is played as it is.
+    assert_eq!(decide(true, 4)[3].task, Task::Gameplay);
+    assert_eq!(decide(false, 3)[3].task, Task::Gameplay);
 }
 /// Less than this is not worth a shot (0.05), by far.
 const WORTH: f32 = 0.1;

@@ -1,9 +1,24 @@
 //! A case says to whom and about where; where exactly is likeliest to end in a goal? P(receive) · P(goal) refines a retrieved case's
 //! pass point near its adapted position (papers-checklist §6: the case is the intent, the evaluator its parameters). Attack frame, m.
 
+use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};
+use protocol::{CaseId, RobotId};
 
 use super::scene::{Rating, Scene};
+
+/// The next pass of a case that is being played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CasePass {
+    /// Which case.
+    pub case: CaseId,
+    /// Who passes, and what it is in the case.
+    pub passer: (RobotId, CaseRobot),
+    /// To whom, and what that one is in the case.
+    pub receiver: (RobotId, CaseRobot),
+    /// Where the case, adapted, has it received.
+    pub at: Point<Attack>,
+}
 
 /// A case's pass point, refined.
 #[derive(Clone, Copy, Debug, PartialEq)]
