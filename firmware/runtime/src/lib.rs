@@ -24,6 +24,7 @@ extern crate std;
 
 #[cfg(all(target_arch = "arm", target_os = "none"))]
 mod copy;
+pub mod ending;
 pub mod hardware;
 pub mod kicker;
 pub mod ledger;

@@ -8,6 +8,7 @@ use core::panic::PanicInfo;
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
+use runtime::ending::Ending;
 
 use crate::off;
 
@@ -61,25 +62,21 @@ pub fn life() -> Life {
 fn panic(info: &PanicInfo<'_>) -> ! {
     off::everything();
     cortex_m::interrupt::disable();
-    match info.location() {
-        Some(place) => ended(&[place.file().as_bytes(), b":", &digits(place.line())]),
-        None => ended(&[b"an unknown place"]),
-    }
+    ended(Ending::Panic(info.location()))
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     off::everything();
-    ended(&[b"a hard fault, program counter ", &digits(frame.pc())])
+    ended(Ending::Fault(frame.pc()))
 }
 
 /// Keeps and tells the place, then starts anew.
-fn ended(words: &[&[u8]]) -> ! {
+fn ended(how: Ending<'_>) -> ! {
     open();
     write(PANICS_AT, read(PANICS_AT).wrapping_add(1));
     let mut place = [0; PLACE_LEN];
-    let text = words.iter().flat_map(|word| word.iter());
-    let len = place.iter_mut().zip(text).map(|(to, from)| *to = *from).count();
+    let len = how.write(&mut place);
     write(LEN_AT, len as u32);
     for (register, word) in (PLACE_AT..).zip(place.as_chunks::<4>().0) {
         write(register, u32::from_le_bytes(*word));
@@ -103,16 +100,6 @@ fn read(register: usize) -> u32 {
 
 fn write(register: usize, word: u32) {
     pac::RTC.bkpr(register).write(|kept| kept.set_bkp(word));
-}
-
-/// Decimal, leading zeros.
-fn digits(number: u32) -> [u8; 10] {
-    let (mut rest, mut text) = (number, [b'0'; 10]);
-    for digit in text.iter_mut().rev() {
-        *digit = b'0' + (rest % 10) as u8;
-        rest /= 10;
-    }
-    text
 }
 
 /// Backup registers of the chip (RM0433, 46.6.20).

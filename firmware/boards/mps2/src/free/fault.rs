@@ -9,6 +9,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
+use runtime::ending::Ending;
 
 use super::body;
 use super::console::say;
@@ -73,24 +74,20 @@ static BITTEN: AtomicBool = AtomicBool::new(false);
 fn panic(info: &PanicInfo<'_>) -> ! {
     body::stop();
     cortex_m::interrupt::disable();
-    match info.location() {
-        Some(place) => ended(&[place.file().as_bytes(), b":", &digits(place.line())]),
-        None => ended(&[b"an unknown place"]),
-    }
+    ended(Ending::Panic(info.location()))
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     body::stop();
-    ended(&[b"a hard fault, program counter ", &digits(frame.pc())])
+    ended(Ending::Fault(frame.pc()))
 }
 
 /// Keeps and tells the place, then starts anew.
-fn ended(place: &[&[u8]]) -> ! {
+fn ended(how: Ending<'_>) -> ! {
     with(|life| {
         life.panics = life.panics.wrapping_add(1);
-        let text = place.iter().flat_map(|word| word.iter());
-        life.place_len = life.place.iter_mut().zip(text).map(|(to, from)| *to = *from).count();
+        life.place_len = how.write(&mut life.place);
     });
     say(&[b"panic at ", with(|life| *life).place(), b"; motors off, starting anew"]);
     SCB::sys_reset()
@@ -103,16 +100,6 @@ fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
     // SAFETY: one processor, and no two of its users run at the same time. The record consists of whole numbers, for which
     // every pattern of bits is a value; a start whose `magic` is wrong replaces all of it.
     unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
-}
-
-/// A number in ten decimal digits.
-pub(crate) fn digits(number: u32) -> [u8; 10] {
-    let (mut rest, mut text) = (number, [b'0'; 10]);
-    for digit in text.iter_mut().rev() {
-        *digit = b'0' + (rest % 10) as u8;
-        rest /= 10;
-    }
-    text
 }
 
 /// Bytes of a place that are kept.

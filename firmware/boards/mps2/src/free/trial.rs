@@ -3,9 +3,10 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use embassy_time::{Duration, Timer};
+use runtime::ending::digits;
 
 use super::console::say;
-use super::fault::{self, digits};
+use super::fault;
 use super::stack;
 
 /// Does what the word asks for: once since power came, 1 a panic, 2 a task that hangs, both after 300 ms; 3 tells the deepest use

@@ -7,19 +7,23 @@ use core::panic::PanicInfo;
 
 use cortex_m_rt::{ExceptionFrame, exception};
 use cortex_m_semihosting::{debug, hio};
+use runtime::ending::Ending;
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    match info.location() {
-        Some(place) => say(&[b"panic at ", place.file().as_bytes(), b":", &Digits::of(place.line()).text()]),
-        None => say(&[b"panic"]),
-    }
-    end()
+    ended(Ending::Panic(info.location()))
 }
 
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    say(&[b"hard fault, program counter ", &Digits::of(frame.pc()).text()]);
+    ended(Ending::Fault(frame.pc()))
+}
+
+/// Tells the place, then ends the emulator.
+fn ended(how: Ending<'_>) -> ! {
+    let mut place = [0; PLACE_LEN];
+    let len = how.write(&mut place);
+    say(&[b"panic at ", place.get(..len).unwrap_or_default()]);
     end()
 }
 
@@ -40,22 +44,5 @@ fn end() -> ! {
     }
 }
 
-/// A number in decimal digits, without `core::fmt`.
-struct Digits(u32);
-
-impl Digits {
-    const fn of(number: u32) -> Self {
-        Self(number)
-    }
-
-    /// Ten digits with leading zeros.
-    fn text(&self) -> [u8; 10] {
-        let mut rest = self.0;
-        let mut text = [b'0'; 10];
-        for digit in text.iter_mut().rev() {
-            *digit = b'0' + (rest % 10) as u8;
-            rest /= 10;
-        }
-        text
-    }
-}
+/// Bytes of a place that are told.
+const PLACE_LEN: usize = 128;

@@ -1,0 +1,61 @@
+//! Where did a robot's program end? The place of a panic or a fault, in words that can outlive a reset (DESIGN §6).
+//!
+//! Without `core::fmt`, whose formatting takes 7 kB of an image. What a board does besides is its own: motors without current, a
+//! record kept, a new life.
+
+use core::panic::Location;
+
+/// What ended the program.
+#[derive(Clone, Copy, Debug)]
+pub enum Ending<'a> {
+    /// A panic, and where, as far as that is known.
+    Panic(Option<&'a Location<'a>>),
+    /// A hard fault, and where the program counter stood.
+    Fault(u32),
+}
+
+impl Ending<'_> {
+    /// Writes the place into `text`, as much of it as there is room for; how many bytes that is.
+    pub fn write(&self, text: &mut [u8]) -> usize {
+        match self {
+            Self::Panic(Some(place)) => fill(text, &[place.file().as_bytes(), b":", &digits(place.line())]),
+            Self::Panic(None) => fill(text, &[b"an unknown place"]),
+            Self::Fault(counter) => fill(text, &[b"a hard fault, program counter ", &digits(*counter)]),
+        }
+    }
+}
+
+fn fill(text: &mut [u8], words: &[&[u8]]) -> usize {
+    let bytes = words.iter().flat_map(|word| word.iter());
+    text.iter_mut().zip(bytes).map(|(to, from)| *to = *from).count()
+}
+
+/// A number in ten decimal digits, with leading zeros.
+pub fn digits(number: u32) -> [u8; 10] {
+    let (mut rest, mut text) = (number, [b'0'; 10]);
+    for digit in text.iter_mut().rev() {
+        *digit = b'0' + (rest % 10) as u8;
+        rest /= 10;
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::format;
+
+    #[test]
+    fn a_place_is_told_as_file_and_line_and_a_fault_by_its_counter_as_far_as_there_is_room() {
+        let here = Location::caller();
+        let mut text = [0; 96];
+        let len = Ending::Panic(Some(here)).write(&mut text);
+        assert_eq!(text[..len], *format!("{}:{:010}", here.file(), here.line()).as_bytes());
+        let len = Ending::Fault(u32::MAX).write(&mut text);
+        assert_eq!(text[..len], *b"a hard fault, program counter 4294967295");
+        let len = Ending::Panic(None).write(&mut text);
+        assert_eq!(text[..len], *b"an unknown place");
+        assert_eq!(Ending::Panic(None).write(&mut text[..4]), 4);
+        assert_eq!(text[..4], *b"an u");
+    }
+}
