@@ -14,7 +14,6 @@ use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Refusal;
-use crate::link::Pile;
 use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
@@ -47,14 +46,12 @@ impl HostMessage {
         }
     }
 
-    /// Where a payload that is one of these belongs, as far as its first bytes tell: the variant's number, then the picture's or
-    /// whom it is to. `said` are epoch and counter of its frame.
-    pub(crate) fn pile_of(payload: &[u8], said: [u32; 2], me: RobotId) -> Pile {
-        match *payload {
-            [0, picture, ..] => Pile::Picture(said, picture),
-            [1, to, ..] if to == me.number() => Pile::Command(said),
-            [2, to, ..] if to == me.number() => Pile::Welcome,
-            _ => Pile::Others,
+    /// Whether this payload says something to that robot: a part of a picture, or words with its number.
+    pub(crate) fn is_for(payload: &[u8], me: RobotId) -> bool {
+        match payload {
+            [0, ..] => true,
+            [1 | 2, to, ..] => *to == me.number(),
+            _ => false,
         }
     }
 }

@@ -24,34 +24,6 @@ pub enum Heard {
     Host(HostMessage),
 }
 
-/// Whose a packet would be, by what stands in it: nobody has looked at its tag yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pile {
-    /// A part of a picture that the host shows: epoch and counter of the frame, and the picture's number.
-    Picture([u32; 2], u8),
-    /// What the host tells this robot to do: epoch and counter of the frame.
-    Command([u32; 2]),
-    /// A host's welcome to this robot.
-    Welcome,
-    /// A mate's, to its mates.
-    Mate,
-    /// For somebody else: a command to another robot, what a mate tells the host; or nothing anybody knows.
-    Others,
-}
-
-impl Pile {
-    /// Whether what `later` says makes this one needless: of the same host, a later picture or another command.
-    pub fn is_overtaken_by(self, later: Self) -> bool {
-        match (self, later) {
-            (Self::Picture([host, said], number), Self::Picture([other, since], newer)) => {
-                host == other && said < since && (1..128).contains(&newer.wrapping_sub(number))
-            }
-            (Self::Command([host, said]), Self::Command([other, since])) => host == other && said < since,
-            _ => false,
-        }
-    }
-}
-
 /// One robot's end of the radio: seals what it says, opens what it hears, counts what it refuses.
 #[derive(Clone, Debug)]
 pub struct Link {
@@ -102,15 +74,19 @@ impl Link {
         Some(self.seal(&TeamMessage::Greeting(greeting)))
     }
 
-    /// What can be said of a packet without its tag, for who keeps it to open it later; a refusal is counted.
+    /// Whether a packet says that it is for this robot; nobody has looked at its tag. A refusal is counted.
     ///
-    /// A packet for others need not be opened: whatever it says changes nothing here.
-    pub fn sort(&mut self, packet: &[u8]) -> Result<Pile, Refusal> {
-        let sorted = self.envelope(packet).map(|frame| self.pile_of(&frame));
-        if let Err(refusal) = sorted {
+    /// Others' need not be opened: whatever they say changes nothing here.
+    pub fn is_for_me(&mut self, packet: &[u8]) -> Result<bool, Refusal> {
+        let me = self.me;
+        let found = self.envelope(packet).map(|frame| match frame.sender {
+            Sender::Robot(_) => !TeamMessage::is_for_host(frame.payload),
+            Sender::Host => HostMessage::is_for(frame.payload, me),
+        });
+        if let Err(refusal) = found {
             count(&mut self.refused, refusal);
         }
-        sorted
+        found
     }
 
     /// Who says what, or why the packet is not believed (counted).
@@ -157,14 +133,6 @@ impl Link {
         }
         self.sessions.check(&frame)?;
         Ok(frame)
-    }
-
-    fn pile_of(&self, frame: &Frame<'_>) -> Pile {
-        match (frame.sender, frame.payload) {
-            (Sender::Robot(_), payload) if TeamMessage::is_for_host(payload) => Pile::Others,
-            (Sender::Robot(_), _) => Pile::Mate,
-            (Sender::Host, payload) => HostMessage::pile_of(payload, [frame.epoch, frame.counter], self.me),
-        }
     }
 
     fn try_open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {

@@ -23,7 +23,6 @@ mod estimate;
 pub mod execution;
 pub mod governor;
 pub mod hosted;
-mod intake;
 pub mod mates;
 pub mod picture;
 pub mod reactive;

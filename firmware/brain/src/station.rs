@@ -9,7 +9,6 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
 use protocol::{Duration, Instant};
 
-use crate::intake::Intake;
 use crate::{Brain, BrainConfig};
 
 /// A brain with its end of the radio.
@@ -19,8 +18,6 @@ pub struct Station<'a> {
     /// When the brain spoke last, and when mates were greeted last.
     spoke: Option<Instant>,
     greeted: Option<Instant>,
-    /// Where steps are short: packets that wait for one.
-    intake: Intake,
     /// Something has happened since it had nothing more to say.
     stirred: bool,
 }
@@ -38,34 +35,37 @@ impl<'a> Station<'a> {
             link: Link::new(config.team, config.robot, key, config.epoch),
             spoke: None,
             greeted: Some(now),
-            intake: Intake::default(),
             stirred: true,
         }
     }
 
-    /// A packet came; whatever is not a genuine, new message of this team is counted and dropped.
-    ///
-    /// Where steps are long it is opened at once. Where they are short it waits for the next, or for one after that where many
-    /// have come: what a step takes is bounded.
+    /// A packet came; whatever is not a genuine, new message of this team is counted and dropped. Where steps are short nothing is
+    /// said before the next.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if self.brain.has_short_steps() {
-            let pile = self.link.sort(packet).ok();
-            self.intake.keep(now, pile, packet);
+            // A tag costs: what is for somebody else is not opened.
+            if self.link.is_for_me(packet) != Ok(true) {
+                return;
+            }
         } else {
             self.stirred = true;
-            open(&mut self.link, &mut self.brain, [now; 2], packet);
+        }
+        let led_by = self.link.host_life();
+        match self.link.open(packet) {
+            Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
+            Ok(Heard::Host(message)) => {
+                if self.link.host_life() != led_by {
+                    self.brain.handle_new_host();
+                }
+                self.brain.handle_host_message(now, &message);
+            }
+            Err(_) => {}
         }
     }
 
     /// The body's senses: one brain step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.stirred = true;
-        if self.brain.has_short_steps() {
-            self.intake.begin_step();
-            while let Some((came, packet)) = self.intake.next() {
-                open(&mut self.link, &mut self.brain, [came, now], packet);
-            }
-        }
         self.brain.handle_sensors(now, sensors);
     }
 
@@ -121,27 +121,6 @@ impl<'a> Station<'a> {
     /// The link, to look at.
     pub fn link(&self) -> &Link {
         &self.link
-    }
-
-    /// How many packets went unopened because too many others came.
-    pub fn unopened(&self) -> u32 {
-        self.intake.lost()
-    }
-}
-
-/// Opens a packet that came at the first time, at the second; the brain hears what it says.
-fn open(link: &mut Link, brain: &mut Brain<'_>, [came, now]: [Instant; 2], packet: &[u8]) {
-    let led_by = link.host_life();
-    match link.open(packet) {
-        Ok(Heard::Mate(from, message)) => brain.handle_team_message(now, from, &message),
-        Ok(Heard::Host(message)) => {
-            if link.host_life() != led_by {
-                brain.handle_new_host();
-            }
-            // Places hold at the moment of arrival.
-            brain.handle_host_message(came, &message);
-        }
-        Err(_) => {}
     }
 }
 

@@ -270,40 +270,22 @@ fn random_bytes_never_panic() {
 }
 
 #[test]
-fn a_packet_is_sorted_as_what_it_says_when_it_is_opened() {
+fn what_is_for_somebody_else_is_known_before_it_is_opened() {
     let (mut link, mut host) = acquainted();
     let (mut mate, all) = (self::link(3, 5), &[1, 2, 3, 200][..]);
     for to in [2, 3] {
-        let said = [stand(to), welcome(to, 9)];
-        let sorted = said.map(|message| link.sort(&host.seal(&message)).unwrap());
-        match sorted {
-            [Pile::Command([70, _]), Pile::Welcome] => assert_eq!(to, 2),
-            other => assert_eq!((to, other), (3, [Pile::Others; 2])),
+        for message in [stand(to), welcome(to, 9)] {
+            assert_eq!(link.is_for_me(&host.seal(&message)), Ok(to == 2));
         }
     }
-    assert!(matches!(link.sort(&host.seal(&world(1, 0, 1))), Ok(Pile::Picture([70, _], 1))));
-    assert_eq!(link.sort(&mate.seal(&TeamMessage::Telemetry(Telemetry::default()))), Ok(Pile::Others));
-    let greeting = TeamMessage::Greeting(Greeting::default());
-    for message in [beacon(0), greeting] {
-        assert_eq!(link.sort(&mate.seal(&message)), Ok(Pile::Mate));
+    assert_eq!(link.is_for_me(&host.seal(&world(1, 0, 1))), Ok(true));
+    assert_eq!(link.is_for_me(&mate.seal(&TeamMessage::Telemetry(Telemetry::default()))), Ok(false));
+    for message in [beacon(0), TeamMessage::Greeting(Greeting::default())] {
+        assert_eq!(link.is_for_me(&mate.seal(&message)), Ok(true));
     }
     // What is refused without a look at the tag is refused, and counted, at once.
     let own = link.seal(&beacon(0));
-    assert_eq!(link.sort(&own), Err(Refusal::Sender(2)));
-    assert_eq!(link.sort(all), Err(Refusal::Length(4)));
+    assert_eq!(link.is_for_me(&own), Err(Refusal::Sender(2)));
+    assert_eq!(link.is_for_me(all), Err(Refusal::Length(4)));
     assert_eq!((link.refused()[0], link.refused()[3]), (1, 1));
-}
-
-#[test]
-fn later_pictures_and_commands_of_the_same_host_overtake_earlier_ones() {
-    let (picture, next) = (Pile::Picture([7, 1], 250), Pile::Picture([7, 2], 3));
-    assert!(picture.is_overtaken_by(next) && !next.is_overtaken_by(picture));
-    assert!(!picture.is_overtaken_by(picture) && !picture.is_overtaken_by(Pile::Picture([8, 2], 251)));
-    // What comes late does not overtake.
-    assert!(!Pile::Picture([7, 2], 250).is_overtaken_by(Pile::Picture([7, 1], 251)));
-    let command = Pile::Command([7, 4]);
-    assert!(
-        command.is_overtaken_by(Pile::Command([7, 5])) && !command.is_overtaken_by(Pile::Command([7, 3]))
-    );
-    assert!(!command.is_overtaken_by(Pile::Command([8, 5])) && !Pile::Mate.is_overtaken_by(Pile::Mate));
 }

@@ -86,6 +86,10 @@ impl Honest {
         if !known && message != welcome {
             return None;
         }
+        if matches!(&message, HostMessage::Command(command) if command.to != self.me) {
+            // Nothing to this robot: it need not open it, and its counter says nothing of what is said to this one.
+            return None;
+        }
         self.newest[sender] = Some(this);
         Some(Believed::Host(message))
     }
