@@ -86,8 +86,12 @@ impl Honest {
         if !known && message != welcome {
             return None;
         }
-        if matches!(&message, HostMessage::Command(command) if command.to != self.me) {
-            // Nothing to this robot: it need not open it, and its counter says nothing of what is said to this one.
+        let for_another = match &message {
+            HostMessage::World(_) => false,
+            HostMessage::Command(command) => command.to != self.me,
+            HostMessage::Welcome(welcome) => welcome.to != self.me,
+        };
+        if for_another {
             return None;
         }
         self.newest[sender] = Some(this);
