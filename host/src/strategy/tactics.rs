@@ -96,9 +96,9 @@ impl Tactics {
 }
 
 impl Default for Tactics {
-    /// What wins matches. `docs/matches.md` (`cargo xtask matches`) has what each part is worth against our team without it: threats,
-    /// their second level and attack gain; pass-ahead and coerce have not been seen to. Bridge, in 20 matches of 600 s (seed 1), gave
-    /// 34 : 24 goals, a difference of 0.50 (−0.35 to 1.35) a match.
+    /// What wins matches. `docs/matches.md` (`cargo xtask matches`) has what each part is worth against our team without it: threats and
+    /// their second level gain; attack, pass-ahead and coerce cannot be told from nothing, nor can the bridge (20 matches of 600 s,
+    /// seed 1: 34 : 24 goals, a difference of 0.50, −0.35 to 1.35).
     fn default() -> Self {
         Self { threats: true, second_level: true, attack: true, ..Self::NONE }
     }
