@@ -16,9 +16,10 @@ pub(crate) fn write_matches(context: &Context, fresh: bool) -> Result<(), Failur
 }
 
 /// Sections of `docs/matches.md`, and what is played for each: 40 matches tell a goal a match from chance, 10 the order of teams.
-const MATCHES: [(&str, &str); 4] = [
+const MATCHES: [(&str, &str); 5] = [
     ("opponents", "--matches 40"),
     ("round-robin", "--round-robin --matches 10"),
+    ("coerce", "--team ours-with-coerce --opponents zone --matches 40"),
     ("ablations", "--ablations --matches 40"),
     ("ssl-2013", "--league ssl-2013 --matches 10"),
 ];
