@@ -136,7 +136,7 @@ fn a_match_fills_scenes_that_hold_against_the_truth() {
 
 #[test]
 fn a_retrieval_that_is_told_can_be_explained_and_mostly_comes_to_the_same_case() {
-    let happenings = played(45).happenings;
+    let happenings = played(90).happenings;
     let shelf = shelf_of(League::DivisionB, None).unwrap().unwrap();
     let chosen = Chosen { settings: Settings::default(), changed: Vec::new() };
     let (mut told, mut same) = (0, 0);
