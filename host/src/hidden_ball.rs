@@ -60,17 +60,8 @@ impl HiddenBall {
             (None, _, Some(last)) => (last.rest(&world.models), Vector::default()),
             (None, _, None) => return,
         };
-        world.ball = Some(Ball {
-            position,
-            height: 0.0,
-            velocity,
-            climb: 0.0,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 0.0,
-            seen: self.last.map_or(now, |last| last.seen),
-            kicked: None,
-        });
+        let seen = self.last.map_or(now, |last| last.seen);
+        world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
     }
 }
 
@@ -101,17 +92,7 @@ mod tests {
     }
 
     fn ball(x: f32) -> Ball {
-        Ball {
-            position: Point::new(x, 0.0),
-            height: 0.0,
-            velocity: Vector::default(),
-            climb: 0.0,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 1.0,
-            seen: Instant(0),
-            kicked: None,
-        }
+        Ball::at_rest(Point::new(x, 0.0), Instant(0))
     }
 
     fn x_of(

@@ -11,10 +11,7 @@ use crate::strategy::pass::bridge::CasePass;
 
 /// The cases that come with a league; robots that carry others are not understood.
 pub fn cases_of(league: League) -> CaseBase<'static> {
-    case_library::LEAGUES
-        .iter()
-        .find(|cases| cases.name == league.name())
-        .map_or_else(CaseBase::default, case_library::League::base)
+    case_library::league(league.name()).map_or_else(CaseBase::default, case_library::League::base)
 }
 
 /// Of the newest cycle that robots with this case base tell of. None where they play no case, where its next leg is no pass, or where

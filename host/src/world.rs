@@ -156,6 +156,21 @@ impl World {
 }
 
 impl Ball {
+    /// One that lies still, told with full confidence.
+    pub fn at_rest(position: Point<Field>, seen: Instant) -> Self {
+        Self {
+            position,
+            height: 0.0,
+            velocity: Vector::default(),
+            climb: 0.0,
+            rolls_below: f32::INFINITY,
+            bounced: false,
+            confidence: 1.0,
+            seen,
+            kicked: None,
+        }
+    }
+
     /// Whether it is off the ground by more than a robot's kicker can ignore.
     pub fn flies(&self) -> bool {
         self.height > FLIES_ABOVE
@@ -275,17 +290,7 @@ mod tests {
     }
 
     fn ball(velocity: Vector<Field>, height: f32, climb: f32) -> Ball {
-        Ball {
-            position: Point::default(),
-            height,
-            velocity,
-            climb,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 1.0,
-            seen: Instant(0),
-            kicked: None,
-        }
+        Ball { height, velocity, climb, ..Ball::at_rest(Point::default(), Instant(0)) }
     }
 
     #[test]

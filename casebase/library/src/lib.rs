@@ -47,6 +47,11 @@ impl League {
     }
 }
 
+/// The league of that name, if cases come with it.
+pub fn league(name: &str) -> Option<&'static League> {
+    LEAGUES.iter().find(|league| league.name == name)
+}
+
 /// Bytes at a multiple of 4, as a case base must begin.
 #[repr(C, align(4))]
 struct Aligned<B: ?Sized>(B);

@@ -57,7 +57,7 @@ pub struct TrialConfig<'a> {
 impl TrialConfig<'static> {
     /// As in the paper's simulated experiments, with the built-in library of the four-legged league.
     pub fn new(scenario: Scenario, opponents: Configuration, approach: Approach, seed: u64) -> Self {
-        let league = case_library::LEAGUES.iter().find(|league| league.name == LEAGUE);
+        let league = case_library::league(LEAGUE);
         Self {
             scenario,
             layout: None,

@@ -9,7 +9,7 @@ use protocol::{Instant, RobotId, Who};
 use rules::{Colour, League, Phase};
 
 fn short(seed: u64, seconds: f64, watcher: &mut dyn Watcher) -> GameReport {
-    let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+    let base = case_library::division_b();
     let config = GameConfig::new(League::DivisionB, seed, seconds);
     play(&config, &mut NativeBackend::new(base), watcher).unwrap()
 }
@@ -136,7 +136,7 @@ fn watching_changes_nothing_and_frames_keep_their_budgets() {
 
 #[test]
 fn a_robot_that_crashes_falls_silent_and_one_that_boots_is_heard_and_led_again() {
-    let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+    let base = case_library::division_b();
     let config = GameConfig::new(League::DivisionB, 4, 60.0);
     let mut backend = NativeBackend::new(base);
     let mut game = Game::new(&config, &mut backend).unwrap();

@@ -7,7 +7,7 @@ use rules::League;
 
 /// Goals for and against in a match of ten minutes against the side that stands.
 fn goals(team: Team, seed: u64) -> [u32; 2] {
-    let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+    let base = case_library::division_b();
     let config = GameConfig::new(League::DivisionB, seed, 600.0).between(team, Team::Idle);
     let report = play(&config, &mut NativeBackend::new(base), &mut Nobody).unwrap();
     assert_eq!((report.teams.blue, report.teams.yellow), (team, Team::Idle));

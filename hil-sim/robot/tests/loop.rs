@@ -25,7 +25,7 @@ fn config() -> BrainConfig {
 }
 
 fn base() -> CaseBase<'static> {
-    case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base()
+    case_library::division_b()
 }
 
 #[test]

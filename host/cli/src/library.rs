@@ -25,9 +25,7 @@ impl Shelf {
     pub(crate) fn open(args: &LibraryArgs) -> Result<Self, Failure> {
         match &args.folder.library {
             Some(folder) => Self::read(folder),
-            None => LEAGUES
-                .iter()
-                .find(|league| league.name == args.league)
+            None => case_library::league(&args.league)
                 .map(Self::built_in)
                 .ok_or_else(|| Failure::UnknownLeague(args.league.clone())),
         }

@@ -10,8 +10,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use brain::BrainConfig;
-use case_library::LEAGUES;
-use casebase::{CaseBase, GoalEnd};
+use casebase::GoalEnd;
 use clap::Args;
 use host::shell::key;
 use protocol::frame::TeamKey;
@@ -67,10 +66,7 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
     let base = match &shelf {
         Some(shelf) => shelf.base(),
         // A league without cases of its own is played without.
-        None => LEAGUES
-            .iter()
-            .find(|league| league.name == args.league.name())
-            .map_or_else(CaseBase::default, case_library::League::base),
+        None => host::cases_of(args.league),
     };
     let brain = BrainConfig {
         // Seconds since 1970: rises with every start that is a second after the last, which `control` sees to.

@@ -51,21 +51,31 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let value = ByPassLocation::new(&kicks);
     let mut random = Random::new(3);
-    let mut view = random.free_kick(league, 6);
-    let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
-    let (mut attacks, mut planned) = (0, planner.plan(&view, &value, TAKER, 1).is_some());
+    // A free kick that is worth coercing for; most are not.
+    let (mut view, mut planner) = loop {
+        let view = random.free_kick(league, 6);
+        let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
+        if planner.plan(&view, &value, TAKER, 1).is_some() {
+            break (view, planner);
+        }
+    };
+    let (mut attacks, mut planned, mut coercing) = (0, 1, 0);
     for i in 0..count {
         if attack {
-            planned &= planner.plan(&view, &value, TAKER, u64::from(i)).is_some();
+            planned += u32::from(planner.plan(&view, &value, TAKER, u64::from(i)).is_some());
             planner.watch(&view, &value);
             view.now += Duration::millis(5_000);
         } else {
             // A microsecond: coercing never ends.
             view.now += Duration(1);
         }
-        attacks += u32::from(matches!(planner.watch(&view, &value), Progress::Attacking(_)));
+        match planner.watch(&view, &value) {
+            Progress::Attacking(_) => attacks += 1,
+            Progress::Coercing { .. } => coercing += 1,
+            _ => {}
+        }
     }
-    format!("planned {planned}, {attacks} attacks")
+    format!("{planned} plans, {attacks} attacks, {coercing} ticks of coercing")
 }
 
 /// Takes the free kick.

@@ -112,15 +112,10 @@ fn seen(now: Instant, truth: &World) -> host::world::World {
     let mut world = host::world::World::empty(now, BallModels::default());
     let ball = &truth.ball;
     world.ball = Some(Ball {
-        position: ball.position,
         height: ball.height,
         velocity: ball.velocity,
         climb: ball.climb,
-        rolls_below: f32::INFINITY,
-        bounced: false,
-        confidence: 1.0,
-        seen: now,
-        kicked: None,
+        ..Ball::at_rest(ball.position, now)
     });
     for robot in truth.robots().iter().filter(|robot| robot.present) {
         world.put(Robot {

@@ -22,7 +22,7 @@ impl Folder {
     }
 
     fn play(&self, shard: Shard, threads: usize) -> Vec<MatchRow> {
-        let base = case_library::LEAGUES.iter().find(|league| league.name == "division-b").unwrap().base();
+        let base = case_library::division_b();
         let matches = Matches {
             plan: Plan {
                 seed: 4,

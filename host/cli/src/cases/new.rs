@@ -6,7 +6,6 @@ use std::io::{self, Read, Write, stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use case_library::LEAGUES;
 use case_tools::{Files, SkeletonError, SourceFile, skeleton};
 use casebase::Problem;
 use clap::Args;
@@ -73,7 +72,7 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
         })?;
         return Ok(SourceFile { path, name: "league".to_owned(), text });
     }
-    let league = LEAGUES.iter().find(|league| league.name == args.league);
+    let league = case_library::league(&args.league);
     let league = league.ok_or_else(|| Failure::UnknownLeague(args.league.clone()))?;
     Ok(Files::from_texts(league.name, league.rules, &[]).rules)
 }

@@ -198,7 +198,7 @@ impl<'a> Made<'a> {
     /// For a document, whose pictures lie in the folder `beside`.
     fn text(&self, beside: &str, section: &str) -> String {
         let MatchIdentity { plan, case_base, .. } = self.identity;
-        let cases = if case_library::LEAGUES.iter().any(|known| known.name == plan.league) {
+        let cases = if case_library::league(&plan.league).is_some() {
             format!("cases {case_base}")
         } else {
             "no cases come with this league: robots that the host leaves free play reactively".to_owned()

@@ -203,7 +203,7 @@ fn setup_of(identity: &Identity) -> Result<Setup, Failure> {
 
 /// A built-in league by its name, any other word is a folder.
 fn library(word: &str) -> LibraryArgs {
-    let built_in = case_library::LEAGUES.iter().any(|league| league.name == word);
+    let built_in = case_library::league(word).is_some();
     let library = (!built_in).then(|| PathBuf::from(word));
     LibraryArgs { folder: FolderArgs { library }, league: word.to_owned() }
 }

@@ -97,7 +97,7 @@ pub(crate) fn stay(page: Page, words: &str) {
 
 /// The cases that come with a league, or a folder's; none where neither is there.
 pub(crate) fn shelf_of(league: League, folder: Option<&std::path::Path>) -> Result<Option<Shelf>, Failure> {
-    let known = case_library::LEAGUES.iter().any(|known| known.name == league.name());
+    let known = case_library::league(league.name()).is_some();
     if folder.is_none() && !known {
         return Ok(None);
     }

@@ -63,17 +63,7 @@ mod tests {
     fn world(ball: f32, robot: f32) -> World {
         let mut world = World::default();
         let at = |x| Point::new(x, 0.0);
-        world.ball = Some(Ball {
-            position: at(ball),
-            height: 0.0,
-            velocity: Vector::default(),
-            climb: 0.0,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 1.0,
-            seen: Instant(0),
-            kicked: None,
-        });
+        world.ball = Some(Ball::at_rest(at(ball), Instant(0)));
         world.put(Robot {
             who: Who { colour: Colour::Yellow, id: RobotId::ZERO },
             pose: Pose { position: at(robot), heading: Angle::ZERO },

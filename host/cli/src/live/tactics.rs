@@ -240,17 +240,7 @@ mod tests {
     /// Blue defends −x and has the ball; two of three of each team are field players.
     fn picture(t: f64, ball: (f32, f32), phase: Phase<Colour>) -> Picture {
         let mut world = World::default();
-        world.ball = Some(Ball {
-            position: Point::new(ball.0, ball.1),
-            height: 0.0,
-            velocity: Vector::default(),
-            climb: 0.0,
-            rolls_below: f32::INFINITY,
-            bounced: false,
-            confidence: 1.0,
-            seen: Instant(0),
-            kicked: None,
-        });
+        world.ball = Some(Ball::at_rest(Point::new(ball.0, ball.1), Instant(0)));
         let teams = [
             (Colour::Blue, [(-4.4, 0.0), (0.1, 0.0), (2.0, 1.5)]),
             (Colour::Yellow, [(4.4, 0.0), (3.0, -0.5), (1.0, -1.5)]),

@@ -60,17 +60,7 @@ impl Play {
                 });
             }
             let (position, velocity, height) = (self.ball)(tick as f32 * 0.01);
-            world.ball = Some(Ball {
-                position,
-                height,
-                velocity,
-                climb: 0.0,
-                rolls_below: f32::INFINITY,
-                bounced: false,
-                confidence: 1.0,
-                seen: world.time,
-                kicked: None,
-            });
+            world.ball = Some(Ball { height, velocity, ..Ball::at_rest(position, world.time) });
             if let Some(verdict) = watch.observe(&world, &field) {
                 return verdict;
             }
