@@ -13,9 +13,9 @@ use protocol::host::{
     Command, Directive, Duty, HostMessage, PART_ROBOTS_MAX, Telemetry, WireBall, WireRobot, WireWho,
     WorldPart,
 };
-use protocol::quantized::to_mm;
+use protocol::quantized::{WirePoint, WirePose, to_mm};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
-use protocol::team::{Closure, CycleState, Decision, TeamMessage};
+use protocol::team::{Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage};
 use protocol::{CycleId, Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
@@ -41,6 +41,8 @@ pub struct Carpet<'a> {
     pub telemetry: BTreeMap<RobotId, (Instant, Telemetry)>,
     /// The host says nothing.
     pub silent: bool,
+    /// So many mates that do not play say something in each step.
+    pub chatter: u8,
     steps: u64,
     picture: u8,
     air: Vec<(RobotId, TeamMessage)>,
@@ -70,6 +72,7 @@ impl<'a> Carpet<'a> {
             ends: Vec::new(),
             telemetry: BTreeMap::new(),
             silent: false,
+            chatter: 0,
             steps: 0,
             picture: 0,
             air: Vec::new(),
@@ -144,6 +147,11 @@ impl<'a> Carpet<'a> {
         self.events.iter().filter_map(kick).collect()
     }
 
+    /// What ours said in the last step.
+    pub fn said(&self) -> &[(RobotId, TeamMessage)] {
+        &self.air
+    }
+
     /// 10 ms of everything.
     pub fn step(&mut self) {
         self.steps += 1;
@@ -151,7 +159,9 @@ impl<'a> Carpet<'a> {
         if !self.silent && !self.steps.is_multiple_of(4) {
             self.show(now);
         }
-        let heard = std::mem::take(&mut self.air);
+        let mut heard = std::mem::take(&mut self.air);
+        let strangers = RobotId::all().skip(RobotId::COUNT - usize::from(self.chatter));
+        heard.extend(strangers.map(|id| (id, TeamMessage::Beacon(IDLE))));
         for (&id, brain) in &mut self.brains {
             while let Some(due) = brain.poll_timeout().filter(|due| *due <= now) {
                 brain.handle_timeout(due);
@@ -237,6 +247,17 @@ impl<'a> Carpet<'a> {
         }
     }
 }
+
+/// What somebody says that is there and does nothing.
+const IDLE: Beacon = Beacon {
+    pose: WirePose { at: WirePoint { x: 0, y: 0 }, heading: 0 },
+    ball: None,
+    status: Status(0),
+    case_base: 0,
+    cycle: None,
+    progress: Progress::Idle,
+    role: Role::None,
+};
 
 /// A pose of metres and degrees.
 pub fn pose(x: f32, y: f32, degrees: f32) -> Pose<Field> {

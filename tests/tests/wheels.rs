@@ -4,9 +4,10 @@ use brain::governor::Ruling;
 use casebase::CaseBase;
 use geometry::{Angle, Field, Point};
 use match_tests::carpet::{Carpet, kicks, pose};
+use protocol::RobotId;
 use protocol::host::{Condition, Directive, Duty, Hint, KickOrder};
 use protocol::quantized::{WirePoint, WirePose};
-use protocol::team::Closure;
+use protocol::team::{Closure, TeamMessage};
 use rules::{League, Phase, Side};
 
 fn base() -> CaseBase<'static> {
@@ -46,6 +47,53 @@ fn three_metres_across_the_field_take_less_than_2_2_s_and_end_within_a_centimetr
     let took = carpet.until(4.0, there).expect("arrives");
     assert!(took < 2.2, "{took}");
     carpet.during(1.0, |carpet| assert!(there(carpet), "stays"));
+}
+
+#[test]
+fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
+    let robot = RobotId::new(1).unwrap();
+    // Whether its order of that step is another because it is told to go back, the mates speaking or not.
+    let turns = |chatter: &[u8]| {
+        let [on, back] = [go_to(1.0, 1.236, 135.0), go_to(-1.0, -1.0, 0.0)].map(|second| {
+            let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+            carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
+            carpet.during(0.3, |_| {});
+            carpet.tell(1, Duty::Player, second);
+            for mates in chatter {
+                carpet.chatter = *mates;
+                carpet.step();
+            }
+            carpet.orders[&robot]
+        });
+        on != back
+    };
+    assert!(turns(&[0]) && !turns(&[5]) && turns(&[5, 0]));
+}
+
+#[test]
+fn on_an_air_that_is_always_full_a_robot_arrives_a_tenth_of_a_second_later_at_most() {
+    let goal = Point::new(1.0, 1.236);
+    let [quiet, full] = [0, 9].map(|chatter| {
+        let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
+        carpet.chatter = chatter;
+        carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
+        carpet.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
+    });
+    assert!(full < quiet + 0.1, "{full} s instead of {quiet}");
+}
+
+#[test]
+fn mates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
+    let places: Vec<_> = (0..6).map(|n| (n, 0.5 * f32::from(n), -1.0, 0.0)).collect();
+    let mut carpet = carpet((0.0, 2.5), &places);
+    let mut beacons = [0; 6];
+    carpet.during(1.0, |carpet| {
+        let speaks = |(_, message): &&_| matches!(message, TeamMessage::Beacon(_));
+        let speakers: Vec<_> = carpet.said().iter().filter(speaks).map(|(id, _)| id.index()).collect();
+        assert!(speakers.len() <= 2, "{speakers:?}");
+        speakers.into_iter().for_each(|id| beacons[id] += 1);
+    });
+    assert_eq!(beacons, [20; 6]);
 }
 
 #[test]
@@ -132,7 +180,7 @@ fn a_free_kick_is_taken_with_one_touch_and_the_taker_leaves_the_ball_alone_after
 fn a_pass_waits_behind_the_ball_until_it_is_ready() {
     let mut carpet = carpet((0.0, 0.0), &[(1, -0.6, 0.2, 0.0), (2, 2.0, 1.0, 0.0)]);
     carpet.phase = Phase::FreeKick(Side::Ours);
-    let receiver = protocol::RobotId::new(2).unwrap();
+    let receiver = RobotId::new(2).unwrap();
     let order = |ready| Directive::Pass { at: at(2.0, 1.0), receiver, kick: KickOrder::Flat(350), ready };
     carpet.tell(1, Duty::Taker, order(false));
     carpet.during(3.0, |c| assert!(!c.ours(1).touching));
@@ -310,7 +358,7 @@ fn three_robots_play_cases_on_wheels_and_score_against_nobody() {
 fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_without_it() {
     let mut carpet = carpet((-0.2, 0.1), &[(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)]);
     gameplay(&mut carpet, &[1, 2, 3]);
-    let id = |n| protocol::RobotId::new(n).unwrap();
+    let id = |n| RobotId::new(n).unwrap();
     let plays =
         |c: &Carpet<'_>, n| c.brain(1).cycle().play().is_some_and(|play| play.part_of(id(n)).is_some());
     carpet.until(3.0, |c| plays(c, 2)).expect("a gameplay with robot 2");
@@ -323,7 +371,7 @@ fn a_robot_that_is_led_elsewhere_leaves_its_gameplay_and_the_others_choose_anew_
 #[test]
 fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
     let base = base();
-    let robots = |ids: &[u8]| ids.iter().map(|n| protocol::RobotId::new(*n).unwrap()).collect();
+    let robots = |ids: &[u8]| ids.iter().map(|n| RobotId::new(*n).unwrap()).collect();
     let problem = (-0.2, 0.1);
     let places = [(1, -0.8, 0.1, 0.0), (2, 0.3, 1.1, 0.0), (3, -0.2, -1.2, 0.0)];
     // Any case towards +x for two robots, played the other way round than retrieval would.
@@ -358,7 +406,7 @@ fn the_hosts_proposal_is_played_while_it_is_fresh_and_only_if_it_can_be() {
 #[test]
 fn a_robot_tells_the_host_ten_times_a_second_how_it_is_and_that_it_lost_the_link() {
     let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, 0.0, 0.0)]);
-    let one = protocol::RobotId::new(1).unwrap();
+    let one = RobotId::new(1).unwrap();
     // The kicker was discharged until the link was good, and takes half a second.
     carpet.during(0.6, |_| {});
     carpet.during(1.0, |c| {

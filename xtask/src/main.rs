@@ -17,6 +17,7 @@ mod pictures;
 mod readme;
 mod report;
 mod simulator_cost;
+mod space;
 mod steps;
 mod strategy_cost;
 mod trial_cost;
@@ -58,6 +59,9 @@ fn main() -> ExitCode {
 
 fn test(steps: &[&'static Step]) -> ExitCode {
     let context = Context::new();
+    if let Some(warning) = space::warning(context.root()) {
+        eprintln!("xtask: {warning}");
+    }
     let outcomes: Vec<_> = steps.iter().map(|step| report::run(step, &context)).collect();
     println!("{}", report::summary(&outcomes));
     if outcomes.iter().all(|outcome| outcome.failure.is_none()) {

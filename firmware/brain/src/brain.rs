@@ -27,6 +27,17 @@ use crate::team::{Cycle, retrieval};
 use crate::timer::{Timer, TimerTable};
 use tell::Spoken;
 
+/// What has come since the last step, beside time.
+#[derive(Clone, Copy, Debug, Default)]
+struct Since {
+    /// Frames of mates and host.
+    heard: u8,
+    /// It has retrieved.
+    retrieved: bool,
+    /// A gameplay has begun or ended.
+    turned: bool,
+}
+
 /// A robot's brain.
 pub struct Brain<'a> {
     config: BrainConfig,
@@ -49,8 +60,10 @@ pub struct Brain<'a> {
     was_available: bool,
     actuators: Option<ActuatorFrame>,
     beacon_due: bool,
-    /// It has retrieved, or taken up a gameplay, since its last step.
-    pondered: bool,
+    /// What has come since its last step.
+    since: Since,
+    /// So many steps it may stay on its way before it must plan: up to [`ONWARDS_MOST`].
+    onwards: u8,
     spoken: Spoken,
 }
 
@@ -78,7 +91,8 @@ impl<'a> Brain<'a> {
             was_available: !config.hosted,
             actuators: None,
             beacon_due: false,
-            pondered: false,
+            since: Since::default(),
+            onwards: ONWARDS_MOST,
             spoken: Spoken::default(),
         }
     }
@@ -87,6 +101,7 @@ impl<'a> Brain<'a> {
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
         // What mates tell the host of themselves is not for us.
         let TeamMessage::Beacon(beacon) = message else { return };
+        self.since.heard = self.since.heard.saturating_add(1);
         self.timers.advance(now);
         self.mates.hear(now, from, beacon);
         if self.config.approach != Approach::Reactive
@@ -99,6 +114,7 @@ impl<'a> Brain<'a> {
     /// The host's word; a robot that expects none does not listen.
     pub fn handle_host_message(&mut self, now: Instant, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
+        self.since.heard = self.since.heard.saturating_add(1);
         self.timers.advance(now);
         if host.handle(now, message) {
             self.limbs.hear_host(now);
@@ -122,14 +138,30 @@ impl<'a> Brain<'a> {
             None => self.belief.update(now, self.config.robot, sensors, &self.mates),
         }
         self.coordinate(now);
-        // Where steps are short, one of them is not for retrieving and planning a way both: it brakes for 10 ms.
-        let pondered = core::mem::take(&mut self.pondered) && self.has_short_steps();
-        let intent = if pondered { Intent::Stand { face: None } } else { self.act(now) };
+        let intent = self.intent(now);
         let Self { limbs, belief, mates, host, .. } = self;
         self.actuators = Some(limbs.act(now, belief, mates, host.as_ref(), sensors, intent));
         self.spoken.sense(sensors);
-        let period = self.limbs.beacon_period();
-        self.beacon_due |= period.is_none_or(|period| self.spoken.is_beacon_due(now, period));
+        self.beacon_due |= self.spoken.has_turn(self.config.robot, self.limbs.beacon_steps());
+    }
+
+    /// What it wants of its body. Where steps are short, one of them is not for planning and something else that takes long: in
+    /// which a gameplay begins or ends it brakes for 10 ms; in which it retrieved or heard much it stays on its way.
+    fn intent(&mut self, now: Instant) -> Intent {
+        let since = core::mem::take(&mut self.since);
+        let heard_most = if self.limbs.winds() { HEARD_MOST_WINDING } else { HEARD_MOST };
+        let is_busy = since.retrieved || since.heard > heard_most;
+        if !self.has_short_steps() {
+            self.act(now)
+        } else if since.turned {
+            Intent::Stand { face: None }
+        } else if is_busy && self.onwards > 0 {
+            self.onwards -= 1;
+            Intent::Onwards
+        } else {
+            self.onwards = ONWARDS_MOST.min(self.onwards + 1);
+            self.act(now)
+        }
     }
 
     /// A deadline has come.
@@ -197,3 +229,12 @@ impl<'a> Brain<'a> {
         retrieval::problem(now, config.robot, base, belief.game.defending, belief, mates)
     }
 }
+
+/// Frames that a short step opens and still plans: both parts of a picture, a command and two mates' beacons. Opening one takes
+/// 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take (DESIGN §9).
+const HEARD_MOST: u8 = 5;
+/// One less where the way leads around something: to look for such a way takes 7,000 of them.
+const HEARD_MOST_WINDING: u8 = 4;
+/// So many steps in a row it stays on its way: a cycle's end, a proposal, its answer and mates' usual beacons between them, twice. Each
+/// step that plans earns one again, so that on an air that is always full every second step plans.
+const ONWARDS_MOST: u8 = 10;

@@ -2,8 +2,8 @@
 
 use geometry::Twist;
 use motion::omni::Omni;
+use protocol::Instant;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
-use protocol::{Duration, Instant};
 use rules::League;
 
 use crate::belief::Belief;
@@ -62,11 +62,19 @@ impl Limbs {
         matches!(self, Self::Wheels(..))
     }
 
-    /// How often this body's robots tell their mates of themselves; `None`: every step (DESIGN §5).
-    pub fn beacon_period(&self) -> Option<Duration> {
+    /// On wheels: whether the last way led around something.
+    pub fn winds(&self) -> bool {
         match self {
-            Self::Legs(_) => None,
-            Self::Wheels(..) => Some(BEACON_PERIOD),
+            Self::Legs(_) => false,
+            Self::Wheels(_, wheels) => wheels.drivetrain.winds(),
+        }
+    }
+
+    /// Every how many steps this body's robots tell their mates of themselves (DESIGN §5).
+    pub fn beacon_steps(&self) -> u8 {
+        match self {
+            Self::Legs(_) => 1,
+            Self::Wheels(..) => BEACON_STEPS,
         }
     }
 
@@ -130,7 +138,7 @@ impl Limbs {
     }
 }
 
-/// 20 beacons a second (DESIGN §5).
-const BEACON_PERIOD: Duration = Duration::millis(50);
+/// 20 beacons a second, in steps of 10 ms (DESIGN §2, §5).
+const BEACON_STEPS: u8 = 5;
 /// No rim is asked to run faster, m/s: below what wheels run free (the simulator's 6).
 const RIM_MAX: f32 = 5.0;

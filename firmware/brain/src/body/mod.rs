@@ -50,6 +50,8 @@ pub enum Intent {
     Kick(LeggedKick),
     /// On wheels: a way to go, with dribbler and kicker.
     Drive(omni::Drive),
+    /// On wheels: the way of the step before, once more.
+    Onwards,
 }
 
 impl Intent {
@@ -58,6 +60,8 @@ impl Intent {
         match self {
             Self::Kick(_) => true,
             Self::Drive(drive) => matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
+            // What it wanted before was told before.
+            Self::Onwards => false,
             Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {
                 false
             }

@@ -38,7 +38,7 @@ impl Brain<'_> {
             Decision::Play(_) | Decision::Closed(_) => {}
         }
         if news == News::Gameplay {
-            self.pondered = true;
+            self.since.turned = true;
             self.begin_part(now);
         }
     }
@@ -115,7 +115,7 @@ impl Brain<'_> {
                 if elects && settled && told && !paused { self.propose(now) } else { None }
             }
             Some(Decision::Undecided) if self.cycle.is_mine_to_decide() => {
-                self.pondered = true;
+                self.since.retrieved = true;
                 let holder = self.holder(now);
                 let decision = self.problem(now).map_or(Decision::NoCase, |problem| {
                     let hint = self.hint(now);

@@ -4,7 +4,7 @@ use protocol::host::{Condition, Telemetry};
 use protocol::quantized::length_to_mm;
 use protocol::robot_io::SensorFrame;
 use protocol::team::{BallReport, Beacon, Role, Status};
-use protocol::{Duration, Instant};
+use protocol::{Duration, Instant, RobotId};
 
 use super::Brain;
 use crate::governor::{Ruling, Why};
@@ -13,6 +13,8 @@ use crate::governor::{Ruling, Why};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spoken {
     beacon: Option<Instant>,
+    /// Steps, counted round: see [`Spoken::has_turn`].
+    steps: u8,
     telemetry: Option<(Instant, Condition)>,
     /// What the body said of itself last.
     battery: Option<f32>,
@@ -29,8 +31,11 @@ impl Spoken {
         self.tipped = sensors.health.tipped;
     }
 
-    pub(super) fn is_beacon_due(&self, now: Instant, period: Duration) -> bool {
-        self.beacon.is_none_or(|last| now.since(last) >= period)
+    /// Another step: whether it is this robot's turn, which comes round every so many steps. Mates have different turns by their
+    /// numbers: who speaks when all speak is not heard, and five beacons in one step are long to open.
+    pub(super) fn has_turn(&mut self, robot: RobotId, every: u8) -> bool {
+        self.steps = (self.steps + 1) % every;
+        usize::from(self.steps) == robot.index() % usize::from(every)
     }
 
     pub(super) fn beacon(&mut self, now: Instant) {

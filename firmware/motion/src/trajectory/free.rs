@@ -119,6 +119,13 @@ impl<F> FreeMotion<F> {
     }
 }
 
+impl<F: Copy> FreeMotion<F> {
+    /// Where it ends, at rest.
+    pub fn to(&self) -> Point<F> {
+        self.to
+    }
+}
+
 impl<F: Copy> Motion<F> for FreeMotion<F> {
     fn duration(&self) -> f32 {
         math::max(self.x.duration, self.y.duration)

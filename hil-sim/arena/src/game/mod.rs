@@ -166,13 +166,16 @@ impl<'a> Game<'a> {
         let (tick, now) = (self.tick, self.now());
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
-            team.deadline(tick, now, watcher);
+            team.hear(tick, now, watcher);
             team.think(tick, now, &mut self.world, &mut self.trace)?;
         }
         self.events.clear();
         for step in 0..STEPS_A_TICK {
             self.world.step();
             let now = Instant(now.0 + (step + 1) * 1_000);
+            for team in &mut self.teams {
+                team.deadline(tick, now, watcher);
+            }
             self.cameras.watch(&self.world);
             while let Some(packet) = self.cameras.poll(self.world.now()) {
                 let bytes = packet.encode_to_vec();

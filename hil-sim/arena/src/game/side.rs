@@ -78,11 +78,15 @@ impl<'a> Team<'a> {
         }
     }
 
-    /// The host's deadline, if it has come, and what robots said to it.
-    pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
+    /// What robots said reaches the host.
+    pub(super) fn hear(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         for packet in self.air.deliver_to_host(tick) {
             self.tell(tick, now, Input::Robot(&packet), watcher);
         }
+    }
+
+    /// The host's deadline, if it has come: a computer wakes up for it, it does not wait for robots' steps.
+    pub(super) fn deadline(&mut self, tick: u32, now: Instant, watcher: &mut dyn Watcher) {
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.tell(tick, now, Input::Timeout, watcher);
         }

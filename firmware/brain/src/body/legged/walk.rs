@@ -38,7 +38,7 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
         Intent::Grab => primitive(LeggedPrimitive::Grab),
         Intent::Kick(kick) => primitive(LeggedPrimitive::Kick(kick)),
         // Legs have no wheels.
-        Intent::Drive(_) => walk(Twist::default()),
+        Intent::Drive(_) | Intent::Onwards => walk(Twist::default()),
     }
 }
 

@@ -3,9 +3,9 @@
 //! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
 //! they do not, from the measured one). SI, body frame out.
 
-use geometry::{Angle, Body, Field, Twist, Vector, math};
-use motion::avoid::{self, Course};
-use motion::trajectory::{FreeLimits, TurnLimits};
+use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
+use motion::avoid::{self, Course, Restraint, Verdict};
+use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
 use rules::Phase;
@@ -23,6 +23,18 @@ pub struct Drivetrain {
     velocity: Vector<Field>,
     angular: f32,
     stepped: Option<Instant>,
+    /// The way it is on; none where it stands or brakes.
+    under_way: Option<UnderWay>,
+}
+
+/// What a way came to when it was planned last.
+#[derive(Clone, Copy, Debug)]
+struct UnderWay {
+    drive: Drive,
+    /// The goal, or past the first corner on the way to it.
+    towards: Point<Field>,
+    /// It leads around something.
+    winds: bool,
 }
 
 impl Drivetrain {
@@ -37,11 +49,13 @@ impl Drivetrain {
         if (self.angular - belief.angular).abs() > ASTRAY_TURN {
             self.angular = belief.angular;
         }
+        let under_way = self.under_way.take();
         match intent {
-            Intent::Stand { face } => {
-                let speed = (self.velocity.norm() - LIMITS.braking * step).max(0.0);
-                self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
-            }
+            Intent::Stand { face } => self.stand(belief, step, face),
+            Intent::Onwards => match under_way {
+                Some(way) => self.onwards(belief, step, way),
+                None => self.stand(belief, step, None),
+            },
             Intent::Turn { heading } => {
                 let here = belief.pose.position;
                 let drive =
@@ -64,6 +78,24 @@ impl Drivetrain {
         self.angular = twist.angular;
     }
 
+    /// Its last way led around something: to look for one takes longer.
+    pub fn winds(&self) -> bool {
+        self.under_way.is_some_and(|way| way.winds)
+    }
+
+    fn stand(&mut self, belief: &Belief, step: f32, face: Option<Angle>) -> Wanted {
+        let speed = (self.velocity.norm() - LIMITS.braking * step).max(0.0);
+        self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
+    }
+
+    /// The same way once more, without looking for a better one: a tenth of what [`Drivetrain::follow`] takes.
+    fn onwards(&mut self, belief: &Belief, step: f32, way: UnderWay) -> Wanted {
+        self.under_way = Some(way);
+        let UnderWay { drive, towards, .. } = way;
+        let motion = limits(belief, &drive).plan(belief.pose.position, self.velocity, towards);
+        self.wanted(belief, step, motion.at(step).velocity, Some(drive.face), &drive)
+    }
+
     fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
         let from = belief.pose.position;
         let rests = self.velocity.norm() < THERE_SPEED;
@@ -84,6 +116,10 @@ impl Drivetrain {
             step,
             effort: EFFORT,
         });
+        if way.restraint == Restraint::None {
+            let winds = way.verdict != Verdict::Direct;
+            self.under_way = Some(UnderWay { drive: *drive, towards: way.motion.to(), winds });
+        }
         let there = rests && from.distance(way.goal) < THERE;
         let velocity = if there { Vector::default() } else { way.next.velocity };
         self.wanted(belief, step, velocity, Some(drive.face), drive)

@@ -86,7 +86,7 @@ pub(super) fn meet(belief: &Belief, ball: &Ball) -> Drive {
         reach: BALL_AT,
         until,
     };
-    let place = match question.find_within(&LIMITS, PLANS_MAX) {
+    let place = match question.find_within(&LIMITS, LOOKS_MAX) {
         Verdict::Meets(meeting) => meeting.place,
         Verdict::Chase { place, .. } => place,
     };
@@ -163,8 +163,9 @@ const ALIGNED: f32 = 0.15;
 const LEAD: f32 = 0.05;
 /// So far ahead the ball is followed, s: looking farther costs, and what comes later is looked at anew before.
 pub(super) const LOOKS_AHEAD: f32 = 0.8;
-/// Motions that are planned in vain before it looks less closely where to meet the ball: a step is bounded.
-const PLANS_MAX: u32 = 4;
+/// Places that are looked at in vain before it looks less closely where to meet the ball: a step is bounded. In 2,000 questions the
+/// place is the soonest for 828 of 833 that have one (a test of `motion::intercept`).
+const LOOKS_MAX: u32 = 4;
 /// A point far back on the ball's line, m.
 const FAR_BACK: f32 = 20.0;
 /// So long before the ball comes the dribbler turns and the robot gives way, s.
