@@ -197,7 +197,7 @@ impl<'a> Made<'a> {
 
     /// For a document, whose pictures lie in the folder `beside`.
     fn text(&self, beside: &str, section: &str) -> String {
-        let MatchIdentity { plan, case_base, .. } = self.identity;
+        let MatchIdentity { plan, case_base, program, .. } = self.identity;
         let cases = if case_library::league(&plan.league).is_some() {
             format!("cases {case_base}")
         } else {
@@ -207,7 +207,7 @@ impl<'a> Made<'a> {
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{} matches a pair of {} s on {} ({cases}), seed {}, csv hash {}. `ours` plays {} of the second paper.\n\n\
+            "{} matches a pair of {} s on {} ({cases}), seed {}, csv hash {}, by {program}. `ours` plays {} of the second paper.\n\n\
              ![Offence and attack ratios]({beside}{section}-ratios.svg)\n\n\
              ![P(receive) as predicted and seen]({beside}{section}-calibration.svg)\n\n{}",
             plan.matches,

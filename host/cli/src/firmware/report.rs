@@ -117,7 +117,7 @@ const HEAD: &str = "\
 
 Written by `onetwo firmware report --write`. Held by `cargo xtask test`: flash, RAM and places that may panic by the step `image`,
 stacks by the step `qemu` (`qemu_equals_native`, `qemu_wheels`, `qemu_match`, `qemu_free`), steps by `qemu_equals_native` on legs and by
-`qemu_wheels` on wheels, with three robots. A share above 100 % is over its budget. The table of what robots do when something breaks is
+`qemu_wheels` and `qemu_match` on wheels. A share above 100 % is over its budget. The table of what robots do when something breaks is
 compared with this file by a test of `onetwo`; sizes and steps are those of the day they were written. What a radio frame costs stands in
 [protocol](../protocol/README.md), what retrieval and motion cost in [casebase](../casebase/README.md) and
 [motion](../firmware/motion/README.md).
