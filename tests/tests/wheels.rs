@@ -91,7 +91,9 @@ fn mates_speak_twenty_times_a_second_and_no_more_than_two_of_six_in_a_step() {
         let speaks = |(_, message): &&_| matches!(message, TeamMessage::Beacon(_));
         let speakers: Vec<_> = carpet.said().iter().filter(speaks).map(|(id, _)| id.index()).collect();
         assert!(speakers.len() <= 2, "{speakers:?}");
-        speakers.into_iter().for_each(|id| beacons[id] += 1);
+        for id in speakers {
+            beacons[id] += 1;
+        }
     });
     assert_eq!(beacons, [20; 6]);
 }
