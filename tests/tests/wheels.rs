@@ -71,7 +71,7 @@ fn a_robot_that_hears_much_in_a_step_stays_on_its_way_and_plans_in_the_next() {
 }
 
 #[test]
-fn on_an_air_that_is_always_full_a_robot_arrives_a_tenth_of_a_second_later_at_most() {
+fn on_an_air_that_is_always_full_a_robot_arrives_an_eighth_of_a_second_later_at_most() {
     let goal = Point::new(1.0, 1.236);
     let [quiet, full] = [0, 9].map(|chatter| {
         let mut carpet = carpet((0.0, 2.5), &[(1, -1.0, -1.0, 0.0)]);
@@ -79,7 +79,8 @@ fn on_an_air_that_is_always_full_a_robot_arrives_a_tenth_of_a_second_later_at_mo
         carpet.tell(1, Duty::Player, go_to(1.0, 1.236, 135.0));
         carpet.until(4.0, |c| c.ours(1).pose.position.distance(goal) < 0.01).expect("arrives")
     });
-    assert!(full < quiet + 0.1, "{full} s instead of {quiet}");
+    // The first ten steps it stays where it is, as it did; then every second plans.
+    assert!(full < quiet + 0.125, "{full} s instead of {quiet}");
 }
 
 #[test]
