@@ -53,6 +53,11 @@ impl Brain<'_> {
                 if let Some(state) = self.cycle.aborted(reason) {
                     self.adopt(now, &state);
                 }
+                if self.has_short_steps() {
+                    // As in every step in which a gameplay ends: it brakes, and this was that step.
+                    self.since.turned = false;
+                    return Intent::Stand { face: None };
+                }
             }
             Wish::Nothing => {}
         }
