@@ -124,7 +124,7 @@ static CHORES: [Chore; 18] = [
         "matches",
         "[--fresh]",
         "play our team against each other, each against each, and without each part, and write docs/matches.md; the rest\n\
-        \x20                lies in out/matches. Some 400 matches, about half an hour of one core; goes on where it was stopped, --fresh\n\
+        \x20                lies in out/matches. Some 490 matches, 45 minutes of one core; goes on where it was stopped, --fresh\n\
         \x20                begins anew (another commit's matches are refused)",
         |context, words| evaluation::write_matches(context, words.iter().any(|word| word == "--fresh")),
     ),
