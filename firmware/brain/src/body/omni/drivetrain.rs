@@ -1,7 +1,8 @@
 //! How fast must the body move in the next step? Intents to a way around everything, and from there to a twist.
 //!
 //! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
-//! they do not, from the measured one). SI, body frame out.
+//! they do not, from the measured one); one with no time to look for a way keeps the last one ([`Intent::Onwards`]). SI, body frame
+//! out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
 use motion::avoid::{self, Course, Restraint, Verdict};
@@ -88,7 +89,7 @@ impl Drivetrain {
         self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
     }
 
-    /// The same way once more, without looking for a better one: a tenth of what [`Drivetrain::follow`] takes.
+    /// The same way once more, without looking for a better one.
     fn onwards(&mut self, belief: &Belief, step: f32, way: UnderWay) -> Wanted {
         self.under_way = Some(way);
         let UnderWay { drive, towards, .. } = way;
