@@ -17,8 +17,7 @@ use protocol::{RobotId, TeamId};
 
 /// Of each scenario and configuration of the paper.
 const SEEDS: u64 = 5;
-/// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
-const STEP_BUDGET: u32 = 40_000;
+const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
 /// Bytes of stack, painted (DESIGN §9).
 const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 

@@ -4,12 +4,10 @@
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
 //! compiler for the target (feature `qemu`).
 
-use firmware_build::inspect::STACK_BUDGET;
+use firmware_build::inspect::{STACK_BUDGET, STEP_BUDGET};
 use match_tests::hil::Pair;
 
-/// Guest instructions that no step may take (DESIGN §9).
-const WORST: u32 = 40_000;
-/// The same for longer matches: of 60 s, the worst of twelve robots' 72,000 steps took 42,551 (docs/firmware.md).
+/// Guest instructions that no step may take in longer matches: of 60 s, the worst of twelve robots' 72,000 steps took 42,551 (docs/firmware.md).
 const WORST_OF_LONG: u32 = 45_000;
 /// Simulated seconds, unless told otherwise: kick-off and the first duels.
 const SECONDS: f64 = 4.0;
@@ -26,7 +24,7 @@ fn six_images_in_lockstep_play_the_match_that_six_native_brains_play() {
     println!("{told}");
     assert!(told.ticks as f64 >= 100.0 * seconds.unwrap_or(SECONDS) - 1.0, "{told}");
     let worst = told.worst_instructions;
-    let budget = if seconds.is_none() { WORST } else { WORST_OF_LONG };
+    let budget = if seconds.is_none() { STEP_BUDGET } else { WORST_OF_LONG };
     assert!((1..=budget).contains(&worst), "the worst step took {worst} instructions");
     let stack = told.worst_stack;
     assert!((1..=STACK_BUDGET).contains(&stack), "{stack} B of stack");

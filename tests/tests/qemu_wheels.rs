@@ -23,8 +23,7 @@ use protocol::team::TeamMessage;
 use protocol::{Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
-/// One brain step on its worst path (DESIGN §9), guest instructions, the tasks around the brain included.
-const STEP_BUDGET: u32 = 40_000;
+const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
 /// Bytes of stack, painted.
 const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 /// Of each of the parts below.

@@ -84,6 +84,9 @@ impl Chip {
 /// (DESIGN §9 asks for a painted stack that is checked and names no number).
 pub const STACK_BUDGET: u32 = 16 * 1024;
 
+/// Guest instructions of one brain step on its worst path (DESIGN §9), the tasks around the brain included.
+pub const STEP_BUDGET: u32 = 40_000;
+
 /// Symbols named where a budget breaks.
 const LARGEST: usize = 12;
 

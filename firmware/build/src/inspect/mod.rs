@@ -12,7 +12,7 @@ use std::fmt;
 use addr2line::gimli::{self, EndianSlice, RunTimeEndian};
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, SectionFlags, SectionKind, SymbolKind};
 
-pub use budget::{Budget, Chip, OverBudget, STACK_BUDGET};
+pub use budget::{Budget, Chip, OverBudget, STACK_BUDGET, STEP_BUDGET};
 pub use panics::{Allowed, AllowedError, PanicSite, PanicVerdict, panic_sites};
 pub use size::{Part, Sizes};
 
