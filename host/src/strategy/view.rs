@@ -126,6 +126,8 @@ pub struct View {
     pub ball: Option<Ball>,
     /// Our robots on the field that can be commanded, by id.
     pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
+    /// How many more of our robots count on the field although they cannot be commanded.
+    pub uncommanded: usize,
     /// Theirs, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, as the referee knows it.
@@ -171,6 +173,10 @@ impl View {
                 height: ball.height,
             }),
             ours: world.ours(us).filter(|robot| fit.has(robot.who.id)).map(robot).collect(),
+            uncommanded: world
+                .ours(us)
+                .filter(|robot| !fit.has(robot.who.id) && field.counts(game.defending, robot.pose.position))
+                .count(),
             theirs: world.theirs(us).map(robot).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
@@ -197,6 +203,7 @@ impl View {
             placement: None,
             ball: Some(Ball::at_rest(ball)),
             ours: RobotId::all().zip(ours).map(robot).collect(),
+            uncommanded: 0,
             theirs: RobotId::all().zip(theirs).map(robot).collect(),
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,
@@ -215,6 +222,13 @@ impl View {
     /// The same, with the next pass of the case that robots play.
     pub fn proposing(self, proposal: Option<CasePass>) -> Self {
         Self { proposal, ..self }
+    }
+
+    /// The same, without these robots of ours.
+    pub fn without(&self, off: &[RobotId]) -> Self {
+        let mut view = self.clone();
+        view.ours.retain(|robot| !off.contains(&robot.id));
+        view
     }
 
     /// Our robot of that number.

@@ -91,13 +91,17 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
 }
 
 fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
-    let last = touches.last();
+    let (last, game) = (touches.last(), scene.game);
+    let own = game.own_end(scorer);
+    let counts = |robot: &&RobotSeen| {
+        robot.who.colour == scorer && game.field.counts(own, robot.pose.position)
+    };
     Shot {
         kicker: last.map(|touch| touch.who),
         from: last.map_or(scene.ball.position, |touch| touch.ball),
         max_height: touches.height_since(scorer),
         last_touch: touches.last_of(scorer),
-        robots: scene.robots.iter().filter(|robot| robot.who.colour == scorer).count() as u32,
+        robots: scene.robots.iter().filter(counts).count() as u32,
     }
 }
 
