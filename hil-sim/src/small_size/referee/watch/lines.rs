@@ -9,6 +9,7 @@ use rules::restart::{OutKind, after_out};
 use rules::{Colour, Phase, limits};
 
 use super::super::event::{Event, PenaltyEnd, Shot, What};
+use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Touches;
 
