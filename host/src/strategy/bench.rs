@@ -37,6 +37,7 @@ impl Bench {
             self.fewer_since = None;
         } else if view.now.since(*self.fewer_since.get_or_insert(view.now)) >= RETURN_AFTER {
             self.off.truncate(surplus);
+            self.fewer_since = None;
         }
         &self.off
     }

@@ -136,6 +136,8 @@ pub struct View {
     pub their_keeper: RobotId,
     /// How many robots the referee lets us have on the field.
     pub allowed: usize,
+    /// How many robots the referee lets them have.
+    pub theirs_allowed: usize,
     /// Our robots that play a case right now, by what they say.
     pub in_play: RobotSet,
     /// The next pass of that case, where the bridge between the papers is played.
@@ -181,6 +183,7 @@ impl View {
             keeper: game.keeper,
             their_keeper: game.their_keeper,
             allowed: ROBOTS_MAX,
+            theirs_allowed: ROBOTS_MAX,
             in_play,
             proposal: None,
             field,
@@ -208,6 +211,7 @@ impl View {
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,
             allowed: ROBOTS_MAX,
+            theirs_allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),
             proposal: None,
             field,
@@ -217,6 +221,11 @@ impl View {
     /// The same, with a limit on how many of us may be on the field.
     pub fn allowing(self, robots: usize) -> Self {
         Self { allowed: robots, ..self }
+    }
+
+    /// The same, with a limit on how many of them may be on the field.
+    pub fn allowing_them(self, robots: usize) -> Self {
+        Self { theirs_allowed: robots, ..self }
     }
 
     /// The same, with the next pass of the case that robots play.
@@ -229,6 +238,16 @@ impl View {
         let mut view = self.clone();
         view.ours.retain(|robot| !off.contains(&robot.id));
         view
+    }
+
+    /// Whether a robot of ours counts there: outside the goal substitution area behind our goal.
+    pub fn counts_for_us(&self, p: Point<Attack>) -> bool {
+        self.field.counts(GoalEnd::Negative, Point::new(p.x(), p.y()))
+    }
+
+    /// The same of a robot of theirs.
+    pub fn counts_for_them(&self, p: Point<Attack>) -> bool {
+        self.field.counts(GoalEnd::Positive, Point::new(p.x(), p.y()))
     }
 
     /// Our robot of that number.
