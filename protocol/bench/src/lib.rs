@@ -2,6 +2,7 @@
 //! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
 //! which drives it.
 #![no_std]
+#![forbid(unsafe_code)]
 
 use geometry::GoalEnd;
 use protocol::frame::TeamKey;
