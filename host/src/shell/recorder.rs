@@ -63,14 +63,18 @@ impl Recorder {
 
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
-        let (kind, bytes): (Kind, &[u8]) = match input {
-            Input::Vision(bytes) => (Kind::Vision, bytes),
-            Input::Referee(bytes) => (Kind::Referee, bytes),
-            Input::Robot(bytes) => (Kind::Robot, bytes),
-            Input::Timeout => (Kind::Timeout, &[]),
+        let sender;
+        let (kind, bytes): (Kind, [&[u8]; 2]) = match input {
+            Input::Vision(bytes) => (Kind::Vision, [&[], bytes]),
+            Input::Referee(bytes, from) => {
+                sender = from.to_bytes();
+                (Kind::Referee, [&sender, bytes])
+            }
+            Input::Robot(bytes) => (Kind::Robot, [&[], bytes]),
+            Input::Timeout => (Kind::Timeout, [&[], &[]]),
         };
         let host = self.number(host);
-        self.write(|files| files.trace.write(now, host, kind, &[bytes]));
+        self.write(|files| files.trace.write(now, host, kind, &bytes));
     }
 
     /// The host of that colour sent a frame.
