@@ -76,6 +76,8 @@ pub enum Input<'a> {
     Referee(&'a [u8], SenderAddress),
     /// A frame of a robot.
     Robot(&'a [u8]),
+    /// The operator halts our robots until the end of the program.
+    Halt,
     /// A deadline that [`Host::poll_timeout`] announced.
     Timeout,
 }
@@ -95,6 +97,8 @@ pub enum Verdict {
     Undecodable,
     /// A deadline.
     Timeout,
+    /// Our robots halt until the end.
+    Halted,
 }
 
 /// Datagrams that were no messages.
@@ -172,6 +176,10 @@ impl Host {
             Input::Vision(bytes) => self.see(now, bytes),
             Input::Referee(bytes, from) => self.obey(now, bytes, from),
             Input::Robot(bytes) => self.listen(now, bytes),
+            Input::Halt => {
+                self.halt(now);
+                Verdict::Halted
+            }
             Input::Timeout => {
                 self.radio.handle_timeout(now);
                 Verdict::Timeout
@@ -179,8 +187,8 @@ impl Host {
         }
     }
 
-    /// Our robots halt, whatever the referee says, until the end: somebody ends the program. No input, so no trace has it.
-    pub fn halt(&mut self, now: Instant) {
+    /// Our robots halt, whatever the referee says, until the end.
+    fn halt(&mut self, now: Instant) {
         if !std::mem::replace(&mut self.halted, true) {
             self.radio.hasten(now);
         }

@@ -142,6 +142,7 @@ impl Recheck {
             Kind::Referee => checked.tell(record.at, Input::Referee(&record.bytes, record.from)),
             Kind::Robot => checked.tell(record.at, Input::Robot(&record.bytes)),
             Kind::Timeout => checked.tell(record.at, Input::Timeout),
+            Kind::Halt => checked.tell(record.at, Input::Halt),
             Kind::Lost => {}
         }
         true

@@ -176,10 +176,7 @@ impl HostHeader {
             keeper: self.keeper()?,
             defending: self.defending()?,
             kick: self.kick()?,
-            referee: self.referee_source.as_deref().map(|text| match text.parse::<SourcePin>() {
-                Ok(pin) => pin,
-                Err(never) => match never {},
-            }),
+            referee: self.referee_source.as_deref().map(SourcePin::of),
             team: self.plays,
             radio: self.radio(key)?,
             tactics: self.tactics,

@@ -46,11 +46,20 @@ pub enum Kind {
     Sent,
     /// The recorder could not keep up: what follows is not recorded. Nothing comes after it.
     Lost,
+    /// The operator halted the host's robots.
+    Halt,
 }
 
 impl Kind {
-    const ALL: [Self; 6] =
-        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost];
+    const ALL: [Self; 7] = [
+        Self::Vision,
+        Self::Referee,
+        Self::Robot,
+        Self::Timeout,
+        Self::Sent,
+        Self::Lost,
+        Self::Halt,
+    ];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()

@@ -9,7 +9,6 @@
 
 use std::fmt;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
-use std::str::FromStr;
 
 /// Longest part of a foreign identifier that is shown, characters: a controller's own is a UUID of 36.
 const SHOWN_MAX: usize = 48;
@@ -105,6 +104,17 @@ pub enum SourcePin {
 }
 
 impl SourcePin {
+    /// From the words of a setting: an IP address, an address with a port, and anything else is an identifier.
+    pub fn of(text: &str) -> Self {
+        if let Ok(ip) = text.parse::<IpAddr>() {
+            Self::Machine(ip.to_canonical())
+        } else if let Ok(address) = text.parse::<SocketAddr>() {
+            Self::Address(SenderAddress::new(address))
+        } else {
+            Self::Identifier(text.to_owned())
+        }
+    }
+
     /// Whether that source is meant.
     pub fn matches(&self, source: &SourceKey) -> bool {
         match self {
@@ -112,21 +122,6 @@ impl SourcePin {
             Self::Address(address) => *address == source.address,
             Self::Identifier(identifier) => source.identifier.as_ref() == Some(identifier),
         }
-    }
-}
-
-impl FromStr for SourcePin {
-    type Err = std::convert::Infallible;
-
-    /// An IP address, an address with a port, and anything else is an identifier.
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(if let Ok(ip) = text.parse::<IpAddr>() {
-            Self::Machine(ip.to_canonical())
-        } else if let Ok(address) = text.parse::<SocketAddr>() {
-            Self::Address(SenderAddress::new(address))
-        } else {
-            Self::Identifier(text.to_owned())
-        })
     }
 }
 
@@ -162,7 +157,7 @@ mod tests {
     #[test]
     fn a_pin_is_a_machine_an_address_or_an_identifier() {
         let source = |identifier: &str, from| SourceKey { identifier: Some(identifier.into()), address: address(from) };
-        let pin = |text: &str| text.parse::<SourcePin>().unwrap();
+        let pin = SourcePin::of;
         let genuine = source("gc", "10.0.0.1:50000");
         for text in ["10.0.0.1", "10.0.0.1:50000", "gc"] {
             assert!(pin(text).matches(&genuine), "{text}");

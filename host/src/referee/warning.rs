@@ -113,17 +113,14 @@ fn told_apart(source: &SourceKey, other: &SourceKey) -> String {
 }
 
 impl Warning {
-    /// Whether it is the same matter as `other`, whatever its figures.
-    pub fn same_matter(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Disagreement { followed: a, other: b, .. }, Self::Disagreement { followed: c, other: d, .. })
-            | (Self::Several { followed: a, other: b }, Self::Several { followed: c, other: d }) => (a, b) == (c, d),
-            (Self::OutOfOrder { source: a, doubt: b }, Self::OutOfOrder { source: c, doubt: d }) => {
-                a == c && std::mem::discriminant(b) == std::mem::discriminant(d)
-            }
-            (Self::ClockStepped { source: a, by: b }, Self::ClockStepped { source: c, by: d }) => (a, b) == (c, d),
-            (Self::Excluded { source: a, .. }, Self::Excluded { source: c, .. }) => a == c,
-            _ => false,
+    /// What it is about, without its figures: two warnings of one matter are the same one at two times.
+    pub fn matter(&self) -> String {
+        match self {
+            Self::Disagreement { followed, other, .. } => format!("disagreement {followed} {other}"),
+            Self::Several { followed, other } => format!("several {followed} {other}"),
+            Self::OutOfOrder { source, .. } => format!("order {source}"),
+            Self::ClockStepped { source, by } => format!("clock {source} {by}"),
+            Self::Excluded { source, .. } => format!("excluded {source}"),
         }
     }
 

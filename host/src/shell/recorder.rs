@@ -71,6 +71,7 @@ impl Recorder {
                 (Kind::Referee, [&sender, bytes])
             }
             Input::Robot(bytes) => (Kind::Robot, [&[], bytes]),
+            Input::Halt => (Kind::Halt, [&[], &[]]),
             Input::Timeout => (Kind::Timeout, [&[], &[]]),
         };
         let host = self.number(host);
@@ -85,6 +86,11 @@ impl Recorder {
         };
         let host = self.number(host);
         self.write(|files| files.trace.write(now, host, Kind::Sent, &[&[to], packet]));
+    }
+
+    /// Records were lost: the trace ends here, and says so. Nothing more may be written to it.
+    pub fn lost(&mut self, now: Instant) {
+        self.write(|files| files.trace.write(now, 0, Kind::Lost, &[]));
     }
 
     /// Whether an error has ended the writing.
