@@ -194,7 +194,7 @@ impl Referee {
                 Blower::Heard {
                     ear: None,
                     from,
-                    listener: Box::new(Listener::new(limits, protocol::Instant(0))),
+                    listener: Box::new(Listener::new(limits, None, protocol::Instant(0))),
                 }
             }
         };
@@ -274,7 +274,7 @@ impl Referee {
         };
         while let Ok(Some(datagram)) = open.receive(Duration::ZERO) {
             if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
-                listener.hear(&packet, now, None);
+                listener.hear(&packet, datagram.from.into(), now, None);
             }
         }
         None
