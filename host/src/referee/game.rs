@@ -128,12 +128,13 @@ impl Game {
         self.teams[Colour::Blue as usize].read(&packet.blue);
     }
 
-    /// Takes what the state of the game says.
-    pub(super) fn stands(&mut self, state: &GameState) {
-        self.phase = state.phase();
+    /// Takes what the state of the game says; `phase` is the one that is obeyed, which may be stricter.
+    pub(super) fn stands(&mut self, state: &GameState, phase: Phase<Colour>) {
+        self.phase = phase;
         let placing = matches!(self.phase, Phase::BallPlacement(_));
         self.placement = self.designated.filter(|_| placing);
-        let next = self.next_command.and_then(words::command_of);
+        // What follows is not known where another phase is imposed.
+        let next = self.next_command.filter(|_| phase == state.phase()).and_then(words::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 

@@ -47,14 +47,15 @@ impl Board {
     }
 
     /// Shows the moment, if it is time; true: a viewer asks for HALT.
-    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host) -> bool {
+    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: &[String]) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
             self.shown = Some(Instant::now());
             let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
-            let sketch = self.composer.compose(moment);
+            let mut sketch = self.composer.compose(moment);
+            sketch.scene.alarms = alarms.to_vec();
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }
