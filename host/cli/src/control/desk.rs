@@ -28,6 +28,7 @@ use ssl::log::MessageKind;
 use ssl::net::Interfaces;
 
 use super::board::Board;
+use super::radio_alarms::RadioAlarms;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
@@ -103,6 +104,7 @@ pub(super) fn run(
         recorder,
         recording: Ok(()),
         watch,
+        radio_alarms: RadioAlarms::default(),
         publisher: Publisher::new(
             &format!("onetwo-{}-{}", config.colour.word(), unix.as_secs()),
             &config.name,
@@ -122,6 +124,7 @@ pub(super) fn run(
             looked = Instant::now();
             let now = desk.now();
             desk.watch.look(now, &desk.host, config, &mut desk.words);
+            desk.look_at_radio(now);
             if desk.recorder.as_ref().is_some_and(Recorder::failed) {
                 desk.end_recording();
             }
@@ -203,6 +206,7 @@ struct Desk {
     /// How a recording ended that ended before the match.
     recording: io::Result<()>,
     watch: Watch,
+    radio_alarms: RadioAlarms,
     publisher: Publisher,
     mouth: Mouth,
     counts: Counts,
@@ -314,6 +318,16 @@ impl Desk {
         self.words.extend(self.mouth.send(&bytes).map(|words| format!("tracker  {words}")));
         if let Some(recorder) = &mut self.recorder {
             recorder.heard(now, MessageKind::Tracker2020, &bytes);
+        }
+    }
+
+    /// What keeps robots and host apart goes to terminal and page.
+    fn look_at_radio(&mut self, now: protocol::Instant) {
+        for words in self.radio_alarms.look(now, self.host.radio()) {
+            if let Some(board) = &mut self.board {
+                board.fault(now, words.clone());
+            }
+            self.words.push(words);
         }
     }
 

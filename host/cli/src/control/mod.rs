@@ -7,6 +7,7 @@ mod board;
 mod desk;
 mod identity;
 mod port_for_teams;
+mod radio_alarms;
 mod threads;
 mod watch;
 
