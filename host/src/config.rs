@@ -262,7 +262,7 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 pictures a second for a team of eleven (§6's frames, some 60 kB/s).
+/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75 for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]

@@ -29,6 +29,8 @@ impl Running {
     fn start(arguments: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
             .args(arguments)
+            // The host's epoch is kept there, not in the home of whoever runs the tests.
+            .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
             .stderr(Stdio::piped())
             .stdout(Stdio::null())
             .spawn()
@@ -174,7 +176,7 @@ fn the_internal_referee_speaks_and_the_simulator_ends_in_order() {
 fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let (vision, referee) = (free(), free());
     let arguments =
-        ["control", "--robots", "udp://127.0.0.1:9", "--tracker", "127.0.0.1:9", "--duration", "60"];
+        ["control", "--robots", "udp://127.0.0.1:9", "--insecure-zero-key", "--tracker", "127.0.0.1:9", "--duration", "60"];
     let mut control =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee", &referee]].concat());
     let mut waits: Vec<String> = Vec::new();

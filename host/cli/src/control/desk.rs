@@ -29,6 +29,7 @@ use ssl::net::Interfaces;
 use super::board::Board;
 use super::alarms::Alarms;
 use super::inbox::{Inbox, Mail};
+use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
 use super::threads::{self, Source};
 use super::watch::Watch;
@@ -110,6 +111,7 @@ pub(super) fn run(
         trace_ended: false,
         watch,
         alarms: Alarms::default(),
+        radio_alarms: RadioAlarms::default(),
         publisher: Publisher::new(
             &format!("onetwo-{}-{}", config.colour.word(), unix.as_secs()),
             &config.name,
@@ -131,6 +133,7 @@ pub(super) fn run(
             desk.watch.look(now, &desk.host, config, &mut desk.words);
             desk.look_at_alarms(now, &mail);
             desk.look_at_recording();
+            desk.look_at_radio(now);
             terminal.status(desk.status());
         }
         desk.words.drain(..).for_each(|words| terminal.line(words));
@@ -213,6 +216,7 @@ struct Desk {
     trace_ended: bool,
     watch: Watch,
     alarms: Alarms,
+    radio_alarms: RadioAlarms,
     publisher: Publisher,
     mouth: Mouth,
     counts: Counts,
@@ -327,6 +331,16 @@ impl Desk {
         self.words.extend(self.mouth.send(&bytes).map(|words| format!("tracker  {words}")));
         if let Some(recorder) = &mut self.recorder {
             recorder.heard(now, MessageKind::Tracker2020, &bytes);
+        }
+    }
+
+    /// What keeps robots and host apart goes to terminal and page.
+    fn look_at_radio(&mut self, now: protocol::Instant) {
+        for words in self.radio_alarms.look(now, self.host.radio()) {
+            if let Some(board) = &mut self.board {
+                board.fault(now, words.clone());
+            }
+            self.words.push(words);
         }
     }
 

@@ -9,6 +9,7 @@ mod desk;
 mod identity;
 mod inbox;
 mod port_for_teams;
+mod radio_alarms;
 mod terminal;
 mod threads;
 mod watch;
