@@ -35,6 +35,8 @@ pub struct Shot {
     pub aim: f32,
     /// m/s.
     pub speed: f32,
+    /// For so long before the shooter goes up to the ball and turns to its aim, s.
+    pub run_up: f64,
 }
 
 /// What became of it.
@@ -66,6 +68,7 @@ impl Shot {
             after: 0.5 + 1.5 * f64::from(share()),
             aim: side * (0.5 * league.field().goal_width - inside),
             speed: SLOWEST + share() * (FASTEST - SLOWEST),
+            run_up: RUN_UP[0] + (RUN_UP[1] - RUN_UP[0]) * f64::from(share()),
         }
     }
 }
@@ -122,7 +125,7 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
         }
         let until = begun.map_or(f64::INFINITY, |begun| begun + shot.after - game.time());
         if left.is_none() {
-            let turn = (1.0 - until / RUN_UP).clamp(0.0, 1.0) as f32;
+            let turn = (1.0 - until / shot.run_up).clamp(0.0, 1.0) as f32;
             let aimed = spot.direction_to(target);
             let face = straight + Angle::new((aimed - straight).radians() * turn);
             game.put_robot(shooter, behind(STANDS_OFF - (STANDS_OFF - AT_BALL) * turn, face));
@@ -160,8 +163,8 @@ const CORNER: f32 = 0.2;
 /// Shots' speeds, m/s.
 const SLOWEST: f32 = 4.0;
 const FASTEST: f32 = 6.3;
-/// The shooter goes up to the ball and turns to its target within so long, s.
-const RUN_UP: f64 = 0.4;
+/// The shooter goes up to the ball and turns to its target within so long at least and at most, s.
+const RUN_UP: [f64; 2] = [0.1, 0.4];
 /// From where, m from centre to centre.
 const STANDS_OFF: f32 = 0.35;
 /// Where it touches the ball, m.
