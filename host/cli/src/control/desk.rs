@@ -15,7 +15,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host::config::TeamConfig;
 use host::radio::{RadioSettings, To};
 use host::recording::{HostHeader, RecordingHeader};
-use host::shell::{Recorder, SimSettings, key};
+use host::referee::team_port::Request;
+use host::shell::{Recorder, SimSettings};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
 use indicatif::ProgressBar;
@@ -30,7 +31,7 @@ use ssl::net::Interfaces;
 use super::board::Board;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
-use super::{Cases, port_for_teams, simulator};
+use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
@@ -53,11 +54,11 @@ pub(super) fn run(
     page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
-    let key = team_key(config)?;
+    let key = identity::team_key(config)?;
     let Cases { shelf, settings: retrieval, words } = cases;
     let link = open_link(config, robots, key, words)?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let usual = HostSettings::new(config.colour, config.league, unix.as_secs() as u32);
+    let usual = HostSettings::new(config.colour, config.league, identity::this_epoch(config));
     let settings = HostSettings {
         keeper: config.keeper,
         kick: config.kick,
@@ -89,9 +90,10 @@ pub(super) fn run(
         threads::hear(Source::Referee, config.referee, by, mail.clone(), end.clone()),
         threads::carry(link, frames, mail.clone(), end.clone()),
     ];
+    let (ask, asked) = mpsc::channel();
     if let Some(address) = config.game_controller {
         let who = (config.name.clone(), config.colour, config.keeper);
-        threads.push(port_for_teams::talk(address, who, mail.clone(), end.clone()));
+        threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
     }
     drop(mail);
     let speaks_by = config.interface.map(|ip| ip.to_string());
@@ -99,6 +101,7 @@ pub(super) fn run(
         host: Host::new(settings, protocol::Instant(0)),
         began: Instant::now(),
         out,
+        ask,
         us: config.colour,
         recorder,
         recording: Ok(()),
@@ -162,15 +165,6 @@ fn header(settings: &HostSettings) -> RecordingHeader {
     }
 }
 
-fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let Some(file) = &config.key_file else { return Ok(TeamKey::ZERO) };
-    let read = key::read(file).map_err(|error| Failure::Network(error.to_string()))?;
-    if let Some(warning) = read.warning {
-        eprintln!("warning: {warning}");
-    }
-    Ok(read.key)
-}
-
 fn open_link(
     config: &TeamConfig,
     robots: &[RobotId],
@@ -207,6 +201,8 @@ struct Desk {
     host: Host,
     began: Instant,
     out: Sender<(To, Packet)>,
+    /// What is asked of the game controller.
+    ask: Sender<Request>,
     us: Colour,
     recorder: Option<Recorder>,
     /// How a recording ended that ended before the match.
@@ -297,6 +293,10 @@ impl Desk {
     }
 
     fn send(&mut self, now: protocol::Instant) {
+        while let Some(request) = self.host.poll_request() {
+            // Without a controller to ask there is no thread that takes it.
+            let _ = self.ask.send(request);
+        }
         while let Some((to, packet)) = self.host.poll_packet() {
             if let Some(recorder) = &mut self.recorder {
                 recorder.sent(now, self.us, to, &packet);
