@@ -64,7 +64,14 @@ struct Player {
 }
 
 impl Player {
-    fn new(league: League, own: GoalEnd, phase: Phase<Side>, duty: Duty, at: Point<Field>, drive: Drive) -> Self {
+    fn new(
+        league: League,
+        own: GoalEnd,
+        phase: Phase<Side>,
+        duty: Duty,
+        at: Point<Field>,
+        drive: Drive,
+    ) -> Self {
         let mut belief = Belief::defending(league, own);
         (belief.game.phase, belief.game.duty) = (phase, duty);
         belief.pose = Pose { position: at, heading: Angle::ZERO };
@@ -166,7 +173,8 @@ fn alone(phases: &[Phase<Side>], starts: u32, obstacles: usize) {
             for (i, own) in [GoalEnd::Negative, GoalEnd::Positive].into_iter().enumerate() {
                 for duty in DUTIES {
                     for start in 0..starts {
-                        let seed = (((l * 16 + p) * 2 + i) as u64) << 32 | u64::from(start) << 8 | obstacles as u64;
+                        let seed =
+                            (((l * 16 + p) * 2 + i) as u64) << 32 | u64::from(start) << 8 | obstacles as u64;
                         let mut dice = Dice(Xoshiro128PlusPlus::seed_from_u64(seed));
                         one(&mut dice, league, phase, own, duty, obstacles, seed);
                     }

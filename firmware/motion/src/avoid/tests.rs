@@ -220,7 +220,9 @@ fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_carpets_side() {
     let half = Obstacle::region(Shape::Box { low: at(0.0, -3.4), high: at(4.9, 3.4) });
     let circle = Obstacle::region(Shape::Disc { center: at(0.0, 0.0), radius: 0.63 });
     let post = disc(1.0, 3.0, 0.21);
-    for (y, scene) in [(3.0, &[half][..]), (-3.1, &[half, circle]), (0.1, &[half, circle]), (3.0, &[half, post])] {
+    for (y, scene) in
+        [(3.0, &[half][..]), (-3.1, &[half, circle]), (0.1, &[half, circle]), (3.0, &[half, post])]
+    {
         let course = Course { within: Some(CARPET), ..course(at(4.0, y), at(4.6, y), scene) };
         let Verdict::Escape { to } = plan(&course).verdict else { panic!() };
         assert!(to.x() < 0.0 && to.x() > -1.0, "{y}: {to:?}");
@@ -229,7 +231,11 @@ fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_carpets_side() {
         for _ in 0..400 {
             let way = plan(&driven);
             (driven.from, driven.velocity) = (way.next.position, way.next.velocity);
-            assert!(bodies.iter().all(|o| o.shape.distance_to(driven.from) > -1e-4), "{y}: {:?}", driven.from);
+            assert!(
+                bodies.iter().all(|o| o.shape.distance_to(driven.from) > -1e-4),
+                "{y}: {:?}",
+                driven.from
+            );
         }
         assert!(scene.iter().all(|o| o.shape.distance_to(driven.from) > 0.0), "{y}: {:?}", driven.from);
     }
@@ -365,10 +371,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
         let mut point = || at(number(), number());
         let (from, velocity, to) = (point(), point() - at(0.0, 0.0), point());
         let obstacles = [
-            Obstacle::moving(
-                Shape::Disc { center: point(), radius: point().x() },
-                point() - point(),
-            ),
+            Obstacle::moving(Shape::Disc { center: point(), radius: point().x() }, point() - point()),
             Obstacle::region(Shape::Box { low: point(), high: point() }),
             Obstacle::standing(Shape::Box { low: point(), high: point() }),
             Obstacle::standing(Shape::Capsule { spine: Segment::new(point(), point()), radius: point().x() }),
