@@ -3,7 +3,7 @@
 //! [`plan`] is called every step and remembers nothing. It answers in three parts:
 //!
 //! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for such a point by a short
-//!    way ([`Verdict::Escape`]): through the regions that hold the start, around everything else and out of no wall.
+//!    way ([`Verdict::Escape`]): through regions, around bodies and out of no wall.
 //! 2. **Route.** The straight way, or the cheapest way found over tangent points of what stands in it: a search of at most
 //!    [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed order. Cost is length, and what turning the present velocity costs.
 //! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can still brake
@@ -31,7 +31,7 @@ pub struct Obstacle<F> {
     pub shape: Shape<F>,
     /// How it moves, m/s.
     pub velocity: Vector<F>,
-    /// Whether something is there to be run into. A robot inside a region that is no body may leave it by any way.
+    /// Whether something is there to be run into. Who leaves a region that is no body may go through others.
     pub is_body: bool,
 }
 
@@ -148,8 +148,8 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     if scene.is_inside(from) {
         return escape(course, &mut scene, goal);
     }
-    scene.keep_apart(from, goal);
-    let route = Route::find(&scene, from, velocity, goal, &limits);
+    scene.keep_apart(from, goal, false);
+    let route = Route::find(&scene, from, velocity, goal, &limits, false);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (Verdict::Direct, goal),
@@ -160,12 +160,12 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     Way { verdict, goal, length: route.length, restraint, next, motion }
 }
 
-/// Out of what holds the start: to a free point, around all bodies and the regions that do not hold it.
+/// Out of what holds the start: to a free point, around all bodies, through any region.
 fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point<F>) -> Way<F> {
     let Course { from, velocity, limits, .. } = *course;
-    let exit = scene.nearest_free(from);
-    scene.keep_apart(from, exit);
-    let route = Route::find(scene, from, velocity, exit, &limits);
+    let exit = scene.exit(from);
+    scene.keep_apart(from, exit, true);
+    let route = Route::find(scene, from, velocity, exit, &limits, true);
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
         Some(via) => via,
@@ -173,11 +173,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point
         None => exit,
     };
     let motion = limits.plan(from, velocity, towards);
-    let (next, restraint) = match safe_step(course, scene, &motion, towards) {
-        // Staying is no safer than leaving.
-        (_, Restraint::Unavoidable) => (motion.at(course.step), Restraint::Unavoidable),
-        safe => safe,
-    };
+    let (next, restraint) = safe_step(course, scene, &motion, towards);
     let length = route.length + exit.distance(goal);
     Way { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
 }

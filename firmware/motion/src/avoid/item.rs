@@ -73,20 +73,33 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within
     }
 
-    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. A region that holds the start is left out: any way
-    /// may lead out of it. A body that does is taken to end just before the start, so that no way leads into it.
-    pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>) {
+    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. Who leaves may go through all regions; a body that
+    /// holds the start is taken to end just before it, so that no way leads into it. Walls meet: what is kept from the one that is
+    /// nearest to the start is kept from all of them, else none could be followed around to the next.
+    pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
+        let mut wall = SKIN;
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
+            if leaves && !obstacle.is_body {
+                item.leave_out();
+                continue;
+            }
             // Nearly all are far from both.
             if item.may_hold(from) || item.may_hold(goal) {
                 let here = gap(&obstacle.shape, from);
-                if here < 0.0 && !obstacle.is_body {
-                    item.leave_out();
-                    continue;
-                }
                 let nearest = math::min(here, gap(&obstacle.shape, goal)) - TOUCH;
-                item.margin = if here < 0.0 { here - TOUCH } else { nearest.clamp(0.0, SKIN) };
+                item.margin = if leaves && here < 0.0 { here - TOUCH } else { nearest.clamp(0.0, SKIN) };
                 item.enclose(&obstacle.shape);
+                if obstacle.is_wall() {
+                    wall = math::min(wall, item.margin);
+                }
+            }
+        }
+        if wall < SKIN {
+            for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
+                if obstacle.is_wall() {
+                    item.margin = wall;
+                    item.enclose(&obstacle.shape);
+                }
             }
         }
     }
@@ -140,6 +153,25 @@ impl<'o, F: Copy> Scene<'o, F> {
             }
         }
         first
+    }
+
+    /// Whether no body stands in the straight way; of one that covers the start, whether it does not lead deeper in.
+    pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
+        let way = to - from;
+        self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
+            if touches(from, way, item.center, item.route).is_none() {
+                return true;
+            }
+            let depth = obstacle.shape.distance_to(from);
+            if depth < 0.0 {
+                return obstacle.shape.distance_to(from + way * A_LITTLE) >= depth;
+            }
+            match obstacle.shape {
+                Shape::Disc { center, radius } => touches(from, way, center, square(radius)).is_none(),
+                Shape::Capsule { spine, radius } => hits_capsule(from, way, &spine, radius).is_none(),
+                Shape::Box { low, high } => hits_box(from, way, low, high, 0.0).is_none(),
+            }
+        })
     }
 
     /// Nothing is touched, with a smaller margin: what is left of braking.
@@ -309,10 +341,19 @@ fn hits_box<F: Copy>(
     (enters < leaves).then_some(enters)
 }
 
+impl<F: Copy> Obstacle<F> {
+    /// A body with straight sides.
+    fn is_wall(&self) -> bool {
+        self.is_body && matches!(self.shape, Shape::Box { .. })
+    }
+}
+
 /// What routes keep from shapes, m: what a following controller may be off.
 pub(super) const SKIN: f32 = 0.02;
 /// What braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
+/// A share of a way that tells where it leads.
+const A_LITTLE: f32 = 0.1;
 /// The square of no circle's radius: nothing comes nearer.
 const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.

@@ -54,7 +54,8 @@ impl Surroundings {
         }
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
             let near = |p: Point<Field>| p.x() * goal.sign() as f32 > 0.5 * field.length - NEAR_GOAL;
-            if near(me) || near(to) {
+            let leaves_here = leaves && me.x() * goal.sign() as f32 >= 0.0;
+            if leaves_here || near(me) || near(to) {
                 self.add_goal(field, goal);
             }
         }
