@@ -159,7 +159,7 @@ fn the_ball_is_put_where_no_team_may_place_it_and_left_alone_where_one_does() {
     hall.command(Wire::Stop);
     hall.run(3.0);
     assert_eq!(hall.reasons(), [Why::NoTeamPlaces]);
-    assert_eq!(hall.world.ball.position, spot);
+    assert!(hall.world.ball.position.distance(spot) < 1e-5, "{:?}", hall.world.ball.position);
 
     let mut neither = Hall::new(Goals::Person);
     neither.ball(at(-2.0, 3.1), Vector::default());
@@ -351,7 +351,7 @@ fn a_placement_is_reported_when_it_is_done_and_not_before() {
     hall.world.put(who(Colour::Blue, 1), Pose { position: at(0.1, 1.5), heading: Angle::ZERO });
     hall.run(1.0);
     assert_eq!(hall.kinds(), [Kind::PlacementSucceeded]);
-    assert!(matches!(hall.events[0].what, What::PlacementSucceeded { took, .. } if took > 3.0));
+    assert!(matches!(hall.events[0].what, What::PlacementSucceeded { took, .. } if took > 2.9));
     hall.run(2.0);
     assert_eq!(hall.events.len(), 1);
 }
