@@ -7,7 +7,7 @@ use core::fmt;
 
 use geometry::{Field, Point};
 use protocol::{Duration, Instant, Who};
-use rules::restart::placement_needless;
+use rules::restart::{nearest_free_kick_spot, placement_needless};
 use rules::{Colour, Phase, limits};
 use ssl::event::GameEventType;
 
@@ -118,9 +118,19 @@ impl Assistant {
     fn wanted(&self, game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
         let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
         let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
-        if let Phase::BallPlacement(_) = game.phase() {
-            let lost = still && !is_reachable(&game.field, ball);
-            return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+        let set = match game.phase() {
+            Phase::BallPlacement(_) => {
+                let lost = still && !is_reachable(&game.field, ball);
+                return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+            }
+            // Robots stand around it now: only a ball from which the controller does not start is touched.
+            Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
+            Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
+            _ => None,
+        };
+        if let Some((restart, tolerance)) = set {
+            let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
+            return Some((Why::SetByHand(restart), mark));
         }
         let stopped = matches!(game.phase(), Phase::Stop);
         if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
@@ -128,7 +138,8 @@ impl Assistant {
         }
         // Whoever decides about a goal wants to see where the ball lies.
         let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
-        let target = game.target().filter(|_| !open || stopped)?;
+        let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
+        let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
         let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
         match game.next() {
             Some(next) if next.is_set_by_hand() => {
