@@ -150,9 +150,9 @@ impl InternalReferee {
     /// Nothing speaks against going on: ball still, at its place and in the field, robots away from it, not too many.
     fn is_clear(&self, robots: &[RobotSeen], next: Restart, target: Point<Field>) -> bool {
         let (ball, speed) = (self.ball.position, self.ball.speed());
-        let mut numbers = super::scene::COLOURS.into_iter().map(|team| {
-            robots.iter().filter(|robot| robot.who.colour == team).count() as u32 <= self.allowed_now(team)
-        });
+        let mut numbers = super::scene::COLOURS
+            .into_iter()
+            .map(|team| self.on_field(robots, team) <= self.allowed_now(team));
         // The team that goes on with a free kick may be at the ball already, so that it can do so after its placement.
         let must_keep_away = |robot: &&RobotSeen| match next {
             Restart::FreeKick(team) => robot.who.colour != team,
