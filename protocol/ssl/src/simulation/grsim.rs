@@ -144,3 +144,66 @@ pub struct RobotStatus {
     #[prost(bool, required, tag = "4")]
     pub chip_kick: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Written by hand from grSim's field numbers and types: yellow's robot 3 ahead at 1 m/s, turning, kicking, with its dribbler and
+    /// two wheels given; blue's robot 15 put somewhere and switched off.
+    const BYTES: [u8; 93] = [
+        0x0a, 54, // commands, bytes
+        0x09, 0, 0, 0, 0, 0, 0, 0xe0, 0x3f, // timestamp 0.5
+        0x10, 1, // isteamyellow
+        0x1a, 41, // robot_commands, bytes
+        0x08, 3, // id
+        0x15, 0, 0, 0x40, 0x40, // kickspeedx 3.0
+        0x1d, 0, 0, 0, 0, // kickspeedz
+        0x25, 0, 0, 0x80, 0x3f, // veltangent 1.0
+        0x2d, 0, 0, 0, 0, // velnormal
+        0x35, 0, 0, 0x80, 0xbf, // velangular -1.0
+        0x38, 1, // spinner
+        0x40, 0, // wheelsspeed
+        0x4d, 0, 0, 0x20, 0x41, // wheel1 10.0
+        0x65, 0, 0, 0x20, 0xc1, // wheel4 -10.0
+        0x12, 35, // replacement, bytes
+        0x12, 33, // robots, bytes
+        0x09, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f, // x 1.0
+        0x11, 0, 0, 0, 0, 0, 0, 0, 0xc0, // y -2.0
+        0x19, 0, 0, 0, 0, 0, 0x80, 0x56, 0x40, // dir 90.0
+        0x20, 15, // id
+        0x28, 0, // yellowteam
+        0x30, 0, // turnon
+    ];
+
+    #[test]
+    fn a_packet_written_by_hand_is_read_and_written_the_same() {
+        let packet = GrsimPacket::decode(&BYTES[..]).expect("decodes");
+        let commands = packet.commands.as_ref().expect("commands");
+        assert!(commands.isteamyellow && commands.timestamp == 0.5);
+        let robot = GrsimRobotCommand {
+            id: 3,
+            kickspeedx: 3.0,
+            veltangent: 1.0,
+            velangular: -1.0,
+            spinner: true,
+            wheel1: Some(10.0),
+            wheel4: Some(-10.0),
+            ..GrsimRobotCommand::default()
+        };
+        assert_eq!(commands.robot_commands, [robot]);
+        let put = GrsimRobotReplacement {
+            x: 1.0,
+            y: -2.0,
+            dir: 90.0,
+            id: 15,
+            yellowteam: false,
+            turnon: Some(false),
+        };
+        assert_eq!(packet.replacement.as_ref().expect("a replacement").robots, [put]);
+        assert_eq!(packet.encode_to_vec(), BYTES);
+        let status = RobotStatus { robot_id: 7, infrared: true, flat_kick: false, chip_kick: true };
+        let status = RobotsStatus { robots_status: vec![status] };
+        assert_eq!(status.encode_to_vec(), [0x0a, 8, 0x08, 7, 0x10, 1, 0x18, 0, 0x20, 1]);
+    }
+}

@@ -160,7 +160,7 @@ impl Team {
         let (now, own) = (game.now, game.own_end(colour));
         let (field, ball) = (&game.field, world.ball.position);
         let ours = || world.robots().iter().filter(|robot| robot.present && robot.who.colour == colour);
-        let behind = |robot: &&Robot| places::behind_own_goal(field, own, robot.pose.position);
+        let behind = |robot: &&Robot| !field.counts(own, robot.pose.position);
         let here = ours().count() as u32;
         let on_field = ours().filter(|robot| !behind(robot)).count() as u32;
         let allowed = game.allowed(colour)?;
@@ -177,12 +177,13 @@ impl Team {
         }
         let halted = matches!(game.phase(), Phase::Halt | Phase::Timeout(_));
         let stopped = halted || game.phase() == Phase::Stop;
-        let left = ours().find(|robot| {
+        let may_be_taken = |robot: &&Robot| {
             let p = robot.pose.position;
             (behind(robot) || places::beside_halfway_line(field, p))
                 && p.distance(ball) >= limits::SUBSTITUTION_BALL_DISTANCE
                 && robot.velocity.norm() <= STANDING
-        });
+        };
+        let left = ours().filter(may_be_taken).max_by_key(|robot| (behind(robot), robot.who));
         let crowded_for = self.crowded.map_or(Duration(0), |since| now.since(since));
         let taken = if game.substitutes(colour) && halted && !self.substituted {
             let any = || whom_to_take(game, ours(), ball);

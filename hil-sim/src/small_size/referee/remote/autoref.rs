@@ -14,7 +14,7 @@ use super::super::event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What}
 use super::super::look::Sight;
 use super::super::scene::{COLOURS, Scene, is_running};
 use super::super::watch::Watch;
-use super::{RemoteMatch, places};
+use super::RemoteMatch;
 use crate::small_size::{Event as WorldEvent, World};
 
 /// Who decides what automatic referees leave to people: whether a ball in the goal is a goal, and how play goes on after a ball out
@@ -78,11 +78,11 @@ impl AutoReferee {
         let mut seen = Vec::new();
         self.watch.look(&scene, &mut seen);
         seen.extend(self.placement(game, &scene));
-        seen.into_iter().flat_map(|event| self.report(game, &sight, event)).collect()
+        seen.into_iter().flat_map(|event| self.report(game, event)).collect()
     }
 
     /// The event as it is reported: none, one, or two where it takes both to say where play goes on.
-    fn report(&mut self, game: &RemoteMatch, sight: &Sight, event: Event) -> Vec<Event> {
+    fn report(&mut self, game: &RemoteMatch, event: Event) -> Vec<Event> {
         let phase = game.phase();
         let kind = event.what.kind();
         if is_the_controllers(&event.what) || !is_in_time(kind, phase) {
@@ -100,7 +100,7 @@ impl AutoReferee {
             }
         }
         let events = match event.what {
-            What::PossibleGoal { shot } => self.goal(game, sight, shot, event),
+            What::PossibleGoal { shot } => self.goal(game, shot, event),
             // The controller knows no restart for it, and goes on by a force start where nothing moves.
             What::LeftTouchLine | What::LeftGoalLine
                 if event.by.is_none() && self.decider == Decider::AutoReferee =>
@@ -119,13 +119,8 @@ impl AutoReferee {
     }
 
     /// A ball in a goal, as whoever decides needs it.
-    fn goal(&self, game: &RemoteMatch, sight: &Sight, shot: Shot, event: Event) -> Vec<Event> {
+    fn goal(&self, game: &RemoteMatch, shot: Shot, event: Event) -> Vec<Event> {
         let Some(scorer) = event.by else { return vec![event] };
-        let own = game.own_end(scorer);
-        let on_field = sight.robots.iter().filter(|robot| {
-            robot.who.colour == scorer && !places::behind_own_goal(&game.field, own, robot.pose.position)
-        });
-        let shot = Shot { robots: on_field.count() as u32, ..shot };
         if self.decider == Decider::Person {
             return vec![Event { what: What::PossibleGoal { shot }, ..event }];
         }
