@@ -158,12 +158,7 @@ impl HostLink {
         if !frame.is_genuine(packet, self.keys.of(robot), robot) {
             return Err(Refusal::Tag);
         }
-<<<<<<< HEAD
-        let Some(message @ TeamMessage::Telemetry(Telemetry { host, clock, .. })) = decode(frame.payload)
-        else {
-=======
         let Some(TeamMessage::Telemetry(telemetry)) = decode(frame.payload) else {
->>>>>>> main
             return Err(Refusal::Payload);
         };
         let Telemetry { host, clock, .. } = telemetry;
@@ -181,7 +176,12 @@ impl HostLink {
     }
 
     /// Beacons and greetings, under the key that all robots hold.
-    fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
+    fn open_shared(
+        &mut self,
+        packet: &[u8],
+        frame: &Frame<'_>,
+        robot: RobotId,
+    ) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });
         }
