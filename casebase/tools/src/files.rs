@@ -131,7 +131,7 @@ impl Found {
     }
 
     fn read(&mut self, path: PathBuf, name: String, is_league: bool) {
-        match fs::read_to_string(&path) {
+        match foreign::read_text(&path, CASE_FILE_LEN_MAX) {
             Ok(text) => self.cases.push(SourceFile { path, name, text }),
             Err(error) => {
                 self.league_unreadable |= is_league;
@@ -149,5 +149,7 @@ impl Found {
 
 /// The league's own file, without `.toml`.
 const LEAGUE: &str = "league";
+/// Longest file of a library that is read, bytes: the longest case of ours has 3 kB.
+pub const CASE_FILE_LEN_MAX: u64 = 1 << 20;
 /// How deep misplaced files are looked for; also what ends a circle of links.
 const DEPTH_MAX: usize = 8;

@@ -10,6 +10,8 @@ use case_tools::{Finding, Severity};
 use casebase::SettingError;
 use hil_sim::SimulationError;
 
+use crate::output::{note, shown};
+
 /// One variant per thing the person can do something about.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -125,7 +127,7 @@ impl Failure {
         if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
             return ExitCode::SUCCESS;
         }
-        eprintln!("error: {self}");
+        note!("error: {self}");
         ExitCode::FAILURE
     }
 }
@@ -142,11 +144,11 @@ impl fmt::Display for Failure {
             Self::NoFolder(folder) => write!(
                 f,
                 "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
-                folder.display()
+                shown(folder)
             ),
             Self::FaultyLibrary { folder, findings } => {
                 let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", folder.display())?;
+                writeln!(f, "the library at {} is refused:", shown(folder))?;
                 for finding in errors {
                     writeln!(f, "  {finding}")?;
                 }
@@ -186,9 +188,9 @@ impl fmt::Display for Failure {
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) | Self::Game(words) => f.write_str(words),
             Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
-            Self::Markdown { file, error } => write!(f, "{}: {error}", file.display()),
+            Self::Markdown { file, error } => write!(f, "{}: {error}", shown(file)),
             Self::Picture { file, words } => {
-                write!(f, "cannot write the picture {}: {words}", file.display())
+                write!(f, "cannot write the picture {}: {words}", shown(file))
             }
             Self::UnknownName { asked, league } => write!(
                 f,
@@ -206,7 +208,7 @@ impl fmt::Display for Failure {
             ),
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::Recorded { file, words } => {
-                let file = file.display().to_string();
+                let file = shown(file);
                 // Some of what is said names the file already.
                 if words.starts_with(&file) { f.write_str(words) } else { write!(f, "{file}: {words}") }
             }

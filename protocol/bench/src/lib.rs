@@ -1,6 +1,7 @@
 //! What is the radio measured on? One robot's end of it: each kind of message sealed and opened, shortest and longest, and
 //! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
 //! which drives it.
+#![forbid(unsafe_code)]
 #![no_std]
 
 use geometry::GoalEnd;

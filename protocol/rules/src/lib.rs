@@ -6,6 +6,7 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One truth per fact: physics, brains, referee and pictures read the
 //! dimensions here.
+#![forbid(unsafe_code)]
 #![no_std]
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::answer::write_line;
 use crate::Failure;
+use crate::output;
 
 /// What `cases schema` may be told.
 #[derive(Debug, Args)]
@@ -26,7 +27,8 @@ pub(super) fn run(args: &SchemaArgs) -> Result<ExitCode, Failure> {
     let mut schema = if args.league_file { league() } else { case() };
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     schema["title"] = if args.league_file { "league.toml of onetwo" } else { "A case of onetwo" }.into();
-    write_line(&mut std::io::stdout().lock(), &schema).map_err(Failure::Output)?;
+    let mut output = output::lines();
+    write_line(&mut output, &schema).and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -34,6 +34,7 @@ use super::{Cases, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// Looks at what is missing, and at Ctrl-C, at least this often.
@@ -69,7 +70,7 @@ pub(super) fn run(
             .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
     });
     let recorder = recorder.transpose()?;
-    eprintln!(
+    note!(
         "controlling {}, {}, {}; Ctrl-C halts the robots and ends it",
         config.name,
         config.colour.word(),
@@ -129,7 +130,7 @@ pub(super) fn run(
             bar.tick();
         }
         for words in desk.words.drain(..) {
-            bar.suspend(|| eprintln!("{words}"));
+            bar.suspend(|| note!("{words}"));
         }
     }
     bar.finish_and_clear();
@@ -141,9 +142,12 @@ pub(super) fn run(
     for thread in threads {
         let _ = thread.join();
     }
-    eprintln!(
+    note!(
         "robots halted; ended after {} vision and {} referee packets, {} frames from robots and {} to them",
-        counts.vision, counts.referee, counts.robots, counts.sent
+        counts.vision,
+        counts.referee,
+        counts.robots,
+        counts.sent
     );
     recording.map_err(|error| Failure::Recording(format!("it is not whole: {error}")))?;
     Ok(ExitCode::SUCCESS)
@@ -166,7 +170,7 @@ fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
     let Some(file) = &config.key_file else { return Ok(TeamKey::ZERO) };
     let read = key::read(file).map_err(|error| Failure::Network(error.to_string()))?;
     if let Some(warning) = read.warning {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     Ok(read.key)
 }

@@ -1,5 +1,6 @@
 //! What does the host wait for, and what should the people do about it? Each said once when it begins, and once when it is over.
 
+use foreign::printable;
 use host::Host;
 use host::config::TeamConfig;
 use host::referee::Silence;
@@ -108,7 +109,7 @@ impl Watch {
                     config.referee, referee.way
                 )
             },
-            || format!("the referee is heard: {}", host.listener().source().unwrap_or("without a name")),
+            || heard(host.listener().source()),
         ));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
@@ -122,9 +123,21 @@ impl Watch {
     }
 }
 
+/// The referee's own name is whatever its program sends.
+fn heard(source: Option<&str>) -> String {
+    format!("the referee is heard: {}", source.map_or("without a name".into(), printable))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_referee_s_name_cannot_speak_to_the_terminal() {
+        let words = heard(Some("gc\u{1b}]0;pwn\u{7}\u{1b}[31mRED\nrobots halted"));
+        assert_eq!(words, "the referee is heard: gc\\u001b]0;pwn\\u0007\\u001b[31mRED\\nrobots halted");
+        assert_eq!(heard(None), "the referee is heard: without a name");
+    }
 
     #[test]
     fn what_is_missing_is_told_once_and_so_is_that_it_came() {

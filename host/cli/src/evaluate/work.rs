@@ -17,6 +17,7 @@ use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
+use crate::output;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
@@ -162,7 +163,7 @@ pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
 
 /// Says it on stdout.
 pub(super) fn say(words: &str) -> Result<(), Failure> {
-    io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)
+    output::say(words)
 }
 
 /// A shard on the command line.

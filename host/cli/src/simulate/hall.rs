@@ -25,6 +25,7 @@ use super::{SimulateArgs, Whistle};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::{Ear, Mouth};
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// The referee looks this often, simulated ms: what its detectors are tuned with.
@@ -51,18 +52,18 @@ pub(super) fn run(
     let mut vision = Mouth::new(args.vision, args.interface.as_deref());
     let mut whistle = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
-    eprintln!(
+    note!(
         "simulating {}, {} v {} robots, seed {}; Ctrl-C ends it",
         args.league.name(),
         settings.robots,
         settings.robots,
         args.seed
     );
-    eprintln!("control  {}", ports.words());
-    eprintln!("vision   to {}", vision.to());
-    eprintln!("referee  {}", whistle.words());
+    note!("control  {}", ports.words());
+    note!("vision   to {}", vision.to());
+    note!("referee  {}", whistle.words());
     if let Some(tracked) = &tracker {
-        eprintln!("tracker  to {}", tracked.mouth.to());
+        note!("tracker  to {}", tracked.mouth.to());
     }
     let page = PageArgs::at(args.page, "--page");
     let mut board =
@@ -129,13 +130,13 @@ pub(super) fn run(
             bar.tick();
         }
         for words in words.drain(..) {
-            bar.suspend(|| eprintln!("{words}"));
+            bar.suspend(|| note!("{words}"));
         }
         thread::sleep(BEAT.saturating_sub(began.elapsed().saturating_sub(running)));
     }
     bar.finish_and_clear();
     let counts = server.counts();
-    eprintln!(
+    note!(
         "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",
         server.world().time(),
         vision.sent,
