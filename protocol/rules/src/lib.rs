@@ -6,8 +6,8 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation. One truth per fact: physics, brains, referee and pictures read the
 //! dimensions here.
-#![forbid(unsafe_code)]
 #![no_std]
+#![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
