@@ -118,6 +118,11 @@ impl Found {
                     self.enter(&path, &format!("{prefix}{name}/"), depth + 1);
                 }
             } else if let Some(stem) = name.strip_suffix(".toml") {
+                if foreign::printable(&name) != name {
+                    let message = "a file's name has characters that cannot be shown";
+                    self.error(code::MISPLACED, path, message, "rename it: letters, digits and dashes");
+                    continue;
+                }
                 let is_league = depth == 0 && stem == LEAGUE;
                 if is_league || depth == 1 {
                     self.read(path, format!("{prefix}{stem}"), is_league);

@@ -3,7 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use foreign::printable;
+use foreign::{excerpt, printable};
+
+/// As much of what is wrong as is shown, characters: it may repeat what stands in the file.
+const MESSAGE_LEN: usize = 1000;
 
 /// Something to mend in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +48,7 @@ impl fmt::Display for Finding {
         let Self { code, severity, file, line, message, mend } = self;
         let file = file.to_string_lossy();
         // Files are named and filled by others: a finding stays one line, and shows what it is about.
-        let (file, message, mend) = (printable(&file), printable(message), printable(mend));
+        let (file, message, mend) = (printable(&file), excerpt(message, MESSAGE_LEN), printable(mend));
         write!(f, "{file}:{line}: {severity}[{code}]: {message}; {mend}")
     }
 }

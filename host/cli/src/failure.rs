@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use arena::evaluation::EvaluationError;
 use case_tools::{Finding, Severity};
 use casebase::SettingError;
+use foreign::printable;
 use hil_sim::SimulationError;
 
 use crate::output::{note, shown};
@@ -209,8 +210,10 @@ impl fmt::Display for Failure {
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::Recorded { file, words } => {
                 let file = shown(file);
+                // What is wrong may be told in the file's own words.
+                let words = printable(words);
                 // Some of what is said names the file already.
-                if words.starts_with(&file) { f.write_str(words) } else { write!(f, "{file}: {words}") }
+                if words.starts_with(&file) { f.write_str(&words) } else { write!(f, "{file}: {words}") }
             }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),
