@@ -180,7 +180,8 @@ impl HostLink {
             peer.forged = peer.forged.saturating_add(1);
             return Err(Refusal::Tag);
         }
-        let Some(message @ TeamMessage::Telemetry(Telemetry { host, clock, .. })) = decode(frame.payload) else {
+        let Some(message @ TeamMessage::Telemetry(Telemetry { host, clock, .. })) = decode(frame.payload)
+        else {
             return Err(Refusal::Payload);
         };
         let offset = ((now.0 >> TICK_BITS).saturating_sub(self.zero) as u32).wrapping_sub(clock);
@@ -199,12 +200,7 @@ impl HostLink {
     }
 
     /// Beacons and greetings, under the key that all robots hold.
-    fn open_shared(
-        &mut self,
-        packet: &[u8],
-        frame: &Frame<'_>,
-        robot: RobotId,
-    ) -> Result<Opened, Refusal> {
+    fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });
         }

@@ -138,13 +138,17 @@ fn a_crate_without_unsafe_forbids_it() {
         let sources: Vec<_> = rust_sources().into_iter().filter(|source| source.is_under(&own)).collect();
         let roots = ["lib.rs", "main.rs"].map(|name| format!("{folder}/src/{name}"));
         let is_root = |source: &&Source| roots.contains(&source.path);
-        let uses = |source: &Source| source.code().any(|(_, line)| line.contains("unsafe ") || line.contains("unsafe("));
+        let uses = |source: &Source| {
+            source.code().any(|(_, line)| line.contains("unsafe ") || line.contains("unsafe("))
+        };
         if sources.iter().any(uses) {
             continue;
         }
         let forbids = |source: &Source| source.text.contains("forbid(unsafe_code)");
         for root in sources.iter().filter(is_root).filter(|root| !forbids(root)) {
-            findings.push(root.at(1, "no `#![forbid(unsafe_code)]`", "add it: the crate has no `unsafe`").to_string());
+            findings.push(
+                root.at(1, "no `#![forbid(unsafe_code)]`", "add it: the crate has no `unsafe`").to_string(),
+            );
         }
     }
     assert!(findings.is_empty(), "\n{}", findings.join("\n"));

@@ -55,8 +55,7 @@ fn onetwo(arguments: &[&str]) -> Output {
         let _ = pipe.read_to_end(&mut bytes);
         bytes
     };
-    let (out, err) =
-        (thread::spawn(move || read(&mut out)), thread::spawn(move || read(&mut err)));
+    let (out, err) = (thread::spawn(move || read(&mut out)), thread::spawn(move || read(&mut err)));
     let status = ended(&mut child).unwrap_or_else(|| panic!("{arguments:?} does not end"));
     Output { status, stdout: out.join().unwrap(), stderr: err.join().unwrap() }
 }
@@ -100,7 +99,9 @@ fn left(bytes: &[u8]) -> Vec<u8> {
 fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let stem = recorded("cuts", "1");
     let mut whole = Vec::new();
-    MultiGzDecoder::new(&fs::read(stem.with_extension("trace")).unwrap()[..]).read_to_end(&mut whole).unwrap();
+    MultiGzDecoder::new(&fs::read(stem.with_extension("trace")).unwrap()[..])
+        .read_to_end(&mut whole)
+        .unwrap();
     let mut reader = Reader::new(&whole[..]).unwrap();
     let header = RecordingHeader::from_json(reader.header()).unwrap();
     let mut at = 20 + reader.header().len();
@@ -138,12 +139,18 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             assert_eq!(report["same_decisions"], true, "after {kind:?} at byte {at}: {}", report["hosts"]);
             let out = onetwo(&[text(&file)]);
             let (told, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
-            assert!(told.contains("the file is damaged: cut at byte") && why.contains("cut at byte"), "{told}{why}");
+            assert!(
+                told.contains("the file is damaged: cut at byte") && why.contains("cut at byte"),
+                "{told}{why}"
+            );
             assert!(!told.contains("other decisions"), "{told}");
             // Without gzip's end mark only missing packets show that it was cut; whichever: no other decisions.
             fs::write(&file, &whole[..*at]).unwrap();
             let told = onetwo(&[text(&file)]).stdout;
-            assert!(!String::from_utf8_lossy(&told).contains("other decisions"), "after {kind:?} at byte {at}");
+            assert!(
+                !String::from_utf8_lossy(&told).contains("other decisions"),
+                "after {kind:?} at byte {at}"
+            );
             tried += 1;
         }
     }
@@ -154,7 +161,11 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     for parts in [2, 3, 7] {
         fs::write(&cut, &bytes[..bytes.len() * (parts - 1) / parts]).unwrap();
         let report = json(&[text(&cut)], 1);
-        assert!(report["damage"].as_str().is_some_and(|words| words.starts_with("cut: ")), "{}", report["damage"]);
+        assert!(
+            report["damage"].as_str().is_some_and(|words| words.starts_with("cut: ")),
+            "{}",
+            report["damage"]
+        );
     }
 }
 
@@ -221,8 +232,11 @@ fn log(file: &Path, referee: &Referee, by: i64) {
     let mut log = LogWriter::create(file).unwrap();
     for n in 0..300_i64 {
         let at = 1_700_000_000_000_000_000 + n * 13_333_333 + if n >= 150 { by } else { 0 };
-        let detection =
-            DetectionFrame { frame_number: n as u32, t_capture: n as f64 / 75.0, ..DetectionFrame::default() };
+        let detection = DetectionFrame {
+            frame_number: n as u32,
+            t_capture: n as f64 / 75.0,
+            ..DetectionFrame::default()
+        };
         let packet = WrapperPacket { detection: Some(detection), ..WrapperPacket::default() };
         log.write(at, MessageKind::Vision2014, &packet.encode_to_vec()).unwrap();
         if n % 2 == 0 {
@@ -242,14 +256,20 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
         ..Referee::default()
     };
     referee.blue.name = hostile.to_owned();
-    referee.game_events =
-        vec![GameEvent { id: Some(hostile.to_owned()), origin: vec![hostile.to_owned()], ..GameEvent::default() }];
+    referee.game_events = vec![GameEvent {
+        id: Some(hostile.to_owned()),
+        origin: vec![hostile.to_owned()],
+        ..GameEvent::default()
+    }];
     let file = scratch("\u{1b}]0;name\u{7}\nforged: all is well.log");
     log(&file, &referee, 0);
     let out = onetwo(&["replay", text(&file)]);
     let told = String::from_utf8(out.stdout).unwrap();
     assert_eq!(obeyed(&told), None, "{told:?}");
-    assert!(told.contains("\\u001b[31mEVIL\\u001b]0;pwn\\u0007\\n     0.00 s  GOAL\\r\\u009b2J\\u202e"), "{told}");
+    assert!(
+        told.contains("\\u001b[31mEVIL\\u001b]0;pwn\\u0007\\n     0.00 s  GOAL\\r\\u009b2J\\u202e"),
+        "{told}"
+    );
     for line in told.lines() {
         assert!(!line.starts_with("forged") && !line.ends_with("  GOAL"), "a line of its own: {line}");
     }
@@ -263,7 +283,9 @@ fn a_log_cannot_speak_to_the_terminal_nor_write_lines_of_its_own() {
     fs::create_dir_all(library.join("center")).unwrap();
     fs::write(library.join("league.toml"), "\u{1b}[2J = \"\u{1b}]0;x\u{7}\"").unwrap();
     fs::write(library.join("center/a\u{1b}[2J.toml"), "x = 1").unwrap();
-    for arguments in [["cases", "check", "--library", text(&library)], ["cases", "list", "--library", text(&library)]] {
+    for arguments in
+        [["cases", "check", "--library", text(&library)], ["cases", "list", "--library", text(&library)]]
+    {
         let out = onetwo(&arguments);
         assert_ne!(out.status.code(), Some(0));
         let words = String::from_utf8([out.stdout, out.stderr].concat()).unwrap();
@@ -290,21 +312,28 @@ fn a_recorder_s_clock_that_is_set_changes_no_rate() {
 
 #[test]
 fn field_names_cards_robots_and_places_of_a_recording_are_told() {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz");
     let report = json(&["replay", text(&data)], 0);
-    assert_eq!((report["field"]["length"].as_f64(), report["field"]["width"].as_f64()), (Some(9.0), Some(6.0)));
+    assert_eq!(
+        (report["field"]["length"].as_f64(), report["field"]["width"].as_f64()),
+        (Some(9.0), Some(6.0))
+    );
     for team in ["blue", "yellow"] {
         let sheet = &report["teams"][team];
         assert!(sheet["name"].is_string() && sheet["max_bots"].as_u64().is_some_and(|n| n <= 6), "{sheet}");
     }
-    let cards: u64 = ["blue", "yellow"].iter().filter_map(|team| report["teams"][team]["yellow_cards"].as_u64()).sum();
+    let cards: u64 =
+        ["blue", "yellow"].iter().filter_map(|team| report["teams"][team]["yellow_cards"].as_u64()).sum();
     assert_eq!(cards, 1, "README of the recordings: one yellow card");
     let happenings = report["happenings"].as_array().unwrap();
     let named = |name: &str| happenings.iter().filter(|h| h["name"] == name).collect::<Vec<_>>();
     assert_eq!(named("YELLOW_CARD").len(), 1);
     assert!(!named("MAX_BOTS").is_empty(), "a card takes a robot off");
-    let placed: Vec<_> =
-        happenings.iter().filter(|h| h["words"].as_str().is_some_and(|words| words.contains("the ball to ("))).collect();
+    let placed: Vec<_> = happenings
+        .iter()
+        .filter(|h| h["words"].as_str().is_some_and(|words| words.contains("the ball to (")))
+        .collect();
     assert!(!placed.is_empty());
     let told = String::from_utf8(onetwo(&["replay", text(&data)]).stdout).unwrap();
     assert!(told.contains("field: 9.000 x 6.000 m") && told.contains("max bots"), "{told}");
@@ -325,7 +354,8 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
         let _ = fs::remove_file(&case);
         std::os::unix::fs::symlink(special, &case).unwrap();
         let trial = text(&library);
-        let robots = ["control", "--robots", "udp://127.0.0.1:9", "--colour", "blue", "--name", "T", "--headless"];
+        let robots =
+            ["control", "--robots", "udp://127.0.0.1:9", "--colour", "blue", "--name", "T", "--headless"];
         let control = |flag| [&robots[..], &["--duration", "1", flag, special]].concat();
         let all = [
             vec!["replay", special],
@@ -359,7 +389,11 @@ fn a_bad_line_of_fifty_megabytes_is_refused_in_a_few_words() {
     let out = onetwo(&control);
     assert_eq!(out.status.code(), Some(1));
     assert!(out.stderr.len() < 2_000, "{} bytes", out.stderr.len());
-    assert!(String::from_utf8_lossy(&out.stderr).contains("line 2"), "{}", String::from_utf8_lossy(&out.stderr));
+    assert!(
+        String::from_utf8_lossy(&out.stderr).contains("line 2"),
+        "{}",
+        String::from_utf8_lossy(&out.stderr)
+    );
     fs::File::create(&config).unwrap().set_len(50_000_000).unwrap();
     let out = onetwo(&control);
     assert!(String::from_utf8_lossy(&out.stderr).contains("longer than 1048576 bytes"));

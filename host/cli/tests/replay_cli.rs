@@ -195,7 +195,11 @@ fn one_bit_that_was_turned_in_a_packet_is_found() {
 fn a_trace_cut_in_a_record_is_checked_up_to_there() {
     let file = trace("cut.trace", |bytes, _| bytes.truncate(bytes.len() / 2));
     let report = json(&[&file], 1);
-    assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{}", report["damage"]);
+    assert!(
+        report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")),
+        "{}",
+        report["damage"]
+    );
     assert_eq!(report["same_decisions"], true);
     let begin = trace("begin.trace", |bytes, _| bytes.truncate(20));
     assert!(refused(&[&begin]).contains("header"));

@@ -188,7 +188,8 @@ mod tests {
         for robot in RobotId::all().take(6) {
             let mut frame = [0; 40];
             for byte in &mut frame[8..] {
-                *noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                *noise =
+                    noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
                 *byte = (*noise >> 56) as u8;
             }
             recorder.sent(now, Colour::Blue, To::One(robot), &frame);

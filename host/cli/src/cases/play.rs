@@ -4,7 +4,7 @@
 //! the same answer for any number of jobs. `--story` tells single attempts instead, for whoever mends a case.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use arena::{CaseNames, Opposition, Rehearsal, Score, Story};

@@ -1,6 +1,5 @@
 //! How is a long evaluation played? On so many threads, with a bar on a terminal; Ctrl-C keeps what is over.
 
-use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -191,10 +191,7 @@ impl<'s> Theatre<'s> {
         backend: &mut NativeBackend<'b>,
     ) -> Result<(), arena::game::GameError> {
         let t = game.time();
-        let mut note = |words: String| {
-            self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
-        };
-        let refuse = |words: String| self.page.refuse(words);
+        let (mut noted, mut refused) = (None, None);
         let playing = |team: page::Team, id: u8| {
             let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
             who.filter(|who| game.world().robot(*who).is_some_and(|robot| robot.present))
@@ -211,34 +208,37 @@ impl<'s> Theatre<'s> {
                 hands.clock = (Instant::now(), t);
             }
             Request::Restart { .. } if self.recorded => {
-                refuse("a match that is recorded cannot begin anew".into());
+                refused = Some("a match that is recorded cannot begin anew".into());
             }
             Request::Restart { seed } => hands.anew = Some(seed.unwrap_or(self.config.seed)),
             Request::Situation { name } => {
                 if !situate(game, self.shelf, name) {
-                    refuse(format!("no situation of the name {} can be set up now", excerpt(name, NAME_LEN)));
+                    refused = Some(format!(
+                        "no situation of the name {} can be set up now",
+                        excerpt(name, NAME_LEN)
+                    ));
                 }
             }
             Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), hands.paused),
             Request::Robot { team, id, at } => match playing(*team, *id) {
                 Ok(who) => game.move_robot(who, Point::new(at[0], at[1]), hands.paused),
-                Err(words) => refuse(words),
+                Err(words) => refused = Some(words),
             },
             Request::Power { team, id, on } => match playing(*team, *id) {
                 Ok(who) => {
                     let name = format!("{} {}", who.colour.word(), who.id.number());
                     if game.power(who, *on, backend)? {
                         let what = if *on { "boots, by hand" } else { "crashes, by hand" };
-                        note(format!("{name} {what}"));
+                        noted = Some(format!("{name} {what}"));
                     } else {
-                        refuse(format!("{name} is {} already", if *on { "on" } else { "off" }));
+                        refused = Some(format!("{name} is {} already", if *on { "on" } else { "off" }));
                     }
                 }
-                Err(words) => refuse(words),
+                Err(words) => refused = Some(words),
             },
             Request::Loss { share } => {
                 game.lose(*share);
-                note(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+                noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
             }
             Request::Halt {} => {
                 game.command(Command::Halt);
@@ -247,9 +247,15 @@ impl<'s> Theatre<'s> {
                 let done = command_of(command).is_some_and(|command| game.command(command));
                 if !done {
                     let name = command.to_lowercase().replace('_', " ");
-                    refuse(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
+                    refused = Some(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
                 }
             }
+        }
+        if let Some(words) = noted {
+            self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+        }
+        if let Some(words) = refused {
+            self.page.refuse(words);
         }
         Ok(())
     }
