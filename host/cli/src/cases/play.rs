@@ -147,7 +147,7 @@ fn tell(
             }
             let end = attempt.end.map_or("not played", arena::CycleEnd::word);
             let _ = writeln!(text, "{end}, the ball {:.2} m nearer to the goal line\n", attempt.progress);
-            out.write_all(text.as_bytes()).map_err(Failure::Output)?;
+            out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)?;
         }
     }
     Ok(ExitCode::SUCCESS)
