@@ -7,7 +7,8 @@
 //! keeper = 0
 //! interface = "192.168.1.7"       # whose address hears multicast; left out: every interface
 //! robots = "sim://127.0.0.1"      # sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]
-//! key_file = "team.key"           # 32 hexadecimal digits; left out: a key of zeros
+//! key_file = "team.key"           # 32 hexadecimal digits; may be left out for sim:// only
+//! insecure_zero_key = false       # true: real robots may be led with the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
 //! tracker = "224.5.23.2:10010"
@@ -45,6 +46,8 @@ pub struct TeamSettings {
     pub robots: Option<String>,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
+    /// Real robots may be led with the key of zeros.
+    pub insecure_zero_key: Option<bool>,
     /// Vision's group.
     pub vision: Option<SocketAddr>,
     /// The referee's group.
@@ -90,6 +93,8 @@ pub struct TeamConfig {
     pub robots: RobotLink,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
+    /// Real robots may be led with the key of zeros, which is public.
+    pub insecure_zero_key: bool,
     /// Vision's group.
     pub vision: SocketAddr,
     /// The referee's group.
@@ -170,6 +175,7 @@ impl TeamSettings {
             interface: self.interface.or(below.interface),
             robots: self.robots.or(below.robots),
             key_file: self.key_file.or(below.key_file),
+            insecure_zero_key: self.insecure_zero_key.or(below.insecure_zero_key),
             vision: self.vision.or(below.vision),
             referee: self.referee.or(below.referee),
             tracker: self.tracker.or(below.tracker),
@@ -205,6 +211,7 @@ impl TeamSettings {
             interface: self.interface,
             robots: RobotLink::parse(self.robots.as_deref().unwrap_or("sim://127.0.0.1"))?,
             key_file: self.key_file,
+            insecure_zero_key: self.insecure_zero_key.unwrap_or(false),
             vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
             referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
             tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),

@@ -61,6 +61,14 @@ impl Sender {
         }
     }
 
+    /// The robot, if it is one.
+    pub const fn robot(self) -> Option<RobotId> {
+        match self {
+            Self::Robot(robot) => Some(robot),
+            Self::Host => None,
+        }
+    }
+
     /// For arrays with one place per sender.
     pub const fn index(self) -> usize {
         match self {

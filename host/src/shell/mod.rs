@@ -6,6 +6,7 @@
 
 mod error;
 mod hub;
+pub mod epoch;
 pub mod key;
 mod recorder;
 mod serial;

@@ -69,7 +69,7 @@ fn tell(link: &mut Link) -> Packet {
 /// A robot and its host that know each other.
 fn acquainted() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
-    assert_eq!(host.open(NOW, &tell(&mut link)), Ok(Opened::Stranger(robot(2))));
+    assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Stranger(..))));
     let welcome = host.welcome(robot(2)).unwrap();
     assert_eq!(welcome, Welcome { to: robot(2), life: 9, offset: 0 });
     assert!(link.open(NOW, &host.seal(NOW, &HostMessage::Welcome(welcome))).is_ok());

@@ -16,7 +16,7 @@ use host::config::TeamConfig;
 use host::radio::{RadioSettings, To};
 use host::recording::{HostHeader, RecordingHeader};
 use host::referee::team_port::Request;
-use host::shell::{Recorder, SimSettings, key};
+use host::shell::{Recorder, SimSettings};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
 use indicatif::ProgressBar;
@@ -31,7 +31,7 @@ use ssl::net::Interfaces;
 use super::board::Board;
 use super::threads::{self, Mail, Source};
 use super::watch::Watch;
-use super::{Cases, port_for_teams, simulator};
+use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
@@ -55,11 +55,11 @@ pub(super) fn run(
     page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
-    let key = team_key(config)?;
+    let key = identity::team_key(config)?;
     let Cases { shelf, settings: retrieval, words } = cases;
     let link = open_link(config, robots, key, words)?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let usual = HostSettings::new(config.colour, config.league, unix.as_secs() as u32);
+    let usual = HostSettings::new(config.colour, config.league, identity::this_epoch(config));
     let settings = HostSettings {
         keeper: config.keeper,
         kick: config.kick,
@@ -167,15 +167,6 @@ fn header(settings: &HostSettings) -> RecordingHeader {
         zero_unix_us: Some(unix.as_micros() as u64),
         hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
     }
-}
-
-fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let Some(file) = &config.key_file else { return Ok(TeamKey::ZERO) };
-    let read = key::read(file).map_err(|error| Failure::Network(error.to_string()))?;
-    if let Some(warning) = read.warning {
-        note!("warning: {warning}");
-    }
-    Ok(read.key)
 }
 
 fn open_link(
