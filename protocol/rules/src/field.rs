@@ -6,6 +6,8 @@
 use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
 use heapless::Vec;
 
+use crate::limits::{GOAL_SUBSTITUTION_DEPTH, ROBOT_RADIUS};
+
 /// Shapes that one defence area is made of, at most.
 pub const AREA_SHAPES_MAX: usize = 3;
 
@@ -141,6 +143,17 @@ impl FieldSpec {
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
     }
 
+    /// Where a robot's centre is when the league's game controller does not count it as on the field: the strip at the wall
+    /// behind its own goal, the whole body in it.
+    pub fn goal_substitution_area(&self, own: GoalEnd) -> Shape<Field> {
+        let sign = own.sign() as f32;
+        let wall = self.length * 0.5 + self.goal_line_margin;
+        let edge = wall - (GOAL_SUBSTITUTION_DEPTH - ROBOT_RADIUS);
+        let y = self.width * 0.5 + self.margin;
+        let (a, b) = (edge * sign, wall * sign);
+        Shape::Box { low: Point::new(a.min(b), -y), high: Point::new(a.max(b), y) }
+    }
+
     /// The defence area at that end; together the shapes cover it. Behind the goal line they may cover more.
     pub fn defence_area(&self, goal: GoalEnd) -> Vec<Shape<Field>, AREA_SHAPES_MAX> {
         let (line, sign) = (self.goal_line(goal), goal.sign() as f32);
@@ -220,6 +233,16 @@ mod tests {
         // From the front, straight; from beside the curve, along its radius.
         assert!((field.distance_to_area(goal, Point::new(-1.2, 0.0)) - 1.0).abs() < 1e-6);
         assert!((field.distance_to_area(goal, Point::new(-3.0, 1.475)) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_goal_substitution_area_is_the_last_21_cm_before_the_wall_behind_the_own_goal() {
+        // Division B: the wall at 4.8 m, 0.3 m deep, less the radius. Division A: the wall at 6.6 m.
+        let b = League::DivisionB.field().goal_substitution_area(GoalEnd::Positive);
+        assert!(b.contains(Point::new(4.6, 3.0)) && !b.contains(Point::new(4.58, 0.0)));
+        assert!(!b.contains(Point::new(-4.6, 0.0)));
+        let a = League::DivisionA.field().goal_substitution_area(GoalEnd::Negative);
+        assert!(a.contains(Point::new(-6.4, 0.0)) && !a.contains(Point::new(-6.38, 0.0)));
     }
 
     #[test]

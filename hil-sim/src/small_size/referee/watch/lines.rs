@@ -97,7 +97,7 @@ fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
         from: last.map_or(scene.ball.position, |touch| touch.ball),
         max_height: touches.height_since(scorer),
         last_touch: touches.last_of(scorer),
-        robots: scene.robots.iter().filter(|robot| robot.who.colour == scorer).count() as u32,
+        robots: scene.robots.iter().filter(|robot| robot.who.colour == scorer && scene.counts(robot)).count() as u32,
     }
 }
 
