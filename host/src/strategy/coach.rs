@@ -20,6 +20,7 @@ use motion::ball::chip::ChipModel;
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
+use super::bench::Bench;
 use super::opponents::{Rival, Team};
 use super::order::{Order, Role, Task, Why};
 use super::pass::{Kicks, PassConstants, Searches};
@@ -59,6 +60,7 @@ pub struct Coach {
     kicks: Kicks,
     searches: Searches,
     threats: threat::Memory,
+    bench: Bench,
     phase: Option<Phase<Side>>,
     since: Instant,
     /// Who goes for the ball, or takes our restart.
@@ -96,6 +98,7 @@ impl Coach {
             kicks: Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default()),
             searches: Searches::new(SEARCH_SEED),
             threats: threat::Memory::default(),
+            bench: Bench::default(),
             phase: None,
             since: Instant::default(),
             first: None,
@@ -116,12 +119,25 @@ impl Coach {
 
     /// Orders for all our robots of the view, one each, by id.
     pub fn decide(&mut self, view: &View) -> Orders {
+        let stands = self.team == Team::Idle || matches!(view.phase, Phase::Halt | Phase::Timeout(_));
+        let off = self.bench.choose(view, self.first);
+        if stands || off.is_empty() {
+            return self.direct(view);
+        }
+        // Who is off the field takes no part: no role, no pass, no place.
+        let playing = view.without(off);
+        let leaving = self.bench.orders(view);
+        let mut orders = self.direct(&playing);
+        orders.extend(leaving);
+        orders.sort_unstable_by_key(|order| order.robot);
+        orders
+    }
+
+    /// Orders for all robots that play.
+    fn direct(&mut self, view: &View) -> Orders {
         self.remember(view);
         self.observe(view);
         let mut plan = Plan::new(view);
-        if !matches!(view.phase, Phase::Halt | Phase::Timeout(_)) {
-            plan.send_off_surplus();
-        }
         match view.phase {
             _ if self.team == Team::Idle => plan.everybody(Role::Player, Task::Stand, Why::Idle),
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),

@@ -82,9 +82,6 @@ pub const SUBSTITUTION_REACH: f32 = 1.0;
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
 /// Division A's goal substitution area begins this far behind the own goal line, m (substitution).
 pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
-/// The goal substitution area reaches this far from the wall behind the own goal line, m (substitution; the league's game
-/// controller counts no robot whose whole body is in it, in both divisions: `goal-substitution-area-width`).
-pub const GOAL_SUBSTITUTION_DEPTH: f32 = 0.3;
 /// The radius that the rules take every robot to have, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
 /// The greatest height of a robot, m (robots).

@@ -6,7 +6,7 @@ use geometry::{Field, Point};
 use protocol::{Duration, Instant};
 use rules::restart::{AfterPlacement, placement_lack, placement_needless};
 use rules::state::{Command, Stage};
-use rules::{Colour, Phase, limits};
+use rules::{Colour, FieldSpec, Phase, limits};
 
 use super::InternalReferee;
 use super::event::{Kind, PenaltyEnd, Restart, What};
@@ -139,16 +139,8 @@ impl InternalReferee {
         [favoured, favoured.other()].into_iter().find(may).map_or(Placer::Person, Placer::Team)
     }
 
-    /// Robots can get at the ball: it is neither in or behind a goal nor in a corner of the carpet (rules: ball placement).
     fn is_reachable(&self, ball: Point<Field>) -> bool {
-        let (x, y) = (ball.x().abs(), ball.y().abs());
-        let field = &self.field;
-        let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
-        let behind = x > field.length * 0.5 && y < goal;
-        let from_wall =
-            (field.length * 0.5 + field.goal_line_margin - x, field.width * 0.5 + field.margin - y);
-        let corner = from_wall.0 < CORNER && from_wall.1 < CORNER;
-        !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
+        is_reachable(&self.field, ball)
     }
 
     fn see_placement(&mut self, robots: &[RobotSeen], team: Colour, age: Duration) {
@@ -182,6 +174,16 @@ impl InternalReferee {
             self.judge(&self.event(Some(team), what));
         }
     }
+}
+
+/// Robots can get at the ball: it is neither in or behind a goal nor in a corner of the carpet (rules: ball placement).
+pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
+    let (x, y) = (ball.x().abs(), ball.y().abs());
+    let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
+    let behind = x > field.length * 0.5 && y < goal;
+    let from_wall = (field.length * 0.5 + field.goal_line_margin - x, field.width * 0.5 + field.margin - y);
+    let corner = from_wall.0 < CORNER && from_wall.1 < CORNER;
+    !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
 }
 
 /// A stop lasts at least this long, so that nobody misses it: two packets.

@@ -27,6 +27,7 @@ mod metrics;
 mod observation;
 mod people;
 mod ready;
+pub mod remote;
 mod scene;
 mod settings;
 mod spots;

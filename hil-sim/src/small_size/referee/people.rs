@@ -123,6 +123,15 @@ impl InternalReferee {
         self.accounts.of_mut(who.colour).taken_off.push(who.id);
     }
 
+    /// How many robots of a team count: those outside its goal substitution area.
+    pub(super) fn on_field(&self, robots: &[RobotSeen], team: Colour) -> u32 {
+        let own = self.own_end(team);
+        let counts = |robot: &&RobotSeen| {
+            robot.who.colour == team && self.field.counts(own, robot.pose.position)
+        };
+        robots.iter().filter(counts).count() as u32
+    }
+
     /// In the centre substitution area, beside the touch line, and the ball is not near.
     fn may_be_taken(&self, place: Point<Field>) -> bool {
         place.x().abs() <= limits::SUBSTITUTION_REACH

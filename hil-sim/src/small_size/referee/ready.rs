@@ -17,7 +17,7 @@ use super::observation::RobotSeen;
 /// Why the game cannot go on; distances in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
-    /// The team has more robots than it may outside the strip behind its own goal.
+    /// The team has more robots than it may outside its goal substitution area.
     TooManyRobots {
         /// How many it may have.
         allowed: u32,
@@ -167,15 +167,9 @@ impl fmt::Display for Obstacle {
 }
 
 impl InternalReferee {
-    /// Whether the game controller counts that robot as on the field: not in the strip behind its own goal.
+    /// Whether the game controller counts that robot as on the field.
     pub(super) fn counts(&self, robot: &RobotSeen) -> bool {
-        let own = self.own_end(robot.who.colour);
-        !self.field.goal_substitution_area(own).contains(robot.pose.position)
-    }
-
-    /// How many robots of that team the game controller counts.
-    pub(super) fn on_field(&self, robots: &[RobotSeen], team: Colour) -> u32 {
-        robots.iter().filter(|robot| robot.who.colour == team && self.counts(robot)).count() as u32
+        self.field.counts(self.own_end(robot.who.colour), robot.pose.position)
     }
 
     /// What keeps this stop from ending with `next`; empty where nothing does.

@@ -76,12 +76,6 @@ impl Scene<'_> {
         self.robots.iter().find(|robot| robot.who == who)
     }
 
-    /// Whether the game controller counts that robot as on the field.
-    pub(super) fn counts(&self, robot: &RobotSeen) -> bool {
-        let own = self.game.own_end(robot.who.colour);
-        !self.game.field.goal_substitution_area(own).contains(robot.pose.position)
-    }
-
     /// From that robot's nearest side to the ball's centre, m (the rules' distance to the ball).
     pub(super) fn distance_to_ball(&self, robot: &RobotSeen) -> f32 {
         robot.pose.position.distance(self.ball.position) - limits::ROBOT_RADIUS

@@ -219,6 +219,7 @@ fn field_of(told: &GeometryFieldSize, before: FieldSpec) -> FieldSpec {
         width: m(told.field_width),
         margin: m(told.boundary_width),
         goal_line_margin: m(told.boundary_width_goal_line.unwrap_or(told.boundary_width)),
+        goal_substitution: or(told.goal_substitution_area_width, before.goal_substitution),
         goal_width: m(told.goal_width),
         goal_depth: m(told.goal_depth),
         goal_height: or(told.goal_height, before.goal_height),

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use host::config::TeamConfig;
 use host::radio::{RadioSettings, To};
 use host::recording::{HostHeader, RecordingHeader};
+use host::referee::team_port::Request;
 use host::shell::{Recorder, SimSettings, key};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
@@ -89,9 +90,10 @@ pub(super) fn run(
         threads::hear(Source::Referee, config.referee, by, mail.clone(), end.clone()),
         threads::carry(link, frames, mail.clone(), end.clone()),
     ];
+    let (ask, asked) = mpsc::channel();
     if let Some(address) = config.game_controller {
         let who = (config.name.clone(), config.colour, config.keeper);
-        threads.push(port_for_teams::talk(address, who, mail.clone(), end.clone()));
+        threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
     }
     drop(mail);
     let speaks_by = config.interface.map(|ip| ip.to_string());
@@ -99,6 +101,7 @@ pub(super) fn run(
         host: Host::new(settings, protocol::Instant(0)),
         began: Instant::now(),
         out,
+        ask,
         us: config.colour,
         recorder,
         recording: Ok(()),
@@ -207,6 +210,8 @@ struct Desk {
     host: Host,
     began: Instant,
     out: Sender<(To, Packet)>,
+    /// What is asked of the game controller.
+    ask: Sender<Request>,
     us: Colour,
     recorder: Option<Recorder>,
     /// How a recording ended that ended before the match.
@@ -297,6 +302,10 @@ impl Desk {
     }
 
     fn send(&mut self, now: protocol::Instant) {
+        while let Some(request) = self.host.poll_request() {
+            // Without a controller to ask there is no thread that takes it.
+            let _ = self.ask.send(request);
+        }
         while let Some((to, packet)) = self.host.poll_packet() {
             if let Some(recorder) = &mut self.recorder {
                 recorder.sent(now, self.us, to, &packet);

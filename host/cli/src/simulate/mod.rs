@@ -3,7 +3,9 @@
 //! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
 //! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.
 
+mod autoref;
 mod board;
+mod crew;
 mod hall;
 mod ports;
 
@@ -60,6 +62,14 @@ pub(crate) struct SimulateArgs {
     /// Who blows the whistle: internal, none, or the ADDRESS:PORT of a game controller's packets, to be shown beside the field.
     #[arg(long, value_name = "WHO", default_value = "internal", value_parser = referee)]
     referee: Whistle,
+    /// With `--referee none` or an address: do the person's part that the game controller asks for: put the ball, take robots
+    /// off, bring them back. Each deed is told in a line.
+    #[arg(long)]
+    assistant: bool,
+    /// With `--referee none` or an address: report game events to that game controller as an automatic referee; port 10007 unless
+    /// told. With --assistant it also decides about goals.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = autoref::address)]
+    autoref: Option<String>,
     /// Where the internal referee's packets go.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
     referee_to: SocketAddr,
@@ -99,6 +109,12 @@ enum ProfileWord {
 
 /// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
+    if args.referee == Whistle::Internal && (args.assistant || args.autoref.is_some()) {
+        return Err(Failure::Network(
+            "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add --referee none, or the ADDRESS:PORT of its packets"
+                .to_owned(),
+        ));
+    }
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
         ProfileWord::Ours => Profile::Ours,

@@ -34,25 +34,6 @@ impl<'v> Plan<'v> {
         self.free.len() < before
     }
 
-    /// Those with the highest numbers leave while we are too many; the keeper stays.
-    pub(super) fn send_off_surplus(&mut self) {
-        let view = self.view;
-        let surplus = self.free.len().saturating_sub(view.allowed);
-        let leaving: Free = view
-            .ours
-            .iter()
-            .rev()
-            .map(|robot| robot.id)
-            .filter(|id| *id != view.keeper)
-            .take(surplus)
-            .collect();
-        for (i, id) in leaving.into_iter().enumerate() {
-            self.take(id);
-            let at = Point::new(0.25 * i as f32, -view.field.width * 0.5 - LEAVE_BEYOND);
-            self.order(id, Role::Leaving, self.facing_ball(at), Why::TooMany { allowed: view.allowed });
-        }
-    }
-
     pub(super) fn keeper(&mut self) {
         if self.take(self.view.keeper) {
             let (task, why) = defence::keeper(self.view);
@@ -82,6 +63,3 @@ impl<'v> Plan<'v> {
         if self.view.phase == Phase::Run { at } else { restart::kept_off(self.view, at) }
     }
 }
-
-/// Robots that leave stand this far beyond the touch line, m: off the playing area, on the carpet.
-const LEAVE_BEYOND: f32 = 0.15;

@@ -186,19 +186,20 @@ fn one_too_many() -> Stage {
 }
 
 #[test]
-fn a_robot_in_the_strip_behind_its_own_goal_is_not_counted_one_before_it_is() {
-    for (x, counted) in [(4.58, true), (4.60, false)] {
-        let mut stage = one_too_many();
-        stage.put(blue(5), at(x, 1.5));
-        stage.run(4.0);
-        let goes_on = stage.phase() == Phase::FreeKick(Colour::Yellow);
+fn a_robot_in_its_goal_substitution_area_is_not_counted_one_before_it_is() {
+    // Division A: the wall at 6.6 m, the area 0.3 m, the robot's centre at most 0.21 m before the wall.
+    for (x, counted) in [(6.38, true), (6.40, false), (-6.40, true)] {
+        let mut stage = stage_with(RefereeSettings::new(League::DivisionA));
+        stage.until(Phase::Stop, 4.0);
+        for number in 3..11 {
+            stage.put(blue(number), at(3.0, 0.4 * f32::from(number)));
+        }
+        stage.referee.accounts.blue.show_yellow(Instant(0), 120_000_000);
+        stage.put(blue(10), at(x, 1.5));
+        stage.run(5.0);
+        let goes_on = stage.phase() != Phase::Stop;
         assert_eq!((goes_on, stage.orders.len()), (!counted, 0), "{x}");
     }
-    // The other end's strip is no place to go.
-    let mut stage = one_too_many();
-    stage.put(blue(5), at(-4.7, 1.5));
-    stage.run(9.0);
-    assert_eq!(stage.phase(), Phase::Stop);
 }
 
 #[test]
