@@ -259,6 +259,10 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
             metrics.shots, metrics.chances, metrics.passes, metrics.possession_s
         )?;
     }
+    for block in &report.blocked {
+        let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);
+        writeln!(out, "{phase}: {}", block.words)?;
+    }
     let mut words =
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
     for (side, team) in [("blue", args.blue), ("yellow", args.yellow)] {

@@ -18,7 +18,7 @@ mod story;
 
 pub use config::{GameConfig, TeamSetup};
 pub use recording::header;
-pub use report::{GameReport, PerTeam, TeamReport};
+pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
 pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::camera::Cameras;
