@@ -5,6 +5,10 @@
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
+//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the datagram. Version 1 had
+//! no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record of kind [`Kind::Lost`] says that the
+//! recorder could not keep up from then on.
+//!
 //! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
 //! before the cut and says that it was cut. Compression is the file's business, not this format's.
 
@@ -13,11 +17,17 @@ use std::io::{self, Read, Write};
 
 use protocol::Instant;
 
+use crate::referee::SenderAddress;
+
 const MAGIC: &[u8; 12] = b"ONETWO_TRACE";
 /// The version of the format.
-pub const VERSION: u32 = 1;
-/// The longest record, bytes: a datagram.
-pub const RECORD_LEN_MAX: usize = 65_536;
+pub const VERSION: u32 = 2;
+/// The oldest version that is read.
+const OLDEST: u32 = 1;
+/// Version 1 did not store a referee's address.
+const WITH_SENDER: u32 = 2;
+/// The longest record, bytes: a datagram and its sender.
+pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
 pub const HEADER_LEN_MAX: usize = 1 << 20;
 
@@ -34,10 +44,22 @@ pub enum Kind {
     Timeout,
     /// The host sent a frame: the first byte is the robot it is for, 255 for all.
     Sent,
+    /// The recorder could not keep up: what follows is not recorded. Nothing comes after it.
+    Lost,
+    /// The operator halted the host's robots.
+    Halt,
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent];
+    const ALL: [Self; 7] = [
+        Self::Vision,
+        Self::Referee,
+        Self::Robot,
+        Self::Timeout,
+        Self::Sent,
+        Self::Lost,
+        Self::Halt,
+    ];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()
@@ -45,7 +67,7 @@ impl Kind {
 
     /// Whether it is something that came to the host.
     pub fn is_input(self) -> bool {
-        self != Self::Sent
+        !matches!(self, Self::Sent | Self::Lost)
     }
 }
 
@@ -58,6 +80,8 @@ pub struct Record {
     pub host: u8,
     /// What.
     pub kind: Kind,
+    /// Who sent it, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
+    pub from: SenderAddress,
     /// Its bytes.
     pub bytes: Vec<u8>,
 }
@@ -107,6 +131,7 @@ fn len(bytes: &[u8]) -> io::Result<u32> {
 #[derive(Debug)]
 pub struct Reader<R: Read> {
     from: R,
+    version: u32,
     header: String,
     end: Option<End>,
 }
@@ -118,6 +143,8 @@ pub enum End {
     Whole,
     /// Within a record.
     Cut,
+    /// Where the recorder could not keep up.
+    Lost,
     /// A record that cannot be one.
     Broken {
         /// What is wrong with it.
@@ -146,7 +173,7 @@ impl fmt::Display for TraceError {
             Self::Version(seen) => {
                 write!(
                     f,
-                    "a trace of version {seen}, this program reads {VERSION}: use the program that wrote it"
+                    "a trace of version {seen}, this program reads {OLDEST} to {VERSION}: use the program that wrote it"
                 )
             }
             Self::Header => {
@@ -177,7 +204,7 @@ impl<R: Read> Reader<R> {
         let mut word = [0; 4];
         from.read_exact(&mut word)?;
         let version = u32::from_le_bytes(word);
-        if version != VERSION {
+        if !(OLDEST..=VERSION).contains(&version) {
             return Err(TraceError::Version(version));
         }
         from.read_exact(&mut word)?;
@@ -188,7 +215,7 @@ impl<R: Read> Reader<R> {
         let mut header = vec![0; length];
         from.read_exact(&mut header)?;
         let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
-        Ok(Self { from, header, end: None })
+        Ok(Self { from, version, header, end: None })
     }
 
     /// What was said at its beginning: JSON.
@@ -224,8 +251,23 @@ impl<R: Read> Reader<R> {
             return Err(End::Cut);
         }
         let at = Instant(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
-        Ok(Record { at, host, kind, bytes })
+        let from = match kind {
+            Kind::Lost => return Err(End::Lost),
+            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)?,
+            _ => SenderAddress::INTERNAL,
+        };
+        Ok(Record { at, host, kind, from, bytes })
     }
+}
+
+/// Takes the sender from the beginning of a referee's record.
+fn take_sender(bytes: &mut Vec<u8>) -> Result<SenderAddress, End> {
+    let Some((sender, packet)) = bytes.split_first_chunk() else {
+        return Err(End::Broken { what: format!("a referee's record of {} bytes has no sender", bytes.len()) });
+    };
+    let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());
+    *bytes = packet;
+    Ok(sender)
 }
 
 /// As much of `into` as there is; a read that fails (a damaged compressed file, too) ends it.
@@ -273,7 +315,13 @@ mod tests {
         assert_eq!(records.len(), 3);
         assert_eq!(
             records[2],
-            Record { at: Instant(30), host: 1, kind: Kind::Sent, bytes: b"\xffframe".to_vec() }
+            Record {
+                at: Instant(30),
+                host: 1,
+                kind: Kind::Sent,
+                from: SenderAddress::INTERNAL,
+                bytes: b"\xffframe".to_vec()
+            }
         );
         assert_eq!(reader.end(), Some(&End::Whole));
     }
@@ -307,6 +355,36 @@ mod tests {
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.by_ref().count(), 0);
         assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("77")));
+    }
+
+    #[test]
+    fn a_referees_packet_keeps_its_sender_and_one_of_version_1_has_none() {
+        let from = SenderAddress::new(([10, 0, 0, 7], 41_234).into());
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Referee, &[&from.to_bytes(), b"packet"]).unwrap();
+        let mut bytes = writer.into_inner();
+        let record = Reader::new(&bytes[..]).unwrap().next().unwrap();
+        assert_eq!((record.from, &record.bytes[..]), (from, &b"packet"[..]));
+        bytes[12] = 1;
+        let record = Reader::new(&bytes[..]).unwrap().next().unwrap();
+        assert_eq!((record.from, record.bytes.len()), (SenderAddress::INTERNAL, SenderAddress::LEN + 6));
+        // A record too short for a sender is damage, not a panic.
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Referee, &[b"short"]).unwrap();
+        let bytes = writer.into_inner();
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!(reader.next(), None);
+        assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("no sender")));
+    }
+
+    #[test]
+    fn a_trace_that_lost_records_ends_there() {
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Timeout, &[]).unwrap();
+        writer.write(Instant(2), 0, Kind::Lost, &[]).unwrap();
+        let bytes = writer.into_inner();
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&End::Lost)));
     }
 
     #[test]

@@ -217,6 +217,14 @@ impl core::fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
+/// Who a frame claims to be from, by its header alone; nothing is checked.
+pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
+    bytes.get(SENDER_AT).and_then(|number| Sender::new(*number))
+}
+
+/// Where the sender stands: after version and team.
+const SENDER_AT: usize = 2;
+
 impl<'a> Frame<'a> {
     /// Reads the envelope; the tag is not looked at yet, see [`Frame::is_genuine`].
     pub fn parse(bytes: &'a [u8], team: TeamId) -> Result<Self, Refusal> {

@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 use host::radio::To;
 use host::recheck::Recheck;
 use host::recording::{HostHeader, RecordingHeader};
+use host::referee::SenderAddress;
 use host::strategy::Why;
 use host::trace::{Kind, Reader, Writer};
 use host::{Host, HostSettings, Input};
@@ -146,12 +147,15 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     for (number, record) in (1_u64..).zip(log.take(2000)) {
         let (kind, input) = match record.kind {
             MessageKind::Vision2014 => (Kind::Vision, Input::Vision(&record.payload)),
-            MessageKind::Refbox2013 => (Kind::Referee, Input::Referee(&record.payload)),
+            MessageKind::Refbox2013 => (Kind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL)),
             _ => continue,
         };
         let at = Instant(number * 5_000);
-        writer.write(at, 0, kind, &[&record.payload]).expect("memory");
-        length += 14 + record.payload.len();
+        // Before a packet of the referee stands who sent it.
+        let sender = SenderAddress::INTERNAL.to_bytes();
+        let sender = if kind == Kind::Referee { &sender[..] } else { &[] };
+        writer.write(at, 0, kind, &[sender, &record.payload]).expect("memory");
+        length += 14 + sender.len() + record.payload.len();
         host.handle(at, input);
         while let Some((to, packet)) = host.poll_packet() {
             let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };

@@ -174,6 +174,12 @@ impl Radio {
         }
     }
 
+    /// The next snapshot may go out at `now`, whatever the rate: it carries HALT. Once per HALT, so that the rate holds on
+    /// average.
+    pub fn hasten(&mut self, now: Instant) {
+        self.free = self.free.min(now);
+    }
+
     /// When to call [`Radio::handle_timeout`]; `None` while there is nothing to say.
     pub fn poll_timeout(&self) -> Option<Instant> {
         let latest = self.latest.as_ref()?;

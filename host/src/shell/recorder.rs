@@ -63,14 +63,19 @@ impl Recorder {
 
     /// Something came to the host of that colour.
     pub fn input(&mut self, now: Instant, host: Colour, input: Input<'_>) {
-        let (kind, bytes): (Kind, &[u8]) = match input {
-            Input::Vision(bytes) => (Kind::Vision, bytes),
-            Input::Referee(bytes) => (Kind::Referee, bytes),
-            Input::Robot(bytes) => (Kind::Robot, bytes),
-            Input::Timeout => (Kind::Timeout, &[]),
+        let sender;
+        let (kind, bytes): (Kind, [&[u8]; 2]) = match input {
+            Input::Vision(bytes) => (Kind::Vision, [&[], bytes]),
+            Input::Referee(bytes, from) => {
+                sender = from.to_bytes();
+                (Kind::Referee, [&sender, bytes])
+            }
+            Input::Robot(bytes) => (Kind::Robot, [&[], bytes]),
+            Input::Halt => (Kind::Halt, [&[], &[]]),
+            Input::Timeout => (Kind::Timeout, [&[], &[]]),
         };
         let host = self.number(host);
-        self.write(|files| files.trace.write(now, host, kind, &[bytes]));
+        self.write(|files| files.trace.write(now, host, kind, &bytes));
     }
 
     /// The host of that colour sent a frame.
@@ -81,6 +86,11 @@ impl Recorder {
         };
         let host = self.number(host);
         self.write(|files| files.trace.write(now, host, Kind::Sent, &[&[to], packet]));
+    }
+
+    /// Records were lost: the trace ends here, and says so. Nothing more may be written to it.
+    pub fn lost(&mut self, now: Instant) {
+        self.write(|files| files.trace.write(now, 0, Kind::Lost, &[]));
     }
 
     /// Whether an error has ended the writing.

@@ -10,6 +10,7 @@
 
 mod config;
 mod hand;
+pub mod penalty;
 mod recording;
 mod report;
 mod side;
@@ -199,7 +200,7 @@ impl<'a> Game<'a> {
             let bytes = packet.encode_to_vec();
             watcher.referee(now, &bytes);
             for team in &mut self.teams {
-                team.tell(self.tick, now, host::Input::Referee(&bytes), watcher);
+                team.tell(self.tick, now, host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL), watcher);
             }
         }
         while let Some(order) = self.referee.poll_order() {

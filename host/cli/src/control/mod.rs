@@ -3,10 +3,14 @@
 //! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
 //! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.
 
+mod alarms;
 mod board;
 mod desk;
 mod identity;
+mod inbox;
 mod port_for_teams;
+mod radio_alarms;
+mod terminal;
 mod threads;
 mod watch;
 
@@ -68,6 +72,10 @@ pub(crate) struct ControlArgs {
     /// Where the referee is heard: 224.5.23.1:10003.
     #[arg(long, value_name = "ADDRESS:PORT")]
     referee: Option<SocketAddr>,
+    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or its identifier. Others
+    /// are ignored and reported. Without it the strictest command of all of them is obeyed.
+    #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
+    referee_source: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
@@ -159,6 +167,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         insecure_zero_key: args.insecure_zero_key.then_some(true),
         vision: args.vision,
         referee: args.referee,
+        referee_source: args.referee_source.clone(),
         tracker: args.tracker,
         game_controller: args.game_controller,
         calibration: args.kicks.clone(),

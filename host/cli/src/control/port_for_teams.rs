@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -12,7 +12,8 @@ use host::referee::team_port::{Event, Request, TeamPort};
 use protocol::RobotId;
 use rules::Colour;
 
-use super::threads::{Mail, sleep};
+use super::inbox::{Inbox, Mail};
+use super::threads::sleep;
 
 /// An open connection is read at most so long before the time is looked at.
 const WAIT: Duration = Duration::from_millis(100);
@@ -24,7 +25,7 @@ pub(super) fn talk(
     address: SocketAddr,
     (name, colour, keeper): (String, Colour, RobotId),
     asked: Receiver<Request>,
-    mail: Sender<Mail>,
+    mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
@@ -52,7 +53,7 @@ pub(super) fn talk(
                 let words = words(&event, address);
                 // A controller that is away is told of once.
                 if words.is_some() && words != last {
-                    let _ = mail.send(Mail::Word(words.clone().unwrap_or_default()));
+                    mail.put(Mail::Word(words.clone().unwrap_or_default()));
                     last = words;
                 }
             }

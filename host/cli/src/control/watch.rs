@@ -108,7 +108,7 @@ impl Watch {
                     config.referee, referee.way
                 )
             },
-            || format!("the referee is heard: {}", host.listener().source().unwrap_or("without a name")),
+            || format!("the referee is heard: {}", host.listener().source().map_or_else(String::new, ToString::to_string)),
         ));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {

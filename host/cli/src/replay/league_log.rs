@@ -5,7 +5,7 @@
 
 use std::process::ExitCode;
 
-use host::referee::Listener;
+use host::referee::{Listener, SenderAddress};
 use host::tracking::{Heard, Tracker};
 use host::{Host, HostSettings, Input};
 use indicatif::ProgressBar;
@@ -100,7 +100,7 @@ impl<'a> Pass<'a> {
             began_ns: None,
             now: Instant(0),
             tracker: Tracker::default(),
-            listener: Listener::new(limits, Instant(0)),
+            listener: Listener::new(limits, None, Instant(0)),
             finder: Finder::default(),
             team,
             met: 0,
@@ -147,11 +147,12 @@ impl<'a> Pass<'a> {
             }
             Some(Packet::Referee(packet)) => {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
-                self.listener.hear(&packet, self.now, ball);
+                // A log file does not say who sent its packets.
+                self.listener.hear(&packet, SenderAddress::INTERNAL, self.now, ball);
                 let before = self.report.happenings.len();
                 self.finder.read(&packet, at_s, &mut self.report.happenings);
                 self.report.score = Score { blue: packet.blue.score, yellow: packet.yellow.score };
-                self.feed(Input::Referee(&record.payload));
+                self.feed(Input::Referee(&record.payload, SenderAddress::INTERNAL));
                 return self.asked_for(before);
             }
             _ => {}

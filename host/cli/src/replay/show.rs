@@ -9,6 +9,7 @@ use std::sync::atomic::Ordering;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
 use host::trace::{Kind, Reader};
+use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
 use page::{Happening, Kind as Told, Page, Powers};
 use protocol::Instant;
@@ -140,7 +141,7 @@ fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
             }
             MessageKind::Refbox2013 => {
                 projector.composer.referee(&record.payload, now.0 as f64 * 1e-6, false);
-                host.handle(now, Input::Referee(&record.payload));
+                host.handle(now, Input::Referee(&record.payload, SenderAddress::INTERNAL));
             }
             _ => continue,
         }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use geometry::Point;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
+use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
 use page::{Happening, Kind, Page, Powers, Request};
 use protocol::{RobotId, Who};
@@ -66,7 +67,7 @@ impl Board {
     pub(super) fn referee(&mut self, bytes: &[u8], running: Duration) {
         let now = protocol::Instant(running.as_micros() as u64);
         self.composer.referee(bytes, self.t, true);
-        self.eyes.handle(now, Input::Referee(bytes));
+        self.eyes.handle(now, Input::Referee(bytes, SenderAddress::INTERNAL));
     }
 
     /// Another game begins.
