@@ -7,7 +7,8 @@
 //! keeper = 0
 //! interface = "192.168.1.7"       # whose address hears multicast; left out: every interface
 //! robots = "sim://127.0.0.1"      # sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]
-//! key_file = "team.key"           # 32 hexadecimal digits; left out: a key of zeros
+//! key_file = "team.key"           # 32 hexadecimal digits; may be left out for sim:// only
+//! insecure_zero_key = false       # true: real robots may be led with the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
 //! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
@@ -47,6 +48,8 @@ pub struct TeamSettings {
     pub robots: Option<String>,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
+    /// Real robots may be led with the key of zeros.
+    pub insecure_zero_key: Option<bool>,
     /// Vision's group.
     pub vision: Option<SocketAddr>,
     /// The referee's group.
@@ -94,6 +97,8 @@ pub struct TeamConfig {
     pub robots: RobotLink,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
+    /// Real robots may be led with the key of zeros, which is public.
+    pub insecure_zero_key: bool,
     /// Vision's group.
     pub vision: SocketAddr,
     /// The referee's group.
@@ -162,6 +167,7 @@ impl TeamSettings {
             interface: self.interface.or(below.interface),
             robots: self.robots.or(below.robots),
             key_file: self.key_file.or(below.key_file),
+            insecure_zero_key: self.insecure_zero_key.or(below.insecure_zero_key),
             vision: self.vision.or(below.vision),
             referee: self.referee.or(below.referee),
             referee_source: self.referee_source.or(below.referee_source),
@@ -198,6 +204,7 @@ impl TeamSettings {
             interface: self.interface,
             robots: RobotLink::parse(self.robots.as_deref().unwrap_or("sim://127.0.0.1"))?,
             key_file: self.key_file,
+            insecure_zero_key: self.insecure_zero_key.unwrap_or(false),
             vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
             referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
@@ -255,7 +262,7 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 pictures a second for a team of eleven (§6's frames, some 60 kB/s).
+/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75 for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]

@@ -22,6 +22,9 @@ pub use camera::Camera;
 /// the place of a genuine one.
 pub const CAMERAS_MAX: u32 = 16;
 
+/// The goal substitution area that the game controller (2026) takes a field to have of which vision does not tell it, m.
+const SUBSTITUTION_UNTOLD: f32 = 0.3;
+
 /// What vision said of the field so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VisionGeometry {
@@ -166,6 +169,8 @@ fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFa
         margin,
         // The newest message tells both; a 0 is what older programs send for "not told".
         goal_line_margin: told(size.boundary_width_goal_line).unwrap_or(margin),
+        // Here 0 is an answer: no such area. Untold, the game controller takes its own default, the same in both divisions.
+        goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_UNTOLD, metres),
         goal_width: metres(size.goal_width),
         goal_depth: metres(size.goal_depth),
         goal_height: told(size.goal_height).unwrap_or(default.goal_height),

@@ -19,7 +19,9 @@ use crate::geometry::VisionGeometry;
 use crate::hidden_ball::HiddenBall;
 use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
+use crate::referee::team_port::Request;
 use crate::referee::{self, Listener, SenderAddress, SourcePin};
+use crate::requests::Requests;
 use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::{Bookkeeper, PlayTally};
 use crate::strategy::view::{Game, RobotSet};
@@ -133,6 +135,7 @@ pub struct Host {
     undecodable: Undecodable,
     halted: bool,
     books: Bookkeeper,
+    requests: Requests,
 }
 
 /// What a robot of ours last said of itself.
@@ -165,6 +168,7 @@ impl Host {
             undecodable: Undecodable::default(),
             halted: false,
             books: Bookkeeper::default(),
+            requests: Requests::default(),
             cases: cases_of(settings.league),
             settings,
         }
@@ -198,6 +202,11 @@ impl Host {
     /// The next packet for the robots.
     pub fn poll_packet(&mut self) -> Option<(To, Packet)> {
         self.radio.poll_packet()
+    }
+
+    /// The next request to the game controller, for its port for teams.
+    pub fn poll_request(&mut self) -> Option<Request> {
+        self.requests.poll()
     }
 
     /// When [`Input::Timeout`] is wanted, if nothing comes before.
@@ -344,9 +353,13 @@ impl Host {
         let us = self.settings.us;
         let game = self.our_game();
         let view = View::of(&self.world, us, &game, self.field(), self.fit(now), self.in_play(now))
-            .allowing(self.allowed())
+            .allowing(self.allowed(us))
+            .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
         self.orders = self.coach.decide(&view);
+        if !self.halted {
+            self.requests.look(&view, self.listener.game().team(us).substitution_allowed);
+        }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
         let command = |order: &crate::strategy::Order| Command {
@@ -385,9 +398,9 @@ impl Host {
         }
     }
 
-    /// How many robots the referee lets us have.
-    fn allowed(&self) -> usize {
-        self.listener.game().team(self.settings.us).robots_allowed.map_or(RobotId::COUNT, |n| n as usize)
+    /// How many robots the referee lets a team have.
+    fn allowed(&self, team: Colour) -> usize {
+        self.listener.game().team(team).robots_allowed.map_or(RobotId::COUNT, |n| n as usize)
     }
 
     /// Robots that hear us and stand.

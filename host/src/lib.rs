@@ -14,6 +14,7 @@ pub mod radio;
 pub mod recheck;
 pub mod recording;
 pub mod referee;
+mod requests;
 pub mod shell;
 pub mod strategy;
 pub mod trace;

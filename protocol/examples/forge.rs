@@ -1,4 +1,4 @@
-//! How many forged, replayed and foreign frames are believed? `cargo run --release -p protocol --example forge -- --count 1000000
+//! `forge`: counts forged, replayed and foreign frames that are believed: `cargo run --release -p protocol --example forge -- --count 1000000
 //! [--seed N]`: none, or it panics with the first.
 
 #[path = "../tests/support/forgery.rs"]
@@ -24,8 +24,8 @@ fn main() -> ExitCode {
     println!(
         "{count} frames (seed {seed}), none believed: {said} as they were said, {flipped} with flipped bits, {counter} with a newer \
          counter, {epoch} with a newer epoch, {length} cut or stretched, {name} in another's name, {made} made with guessed keys; \
-         and {} recordings right after {} boots",
-        tally.after_boots, tally.boots
+         and {} recordings right after {} boots, {} to hosts that had just started",
+        tally.after_boots, tally.boots, tally.to_fresh_hosts
     );
     ExitCode::SUCCESS
 }

@@ -1,59 +1,42 @@
-//! Who sent these bytes, when, and are they genuine? The radio's envelope (DESIGN §6).
+//! `frame`: the radio's envelope: sender, epoch, counter, payload and what proves them genuine (DESIGN §6).
 //!
 //! ```text
-//! version 1 | team 1 | sender 1 | epoch 4 LE | counter 4 LE | payload n | tag 8
+//! version 1 | team 1 | sender 1 | epoch 4 LE | counter 4 LE | payload n | tag 8                    to one robot, or from one
+//! version 1 | team 1 | 17       | epoch 4 LE | counter 4 LE | audience 2 LE | payload n | 3 for each robot in the audience
 //! ```
 //!
-//! The tag is SipHash-2-4 under the team's 128-bit key over all bytes before it, little endian. Checks run in the order
-//! length → id → epoch and counter → tag → decode; the epoch and counter are [`Sessions`]' business, the payload is
-//! its reader's. `protocol/SPEC.md` has worked bytes.
-
-use core::hash::Hasher;
-
-use siphasher::sip::SipHasher24;
+//! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one is its first three
+//! bytes. The host seals what it sends to several robots once for each of them, so that no robot's key makes a frame that another
+//! one believes. Checks run in the order length → version, team, sender → epoch and counter → tag → decode; the epoch and counter
+//! are [`Sessions`]' business, the payload is its reader's. `protocol/SPEC.md` has worked bytes.
 
 use crate::{RobotId, TeamId};
 
+pub use crate::key::{Key, RobotKeys, TeamKey, TeamKeys};
+
 /// The version of the layout; a frame of any other is refused.
-pub const VERSION: u8 = 1;
-/// Bytes before the payload.
+pub const VERSION: u8 = 2;
+/// Bytes before the payload of a frame with one tag.
 pub const HEADER_LEN: usize = 11;
-/// Bytes of the tag.
+/// Bytes of the tag where there is one.
 pub const TAG_LEN: usize = 8;
-/// Bytes of a frame that are not payload.
+/// Bytes of each tag where there are several: a forgery passes once in 2²⁴ tries, 3.7 h at 1,250 frames a second.
+pub const SHORT_TAG_LEN: usize = 3;
+/// Bytes that name the audience.
+pub const AUDIENCE_LEN: usize = 2;
+/// Bytes of a frame with one tag that are not payload.
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
 /// The longest frame on the air (a part of the world; DESIGN §6).
 pub const FRAME_LEN_MAX: usize = 120;
-/// The longest payload.
+/// The longest payload, in a frame with one tag.
 pub const PAYLOAD_LEN_MAX: usize = FRAME_LEN_MAX - OVERHEAD;
-
-/// A team's key; all zeros until one is provisioned.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct TeamKey(pub [u8; 16]);
-
-impl TeamKey {
-    /// The key before provisioning: it tells frames from noise, not friends from foes.
-    pub const ZERO: Self = Self([0; 16]);
-
-    fn tag(&self, bytes: &[u8]) -> [u8; TAG_LEN] {
-        let mut hasher = SipHasher24::new_with_key(&self.0);
-        hasher.write(bytes);
-        hasher.finish().to_le_bytes()
-    }
-}
-
-impl core::fmt::Debug for TeamKey {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("TeamKey(..)")
-    }
-}
 
 /// Who speaks on a team's air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sender {
     /// A robot of the team; 0–15 on the wire.
     Robot(RobotId),
-    /// The team's host, one per team; 16 on the wire.
+    /// The team's host, one per team; 16 on the wire, or 17 to several robots.
     Host,
 }
 
@@ -78,6 +61,14 @@ impl Sender {
         }
     }
 
+    /// The robot, if it is one.
+    pub const fn robot(self) -> Option<RobotId> {
+        match self {
+            Self::Robot(robot) => Some(robot),
+            Self::Host => None,
+        }
+    }
+
     /// For arrays with one place per sender.
     pub const fn index(self) -> usize {
         match self {
@@ -89,6 +80,45 @@ impl Sender {
 
 /// The host's number on the wire: the first that no robot has.
 const HOST: u8 = RobotId::COUNT as u8;
+/// The host's number in a frame with an audience.
+const HOST_TO_SEVERAL: u8 = HOST + 1;
+
+/// A set of robots: bit n is robot n.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Audience(pub u16);
+
+impl Audience {
+    /// Whether that robot is in it.
+    pub const fn has(self, robot: RobotId) -> bool {
+        self.0 & (1 << robot.number()) != 0
+    }
+
+    /// Number of robots in it.
+    pub const fn len(self) -> usize {
+        self.0.count_ones() as usize
+    }
+
+    /// Whether there is none.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Every robot in it, lowest number first.
+    pub fn robots(self) -> impl Iterator<Item = RobotId> {
+        RobotId::all().filter(move |robot| self.has(*robot))
+    }
+
+    /// How many of its robots have a lower number.
+    const fn before(self, robot: RobotId) -> usize {
+        (self.0 & ((1 << robot.number()) - 1)).count_ones() as usize
+    }
+}
+
+impl FromIterator<RobotId> for Audience {
+    fn from_iter<I: IntoIterator<Item = RobotId>>(robots: I) -> Self {
+        Self(robots.into_iter().fold(0, |set, robot| set | 1 << robot.number()))
+    }
+}
 
 /// A frame, its payload borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,7 +127,9 @@ pub struct Frame<'a> {
     pub team: TeamId,
     /// Who speaks.
     pub sender: Sender,
-    /// Which life of the sender: rises with every boot.
+    /// For whom it is sealed, where for several: a short tag each. Only the host's frames have one.
+    pub audience: Option<Audience>,
+    /// The sender's boot epoch: rises with every boot.
     pub epoch: u32,
     /// Rises with every frame of an epoch.
     pub counter: u32,
@@ -116,7 +148,7 @@ pub enum Refusal {
     Team(TeamId),
     /// No such sender, our own number, or one that does not speak to us.
     Sender(u8),
-    /// An earlier life of the sender.
+    /// An earlier boot epoch of the sender.
     Epoch {
         /// The epoch in the frame.
         seen: u32,
@@ -134,16 +166,18 @@ pub enum Refusal {
     Tag,
     /// The payload is no message.
     Payload,
-    /// A host or mate that has not shown that it knows this life of ours: a new one, or a recording.
+    /// A sender that has not named our present boot epoch: a new one, or a recording.
     Stranger {
         /// The epoch in the frame.
         epoch: u32,
     },
+    /// The host's frame is older than [`crate::host_clock::AGE_MAX`]: withheld, or late.
+    Stale,
 }
 
 impl Refusal {
     /// Number of kinds.
-    pub const KINDS: usize = 9;
+    pub const KINDS: usize = 10;
 
     /// The kind's place in a table of counters.
     pub fn kind(self) -> usize {
@@ -157,6 +191,7 @@ impl Refusal {
             Self::Tag => 6,
             Self::Payload => 7,
             Self::Stranger { .. } => 8,
+            Self::Stale => 9,
         }
     }
 }
@@ -173,8 +208,9 @@ impl core::fmt::Display for Refusal {
             Self::Tag => f.write_str("frame with a wrong tag"),
             Self::Payload => f.write_str("frame whose payload is no message"),
             Self::Stranger { epoch } => {
-                write!(f, "frame of a sender in epoch {epoch}, which has not named our life")
+                write!(f, "frame of a sender in epoch {epoch}, which has not named our epoch")
             }
+            Self::Stale => f.write_str("frame of the host that is too old"),
         }
     }
 }
@@ -192,14 +228,14 @@ const SENDER_AT: usize = 2;
 impl<'a> Frame<'a> {
     /// Reads the envelope; the tag is not looked at yet, see [`Frame::is_genuine`].
     pub fn parse(bytes: &'a [u8], team: TeamId) -> Result<Self, Refusal> {
+        let short = Refusal::Length(bytes.len());
         if bytes.len() > FRAME_LEN_MAX {
-            return Err(Refusal::Length(bytes.len()));
+            return Err(short);
         }
         let (Some((head, rest)), true) = (bytes.split_first_chunk::<HEADER_LEN>(), bytes.len() >= OVERHEAD)
         else {
-            return Err(Refusal::Length(bytes.len()));
+            return Err(short);
         };
-        let payload = rest.split_last_chunk::<TAG_LEN>().ok_or(Refusal::Length(bytes.len()))?.0;
         let [version, seen_team, sender, e0, e1, e2, e3, c0, c1, c2, c3] = *head;
         if version != VERSION {
             return Err(Refusal::Version(version));
@@ -207,47 +243,86 @@ impl<'a> Frame<'a> {
         if seen_team != team.0 {
             return Err(Refusal::Team(TeamId(seen_team)));
         }
-        let sender = Sender::new(sender).ok_or(Refusal::Sender(sender))?;
+        let (sender, audience, rest) = if sender == HOST_TO_SEVERAL {
+            let (names, rest) = rest.split_first_chunk::<AUDIENCE_LEN>().ok_or(short)?;
+            (Sender::Host, Some(Audience(u16::from_le_bytes(*names))), rest)
+        } else {
+            (Sender::new(sender).ok_or(Refusal::Sender(sender))?, None, rest)
+        };
+        let payload = rest.len().checked_sub(tags_len(audience)).and_then(|n| rest.get(..n)).ok_or(short)?;
         let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
         let counter = u32::from_le_bytes([c0, c1, c2, c3]);
-        Ok(Self { team, sender, epoch, counter, payload })
+        Ok(Self { team, sender, audience, epoch, counter, payload })
     }
 
-    /// Whether `bytes`, a whole frame, end in the tag that `key` gives.
-    pub fn is_genuine(bytes: &[u8], key: &TeamKey) -> bool {
-        match bytes.split_last_chunk::<TAG_LEN>() {
-            Some((covered, tag)) => {
-                // No early exit: the time must not tell how many bytes were right.
-                key.tag(covered).iter().zip(tag).fold(0, |difference, (a, b)| difference | (a ^ b)) == 0
+    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in `reader`'s place.
+    pub fn is_genuine(&self, bytes: &[u8], key: &Key, reader: RobotId) -> bool {
+        let covered_len = bytes.len().wrapping_sub(tags_len(self.audience));
+        let Some((covered, tags)) = bytes.split_at_checked(covered_len) else { return false };
+        let seen = match self.audience {
+            None => tags.first_chunk().map(|tag| u64::from_le_bytes(*tag)),
+            Some(audience) if audience.has(reader) => {
+                let at = SHORT_TAG_LEN * audience.before(reader);
+                tags.get(at..).and_then(<[u8]>::first_chunk).map(|[a, b, c]| short_tag([*a, *b, *c]))
             }
-            None => false,
-        }
+            Some(_) => None,
+        };
+        let kept = if self.audience.is_none() { u64::MAX } else { SHORT_TAG_BITS };
+        // One comparison of the whole tag: the time must not say how many bytes were right.
+        seen.is_some_and(|seen| (seen ^ key.tag(covered)) & kept == 0)
     }
 
-    /// Writes the frame; gives its length, or `None` if `out` is too short for it.
-    pub fn emit(&self, key: &TeamKey, out: &mut [u8]) -> Option<usize> {
-        let covered = HEADER_LEN + self.payload.len();
-        let (covered, rest) = out.split_at_mut_checked(covered)?;
-        let tag = rest.first_chunk_mut::<TAG_LEN>()?;
-        let (head, rest) = covered.split_first_chunk_mut::<HEADER_LEN>()?;
-        let (epoch, counter) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
-        *head = [
-            VERSION,
-            self.team.0,
-            self.sender.number(),
-            epoch[0],
-            epoch[1],
-            epoch[2],
-            epoch[3],
-            counter[0],
-            counter[1],
-            counter[2],
-            counter[3],
-        ];
-        rest.get_mut(..self.payload.len())?.copy_from_slice(self.payload);
-        *tag = key.tag(covered);
+    /// Writes a frame with one tag; gives its length, or `None` if `out` is too short for it or the frame has an audience.
+    pub fn emit(&self, key: &Key, out: &mut [u8]) -> Option<usize> {
+        if self.audience.is_some() {
+            return None;
+        }
+        let (covered, rest) = self.cover(out)?;
+        *rest.first_chunk_mut::<TAG_LEN>()? = key.tag(covered).to_le_bytes();
         Some(covered.len() + TAG_LEN)
     }
+
+    /// Writes a frame to its audience, a tag for each; gives its length, or `None` if `out` is too short for it or it has none.
+    pub fn emit_to_audience(&self, keys: &TeamKeys, out: &mut [u8]) -> Option<usize> {
+        let audience = self.audience?;
+        let (covered, rest) = self.cover(out)?;
+        let tags = rest.get_mut(..tags_len(self.audience))?;
+        for (robot, tag) in audience.robots().zip(tags.as_chunks_mut::<SHORT_TAG_LEN>().0) {
+            let [a, b, c, ..] = keys.of(robot).tag(covered).to_le_bytes();
+            *tag = [a, b, c];
+        }
+        Some(covered.len() + tags.len())
+    }
+
+    /// Writes what tags cover; gives it and the rest of `out`.
+    fn cover<'o>(&self, out: &'o mut [u8]) -> Option<(&'o [u8], &'o mut [u8])> {
+        let names = if self.audience.is_some() { AUDIENCE_LEN } else { 0 };
+        let (covered, rest) = out.split_at_mut_checked(HEADER_LEN + names + self.payload.len())?;
+        let (head, body) = covered.split_first_chunk_mut::<HEADER_LEN>()?;
+        let ([e0, e1, e2, e3], [c0, c1, c2, c3]) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
+        let sender = if self.audience.is_some() { HOST_TO_SEVERAL } else { self.sender.number() };
+        *head = [VERSION, self.team.0, sender, e0, e1, e2, e3, c0, c1, c2, c3];
+        if let Some(Audience(robots)) = self.audience {
+            *body.first_chunk_mut::<AUDIENCE_LEN>()? = robots.to_le_bytes();
+        }
+        body.get_mut(names..)?.copy_from_slice(self.payload);
+        Some((covered, rest))
+    }
+}
+
+/// Bytes of all tags of a frame.
+const fn tags_len(audience: Option<Audience>) -> usize {
+    match audience {
+        None => TAG_LEN,
+        Some(audience) => SHORT_TAG_LEN * audience.len(),
+    }
+}
+
+/// The bits of a tag that a short one has.
+const SHORT_TAG_BITS: u64 = (1 << (8 * SHORT_TAG_LEN)) - 1;
+
+fn short_tag([a, b, c]: [u8; SHORT_TAG_LEN]) -> u64 {
+    u64::from(u32::from_le_bytes([a, b, c, 0]))
 }
 
 /// What a receiver remembers of every sender: its epoch and the last counter accepted.
@@ -289,28 +364,66 @@ mod tests {
     use super::*;
 
     const TEAM: TeamId = TeamId(3);
+    const KEY: Key = Key([7; 16]);
+
+    fn robot(n: u8) -> RobotId {
+        RobotId::new(n).unwrap()
+    }
 
     fn frame(epoch: u32, counter: u32) -> Frame<'static> {
-        Frame { team: TEAM, sender: Sender::new(2).unwrap(), epoch, counter, payload: b"abc" }
+        let sender = Sender::Robot(robot(2));
+        Frame { team: TEAM, sender, audience: None, epoch, counter, payload: b"abc" }
+    }
+
+    fn to_several(robots: &[u8]) -> Frame<'static> {
+        let audience = Some(robots.iter().map(|n| robot(*n)).collect());
+        Frame { sender: Sender::Host, audience, ..frame(7, 9) }
     }
 
     #[test]
     fn a_frame_has_the_bytes_of_the_specification() {
         let mut out = [0; FRAME_LEN_MAX];
-        let n = frame(0x0102_0304, 5).emit(&TeamKey::ZERO, &mut out).unwrap();
+        let n = frame(0x0102_0304, 5).emit(&KEY, &mut out).unwrap();
         assert_eq!(n, OVERHEAD + 3);
-        assert_eq!(&out[..14], &[1, 3, 2, 4, 3, 2, 1, 5, 0, 0, 0, b'a', b'b', b'c']);
+        assert_eq!(&out[..14], &[2, 3, 2, 4, 3, 2, 1, 5, 0, 0, 0, b'a', b'b', b'c']);
         assert_eq!(Frame::parse(&out[..n], TEAM), Ok(frame(0x0102_0304, 5)));
-        assert!(Frame::is_genuine(&out[..n], &TeamKey::ZERO));
+        assert!(frame(0x0102_0304, 5).is_genuine(&out[..n], &KEY, robot(0)));
+    }
+
+    #[test]
+    fn a_frame_to_several_has_a_tag_for_each_and_every_flipped_bit_is_noticed_by_those_it_concerns() {
+        let keys = TeamKey([9; 16]).of_team();
+        let (sent, mut out) = (to_several(&[0, 4, 15]), [0; FRAME_LEN_MAX]);
+        let n = sent.emit_to_audience(&keys, &mut out).unwrap();
+        assert_eq!(n, HEADER_LEN + 2 + 3 + 3 * 3);
+        assert_eq!(out[2], 17);
+        assert_eq!(Frame::parse(&out[..n], TEAM), Ok(sent));
+        for reader in RobotId::all() {
+            let addressed = [0, 4, 15].contains(&reader.number());
+            assert_eq!(sent.is_genuine(&out[..n], keys.of(reader), reader), addressed, "{reader}");
+            // No other robot's key opens it in this one's place.
+            let others = RobotId::all().filter(|other| *other != reader);
+            assert_eq!(others.filter(|other| sent.is_genuine(&out[..n], keys.of(*other), reader)).count(), 0);
+        }
+        let covered = n - 9;
+        for bit in 0..n * 8 {
+            out[bit / 8] ^= 1 << (bit % 8);
+            for (place, reader) in [0, 4, 15].map(robot).into_iter().enumerate() {
+                let own = covered + 3 * place..covered + 3 * place + 3;
+                let concerns = bit / 8 < covered || own.contains(&(bit / 8));
+                assert_eq!(sent.is_genuine(&out[..n], keys.of(reader), reader), !concerns, "bit {bit}, {reader}");
+            }
+            out[bit / 8] ^= 1 << (bit % 8);
+        }
     }
 
     #[test]
     fn every_flipped_bit_is_noticed() {
         let mut out = [0; FRAME_LEN_MAX];
-        let n = frame(1, 1).emit(&TeamKey::ZERO, &mut out).unwrap();
+        let n = frame(1, 1).emit(&KEY, &mut out).unwrap();
         for bit in 0..n * 8 {
             out[bit / 8] ^= 1 << (bit % 8);
-            assert!(!Frame::is_genuine(&out[..n], &TeamKey::ZERO), "bit {bit}");
+            assert!(!frame(1, 1).is_genuine(&out[..n], &KEY, robot(0)), "bit {bit}");
             out[bit / 8] ^= 1 << (bit % 8);
         }
     }
@@ -321,10 +434,15 @@ mod tests {
         assert_eq!(Frame::parse(&[0; 121], TEAM), Err(Refusal::Length(121)));
         assert_eq!(Frame::parse(&[9; 19], TEAM), Err(Refusal::Version(9)));
         let mut bytes = [0; 19];
+        bytes[0] = 1;
+        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Version(1)), "the version before keys were derived");
         bytes[0] = VERSION;
         assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Team(TeamId(0))));
-        (bytes[1], bytes[2]) = (3, 17);
-        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Sender(17)));
+        (bytes[1], bytes[2]) = (3, 18);
+        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Sender(18)));
+        // More tags than bytes.
+        (bytes[2], bytes[11], bytes[12]) = (17, 0x07, 0);
+        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Length(19)));
     }
 
     #[test]
@@ -350,6 +468,10 @@ mod tests {
 
     #[test]
     fn a_frame_that_does_not_fit_is_not_written() {
-        assert_eq!(frame(1, 1).emit(&TeamKey::ZERO, &mut [0; 21]), None);
+        assert_eq!(frame(1, 1).emit(&KEY, &mut [0; 21]), None);
+        let keys = TeamKey([9; 16]).of_team();
+        assert_eq!(to_several(&[1, 2]).emit_to_audience(&keys, &mut [0; 21]), None);
+        assert_eq!(to_several(&[1, 2]).emit(&KEY, &mut [0; 120]), None);
+        assert_eq!(frame(1, 1).emit_to_audience(&keys, &mut [0; 120]), None);
     }
 }

@@ -1,10 +1,10 @@
-//! What does the host tell its robots, and what do they tell it of themselves? (DESIGN §3, §6)
+//! `host`: the host's messages to its robots and their telemetry (DESIGN §3, §6). Millimetres, milliradians, field frame.
 //!
-//! The picture of the field goes to everybody in parts ([`WorldPart`]), what to do goes to each robot by itself
+//! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), what to do goes to each robot by itself
 //! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
-//! moment of arrival: the host's tracking has carried them forward by the way there, so no clocks need to agree.
-//! Everything is repeated with every picture; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
-//! believes a host it must have had its [`Welcome`]: nobody can command it with a recording of an earlier life.
+//! moment of arrival: the host's tracking has carried them forward by the radio's latency, so no clocks need to agree.
+//! Everything is repeated with every snapshot; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
+//! believes a host it must have had its [`Welcome`]: a recording of an earlier boot epoch cannot command it.
 
 mod read;
 
@@ -13,15 +13,17 @@ pub use rules::Duty;
 use rules::{Phase, Side};
 use serde::{Deserialize, Serialize};
 
-use crate::frame::Refusal;
+use crate::frame::{AUDIENCE_LEN, FRAME_LEN_MAX, HEADER_LEN, Refusal, SHORT_TAG_LEN};
 use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
 
-/// Robots in one part of the world: as many as leave a whole frame within 120 B.
+/// Robots in one part of the world, at most; more are addressed than six, and fewer fit ([`WorldPart::robots_max`]).
 pub const PART_ROBOTS_MAX: usize = 6;
-/// Parts that a world of 11 + 11 robots needs.
-pub const PARTS_MAX: usize = 4;
+/// Robots in a snapshot, at most; 11 + 11 play.
+pub const WORLD_ROBOTS_MAX: usize = 24;
+/// Parts that they need when 16 robots are addressed.
+pub const PARTS_MAX: usize = 8;
 /// The longest [`Command`] in postcard bytes; with the frame's overhead it stays within 40 B (DESIGN §6).
 pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 
@@ -46,17 +48,18 @@ impl HostMessage {
         }
     }
 
-    /// Whether this payload says something to that robot: a part of a picture, or words with its number.
-    pub(crate) fn is_for(payload: &[u8], me: RobotId) -> bool {
-        match payload {
-            [0, ..] => true,
-            [1 | 2, to, ..] => *to == me.number(),
-            _ => false,
-        }
+    /// Whether this payload is a command or a welcome to that robot.
+    pub(crate) fn is_to_one(payload: &[u8], me: RobotId) -> bool {
+        matches!(payload, [1 | 2, to, ..] if *to == me.number())
+    }
+
+    /// Whether it is a part of a snapshot.
+    pub(crate) fn is_to_all(payload: &[u8]) -> bool {
+        matches!(payload, [0, ..])
     }
 }
 
-/// Proof that this host lives now: it has heard the robot in its present life.
+/// Proof that this host lives now: it has heard the robot in its present boot epoch. And how its clock stands to the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
     /// Who is meant.
@@ -64,6 +67,10 @@ pub struct Welcome {
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
     pub life: u32,
+    /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs, wrapping
+    /// ([`crate::host_clock`]).
+    #[serde(with = "postcard::fixint::le")]
+    pub offset: u32,
 }
 
 /// A part of the picture of the field.
@@ -84,6 +91,20 @@ pub struct WorldPart {
     /// Robots of both teams.
     pub robots: heapless::Vec<WireRobot, PART_ROBOTS_MAX>,
 }
+
+impl WorldPart {
+    /// How many robots fit into a part for so many addressees: six up to six of them, three for all sixteen.
+    pub const fn robots_max(addressees: usize, placement: bool) -> usize {
+        let tags = AUDIENCE_LEN + SHORT_TAG_LEN * addressees;
+        // Variant, picture, part, parts, the longer phase, two options, the ball, a length; then four bytes of placement.
+        let head = 1 + 3 + 2 + 1 + 11 + 1 + if placement { 4 } else { 0 };
+        let fit = FRAME_LEN_MAX.saturating_sub(HEADER_LEN + tags + head) / WIRE_ROBOT_LEN;
+        if fit < PART_ROBOTS_MAX { fit } else { PART_ROBOTS_MAX }
+    }
+}
+
+/// Bytes of a robot in a part: who, x, y, heading, two velocities.
+pub(crate) const WIRE_ROBOT_LEN: usize = 11;
 
 /// The ball on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -254,7 +275,7 @@ pub struct Telemetry {
     /// Parts that never came, by the pictures' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
-    /// Frames refused in this life, by [`Refusal::kind`], saturating; the robot's own words, given back, are not counted.
+    /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; the robot's own frames, given back, are not counted.
     #[serde(with = "counts")]
     pub refused: [u16; Refusal::KINDS],
     /// The newest picture a part of which came; means nothing before the first.
@@ -262,6 +283,12 @@ pub struct Telemetry {
     /// How long ago the last frame of the host came, 0.1 ms, saturating.
     #[serde(with = "postcard::fixint::le")]
     pub silence: u16,
+    /// The epoch of the host that this robot follows; 0 before it was welcomed.
+    #[serde(with = "postcard::fixint::le")]
+    pub host: u32,
+    /// The robot's clock, ticks of 64 µs, wrapping: comes back in [`Welcome::offset`].
+    #[serde(with = "postcard::fixint::le")]
+    pub clock: u32,
 }
 
 /// How a robot is, one bit each.
@@ -352,25 +379,33 @@ mod tests {
     }
 
     #[test]
-    fn a_full_part_of_the_world_fits_into_120_bytes_of_air_and_four_parts_hold_22_robots() {
+    fn a_full_part_of_the_world_fits_into_120_bytes_of_air_for_any_audience() {
         let robot = WireRobot {
             who: WireWho { side: Side::Theirs, id: RobotId::new(15).unwrap() },
             pose: WirePose { at: WirePoint { x: -1, y: -1 }, heading: -1 },
             vx: -1,
             vy: -1,
         };
-        let part = WorldPart {
-            picture: 255,
-            part: 255,
-            parts: 255,
-            phase: Phase::BallPlacement(Side::Theirs),
-            placement: Some(WirePoint { x: -1, y: -1 }),
-            ball: Some(WireBall { at: WirePoint { x: -1, y: -1 }, height: 9999, vx: -1, vy: -1 }),
-            robots: [robot; PART_ROBOTS_MAX].into_iter().collect(),
-        };
-        let bytes = len(&HostMessage::World(part));
-        assert!(bytes <= crate::frame::PAYLOAD_LEN_MAX, "{bytes}");
-        const { assert!(PARTS_MAX * PART_ROBOTS_MAX >= 22) };
+        for addressees in 0..=RobotId::COUNT {
+            for placement in [None, Some(WirePoint { x: -1, y: -1 })] {
+                let robots_max = WorldPart::robots_max(addressees, placement.is_some());
+                let part = WorldPart {
+                    picture: 255,
+                    part: 255,
+                    parts: 255,
+                    phase: Phase::BallPlacement(Side::Theirs),
+                    placement,
+                    ball: Some(WireBall { at: WirePoint { x: -1, y: -1 }, height: 9999, vx: -1, vy: -1 }),
+                    robots: core::iter::repeat_n(robot, robots_max).collect(),
+                };
+                let bytes = HEADER_LEN + AUDIENCE_LEN + len(&HostMessage::World(part)) + SHORT_TAG_LEN * addressees;
+                assert!(bytes <= FRAME_LEN_MAX, "{bytes} B to {addressees}");
+                assert!(bytes + WIRE_ROBOT_LEN > FRAME_LEN_MAX || robots_max == PART_ROBOTS_MAX);
+                assert!(PARTS_MAX * robots_max >= WORLD_ROBOTS_MAX, "{addressees}");
+            }
+        }
+        let robots_max = |n| (WorldPart::robots_max(n, false), WorldPart::robots_max(n, true));
+        assert_eq!((robots_max(6), robots_max(11), robots_max(16)), ((6, 6), (5, 4), (3, 3)));
     }
 
     #[test]

@@ -1,49 +1,100 @@
-//! How do the host's pictures and commands become packets of the air, and which robots' packets does it believe? The
-//! host's end of the radio; [`crate::link`] is the robots'.
+//! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and knows which robots are present;
+//! [`crate::link`] is the robots'.
+//!
+//! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more than the last where several
+//! frames go out in a tick; a robot takes a frame's age from it.
+//!
+//! **A robot is believed** once its [`Telemetry`] names the host's present epoch, which no recording can. Until then its telemetry
+//! leads to a welcome and to nothing else, and its beacons and greetings are refused. Telemetry comes under a key that only this
+//! robot and the host hold.
 
-use crate::frame::{Frame, PAYLOAD_LEN_MAX, Refusal, Sender, Sessions, TeamKey};
-use crate::host::HostMessage;
-use crate::link::{Packet, count, decode, packet};
+use crate::frame::{Audience, Frame, PAYLOAD_LEN_MAX, Refusal, Sender, Sessions, TeamKey, TeamKeys};
+use crate::host::{HostMessage, Telemetry, Welcome};
+use crate::host_clock::TICK_BITS;
+use crate::link::{Packet, count, decode, packet, packet_to_audience};
 use crate::team::TeamMessage;
-use crate::{RobotId, TeamId};
+use crate::{Instant, RobotId, TeamId};
 
 /// The host's end of the radio: seals what it says, opens what robots say, counts what it refuses.
 #[derive(Clone, Debug)]
 pub struct HostLink {
     team: TeamId,
-    key: TeamKey,
+    keys: TeamKeys,
     epoch: u32,
     counter: u32,
-    sessions: Sessions,
+    /// When the epoch began, in ticks.
+    zero: u64,
+    audience: Audience,
+    /// The newest telemetry of each robot that named our epoch, and the newest of its other frames.
+    own: Sessions,
+    shared: Sessions,
+    /// By the newest telemetry of each robot, whether it named our epoch or not: its epoch, and our clock then less its own.
+    newest: [Option<(u32, u32)>; RobotId::COUNT],
     refused: [u32; Refusal::KINDS],
 }
 
+/// What became of a packet.
+#[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Opened {
+    /// A robot that is believed says this.
+    Believed(RobotId, TeamMessage),
+    /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It may be welcomed.
+    Stranger(RobotId, Telemetry),
+}
+
 impl HostLink {
-    /// A link in the life `epoch` of the host; a later start must bring a larger one (seconds of a calendar do).
+    /// A link in the epoch `epoch` of the host, at least 1; a later start must bring a larger one (seconds of a calendar do).
     pub fn new(team: TeamId, key: TeamKey, epoch: u32) -> Self {
-        Self { team, key, epoch, counter: 0, sessions: Sessions::default(), refused: [0; Refusal::KINDS] }
+        Self {
+            team,
+            keys: key.of_team(),
+            epoch: epoch.max(1),
+            counter: 0,
+            zero: 0,
+            audience: Audience::default(),
+            own: Sessions::default(),
+            shared: Sessions::default(),
+            newest: [None; RobotId::COUNT],
+            refused: [0; Refusal::KINDS],
+        }
     }
 
-    /// The packet that carries `message`.
-    pub fn seal(&mut self, message: &HostMessage) -> Packet {
+    /// Whom parts of snapshots are sealed for from now on.
+    pub fn set_audience(&mut self, audience: Audience) {
+        self.audience = audience;
+    }
+
+    /// Our epoch.
+    pub fn epoch(&self) -> u32 {
+        self.epoch
+    }
+
+    /// The packet that carries `message`; empty if it is for nobody.
+    pub fn seal(&mut self, now: Instant, message: &HostMessage) -> Packet {
         let mut payload = [0; PAYLOAD_LEN_MAX];
         // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
-        self.counter = self.counter.wrapping_add(1);
-        let frame = Frame {
-            team: self.team,
-            sender: Sender::Host,
-            epoch: self.epoch,
-            counter: self.counter,
-            payload,
+        let to = match message {
+            HostMessage::World(_) if self.audience.is_empty() => return Packet::new(),
+            HostMessage::World(_) => None,
+            HostMessage::Command(command) => Some(command.to),
+            HostMessage::Welcome(welcome) => Some(welcome.to),
         };
-        packet(&frame, &self.key)
+        self.count_up(now);
+        let audience = if to.is_none() { Some(self.audience) } else { None };
+        let (team, epoch, counter) = (self.team, self.epoch, self.counter);
+        let frame = Frame { team, sender: Sender::Host, audience, epoch, counter, payload };
+        match to {
+            Some(robot) => packet(&frame, self.keys.of(robot)),
+            None => packet_to_audience(&frame, &self.keys),
+        }
     }
 
     /// Which robot says what, or why the packet is not believed (counted). A host's packet is refused by its sender, 16:
     /// there is a second host on this air, or this one hears itself.
-    pub fn open(&mut self, packet: &[u8]) -> Result<(RobotId, TeamMessage), Refusal> {
-        let opened = self.try_open(packet);
+    pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Opened, Refusal> {
+        let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
             count(&mut self.refused, refusal);
         }
@@ -55,24 +106,93 @@ impl HostLink {
         &self.refused
     }
 
-    /// The life in which that robot spoke last; what it is welcomed with.
+    /// The welcome for that robot, by its newest telemetry.
+    pub fn welcome(&self, robot: RobotId) -> Option<Welcome> {
+        let (life, offset) = self.newest[robot.index()]?;
+        Some(Welcome { to: robot, life, offset })
+    }
+
+    /// The boot epoch in which that robot is believed.
     pub fn life(&self, robot: RobotId) -> Option<u32> {
-        self.sessions.epoch(Sender::Robot(robot))
+        self.own.epoch(Sender::Robot(robot))
     }
 
-    /// The number of that robot's last frame in this life.
-    pub fn counter(&self, robot: RobotId) -> Option<u32> {
-        self.sessions.counter(Sender::Robot(robot))
+    /// The clock's reading, or one more than the last; after 76 h a new epoch begins, for which robots are welcomed again.
+    fn count_up(&mut self, now: Instant) {
+        let clock = self.clock(now).max(u64::from(self.counter) + 1);
+        if let Ok(counter) = u32::try_from(clock) {
+            self.counter = counter;
+        } else {
+            (self.epoch, self.counter, self.zero) = (self.epoch.saturating_add(1), 1, now.0 >> TICK_BITS);
+        }
     }
 
-    fn try_open(&mut self, packet: &[u8]) -> Result<(RobotId, TeamMessage), Refusal> {
+    /// In ticks since the epoch began.
+    fn clock(&self, now: Instant) -> u64 {
+        (now.0 >> TICK_BITS).saturating_sub(self.zero)
+    }
+
+    fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Opened, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
-        self.sessions.check(&frame)?;
-        if !Frame::is_genuine(packet, &self.key) {
+        // Every frame of an epoch before the one believed is refused; the counters of telemetry and of what teammates could have said
+        // in its name rise each by itself.
+        if let Some(current) = self.own.epoch(frame.sender).filter(|current| frame.epoch < *current) {
+            return Err(Refusal::Epoch { seen: frame.epoch, current });
+        }
+        if TeamMessage::is_for_host(frame.payload) {
+            self.open_telemetry(now, packet, &frame, robot)
+        } else {
+            self.open_shared(packet, &frame, robot)
+        }
+    }
+
+    fn open_telemetry(
+        &mut self,
+        now: Instant,
+        packet: &[u8],
+        frame: &Frame<'_>,
+        robot: RobotId,
+    ) -> Result<Opened, Refusal> {
+        self.own.check(frame)?;
+        if !frame.is_genuine(packet, self.keys.of(robot), robot) {
             return Err(Refusal::Tag);
         }
-        self.sessions.accept(&frame);
-        decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
+        let Some(TeamMessage::Telemetry(telemetry)) = decode(frame.payload) else {
+            return Err(Refusal::Payload);
+        };
+        let Telemetry { host, clock, .. } = telemetry;
+        let offset = ((now.0 >> TICK_BITS).saturating_sub(self.zero) as u32).wrapping_sub(clock);
+        self.newest[robot.index()] = Some((frame.epoch, offset));
+        if host != self.epoch {
+            return Ok(Opened::Stranger(robot, telemetry));
+        }
+        if self.own.epoch(frame.sender) != Some(frame.epoch) {
+            // What it said to its teammates before it knew us may be recorded.
+            self.shared.accept(frame);
+        }
+        self.own.accept(frame);
+        Ok(Opened::Believed(robot, TeamMessage::Telemetry(telemetry)))
+    }
+
+    /// Beacons and greetings, under the key that all robots hold.
+    fn open_shared(
+        &mut self,
+        packet: &[u8],
+        frame: &Frame<'_>,
+        robot: RobotId,
+    ) -> Result<Opened, Refusal> {
+        if self.own.epoch(frame.sender) != Some(frame.epoch) {
+            return Err(Refusal::Stranger { epoch: frame.epoch });
+        }
+        self.shared.check(frame)?;
+        if !frame.is_genuine(packet, self.keys.team(), robot) {
+            return Err(Refusal::Tag);
+        }
+        self.shared.accept(frame);
+        decode(frame.payload).map(|message| Opened::Believed(robot, message)).ok_or(Refusal::Payload)
     }
 }
+
+#[cfg(test)]
+mod tests;

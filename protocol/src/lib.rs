@@ -1,19 +1,24 @@
-//! What travels between robots, host and simulator? (DESIGN §5–§7)
+//! `protocol`: what travels between robots, host and simulator (DESIGN §5–§7).
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
-//! [`frame`] is the radio's envelope (who, when, genuine?), [`link`] and [`host_link`] are its two ends ([`acquaintance`]: which mates are believed), [`serial`] puts it
-//! on a line; [`team`] is what robots tell each other, [`mod@host`] what host and robots do; [`robot_io`] is what a body gives its brain and takes from it; [`lockstep`] carries the latter between simulator and computer,
+//! [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags), [`link`] and [`host_link`] are its two
+//! ends ([`acquaintance`]: which teammates are believed; [`host_clock`]: how old a frame of the host is), [`serial`] puts it on a line;
+//! [`team`] is what robots tell each other, [`mod@host`] what host and robots do; [`robot_io`] is what a body gives its brain and takes
+//! from it; [`lockstep`] carries the latter between simulator and computer, [`provision`] is a robot's identity in its flash,
 //! [`slot`] is where a computer finds a case table that was not built into it.
 //! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.
 #![no_std]
+#![forbid(unsafe_code)]
 
 pub mod acquaintance;
 pub mod frame;
 pub mod host;
+pub mod host_clock;
 pub mod host_link;
 pub mod ids;
+pub mod key;
 pub mod link;
 pub mod lockstep;
 pub mod provision;

@@ -1,15 +1,18 @@
-//! How does a robot's message become a packet of the air, and which packets does it believe? The robot's end of the radio;
+//! `link`: a robot's end of the radio: seals its messages, opens what it receives, counts what it refuses;
 //! [`crate::host_link`] is the other.
 //!
-//! A robot hears its mates and its host, and believes neither before they have answered this very life of it: the host with a
-//! [`Welcome`], mates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
-//! and again when a host or mate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s.
+//! A robot hears its teammates and its host, and believes neither before they have answered its present boot epoch: the host with a
+//! [`Welcome`], teammates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
+//! and again when a host or teammate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s. The host's
+//! frames are refused as [`Refusal::Stale`] when they are older than [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
 use crate::acquaintance::Acquaintances;
-use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, Sender, Sessions, TeamKey};
-use crate::host::{HostMessage, PARTS_MAX, Telemetry, Welcome, WorldPart};
+use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
+use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
+use crate::host_clock::{Age, HostClock, ticks};
+use crate::key::Key;
 use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
-use crate::{Instant, RobotId, TeamId};
+use crate::{Duration, Instant, RobotId, TeamId};
 
 /// A packet of the air: one whole frame.
 pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
@@ -18,10 +21,12 @@ pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// A mate says this.
+    /// A teammate says this.
     Mate(RobotId, TeamMessage),
-    /// The host says this, to all or to one robot; which one is the reader's to look at.
-    Host(HostMessage),
+    /// The host says this, at most so long ago.
+    Host(HostMessage, Duration),
+    /// It is for another receiver: not opened, whatever it says changes nothing here.
+    Elsewhere,
 }
 
 /// One robot's end of the radio: seals what it says, opens what it hears, counts what it refuses.
@@ -29,28 +34,31 @@ pub enum Heard {
 pub struct Link {
     team: TeamId,
     me: RobotId,
-    key: TeamKey,
+    keys: RobotKeys,
     epoch: u32,
     counter: u32,
     sessions: Sessions,
     acquaintances: Acquaintances,
+    /// What is known of the clock of the host that is believed.
+    clock: Option<HostClock>,
     refused: [u32; Refusal::KINDS],
-    /// Of these, its own words given back.
+    /// Of these, its own messages given back.
     echoes: u32,
     pictures: Pictures,
 }
 
 impl Link {
-    /// A link in the life `epoch` of robot `me`; a later boot must bring a larger one.
-    pub fn new(team: TeamId, me: RobotId, key: TeamKey, epoch: u32) -> Self {
+    /// A link in the boot epoch `epoch` of robot `me`; a later boot must bring a larger one.
+    pub fn new(team: TeamId, me: RobotId, keys: RobotKeys, epoch: u32) -> Self {
         Self {
             team,
             me,
-            key,
+            keys,
             epoch,
             counter: 0,
             sessions: Sessions::default(),
             acquaintances: Acquaintances::default(),
+            clock: None,
             refused: [0; Refusal::KINDS],
             echoes: 0,
             pictures: Pictures::default(),
@@ -64,8 +72,11 @@ impl Link {
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
-        let frame = Frame { team: self.team, sender, epoch: self.epoch, counter: self.counter, payload };
-        packet(&frame, &self.key)
+        // Of its own body it speaks to the host alone, and no teammate can say it in its name.
+        let key =
+            if matches!(message, TeamMessage::Telemetry(_)) { &self.keys.host } else { &self.keys.team };
+        let (team, epoch, counter) = (self.team, self.epoch, self.counter);
+        packet(&Frame { team, sender, audience: None, epoch, counter, payload }, key)
     }
 
     /// The packet that greets mates who do not know yet that we live now, if there are any and it is time.
@@ -74,32 +85,17 @@ impl Link {
         Some(self.seal(&TeamMessage::Greeting(greeting)))
     }
 
-    /// Whether a packet says that it is for this robot; nobody has looked at its tag. A refusal is counted.
-    ///
-    /// Others' need not be opened: whatever they say changes nothing here.
-    pub fn is_for_me(&mut self, packet: &[u8]) -> Result<bool, Refusal> {
-        let me = self.me;
-        let found = self.envelope(packet).map(|frame| match frame.sender {
-            Sender::Robot(_) => !TeamMessage::is_for_host(frame.payload),
-            Sender::Host => HostMessage::is_for(frame.payload, me),
-        });
-        if let Err(refusal) = found {
-            count(&mut self.refused, refusal);
-        }
-        found
-    }
-
     /// Who says what, or why the packet is not believed (counted).
-    pub fn open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
-        let opened = self.try_open(packet);
+    pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
+        let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
             count(&mut self.refused, refusal);
         }
         opened
     }
 
-    /// The life of the host that is believed, if there is one; when it changes, what the last one's numbers meant is over.
-    pub fn host_life(&self) -> Option<u32> {
+    /// The epoch of the host that is believed, if there is one; when it changes, what the last one's numbers meant is over.
+    pub fn host_epoch(&self) -> Option<u32> {
         self.sessions.epoch(Sender::Host)
     }
 
@@ -114,7 +110,9 @@ impl Link {
     }
 
     /// Fills in what the link knows of itself; all but condition, battery and silence.
-    pub fn tell(&self, telemetry: &mut Telemetry) {
+    pub fn tell(&self, now: Instant, telemetry: &mut Telemetry) {
+        telemetry.host = self.host_epoch().unwrap_or(0);
+        telemetry.clock = ticks(now);
         telemetry.heard = self.pictures.heard as u16;
         telemetry.lost = self.pictures.lost as u16;
         telemetry.picture = self.pictures.newest().unwrap_or(0);
@@ -135,14 +133,28 @@ impl Link {
         Ok(frame)
     }
 
-    fn try_open(&mut self, packet: &[u8]) -> Result<Heard, Refusal> {
+    /// Whether a frame is for this robot, as it says itself; its tag has not been looked at.
+    fn is_for_me(&self, frame: &Frame<'_>) -> bool {
+        match (frame.sender, frame.audience) {
+            (Sender::Robot(_), _) => !TeamMessage::is_for_host(frame.payload),
+            (Sender::Host, None) => HostMessage::is_to_one(frame.payload, self.me),
+            (Sender::Host, Some(audience)) => audience.has(self.me) && HostMessage::is_to_all(frame.payload),
+        }
+    }
+
+    fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = self.envelope(packet)?;
-        if !Frame::is_genuine(packet, &self.key) {
+        // A tag costs: what is for another receiver is not opened.
+        if !self.is_for_me(&frame) {
+            return Ok(Heard::Elsewhere);
+        }
+        let key = if frame.sender == Sender::Host { &self.keys.host } else { &self.keys.team };
+        if !frame.is_genuine(packet, key, self.me) {
             return Err(Refusal::Tag);
         }
         match frame.sender {
             Sender::Robot(mate) => self.open_mate(mate, &frame).map(|message| Heard::Mate(mate, message)),
-            Sender::Host => self.open_host(&frame).map(Heard::Host),
+            Sender::Host => self.open_host(now, &frame).map(|(message, age)| Heard::Host(message, age)),
         }
     }
 
@@ -160,14 +172,23 @@ impl Link {
         message.ok_or(Refusal::Payload)
     }
 
-    fn open_host(&mut self, frame: &Frame<'_>) -> Result<HostMessage, Refusal> {
+    fn open_host(&mut self, now: Instant, frame: &Frame<'_>) -> Result<(HostMessage, Duration), Refusal> {
         let message = host_message(frame.payload);
         let known = self.sessions.epoch(Sender::Host) == Some(frame.epoch);
-        let welcome = Welcome { to: self.me, life: self.epoch };
-        if !known && message != Some(HostMessage::Welcome(welcome)) {
-            return Err(Refusal::Stranger { epoch: frame.epoch });
+        let mut clock = if known { self.clock } else { None };
+        if let Some(HostMessage::Welcome(welcome)) = &message
+            && (welcome.to, welcome.life) == (self.me, self.epoch)
+        {
+            clock = Some(HostClock::learned(clock, now, welcome.offset));
         }
+        // Without a welcome nothing is known of a host's clock.
+        let age = clock.ok_or(Refusal::Stranger { epoch: frame.epoch })?.age(now, frame.counter);
+        if known {
+            self.clock = if age == Age::Ahead && frame.audience.is_none() { None } else { clock };
+        }
+        let Age::Within(age) = age else { return Err(Refusal::Stale) };
         self.sessions.accept(frame);
+        self.clock = clock;
         let message = message.ok_or(Refusal::Payload)?;
         if !known {
             self.pictures.forget();
@@ -175,7 +196,7 @@ impl Link {
         if let HostMessage::World(part) = &message {
             self.pictures.handle(part);
         }
-        Ok(message)
+        Ok((message, age))
     }
 }
 
@@ -230,34 +251,49 @@ impl Pictures {
     }
 }
 
-/// Reads a robot's packet without being part of the team: for whoever watches the air from outside (the key is needed,
-/// order and repetition are not judged). The host's are refused as a sender's that does not speak to us.
-pub fn overhear(packet: &[u8], team: TeamId, key: &TeamKey) -> Result<(RobotId, TeamMessage), Refusal> {
+/// Reads a robot's packet without being part of the team: for an observer of the air (the keys are needed, order and repetition are
+/// not judged). The host's are refused as a sender's that does not speak to us.
+pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId, TeamMessage), Refusal> {
     let frame = Frame::parse(packet, team)?;
     let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
-    if !Frame::is_genuine(packet, key) {
+    let key = if TeamMessage::is_for_host(frame.payload) { keys.of(robot) } else { keys.team() };
+    if !frame.is_genuine(packet, key, robot) {
         return Err(Refusal::Tag);
     }
     decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
 }
 
-/// As [`overhear`], for the host's packets.
-pub fn overhear_host(packet: &[u8], team: TeamId, key: &TeamKey) -> Result<HostMessage, Refusal> {
+/// As [`overhear`], for the host's packets, read in the place of `reader`.
+pub fn overhear_host(
+    packet: &[u8],
+    team: TeamId,
+    keys: &RobotKeys,
+    reader: RobotId,
+) -> Result<HostMessage, Refusal> {
     let frame = Frame::parse(packet, team)?;
     if frame.sender != Sender::Host {
         return Err(Refusal::Sender(frame.sender.number()));
     }
-    if !Frame::is_genuine(packet, key) {
+    if !frame.is_genuine(packet, &keys.host, reader) {
         return Err(Refusal::Tag);
     }
     host_message(frame.payload).ok_or(Refusal::Payload)
 }
 
 /// The frame as a packet; empty if it is too long for one.
-pub(crate) fn packet(frame: &Frame<'_>, key: &TeamKey) -> Packet {
+pub(crate) fn packet(frame: &Frame<'_>, key: &Key) -> Packet {
+    written(|out| frame.emit(key, out))
+}
+
+/// As [`packet`], with a tag for each of its audience.
+pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> Packet {
+    written(|out| frame.emit_to_audience(keys, out))
+}
+
+fn written(emit: impl FnOnce(&mut [u8]) -> Option<usize>) -> Packet {
     let mut packet = Packet::new();
     if packet.resize_default(FRAME_LEN_MAX).is_ok() {
-        let len = frame.emit(key, &mut packet).unwrap_or(0);
+        let len = emit(&mut packet).unwrap_or(0);
         packet.truncate(len);
     }
     packet

@@ -1,26 +1,26 @@
-//! Who is this robot, and which key does its team have? A page of the flash, written once by `onetwo firmware provision`
-//! (DESIGN §6, §8): 64 bytes that are not part of the image.
+//! `provision`: a robot's identity and its keys, a page of the flash written by `onetwo firmware provision` (DESIGN §6, §8):
+//! 64 bytes that are not part of the image.
 //!
-//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | key 16 | check 8`, the rest 0xff. The check is SipHash-2-4 of
-//! the 24 bytes before it under the key itself: a page that was written halfway, or is empty flash, is none. A robot without
-//! a page, or with the key of zeros, is not commanded by anybody ([`read`]).
+//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, the rest 0xff. The keys are this
+//! robot's own ([`crate::key`]), never the team's secret. The check is SipHash-2-4 of the 40 bytes before it under the host key: a
+//! page that was written halfway, or is empty flash, is none. A robot without a page, or with keys that are public, is not
+//! commanded by any host ([`read`]).
 
 use core::fmt;
-use core::hash::Hasher as _;
 
 use rules::League;
-use siphasher::sip::SipHasher24;
 
-use crate::frame::TeamKey;
+use crate::key::{Key, RobotKeys};
 use crate::{RobotId, TeamId};
 
 /// Bytes of a page; the rest of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
 /// Of those, the ones that mean something.
 const USED: usize = CHECKED + 8;
-const CHECKED: usize = 24;
+const CHECKED: usize = 40;
 const MAGIC: [u8; 4] = *b"1-2K";
-const VERSION: u8 = 1;
+/// 1 held the team's key.
+const VERSION: u8 = 2;
 
 /// What is written into a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,8 +31,8 @@ pub struct Provision {
     pub team: TeamId,
     /// What it plays.
     pub league: League,
-    /// The team's key.
-    pub key: TeamKey,
+    /// Its keys.
+    pub keys: RobotKeys,
 }
 
 /// Why there is no telling who a robot is.
@@ -44,7 +44,7 @@ pub enum ProvisionError {
     Version(u8),
     /// Written halfway, or damaged.
     Damaged,
-    /// The key is the one of zeros, which everybody knows.
+    /// The keys are derived from the team key of zeros, which is public.
     OpenKey,
 }
 
@@ -53,13 +53,17 @@ impl fmt::Display for ProvisionError {
         match self {
             Self::Empty => f.write_str("the robot has no key; write one with `onetwo firmware provision`"),
             Self::Version(version) => {
-                write!(f, "its page has version {version}, this firmware reads {VERSION}")
+                write!(
+                    f,
+                    "its page has version {version}, this firmware reads {VERSION}; write it again with \
+                     `onetwo firmware provision`"
+                )
             }
             Self::Damaged => {
                 f.write_str("its page is damaged; write it again with `onetwo firmware provision`")
             }
             Self::OpenKey => {
-                f.write_str("its key is all zeros, which everybody knows; give the team a key of its own")
+                f.write_str("its team key is all zeros, which is public; give the team a key of its own")
             }
         }
     }
@@ -71,39 +75,39 @@ impl core::error::Error for ProvisionError {}
 pub fn page(who: &Provision) -> [u8; PAGE_LEN] {
     let mut page = [0xff; PAGE_LEN];
     let head = [VERSION, who.robot.number(), who.team.0, league_number(who.league)];
-    let fields = MAGIC.iter().chain(&head).chain(&who.key.0);
+    let fields = MAGIC.iter().chain(&head).chain(&who.keys.host.0).chain(&who.keys.team.0);
     page.iter_mut().zip(fields).for_each(|(to, from)| *to = *from);
-    let check = check(&page, &who.key);
+    let check = check(&page, &who.keys.host);
     page.iter_mut().skip(CHECKED).zip(check).for_each(|(to, from)| *to = from);
     page
 }
 
-/// Reads a page. An open key is refused unless `open` says that this is an image for trying things out.
+/// Reads a page. Public keys are refused unless `open` says that this is an image for trying things out.
 pub fn read(page: &[u8], open: bool) -> Result<Provision, ProvisionError> {
     let used: &[u8; USED] = page.first_chunk().ok_or(ProvisionError::Empty)?;
-    let [m0, m1, m2, m3, version, robot, team, league, key @ .., _, _, _, _, _, _, _, _] = *used;
+    let [m0, m1, m2, m3, version, robot, team, league, rest @ ..] = *used;
     if [m0, m1, m2, m3] != MAGIC {
         return Err(ProvisionError::Empty);
     }
     if version != VERSION {
         return Err(ProvisionError::Version(version));
     }
-    let key = TeamKey(key);
-    if used.last_chunk() != Some(&check(page, &key)) {
+    let (host, rest) = rest.split_first_chunk().ok_or(ProvisionError::Damaged)?;
+    let (shared, seen) = rest.split_first_chunk().ok_or(ProvisionError::Damaged)?;
+    let keys = RobotKeys { host: Key(*host), team: Key(*shared) };
+    if seen != check(page, &keys.host) {
         return Err(ProvisionError::Damaged);
     }
-    if key == TeamKey::ZERO && !open {
+    let robot = RobotId::new(robot).ok_or(ProvisionError::Damaged)?;
+    if keys.are_open(robot) && !open {
         return Err(ProvisionError::OpenKey);
     }
-    let robot = RobotId::new(robot).ok_or(ProvisionError::Damaged)?;
     let league = LEAGUES.get(usize::from(league)).copied().ok_or(ProvisionError::Damaged)?;
-    Ok(Provision { robot, team: TeamId(team), league, key })
+    Ok(Provision { robot, team: TeamId(team), league, keys })
 }
 
-fn check(page: &[u8], key: &TeamKey) -> [u8; 8] {
-    let mut hasher = SipHasher24::new_with_key(&key.0);
-    hasher.write(page.get(..CHECKED).unwrap_or_default());
-    hasher.finish().to_le_bytes()
+fn check(page: &[u8], key: &Key) -> [u8; 8] {
+    key.tag(page.get(..CHECKED).unwrap_or_default()).to_le_bytes()
 }
 
 fn league_number(league: League) -> u8 {
@@ -116,10 +120,11 @@ const LEAGUES: [League; 4] = [League::FourLegged, League::Ssl2013, League::Divis
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::key::TeamKey;
 
     fn who(league: League) -> Provision {
-        let key = core::array::from_fn(|n| 3 * n as u8 + 1);
-        Provision { robot: RobotId::new(7).unwrap(), team: TeamId(2), league, key: TeamKey(key) }
+        let (robot, key) = (RobotId::new(7).unwrap(), TeamKey(core::array::from_fn(|n| 3 * n as u8 + 1)));
+        Provision { robot, team: TeamId(2), league, keys: key.of_robot(robot) }
     }
 
     #[test]
@@ -127,8 +132,17 @@ mod tests {
         for league in LEAGUES {
             assert_eq!(read(&page(&who(league)), false), Ok(who(league)));
         }
-        assert_eq!(&page(&who(League::DivisionB))[..9], [0x31, 0x2d, 0x32, 0x4b, 1, 7, 2, 2, 1]);
+        assert_eq!(&page(&who(League::DivisionB))[..8], [0x31, 0x2d, 0x32, 0x4b, 2, 7, 2, 2]);
         assert!(page(&who(League::DivisionB))[USED..].iter().all(|byte| *byte == 0xff));
+    }
+
+    #[test]
+    fn the_team_key_is_not_in_the_page_and_a_page_of_the_version_that_held_it_is_refused() {
+        let key: [u8; 16] = core::array::from_fn(|n| 3 * n as u8 + 1);
+        let mut page = page(&who(League::DivisionB));
+        assert!(!page.windows(16).any(|bytes| bytes == key));
+        page[4] = 1;
+        assert_eq!(read(&page, false), Err(ProvisionError::Version(1)));
     }
 
     #[test]
@@ -145,7 +159,8 @@ mod tests {
 
     #[test]
     fn the_key_of_zeros_is_for_trying_things_out() {
-        let open = Provision { key: TeamKey::ZERO, ..who(League::DivisionB) };
+        let robot = RobotId::new(7).unwrap();
+        let open = Provision { keys: TeamKey::ZERO.of_robot(robot), ..who(League::DivisionB) };
         assert_eq!(read(&page(&open), false), Err(ProvisionError::OpenKey));
         assert_eq!(read(&page(&open), true), Ok(open));
     }

@@ -319,6 +319,8 @@ mod tests {
             refused: [u16::MAX; crate::frame::Refusal::KINDS],
             picture: u8::MAX,
             silence: u16::MAX,
+            host: u32::MAX,
+            clock: u32::MAX,
         };
         let mut out = [0; 128];
         let n = postcard::to_slice(&TeamMessage::Telemetry(telemetry), &mut out).unwrap().len();

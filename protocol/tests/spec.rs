@@ -1,7 +1,7 @@
-//! Does the code write the bytes that `SPEC.md` says? Every worked example there is named and checked, both ways.
+//! The code writes the bytes that `SPEC.md` says: every worked example there is named and checked, both ways.
 
 use geometry::GoalEnd;
-use protocol::frame::{Frame, Sender, TeamKey};
+use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
 use protocol::host::{
     Command, Condition, Directive, Duty, Hint, HostMessage, KickOrder, Telemetry, Welcome, WireBall,
     WireRobot, WireWho, WorldPart,
@@ -176,9 +176,11 @@ fn robots_messages_have_the_bytes_of_the_specification() {
         battery: 1640,
         heard: 500,
         lost: 3,
-        refused: [0, 0, 2, 0, 0, 1, 0, 0, 258],
+        refused: [0, 0, 2, 0, 0, 1, 0, 0, 258, 4],
         picture: 249,
         silence: 73,
+        host: 0x6500_0000,
+        clock: 0x0001_e848,
     };
     both_ways("telemetry", &TeamMessage::Telemetry(telemetry));
     let mate = |who, life, bond| Greeted { who: robot(who), life, bond };
@@ -203,31 +205,45 @@ fn the_hosts_messages_have_the_bytes_of_the_specification() {
             }),
         );
     }
-    both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), life: 9 }));
+    both_ways("welcome", &HostMessage::Welcome(Welcome { to: robot(3), life: 9, offset: 0xffff_ff38 }));
+}
+
+/// Robot 3's keys of the team key 00 01 02 … 0f.
+fn team_key() -> TeamKey {
+    TeamKey(std::array::from_fn(|i| i as u8))
+}
+
+#[test]
+fn derived_keys_have_the_bytes_of_the_specification() {
+    let keys = team_key().of_robot(robot(3));
+    assert_eq!(keys.host.0[..], worked("host-key")[..], "{}", hex(&keys.host.0));
+    assert_eq!(keys.team.0[..], worked("team-key")[..], "{}", hex(&keys.team.0));
 }
 
 #[test]
 fn frames_have_the_bytes_of_the_specification() {
     let payload = worked("quiet");
-    let frame =
-        Frame { team: TeamId(1), sender: Sender::Robot(robot(3)), epoch: 1, counter: 258, payload: &payload };
+    let (sender, audience) = (Sender::Robot(robot(3)), None);
+    let frame = Frame { team: TeamId(1), sender, audience, epoch: 1, counter: 258, payload: &payload };
     let mut out = [0; 64];
-    let n = frame.emit(&TeamKey::ZERO, &mut out).unwrap();
+    let n = frame.emit(&team_key().of_robot(robot(3)).team, &mut out).unwrap();
     assert_eq!(&out[..n], &worked("frame")[..], "{}", hex(&out[..n]));
     assert_eq!(Frame::parse(&worked("frame"), TeamId(1)), Ok(frame));
 }
 
 #[test]
-fn a_keyed_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_on_a_line() {
-    let key = TeamKey(std::array::from_fn(|i| i as u8));
+fn a_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_on_a_line() {
+    let key = team_key().of_robot(robot(3)).host;
     let bytes = worked("host-frame");
     let mut payload = [0; 8];
     let payload = &*postcard::to_slice(&stand(), &mut payload).unwrap();
-    let frame = Frame { team: TeamId(1), sender: Sender::Host, epoch: 0x6500_0000, counter: 4097, payload };
+    let (sender, audience, epoch) = (Sender::Host, None, 0x6500_0000);
+    let frame = Frame { team: TeamId(1), sender, audience, epoch, counter: 4097, payload };
     let mut out = [0; 64];
     let n = frame.emit(&key, &mut out).unwrap();
     assert_eq!(&out[..n], &bytes[..], "{}", hex(&out[..n]));
-    assert!(Frame::is_genuine(&bytes, &key) && !Frame::is_genuine(&bytes, &TeamKey::ZERO));
+    let genuine = |key: &Key| frame.is_genuine(&bytes, key, robot(3));
+    assert!(genuine(&key) && !genuine(&team_key().of_robot(robot(4)).host));
     assert_eq!(line(&bytes)[..], worked("line")[..], "{}", hex(&line(&bytes)));
     let mut lines = Lines::new();
     let frames: Vec<_> = worked("line").into_iter().filter_map(|byte| lines.push(byte)).collect();
@@ -236,10 +252,22 @@ fn a_keyed_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_o
 }
 
 #[test]
+fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
+    let payload = worked("placement");
+    let audience = Some(Audience(1 << 3 | 1 << 5));
+    let (sender, epoch) = (Sender::Host, 0x6500_0000);
+    let frame = Frame { team: TeamId(1), sender, audience, epoch, counter: 4098, payload: &payload };
+    let mut out = [0; 64];
+    let n = frame.emit_to_audience(&team_key().of_team(), &mut out).unwrap();
+    assert_eq!(&out[..n], &worked("host-frame-to-several")[..], "{}", hex(&out[..n]));
+    assert_eq!(Frame::parse(&out[..n], TeamId(1)), Ok(frame));
+}
+
+#[test]
 fn every_example_of_the_specification_is_checked() {
     let examples = SPEC.matches("```hex ").count();
-    // Five of robots, two worlds, a welcome, two frames and a line.
-    assert_eq!(examples, 5 + worlds().len() + 1 + 3 + commands().len());
+    // Five of robots, two worlds, a welcome, two keys, three frames and a line.
+    assert_eq!(examples, 5 + worlds().len() + 1 + 2 + 4 + commands().len());
 }
 
 fn hex(bytes: &[u8]) -> String {

@@ -11,7 +11,7 @@ use casebase::{CaseBase, Problem};
 use protocol::host::HostMessage;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
-use protocol::{CycleId, Instant, RobotId};
+use protocol::{CycleId, Duration, Instant, RobotId};
 
 use crate::belief::Belief;
 use crate::body::{self, Body, Intent, Limbs};
@@ -111,13 +111,13 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// The host's word; a robot that expects none does not listen.
-    pub fn handle_host_message(&mut self, now: Instant, message: &HostMessage) {
+    /// The host's message, sent at most `age` ago; a robot that expects no host does not listen.
+    pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
         self.since.heard = self.since.heard.saturating_add(1);
         self.timers.advance(now);
-        if host.handle(now, message) {
-            self.limbs.hear_host(now);
+        if let Some(heard) = host.handle(now, age, message) {
+            self.limbs.hear_host(heard);
         }
     }
 
@@ -125,6 +125,7 @@ impl<'a> Brain<'a> {
     pub fn handle_new_host(&mut self) {
         if let Some(host) = &mut self.host {
             host.begin_anew();
+            self.spoken.owes_telemetry();
         }
     }
 

@@ -1,4 +1,4 @@
-//! What must a robot on wheels never do, whatever its brain wants? The last word before the motors (DESIGN §6; rules 2026).
+//! `governor`: the last limits before the motors, whatever the brain wants (DESIGN §6; rules 2026).
 //!
 //! | why | what is left |
 //! |---|---|
@@ -9,7 +9,9 @@
 //!
 //! Motors are released only by a robot that stands: after half a second without command (host silent), tipped or with an empty
 //! battery ([`Governor::has_let_go`]). Pushed then, it brakes again; told to go, it goes. In HALT it holds its place. A robot
-//! that expects no host (`BrainConfig::hosted`) is held to everything but the host's silence. Body frame, SI.
+//! that expects no host (`BrainConfig::hosted`) is held to everything but the host's silence. A frame of the host counts as heard on
+//! arrival while it is at most [`LATENCY_MAX`] old, and earlier by what it is older: with nothing but withheld frames of a dead host
+//! the robot slows down from an age of 150 ms on and brakes at 200 ms. Body frame, SI.
 
 use geometry::{Body, Twist, Vector, math};
 use protocol::robot_io::{Health, OmniKick};
@@ -166,13 +168,13 @@ impl Governor {
         }
     }
 
-    /// A frame of the host came: the link is good for as long as no gap is longer than 50 ms.
-    pub fn hear_host(&mut self, now: Instant) {
-        let gap = self.last_frame.is_none_or(|last| now.since(last) > RAMP_FROM);
+    /// A frame of the host counts as heard at that time, never before the last: the link is good for as long as no gap is longer than 50 ms.
+    pub fn hear_host(&mut self, heard: Instant) {
+        let gap = self.last_frame.is_none_or(|last| heard.since(last) > RAMP_FROM);
         if gap {
-            self.heard_since = Some(now);
+            self.heard_since = Some(heard);
         }
-        self.last_frame = Some(now);
+        self.last_frame = Some(heard);
     }
 
     /// What may be done of what is wanted. Call it every step, with what was done of it going to the body.
@@ -324,6 +326,11 @@ fn is_kick(kick: OmniKick) -> bool {
 const RAMP_FROM: Duration = Duration::millis(50);
 /// At this one the robot brakes (DESIGN §6); a command is stale after it too.
 pub const SILENCE: Duration = Duration::millis(100);
+/// The age up to which a frame counts as heard when it came. With [`SILENCE`] it makes the age at which the robot brakes, and beyond
+/// which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60 ms each way is the most that is planned for, and leaves
+/// 80 ms without a frame.
+pub const LATENCY_MAX: Duration = Duration::millis(100);
+const _: () = assert!(SILENCE.0 + LATENCY_MAX.0 == protocol::host_clock::AGE_MAX.0, "200 ms of age are silence");
 /// Heard again for so long without a gap, it may move again (DESIGN §6).
 const ARM_AFTER: Duration = Duration::millis(500);
 /// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.

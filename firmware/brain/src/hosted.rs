@@ -1,16 +1,17 @@
-//! What has the host said, how fresh is it, and what follows for this robot? Picture, command, phase, double touch.
+//! `hosted`: what the host has said, how old it is, and what follows for this robot: snapshot, command, phase, double touch.
 //!
 //! A directive is held until the next one, and stale after 100 ms without a command (the governor's
-//! [`SILENCE`]); the phase is the newest that any frame told.
+//! [`SILENCE`]); the phase is the newest that any frame told. A frame counts as heard when it came, if it is at most
+//! [`LATENCY_MAX`] old, and by so much earlier as it is older ([`heard_at`]).
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
 use protocol::robot_io::SensorFrame;
-use protocol::{Instant, RobotId};
+use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side};
 
 use crate::belief::{Belief, Game};
-use crate::governor::{Hearing, SILENCE};
+use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
 use crate::picture::{Picture, Taken};
 
 /// A robot's host, as it hears it.
@@ -20,6 +21,8 @@ pub struct Hosted {
     picture: Picture,
     command: Option<(Instant, Command)>,
     frame: Option<Instant>,
+    /// When the last frame came, however old it was.
+    arrived: Option<Instant>,
     phase: Option<Phase<Side>>,
     restart: Restart,
 }
@@ -44,29 +47,32 @@ impl Hosted {
             picture: Picture::new(me),
             command: None,
             frame: None,
+            arrived: None,
             phase: None,
             restart: Restart::None,
         }
     }
 
-    /// A message of the host; whether it was for this robot, and new.
-    pub fn handle(&mut self, now: Instant, message: &HostMessage) -> bool {
+    /// A message of the host that was sent at most `age` ago; when it counts as heard, if it was for this robot, and new.
+    pub fn handle(&mut self, now: Instant, age: Duration, message: &HostMessage) -> Option<Instant> {
+        let heard = heard_at(now, age);
         match message {
             HostMessage::World(part) => match self.picture.handle_part(now, part) {
                 Taken::Begun | Taken::More => self.phase = Some(part.phase),
-                Taken::Doubled | Taken::Late | Taken::Malformed => return false,
+                Taken::Doubled | Taken::Late | Taken::Malformed => return None,
             },
             HostMessage::Command(command) => {
                 if command.to != self.me {
-                    return false;
+                    return None;
                 }
                 self.phase = Some(command.phase);
-                self.command = Some((now, command.clone()));
+                self.command = Some((self.command.as_ref().map_or(heard, |(last, _)| heard.max(*last)), command.clone()));
             }
             HostMessage::Welcome(_) => {}
         }
-        self.frame = Some(now);
-        true
+        self.arrived = Some(now);
+        self.frame = Some(self.frame.map_or(heard, |last| heard.max(last)));
+        self.frame
     }
 
     /// Another host than before has welcomed this robot: its pictures have numbers of their own.
@@ -103,6 +109,11 @@ impl Hosted {
         self.phase
     }
 
+    /// When the last frame came, however old it was.
+    pub fn arrived(&self) -> Option<Instant> {
+        self.arrived
+    }
+
     /// When it was heard.
     pub fn hearing(&self) -> Hearing {
         Hearing { frame: self.frame, command: self.command.as_ref().map(|(at, _)| *at) }
@@ -135,6 +146,11 @@ impl Hosted {
             _ => Restart::None,
         };
     }
+}
+
+/// When a frame of that age counts as heard.
+fn heard_at(now: Instant, age: Duration) -> Instant {
+    now - Duration(age.0.saturating_sub(LATENCY_MAX.0))
 }
 
 /// The ball has left where it lay.
@@ -172,14 +188,28 @@ mod tests {
     #[test]
     fn a_command_for_another_robot_is_ignored_and_ones_own_is_stale_after_100_ms() {
         let mut hosted = Hosted::new(id(3));
-        assert!(!hosted.handle(Instant(0), &command(4, Directive::Stand)));
+        assert_eq!(hosted.handle(Instant(0), Duration(0), &command(4, Directive::Stand)), None);
         assert_eq!(
             (hosted.directive(Instant(0)), hosted.phase(), hosted.hearing().frame),
             (None, None, None)
         );
-        assert!(hosted.handle(Instant(1_000), &command(3, Directive::GetBall { face: None })));
+        let get = command(3, Directive::GetBall { face: None });
+        assert_eq!(hosted.handle(Instant(1_000), Duration(0), &get), Some(Instant(1_000)));
         assert!(hosted.directive(Instant(100_999)).is_some());
         assert_eq!(hosted.directive(Instant(101_000)), None);
+    }
+
+    #[test]
+    fn a_command_that_was_long_on_its_way_is_stale_200_ms_after_it_was_sent() {
+        for (age_ms, fresh_for_ms) in [(0, 100), (100, 100), (120, 80), (150, 50), (199, 1)] {
+            let mut hosted = Hosted::new(id(3));
+            let came = Instant(5_000_000);
+            hosted.handle(came, Duration::millis(age_ms), &command(3, Directive::Stand));
+            let until = came + Duration::millis(fresh_for_ms);
+            assert!(hosted.directive(until - Duration(1)).is_some(), "{age_ms} ms old");
+            assert_eq!(hosted.directive(until), None, "{age_ms} ms old");
+            assert_eq!(hosted.arrived(), Some(came));
+        }
     }
 
     fn with_ball(x: f32) -> Belief {

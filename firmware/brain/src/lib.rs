@@ -13,6 +13,7 @@
 //! by [`SensorFrame`](protocol::robot_io::SensorFrame), its teammates' beacons and its host; it takes a
 //! [`CaseBase`](casebase::CaseBase) and never links a library.
 #![no_std]
+#![forbid(unsafe_code)]
 
 pub mod belief;
 pub mod body;

@@ -1,9 +1,9 @@
-//! How do bytes of the air reach the brain, and its words the air? Brain and radio link as one value: bytes in, bytes out.
+//! `Station`: brain plus radio endpoint; decodes received frames, encodes outgoing messages.
 //!
 //! `runtime`'s tasks on a board and the native simulator drive this very value, so that both send the same bytes.
 
 use casebase::CaseBase;
-use protocol::frame::TeamKey;
+use protocol::frame::{RobotKeys, TeamKey};
 use protocol::link::{Heard, Link, Packet};
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use protocol::team::TeamMessage;
@@ -25,14 +25,14 @@ pub struct Station<'a> {
 impl<'a> Station<'a> {
     /// A robot that wakes up at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
-        Self::with_key(now, config, base, TeamKey::ZERO)
+        Self::with_keys(now, config, base, TeamKey::ZERO.of_robot(config.robot))
     }
 
-    /// As [`Station::new`], with the team's key.
-    pub fn with_key(now: Instant, config: &BrainConfig, base: CaseBase<'a>, key: TeamKey) -> Self {
+    /// As [`Station::new`], with keys of its own.
+    pub fn with_keys(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
             brain: Brain::new(now, config, base),
-            link: Link::new(config.team, config.robot, key, config.epoch),
+            link: Link::new(config.team, config.robot, keys, config.epoch),
             spoke: None,
             greeted: Some(now),
             stirred: true,
@@ -42,24 +42,19 @@ impl<'a> Station<'a> {
     /// A packet came; whatever is not a genuine, new message of this team is counted and dropped. Where steps are short nothing is
     /// said before the next.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
-        if self.brain.has_short_steps() {
-            // A tag costs: what is for somebody else is not opened.
-            if self.link.is_for_me(packet) != Ok(true) {
-                return;
-            }
-        } else {
+        if !self.brain.has_short_steps() {
             self.stirred = true;
         }
-        let led_by = self.link.host_life();
-        match self.link.open(packet) {
+        let led_by = self.link.host_epoch();
+        match self.link.open(now, packet) {
             Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
-            Ok(Heard::Host(message)) => {
-                if self.link.host_life() != led_by {
+            Ok(Heard::Host(message, age)) => {
+                if self.link.host_epoch() != led_by {
                     self.brain.handle_new_host();
                 }
-                self.brain.handle_host_message(now, &message);
+                self.brain.handle_host_message(now, age, &message);
             }
-            Err(_) => {}
+            Ok(Heard::Elsewhere) | Err(_) => {}
         }
     }
 
@@ -98,7 +93,7 @@ impl<'a> Station<'a> {
         };
         self.spoke = Some(now);
         if let TeamMessage::Telemetry(telemetry) = &mut message {
-            self.link.tell(telemetry);
+            self.link.tell(now, telemetry);
         }
         Some(self.link.seal(&message))
     }

@@ -2,8 +2,8 @@
 //!
 //! [`plan`] is called every step and remembers nothing. It answers in three parts:
 //!
-//! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left by a short way
-//!    ([`Verdict::Escape`]).
+//! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for such a point by a short
+//!    way ([`Verdict::Escape`]): through regions, around bodies and out of no wall.
 //! 2. **Route.** The straight way, or the cheapest way found over tangent points of what stands in it: a search of at most
 //!    [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed order. Cost is length, and what turning the present velocity costs.
 //! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can still brake
@@ -14,6 +14,7 @@
 //! Obstacles are regions for the robot's *centre*: grow others' and the rules' shapes ([`Shape::grown`]) by the robot's own
 //! radius, and by what its sight and wheels err. Corners of boxes stay corners. SI units, field frame or any other.
 
+mod exit;
 mod item;
 mod route;
 
@@ -30,17 +31,29 @@ pub struct Obstacle<F> {
     pub shape: Shape<F>,
     /// How it moves, m/s.
     pub velocity: Vector<F>,
+    /// Whether something is there to be run into. Who leaves a region that is no body may go through others.
+    pub is_body: bool,
 }
 
 impl<F: Copy> Obstacle<F> {
-    /// One that stands still.
+    /// A body that stands still: a wall.
     pub fn standing(shape: Shape<F>) -> Self {
-        Self { shape, velocity: Vector::default() }
+        Self { shape, velocity: Vector::default(), is_body: true }
+    }
+
+    /// A region in which nothing stands, but that must not be entered: a rule's.
+    pub fn region(shape: Shape<F>) -> Self {
+        Self { is_body: false, ..Self::standing(shape) }
     }
 
     /// A robot, as a disc of both radii and a margin.
     pub fn robot(center: Point<F>, velocity: Vector<F>, radius: f32) -> Self {
-        Self { shape: Shape::Disc { center, radius }, velocity }
+        Self::moving(Shape::Disc { center, radius }, velocity)
+    }
+
+    /// A body that moves.
+    pub fn moving(shape: Shape<F>, velocity: Vector<F>) -> Self {
+        Self { shape, velocity, is_body: true }
     }
 }
 
@@ -133,15 +146,10 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     scene.look();
     let goal = scene.nearest_free(to);
     if scene.is_inside(from) {
-        let exit = scene.nearest_free(from);
-        let motion = limits.plan(from, velocity, exit);
-        let length = from.distance(exit) + exit.distance(goal);
-        let next = motion.at(course.step);
-        let verdict = Verdict::Escape { to: exit };
-        return Way { verdict, goal, length, restraint: Restraint::None, next, motion };
+        return escape(course, &mut scene, goal);
     }
-    scene.keep_apart(from, goal);
-    let route = Route::find(&scene, from, velocity, goal, &limits);
+    scene.keep_apart(from, goal, false);
+    let route = Route::find(&scene, from, velocity, goal, &limits, false);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (Verdict::Direct, goal),
@@ -150,6 +158,24 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     let motion = limits.plan(from, velocity, towards);
     let (next, restraint) = safe_step(course, &scene, &motion, towards);
     Way { verdict, goal, length: route.length, restraint, next, motion }
+}
+
+/// Out of what holds the start: to a free point, around all bodies, through any region.
+fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point<F>) -> Way<F> {
+    let Course { from, velocity, limits, .. } = *course;
+    let exit = scene.exit(from);
+    scene.keep_apart(from, exit, true);
+    let route = Route::find(scene, from, velocity, exit, &limits, true);
+    let towards = match route.via {
+        Some(via) if route.arrives => past(from, via, route.behind, &limits),
+        Some(via) => via,
+        // Where no way is known, as far as it gets.
+        None => exit,
+    };
+    let motion = limits.plan(from, velocity, towards);
+    let (next, restraint) = safe_step(course, scene, &motion, towards);
+    let length = route.length + exit.distance(goal);
+    Way { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
 }
 
 /// A point beyond a corner, so far that the robot comes to the corner as fast as it can turn there: as fast as its limit

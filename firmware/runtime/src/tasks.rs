@@ -9,7 +9,7 @@ use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use embassy_sync::channel::TryReceiveError;
 use embassy_time::with_deadline;
-use protocol::frame::TeamKey;
+use protocol::frame::{RobotKeys, TeamKey};
 use protocol::{Duration, Instant};
 
 use crate::mailboxes::{Arrival, Mailboxes};
@@ -19,13 +19,18 @@ use crate::progress::Part;
 
 /// The robot's life: begins with the first poll of this task.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
-    brain_with_key(config, base, TeamKey::ZERO, boxes).await
+    brain_with_keys(config, base, TeamKey::ZERO.of_robot(config.robot), boxes).await
 }
 
-/// As [`brain()`], with the team's key.
-pub async fn brain_with_key(config: &BrainConfig, base: CaseBase<'_>, key: TeamKey, boxes: &Mailboxes) -> ! {
+/// As [`brain()`], with keys of its own.
+pub async fn brain_with_keys(
+    config: &BrainConfig,
+    base: CaseBase<'_>,
+    keys: RobotKeys,
+    boxes: &Mailboxes,
+) -> ! {
     // Born where it lives: by value it would lie in this future twice, and on the stack on its way there.
-    let mut station = Station::with_key(now(), config, base, key);
+    let mut station = Station::with_keys(now(), config, base, keys);
     think(&mut station, boxes).await
 }
 

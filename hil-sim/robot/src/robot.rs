@@ -4,7 +4,7 @@ use brain::{BrainConfig, Station};
 use casebase::CaseBase;
 use prost::Message as _;
 use protocol::Instant;
-use protocol::frame::TeamKey;
+use protocol::frame::RobotKeys;
 use protocol::link::Packet;
 use ssl::simulation::RobotControlResponse;
 
@@ -22,9 +22,9 @@ pub struct VirtualRobot<'a> {
 
 impl<'a> VirtualRobot<'a> {
     /// A robot that wakes up at `now`.
-    pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>, key: TeamKey) -> Self {
+    pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
-            station: Station::with_key(now, config, base, key),
+            station: Station::with_keys(now, config, base, keys),
             body: SimulatedBody::new(config.robot),
             tick: now,
             control: None,

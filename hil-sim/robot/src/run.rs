@@ -10,7 +10,7 @@ use std::time::{Duration, Instant as Clock};
 use brain::BrainConfig;
 use casebase::CaseBase;
 use protocol::Instant;
-use protocol::frame::TeamKey;
+use protocol::frame::RobotKeys;
 
 use crate::robot::VirtualRobot;
 
@@ -19,8 +19,8 @@ use crate::robot::VirtualRobot;
 pub struct Options {
     /// Its brain.
     pub brain: BrainConfig,
-    /// The team's key.
-    pub key: TeamKey,
+    /// Its keys.
+    pub keys: RobotKeys,
     /// Whoever commands.
     pub host: SocketAddr,
     /// The simulator's port for this team's robots: 10301 blue, 10302 yellow.
@@ -81,7 +81,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
     let socket = UdpSocket::bind(any).map_err(RunError::Socket)?;
     let start = Clock::now();
     let now = || Instant(start.elapsed().as_micros() as u64);
-    let mut robot = VirtualRobot::new(now(), &options.brain, base, options.key);
+    let mut robot = VirtualRobot::new(now(), &options.brain, base, options.keys);
     let mut bytes = [0; LEN_MAX];
     while !end.load(Ordering::Relaxed) {
         let wait = robot.poll_timeout().since(now());

@@ -131,8 +131,9 @@ fn a_taken_port_ends_a_match_with_a_word_about_what_to_do() {
 #[test]
 fn a_real_field_is_halted_from_the_page_and_nothing_else() {
     let nobody = ["--vision", "127.0.0.1:0", "--referee", "127.0.0.1:0"];
-    let control = ["control", "--robots", "udp://127.0.0.1:9", "--duration", "60", "--listen", "127.0.0.1:0"];
-    let control = Program::start(&[&control[..], &nobody[..]].concat());
+    let robots = ["control", "--robots", "udp://127.0.0.1:9", "--insecure-zero-key"];
+    let control = ["--duration", "60", "--listen", "127.0.0.1:0"];
+    let control = Program::start(&[&robots[..], &control[..], &nobody[..]].concat());
     let mut viewer = Viewer::of(&control);
     viewer.until(|scene| scene["t"].is_number());
     viewer.ask(r#"{"ask":"speed","factor":2}"#);

@@ -1,5 +1,8 @@
-//! What goes out to the robots, when, and what has come back? Pictures and commands into frames, robots' frames into
-//! telemetry and link quality (DESIGN §3, §6). Sans-IO: times come from the caller, packets go back to it.
+//! `radio`: snapshots and commands into frames at the right rate, robots' frames into telemetry and link quality (DESIGN §3, §6).
+//! Sans-IO: times come from the caller, packets go back to it.
+//!
+//! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]). Only then it is commanded,
+//! addressed by snapshots, relayed and given to the strategy. Before, it is welcomed, at most every [`STRANGER_EVERY`].
 //!
 //! **Rate.** A picture goes out as soon as there is a new one, but not more than one in [`PERIOD_MIN`] (100 Hz); one that
 //! comes too early waits its turn, the newest wins. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last goes out
@@ -13,19 +16,22 @@
 mod picture;
 mod quality;
 mod tally;
+mod warning;
 
-use protocol::frame::{Refusal, TeamKey};
-use protocol::host::{Command, HostMessage, Telemetry, Welcome};
-use protocol::host_link::HostLink;
+use protocol::frame::{Audience, Frame, Refusal, TeamKey};
+use protocol::host::{Command, HostMessage, Telemetry};
+use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::world::World;
+use warning::Refusals;
 
 pub use picture::{PARTS_ROBOTS_MAX, Situation};
 pub use quality::{Quality, table};
 pub use tally::Tally;
+pub use warning::{RadioWarning, Why};
 
 /// Not more than one picture in this time: 100 Hz, as fast as the league's cameras and the best published radios.
 pub const PERIOD_MIN: Duration = Duration::millis(10);
@@ -35,11 +41,13 @@ pub const EARLY: Duration = Duration::millis(2);
 pub const PERIOD_MAX: Duration = Duration(16_600);
 /// How long a picture is carried forward: half a second, twice the longest blackout of vision that teams report (0.2 s).
 pub const REPEAT_MAX: Duration = Duration::millis(500);
-/// A robot is there if it was heard within this time; robots speak ten times a second or more.
+/// A robot is present if its telemetry came within this time; it comes ten times a second.
 pub const PRESENT: Duration = Duration::millis(1_000);
 /// Robots are welcomed again this often, so that a lost welcome only delays.
 const WELCOME_EVERY: Duration = Duration::millis(100);
-/// Packets that wait to be fetched: four parts, a command and a welcome for each, and a beacon of each for each other.
+/// A robot that has not named our epoch is welcomed at most this often: recordings of robots lead to no more than that.
+pub const STRANGER_EVERY: Duration = Duration::millis(20);
+/// Packets that wait to be fetched: the parts, a command and a welcome for each, and a beacon of each for each other.
 const OUT_MAX: usize = 320;
 
 /// Who shall receive a packet.
@@ -112,6 +120,7 @@ pub struct Radio {
     robots: [Quality; RobotId::COUNT],
     out: heapless::Deque<(To, Packet), OUT_MAX>,
     dropped: u32,
+    refusals: Refusals,
 }
 
 /// What the strategy said last.
@@ -139,6 +148,7 @@ impl Radio {
             robots: Default::default(),
             out: heapless::Deque::new(),
             dropped: 0,
+            refusals: Refusals::default(),
         }
     }
 
@@ -187,14 +197,24 @@ impl Radio {
 
     /// A packet came from a robot's side: what it says, or why it is not believed (counted).
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
-        let (robot, message) = self.link.open(packet)?;
-        let life = self.link.life(robot).unwrap_or(0);
-        let counter = self.link.counter(robot).unwrap_or(0);
-        let quality = &mut self.robots[robot.index()];
-        quality.hear(now, packet.len(), life, counter);
-        if quality.wants_welcome(now, WELCOME_EVERY) {
-            self.welcome(now, robot);
+        let frame = Frame::parse(packet, self.settings.team);
+        let opened = self.link.open(now, packet);
+        if let Err(refusal) = opened {
+            let sender = frame.ok().and_then(|frame| frame.sender.robot());
+            self.refusals.refuse(now, refusal, sender);
         }
+        let (robot, message) = match opened? {
+            Opened::Believed(robot, message) => (robot, message),
+            Opened::Stranger(robot, telemetry) => {
+                self.refusals.tell(now, robot, &telemetry);
+                if self.robots[robot.index()].wants_welcome(now, STRANGER_EVERY) {
+                    self.welcome(now, robot);
+                }
+                return Err(Refusal::Stranger { epoch: self.link.welcome(robot).map_or(0, |known| known.life) });
+            }
+        };
+        let frame = frame?;
+        self.robots[robot.index()].hear(now, packet.len(), frame.epoch, frame.counter);
         match message {
             TeamMessage::Beacon(beacon) => {
                 self.relay(now, robot, packet);
@@ -206,6 +226,7 @@ impl Radio {
             }
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.picture)];
+                self.refusals.tell(now, robot, &telemetry);
                 self.robots[robot.index()].tell(now, telemetry, departed);
                 Ok(Heard::Telemetry(robot, telemetry))
             }
@@ -217,7 +238,7 @@ impl Radio {
         Some(&self.robots[robot.index()]).filter(|quality| quality.heard_at().is_some())
     }
 
-    /// Robots heard within [`PRESENT`], lowest number first.
+    /// Robots whose telemetry has named our epoch within [`PRESENT`], lowest number first.
     pub fn present(&self, now: Instant) -> impl Iterator<Item = RobotId> {
         RobotId::all().filter(move |robot| self.robots[robot.index()].is_present(now))
     }
@@ -235,6 +256,11 @@ impl Radio {
         kinds.iter().fold(0, |sum, kind| sum.saturating_add(refused[kind.kind()]))
     }
 
+    /// What keeps robots and this host apart now, and what to do about it.
+    pub fn warnings(&self, now: Instant) -> impl Iterator<Item = RadioWarning> {
+        self.refusals.warnings(now, self.link.epoch())
+    }
+
     /// Packets that nobody fetched in time.
     pub fn dropped(&self) -> u32 {
         self.dropped
@@ -247,16 +273,19 @@ impl Radio {
         self.last = Some(now);
         self.picture = self.picture.wrapping_add(1);
         self.departures[usize::from(self.picture)] = Some(now);
-        let there = latest.world.at(now + self.settings.way);
-        for part in picture::parts(self.picture, &there, &latest.situation) {
-            self.say(now, To::All, &HostMessage::World(part));
+        let audience: Audience = self.present(now).collect();
+        self.link.set_audience(audience);
+        if !audience.is_empty() {
+            let there = latest.world.at(now + self.settings.way);
+            for part in picture::parts(self.picture, audience.len(), &there, &latest.situation) {
+                self.say(now, To::All, &HostMessage::World(part));
+            }
         }
-        for command in &latest.commands {
+        for command in latest.commands.iter().filter(|command| audience.has(command.to)) {
             self.say(now, To::One(command.to), &HostMessage::Command(command.clone()));
         }
-        for robot in RobotId::all() {
-            let quality = &self.robots[robot.index()];
-            if quality.is_present(now) && quality.wants_welcome(now, WELCOME_EVERY) {
+        for robot in audience.robots() {
+            if self.robots[robot.index()].wants_welcome(now, WELCOME_EVERY) {
                 self.welcome(now, robot);
             }
         }
@@ -265,14 +294,14 @@ impl Radio {
     }
 
     fn welcome(&mut self, now: Instant, robot: RobotId) {
-        if let Some(life) = self.link.life(robot) {
-            self.robots[robot.index()].welcomed(now, life);
-            self.say(now, To::One(robot), &HostMessage::Welcome(Welcome { to: robot, life }));
+        if let Some(welcome) = self.link.welcome(robot) {
+            self.robots[robot.index()].welcomed(now);
+            self.say(now, To::One(robot), &HostMessage::Welcome(welcome));
         }
     }
 
     fn say(&mut self, now: Instant, to: To, message: &HostMessage) {
-        let packet = self.link.seal(message);
+        let packet = self.link.seal(now, message);
         for robot in RobotId::all() {
             if matches!(to, To::All) || to == To::One(robot) {
                 self.robots[robot.index()].sent(now, packet.len());
@@ -283,6 +312,9 @@ impl Radio {
 
     fn relay(&mut self, now: Instant, from: RobotId, packet: &[u8]) {
         let Ok(packet) = Packet::from_slice(packet) else { return };
+        if !self.robots[from.index()].is_present(now) {
+            return;
+        }
         match self.settings.relay {
             Relay::No => {}
             Relay::ToAll => self.push(To::All, packet),

@@ -1,15 +1,15 @@
-//! How does the world become parts that fit into frames? Ours first, then theirs, lowest number first, spread over as few
-//! parts as hold them. Field frame.
+//! `picture`: the world as parts that fit into frames: ours first, then theirs, lowest number first, spread over as few parts as
+//! hold them. Field frame.
 
 use geometry::{Field, Point};
-use protocol::host::{PART_ROBOTS_MAX, PARTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
+use protocol::host::{PARTS_MAX, WORLD_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
 use protocol::quantized::{length_to_mm, saturate, whole_mm};
 use rules::{Colour, Phase, Side};
 
 use crate::world::{Ball, Robot, World};
 
-/// Robots that fit into a picture; more (ghosts, a shoal of false detections) are left out from the end.
-pub const PARTS_ROBOTS_MAX: usize = PARTS_MAX * PART_ROBOTS_MAX;
+/// Robots that fit into a snapshot; more (ghosts, many false detections) are left out from the end.
+pub const PARTS_ROBOTS_MAX: usize = WORLD_ROBOTS_MAX;
 
 /// What the game is like, beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,9 +22,10 @@ pub struct Situation {
     pub placement: Option<Point<Field>>,
 }
 
-/// The parts of a picture.
+/// The parts of a snapshot for so many robots.
 pub(super) fn parts(
     picture: u8,
+    addressees: usize,
     world: &World,
     situation: &Situation,
 ) -> heapless::Vec<WorldPart, PARTS_MAX> {
@@ -34,7 +35,7 @@ pub(super) fn parts(
         .chain(world.theirs(us).map(|robot| wire_robot(Side::Theirs, robot)))
         .take(PARTS_ROBOTS_MAX)
         .collect();
-    let parts = robots.len().div_ceil(PART_ROBOTS_MAX).max(1);
+    let parts = robots.len().div_ceil(WorldPart::robots_max(addressees, situation.placement.is_some())).max(1);
     let per_part = robots.len().div_ceil(parts);
     let ball = world.ball.as_ref().map(wire_ball);
     let part = |part: usize| WorldPart {

@@ -26,9 +26,11 @@ const TRIP_MAX: Duration = Duration::millis(1_000);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     heard_at: Option<Instant>,
+    /// When telemetry came last that named our epoch.
+    present_at: Option<Instant>,
     telemetry: Option<(Instant, Telemetry)>,
     life: Option<Life>,
-    welcomed: Option<(Instant, u32)>,
+    welcomed: Option<Instant>,
     lives: u32,
     trip: Tally,
     down: Share,
@@ -79,9 +81,9 @@ impl Quality {
         self.heard_at.map(|heard| now.since(heard))
     }
 
-    /// Heard within [`PRESENT`].
+    /// Its telemetry has named our epoch within [`PRESENT`].
     pub fn is_present(&self, now: Instant) -> bool {
-        self.silence(now).is_some_and(|silence| silence <= PRESENT)
+        self.present_at.is_some_and(|at| now.since(at) <= PRESENT)
     }
 
     /// What it last said of itself, and when.
@@ -146,8 +148,13 @@ impl Quality {
         match &mut self.life {
             Some(life) if life.epoch == epoch => {
                 self.up.came += 1;
-                self.up.lost += u64::from(counter.wrapping_sub(life.counter).saturating_sub(1));
-                life.counter = counter;
+                // Telemetry and beacons may overtake each other; what is late was counted as lost.
+                if let Some(ahead) = counter.checked_sub(life.counter) {
+                    self.up.lost += u64::from(ahead.saturating_sub(1));
+                    life.counter = counter;
+                } else {
+                    self.up.lost = self.up.lost.saturating_sub(1);
+                }
             }
             life => {
                 *life = Some(Life { epoch, counter, since: now });
@@ -163,6 +170,7 @@ impl Quality {
 
     /// It told of itself; `departed` is when the picture it names went out.
     pub(super) fn tell(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
+        self.present_at = Some(now);
         if telemetry.heard > 0
             && let (Some(departed), Some(life)) = (departed, self.life)
         {
@@ -189,14 +197,13 @@ impl Quality {
         }
     }
 
-    /// It was not welcomed in its present life, or not lately.
+    /// It was not welcomed for that long.
     pub(super) fn wants_welcome(&self, now: Instant, every: Duration) -> bool {
-        let life = self.life.map(|life| life.epoch);
-        self.welcomed.is_none_or(|(at, known)| Some(known) != life || now.since(at) >= every)
+        self.welcomed.is_none_or(|at| now.since(at) >= every)
     }
 
-    pub(super) fn welcomed(&mut self, now: Instant, life: u32) {
-        self.welcomed = Some((now, life));
+    pub(super) fn welcomed(&mut self, now: Instant) {
+        self.welcomed = Some(now);
     }
 
     /// Closes seconds that are over; those without a frame count as empty.

@@ -1,4 +1,4 @@
-//! Does the radio speak as often as it should, to whom it should, and does it know how well it is heard?
+//! The radio sends as often as it should, to whom it should, and knows how well it is received.
 
 use super::*;
 use crate::world::{BallModels, Robot};
@@ -69,7 +69,22 @@ fn beacon() -> TeamMessage {
 }
 
 fn robot(n: u8) -> Link {
-    Link::new(TEAM, id(n), TeamKey::ZERO, 100 + u32::from(n))
+    Link::new(TEAM, id(n), TeamKey::ZERO.of_robot(id(n)), 100 + u32::from(n))
+}
+
+fn tell(link: &mut Link, now: Instant) -> Packet {
+    let mut telemetry = Telemetry::default();
+    link.tell(now, &mut telemetry);
+    link.seal(&TeamMessage::Telemetry(telemetry))
+}
+
+/// Telemetry, welcome, telemetry: the robot is present.
+fn join(radio: &mut Radio, link: &mut Link, n: u8, now: Instant) {
+    assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Stranger { .. })));
+    let welcome = fetch(radio);
+    assert!(matches!(deliver(link, n, now, &welcome)[..], [HostMessage::Welcome(_)]));
+    assert!(radio.handle_packet(now, &tell(link, now)).is_ok());
+    assert!(radio.present(now).any(|robot| robot == id(n)) && fetch(radio).is_empty());
 }
 
 fn fetch(radio: &mut Radio) -> Vec<(To, Packet)> {
@@ -77,11 +92,11 @@ fn fetch(radio: &mut Radio) -> Vec<(To, Packet)> {
 }
 
 /// Hands the packets that are for `n` to its link; gives what it believed.
-fn deliver(link: &mut Link, n: u8, packets: &[(To, Packet)]) -> Vec<HostMessage> {
+fn deliver(link: &mut Link, n: u8, now: Instant, packets: &[(To, Packet)]) -> Vec<HostMessage> {
     let meant = packets.iter().filter(|(to, _)| *to == To::All || *to == To::One(id(n)));
     meant
-        .filter_map(|(_, packet)| match link.open(packet) {
-            Ok(RobotHeard::Host(message)) => Some(message),
+        .filter_map(|(_, packet)| match link.open(now, packet) {
+            Ok(RobotHeard::Host(message, _)) => Some(message),
             _ => None,
         })
         .collect()
@@ -90,41 +105,111 @@ fn deliver(link: &mut Link, n: u8, packets: &[(To, Packet)]) -> Vec<HostMessage>
 #[test]
 fn a_picture_of_two_teams_goes_to_all_in_parts_and_each_command_to_its_robot() {
     let mut radio = radio(Relay::No);
-    radio.offer(ms(5), &world(ms(5), 6, 6), situation(), &[stand(0), stand(3), stand(3)]);
+    for n in [0, 3] {
+        join(&mut radio, &mut robot(n), n, ms(1));
+    }
+    radio.offer(ms(5), &world(ms(5), 6, 6), situation(), &[stand(0), stand(3), stand(3), stand(4)]);
     let packets = fetch(&mut radio);
     let to: Vec<To> = packets.iter().map(|(to, _)| *to).collect();
+    // Robot 4 is not there.
     assert_eq!(to, [To::All, To::All, To::One(id(0)), To::One(id(3))]);
     assert!(packets.iter().all(|(_, packet)| packet.len() <= 120));
 }
 
 #[test]
-fn a_robot_is_welcomed_when_it_is_first_heard_and_then_hears_everything() {
+fn eleven_robots_are_shown_twenty_two_in_parts_that_fit() {
+    let mut radio = radio(Relay::No);
+    let mut links: Vec<Link> = (0..11).map(robot).collect();
+    for (n, link) in (0..).zip(&mut links) {
+        join(&mut radio, link, n, ms(1));
+    }
+    radio.offer(ms(5), &world(ms(5), 11, 11), situation(), &[]);
+    let packets = fetch(&mut radio);
+    assert!(packets.iter().all(|(_, packet)| packet.len() <= 120));
+    for (n, link) in (0..).zip(&mut links) {
+        let heard = deliver(link, n, ms(6), &packets);
+        let shown: usize = heard
+            .iter()
+            .map(|message| if let HostMessage::World(part) = message { part.robots.len() } else { 0 })
+            .sum();
+        assert_eq!((heard.len(), shown), (5, 22), "robot {n}");
+    }
+}
+
+#[test]
+fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_once_it_names_us() {
     let mut radio = radio(Relay::No);
     let mut link = robot(2);
-    radio.offer(ms(0), &world(ms(0), 1, 0), situation(), &[stand(2)]);
-    assert!(deliver(&mut link, 2, &fetch(&mut radio)).is_empty(), "a stranger's words");
-    assert!(radio.handle_packet(ms(3), &link.seal(&beacon())).is_ok());
-    assert_eq!(deliver(&mut link, 2, &fetch(&mut radio)).len(), 1, "the welcome");
-    radio.offer(ms(10), &world(ms(10), 1, 0), situation(), &[stand(2)]);
-    let heard = deliver(&mut link, 2, &fetch(&mut radio));
+    assert!(radio.handle_packet(ms(1), &link.seal(&beacon())).is_err(), "a beacon proves nothing");
+    radio.offer(ms(2), &world(ms(2), 1, 0), situation(), &[stand(2)]);
+    assert!(fetch(&mut radio).is_empty() && radio.present(ms(2)).count() == 0);
+    join(&mut radio, &mut link, 2, ms(3));
+    radio.offer(ms(15), &world(ms(15), 1, 0), situation(), &[stand(2)]);
+    let heard = deliver(&mut link, 2, ms(15), &fetch(&mut radio));
     assert!(matches!(heard[..], [HostMessage::World(_), HostMessage::Command(_)]), "{heard:?}");
     let HostMessage::World(part) = &heard[0] else { unreachable!() };
     // 1 m/s for the 3 ms of the way.
     assert_eq!(part.robots[0].pose.at.x, 3);
-    // A new life is welcomed at once, an old one again after a while.
-    let mut booted = Link::new(TEAM, id(2), TeamKey::ZERO, 999);
-    assert!(radio.handle_packet(ms(12), &booted.seal(&beacon())).is_ok());
-    assert_eq!(deliver(&mut booted, 2, &fetch(&mut radio)).len(), 1);
-    assert!(radio.handle_packet(ms(20), &booted.seal(&beacon())).is_ok());
-    assert!(fetch(&mut radio).is_empty());
-    assert!(radio.handle_packet(ms(120), &booted.seal(&beacon())).is_ok());
-    assert_eq!(fetch(&mut radio).len(), 1);
+    // It is welcomed again after a while.
+    radio.offer(ms(103), &world(ms(103), 1, 0), situation(), &[]);
+    assert_eq!(fetch(&mut radio).len(), 2);
+    // A new boot epoch is welcomed within 20 ms, again and again until it names us.
+    let mut booted = Link::new(TEAM, id(2), TeamKey::ZERO.of_robot(id(2)), 999);
+    let welcomes = |radio: &mut Radio, link: &mut Link, at| {
+        assert!(radio.handle_packet(ms(at), &tell(link, ms(at))).is_err());
+        fetch(radio)
+    };
+    assert!(welcomes(&mut radio, &mut booted, 110).is_empty());
+    assert_eq!(welcomes(&mut radio, &mut booted, 123).len(), 1);
+    assert!(welcomes(&mut radio, &mut booted, 130).is_empty());
+    let welcome = welcomes(&mut radio, &mut booted, 143);
+    assert_eq!(deliver(&mut booted, 2, ms(143), &welcome).len(), 1);
+    assert!(radio.handle_packet(ms(150), &tell(&mut booted, ms(150))).is_ok());
     assert_eq!(radio.quality(id(2)).unwrap().lives(), 2);
+}
+
+#[test]
+fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else() {
+    let (mut before, mut link) = (radio(Relay::ToAll), robot(2));
+    join(&mut before, &mut link, 2, ms(0));
+    let mut recorded = Vec::new();
+    for n in 0..60 {
+        recorded.extend([tell(&mut link, ms(10 * n)), link.seal(&beacon())]);
+    }
+    for relay in [Relay::ToEach, Relay::ToAll] {
+        let mut fresh = Radio::new(RadioSettings { relay, ..RadioSettings::new(TEAM, 71) });
+        let mut other = robot(3);
+        join(&mut fresh, &mut other, 3, ms(0));
+        let (mut welcomes, mut commands) = (0, 0);
+        for (n, packet) in (0..).zip(&recorded) {
+            let now = ms(5 * n);
+            assert!(fresh.handle_packet(now, packet).is_err(), "frame {n}");
+            assert!(fresh.handle_packet(now, &tell(&mut other, now)).is_ok());
+            fresh.offer(now, &world(now, 4, 4), situation(), &[stand(2), stand(3)]);
+            for (to, packet) in fetch(&mut fresh) {
+                assert!(!recorded.contains(&packet), "relayed");
+                if to == To::One(id(2)) {
+                    let keys = TeamKey::ZERO.of_robot(id(2));
+                    let message = protocol::link::overhear_host(&packet, TEAM, &keys, id(2)).unwrap();
+                    assert!(matches!(message, HostMessage::Welcome(_)), "{message:?}");
+                    welcomes += 1;
+                }
+                commands += u32::from(to == To::One(id(3)));
+            }
+            assert_eq!(fresh.present(now).collect::<Vec<_>>(), [id(3)]);
+        }
+        assert!(fresh.quality(id(2)).is_none());
+        // 600 ms of recordings, a welcome in 20 ms at most.
+        assert!((1..=31).contains(&welcomes) && commands > 50, "{welcomes} welcomes, {commands} commands to robot 3");
+    }
 }
 
 /// Offers a picture at each of `times` (µs) for a second and serves every deadline; gives when pictures went out.
 fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
     let mut radio = radio(Relay::No);
+    let mut link = robot(0);
+    join(&mut radio, &mut link, 0, ms(0));
+    let mut told = 0;
     let mut out = Vec::new();
     let mut times = times.peekable();
     loop {
@@ -134,13 +219,18 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
         if now.0 > until {
             return out;
         }
+        // It stays present.
+        while told + 100_000 <= now.0 {
+            told += 100_000;
+            assert!(radio.handle_packet(Instant(told), &tell(&mut link, Instant(told))).is_ok());
+        }
         if due <= offer {
             radio.handle_timeout(now);
         } else {
             times.next();
             radio.offer(now, &world(now, 1, 0), situation(), &[]);
         }
-        out.extend(fetch(&mut radio).iter().map(|_| now.0));
+        out.extend(fetch(&mut radio).iter().filter(|(to, _)| *to == To::All).map(|_| now.0));
     }
 }
 
@@ -170,14 +260,14 @@ fn of_too_few_pictures_sixty_a_second_go_out_until_half_a_second_is_over() {
 fn a_repeated_picture_is_carried_forward() {
     let mut radio = radio(Relay::No);
     let mut link = robot(0);
-    assert!(radio.handle_packet(ms(0), &link.seal(&beacon())).is_ok());
+    join(&mut radio, &mut link, 0, ms(0));
     radio.offer(ms(1), &world(ms(1), 1, 0), situation(), &[]);
-    deliver(&mut link, 0, &fetch(&mut radio));
+    deliver(&mut link, 0, ms(1), &fetch(&mut radio));
     let due = radio.poll_timeout().unwrap();
     radio.handle_timeout(Instant(due.0 - 1));
     assert!(fetch(&mut radio).is_empty(), "not yet");
     radio.handle_timeout(due);
-    let heard = deliver(&mut link, 0, &fetch(&mut radio));
+    let heard = deliver(&mut link, 0, due, &fetch(&mut radio));
     let [HostMessage::World(part)] = &heard[..] else { panic!("{heard:?}") };
     // 16.6 ms and 3 ms of way at 1 m/s, in whole millimetres.
     assert_eq!((part.picture, part.robots[0].pose.at.x), (1, 20));
@@ -188,12 +278,13 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
     let (mut one, mut two) = (robot(1), robot(2));
     for relay in [Relay::No, Relay::ToEach, Relay::ToAll] {
         let mut radio = radio(relay);
-        let others: Vec<Packet> = vec![two.seal(&beacon()), one.seal(&beacon())];
-        assert!(radio.handle_packet(ms(0), &others[0]).is_ok());
-        fetch(&mut radio);
-        assert!(radio.handle_packet(ms(1), &others[1]).is_ok());
-        let passed: Vec<_> =
-            fetch(&mut radio).into_iter().filter(|(_, packet)| *packet == others[1]).collect();
+        join(&mut radio, &mut two, 2, ms(0));
+        assert!(radio.handle_packet(ms(0), &one.seal(&beacon())).is_err() && fetch(&mut radio).is_empty());
+        join(&mut radio, &mut one, 1, ms(0));
+        let passed_on = one.seal(&beacon());
+        assert!(radio.handle_packet(ms(1), &passed_on).is_ok());
+        let passed = fetch(&mut radio);
+        assert!(passed.iter().all(|(_, packet)| *packet == passed_on));
         let to: Vec<To> = passed.iter().map(|(to, _)| *to).collect();
         let expected: &[To] = match relay {
             Relay::No => &[],
@@ -201,10 +292,13 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
             Relay::ToAll => &[To::All],
         };
         assert_eq!(to, expected);
-        let telemetry = one.seal(&TeamMessage::Telemetry(Telemetry::default()));
+        let telemetry = tell(&mut one, ms(2));
         assert!(radio.handle_packet(ms(2), &telemetry).is_ok());
         assert!(fetch(&mut radio).is_empty());
-        assert_eq!(radio.handle_packet(ms(3), &telemetry), Err(Refusal::Counter { seen: 2, last: 2 }));
+        assert_eq!(radio.handle_packet(ms(3), &telemetry), Err(Refusal::Counter { seen: 5, last: 5 }));
+        // Once it is no longer present, nothing of it is passed on.
+        assert!(radio.handle_packet(ms(1_003), &one.seal(&beacon())).is_ok());
+        assert!(fetch(&mut radio).is_empty());
         one = robot(1);
         two = robot(2);
     }
@@ -216,7 +310,7 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     let mut radio = radio(Relay::No);
     let mut link = robot(4);
     let (way, held) = (Duration(1_500), Duration(2_000));
-    assert!(radio.handle_packet(ms(0), &link.seal(&beacon())).is_ok());
+    join(&mut radio, &mut link, 4, ms(0));
     for n in 0..500 {
         let now = ms(10 * n);
         radio.offer(now, &world(now, 4, 0), situation(), &[stand(4)]);
@@ -224,10 +318,10 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
         if n % 5 == 4 {
             continue;
         }
-        deliver(&mut link, 4, &packets);
+        deliver(&mut link, 4, now, &packets);
         let mut telemetry =
             Telemetry { battery: 1580, silence: (held.0 / 100) as u16, ..Telemetry::default() };
-        link.tell(&mut telemetry);
+        link.tell(now, &mut telemetry);
         let packet = link.seal(&TeamMessage::Telemetry(telemetry));
         // Of ten of its own words one is lost.
         if n % 10 != 1 {
@@ -241,8 +335,8 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     assert!(near(quality.round_trip().max(), 3.0, 1e-6));
     assert!(near(quality.loss_down(), 20.0, 0.5), "{:?}", quality.loss_down());
     assert!(near(quality.loss_up(), 12.5, 0.5), "{:?}", quality.loss_up());
-    // 100 pictures of one part (71 B) and a command (24 B), 10 welcomes (25 B), 70 telemetries (49 B) a second.
-    let bits = (100.0 * (part_len(4) + 24.0) + 10.0 * 25.0 + 70.0 * 49.0) * 8.0 * 1e-3;
+    // 100 pictures of one part (68 B) and a command (24 B), 10 welcomes (29 B), 70 telemetries (59 B) a second.
+    let bits = (100.0 * (part_len(4) + 24.0) + 10.0 * 29.0 + 70.0 * 59.0) * 8.0 * 1e-3;
     assert!(
         near(quality.data_rate().mean(), bits, bits * 0.02),
         "{:?}, not {bits}",
@@ -257,25 +351,26 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     );
 }
 
-/// Bytes of a part without placement and ball and with so many robots: overhead, variant, picture, part, parts, phase,
-/// two options, a length, eleven bytes a robot.
+/// Bytes of a part to one robot without placement and ball and with so many robots: header, audience, a tag, variant, picture, part,
+/// parts, phase, two options, a length, eleven bytes a robot.
 fn part_len(robots: u8) -> f64 {
-    f64::from(19 + 1 + 3 + 1 + 2 + 1 + 11 * u32::from(robots))
+    f64::from(11 + 2 + 3 + 1 + 3 + 1 + 2 + 1 + 11 * u32::from(robots))
 }
 
 #[test]
 fn a_robot_that_falls_silent_is_not_present_and_foreign_frames_are_interference() {
     let mut radio = radio(Relay::No);
-    assert!(radio.handle_packet(ms(0), &robot(1).seal(&beacon())).is_ok());
+    join(&mut radio, &mut robot(1), 1, ms(0));
     assert_eq!(radio.present(ms(900)).collect::<Vec<_>>(), [id(1)]);
     assert_eq!(radio.present(ms(1_100)).count(), 0);
     assert_eq!(radio.quality(id(1)).unwrap().silence(ms(1_100)), Some(Duration::millis(1_100)));
     assert!(radio.quality(id(2)).is_none());
-    let mut foreign = Link::new(TeamId(2), id(1), TeamKey::ZERO, 1);
-    let mut forged = Link::new(TEAM, id(1), TeamKey([1; 16]), 9_999);
+    let mut foreign = Link::new(TeamId(2), id(1), TeamKey::ZERO.of_robot(id(1)), 1);
+    let mut forged = Link::new(TEAM, id(1), TeamKey([1; 16]).of_robot(id(1)), 9_999);
     let mut second = Radio::new(RadioSettings::new(TEAM, 71));
+    join(&mut second, &mut robot(1), 1, ms(0));
     second.offer(ms(0), &world(ms(0), 1, 0), situation(), &[]);
-    for packet in [foreign.seal(&beacon()), forged.seal(&beacon()), fetch(&mut second)[0].1.clone()] {
+    for packet in [foreign.seal(&beacon()), tell(&mut forged, ms(1)), fetch(&mut second)[0].1.clone()] {
         assert!(radio.handle_packet(ms(1), &packet).is_err());
     }
     assert_eq!(radio.foreign(), 3);
@@ -285,9 +380,13 @@ fn a_robot_that_falls_silent_is_not_present_and_foreign_frames_are_interference(
 fn more_robots_than_fit_are_left_out_and_nobody_fetching_is_no_harm() {
     let mut radio = radio(Relay::No);
     let commands: Vec<Command> = (0..16).map(stand).collect();
-    for n in 0..100 {
+    for n in 0..16 {
+        join(&mut radio, &mut robot(n), n, ms(0));
+    }
+    for n in 0..50 {
         radio.offer(ms(n * 10), &world(ms(n * 10), 16, 16), situation(), &commands);
     }
     let packets = fetch(&mut radio);
-    assert_eq!((packets.len(), radio.dropped()), (OUT_MAX, (100 * 20 - OUT_MAX) as u32));
+    // 24 robots in eight parts for an audience of sixteen, as many commands; and sixteen welcomes each 100 ms after the first.
+    assert_eq!((packets.len(), radio.dropped()), (OUT_MAX, (50 * 24 + 4 * 16 - OUT_MAX) as u32));
 }

@@ -138,9 +138,11 @@ impl Game {
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 
-    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick.
+    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick or penalty. In other
+    /// phases packets hold a place too, that of what was before (trap 3).
     pub fn ball_goes_to(&self) -> Option<Point<Field>> {
-        let by_hand = self.phase == Phase::Stop && matches!(self.next, Some(Phase::FreeKick(_)));
+        let follows = matches!(self.next, Some(Phase::FreeKick(_) | Phase::PreparePenalty(_)));
+        let by_hand = self.phase == Phase::Stop && follows;
         self.designated.filter(|_| by_hand).or(self.placement)
     }
 }

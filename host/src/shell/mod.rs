@@ -7,6 +7,7 @@
 mod background;
 mod error;
 mod hub;
+pub mod epoch;
 pub mod key;
 mod outbox;
 mod recorder;

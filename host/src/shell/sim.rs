@@ -12,8 +12,8 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use protocol::frame::{Frame, Sender, TeamKey};
-use protocol::link::Packet;
+use protocol::frame::{Frame, Sender, TeamKey, TeamKeys};
+use protocol::link::{Packet, overhear};
 use protocol::{RobotId, TeamId};
 use rules::{Colour, League};
 
@@ -54,6 +54,7 @@ pub struct SimSettings {
 #[derive(Debug)]
 pub struct SimLink {
     settings: SimSettings,
+    keys: TeamKeys,
     socket: UdpSocket,
     own: SocketAddr,
     hub: Hub,
@@ -89,7 +90,8 @@ impl SimLink {
             short_lives: 0,
         };
         let robots = settings.robots.iter().map(robot).collect();
-        let mut link = Self { settings, socket, own, hub, robots, looked: now, notices: Vec::new() };
+        let keys = settings.key.of_team();
+        let mut link = Self { settings, keys, socket, own, hub, robots, looked: now, notices: Vec::new() };
         for place in 0..link.robots.len() {
             link.boot(place)?;
         }
@@ -169,13 +171,14 @@ impl SimLink {
         Ok(())
     }
 
-    /// Learns where a robot is, from a frame that nobody else can have made.
+    /// Learns where a robot is, from a frame under its team's keys.
     fn learn(&mut self, packet: &[u8], from: SocketAddr) {
         let team = TeamId::of(self.settings.colour);
-        let Ok(Frame { sender: Sender::Robot(id), .. }) = Frame::parse(packet, team) else { return };
+        let Ok(frame) = Frame::parse(packet, team) else { return };
+        let Sender::Robot(id) = frame.sender else { return };
         let known = self.robots.iter_mut().find(|robot| robot.id == id);
         if let Some(robot) = known.filter(|robot| robot.address != Some(from))
-            && Frame::is_genuine(packet, &self.settings.key)
+            && overhear(packet, team, &self.keys).is_ok()
         {
             robot.address = Some(from);
         }
@@ -258,8 +261,8 @@ mod tests {
         // `cat` keeps its standard input open and says nothing: it stands for a robot's process (and complains of its words).
         let mut link = SimLink::start(settings("cat", &[2, 4])).unwrap();
         let robot = UdpSocket::bind("127.0.0.1:0").unwrap();
-        let mut end = RobotEnd::new(TeamId::of(Colour::Blue), id(4), TeamKey([3; 16]), 9);
-        let mut forger = RobotEnd::new(TeamId::of(Colour::Blue), id(2), TeamKey::ZERO, 9);
+        let mut end = RobotEnd::new(TeamId::of(Colour::Blue), id(4), TeamKey([3; 16]).of_robot(id(4)), 9);
+        let mut forger = RobotEnd::new(TeamId::of(Colour::Blue), id(2), TeamKey::ZERO.of_robot(id(2)), 9);
         let telemetry = TeamMessage::Telemetry(Telemetry::default());
         for packet in [end.seal(&telemetry), forger.seal(&telemetry)] {
             robot.send_to(&packet, link.own).unwrap();

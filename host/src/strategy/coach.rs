@@ -20,6 +20,7 @@ use motion::ball::chip::ChipModel;
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
+use super::bench::Bench;
 use super::opponents::{Rival, Team};
 use super::order::{Order, Role, Task, Why};
 use super::pass::{Kicks, PassConstants, Searches};
@@ -59,6 +60,7 @@ pub struct Coach {
     kicks: Kicks,
     searches: Searches,
     threats: threat::Memory,
+    bench: Bench,
     phase: Option<Phase<Side>>,
     since: Instant,
     /// Who goes for the ball, or takes our restart.
@@ -72,6 +74,8 @@ pub struct Coach {
     cap: Cap,
     /// A pass ahead did not come off in time at this restart.
     gave_up: bool,
+    /// How near to its place the ball has come in our placement, m, and when.
+    placing: Option<(f32, Instant)>,
     /// The ball is theirs.
     attacked: bool,
     /// The pass of our restart that is on its way.
@@ -96,6 +100,7 @@ impl Coach {
             kicks: Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default()),
             searches: Searches::new(SEARCH_SEED),
             threats: threat::Memory::default(),
+            bench: Bench::default(),
             phase: None,
             since: Instant::default(),
             first: None,
@@ -107,6 +112,7 @@ impl Coach {
             ball_lay: None,
             sent: None,
             gave_up: false,
+            placing: None,
             attacked: false,
             pass: None,
             barred: None,
@@ -116,12 +122,25 @@ impl Coach {
 
     /// Orders for all our robots of the view, one each, by id.
     pub fn decide(&mut self, view: &View) -> Orders {
+        let stands = self.team == Team::Idle || matches!(view.phase, Phase::Halt | Phase::Timeout(_));
+        let off = self.bench.choose(view, self.first);
+        if stands || off.is_empty() {
+            return self.direct(view);
+        }
+        // Who is off the field takes no part: no role, no pass, no place.
+        let playing = view.without(off);
+        let leaving = self.bench.orders(view);
+        let mut orders = self.direct(&playing);
+        orders.extend(leaving);
+        orders.sort_unstable_by_key(|order| order.robot);
+        orders
+    }
+
+    /// Orders for all robots that play.
+    fn direct(&mut self, view: &View) -> Orders {
         self.remember(view);
         self.observe(view);
         let mut plan = Plan::new(view);
-        if !matches!(view.phase, Phase::Halt | Phase::Timeout(_)) {
-            plan.send_off_surplus();
-        }
         match view.phase {
             _ if self.team == Team::Idle => plan.everybody(Role::Player, Task::Stand, Why::Idle),
             Phase::Halt | Phase::Timeout(_) => plan.everybody(Role::Player, Task::Stand, Why::Referee),
@@ -140,7 +159,7 @@ impl Coach {
                 _ => self.free_kick(&mut plan, Side::Theirs),
             },
         }
-        plan.everybody(Role::Player, Task::Stand, Why::NoBall);
+        plan.stay_lawful();
         plan.orders.sort_unstable_by_key(|order| order.robot);
         plan.orders
     }
@@ -164,6 +183,7 @@ impl Coach {
             self.phase = Some(view.phase);
             self.aim = None;
             self.intent = None;
+            self.placing = None;
             (self.ahead, self.gave_up) = (None, false);
             self.cap.forget();
             self.since = view.now;

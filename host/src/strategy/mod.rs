@@ -8,6 +8,7 @@
 //! plays.
 //! [`opponents`] are other teams' open play, to measure ours by.
 
+mod bench;
 mod coach;
 pub mod coerce;
 pub mod defence;

@@ -46,7 +46,7 @@ pub enum Role {
     Marker(u8),
     /// Stands in the way of their restart.
     Wall,
-    /// One too many on the field: goes to the touch line to be taken off.
+    /// One too many on the field: waits in a substitution area.
     Leaving,
 }
 

@@ -126,6 +126,8 @@ pub struct View {
     pub ball: Option<Ball>,
     /// Our robots on the field that can be commanded, by id.
     pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
+    /// How many more of our robots count on the field although they cannot be commanded.
+    pub uncommanded: usize,
     /// Theirs, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, as the referee knows it.
@@ -134,6 +136,8 @@ pub struct View {
     pub their_keeper: RobotId,
     /// How many robots the referee lets us have on the field.
     pub allowed: usize,
+    /// How many robots the referee lets them have.
+    pub theirs_allowed: usize,
     /// Our robots that play a case right now, by what they say.
     pub in_play: RobotSet,
     /// The next pass of that case, where the bridge between the papers is played.
@@ -171,10 +175,15 @@ impl View {
                 height: ball.height,
             }),
             ours: world.ours(us).filter(|robot| fit.has(robot.who.id)).map(robot).collect(),
+            uncommanded: world
+                .ours(us)
+                .filter(|robot| !fit.has(robot.who.id) && field.counts(game.defending, robot.pose.position))
+                .count(),
             theirs: world.theirs(us).map(robot).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
             allowed: ROBOTS_MAX,
+            theirs_allowed: ROBOTS_MAX,
             in_play,
             proposal: None,
             field,
@@ -197,10 +206,12 @@ impl View {
             placement: None,
             ball: Some(Ball::at_rest(ball)),
             ours: RobotId::all().zip(ours).map(robot).collect(),
+            uncommanded: 0,
             theirs: RobotId::all().zip(theirs).map(robot).collect(),
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,
             allowed: ROBOTS_MAX,
+            theirs_allowed: ROBOTS_MAX,
             in_play: RobotSet::default(),
             proposal: None,
             field,
@@ -212,9 +223,31 @@ impl View {
         Self { allowed: robots, ..self }
     }
 
+    /// The same, with a limit on how many of them may be on the field.
+    pub fn allowing_them(self, robots: usize) -> Self {
+        Self { theirs_allowed: robots, ..self }
+    }
+
     /// The same, with the next pass of the case that robots play.
     pub fn proposing(self, proposal: Option<CasePass>) -> Self {
         Self { proposal, ..self }
+    }
+
+    /// The same, without these robots of ours.
+    pub fn without(&self, off: &[RobotId]) -> Self {
+        let mut view = self.clone();
+        view.ours.retain(|robot| !off.contains(&robot.id));
+        view
+    }
+
+    /// Whether a robot of ours counts there: outside the goal substitution area behind our goal.
+    pub fn counts_for_us(&self, p: Point<Attack>) -> bool {
+        self.field.counts(GoalEnd::Negative, Point::new(p.x(), p.y()))
+    }
+
+    /// The same of a robot of theirs.
+    pub fn counts_for_them(&self, p: Point<Attack>) -> bool {
+        self.field.counts(GoalEnd::Positive, Point::new(p.x(), p.y()))
     }
 
     /// Our robot of that number.

@@ -1,10 +1,11 @@
-//! What is the radio measured on? One robot's end of it: each kind of message sealed and opened, shortest and longest, and
+//! `radio-bench`: what the radio is measured on, one robot's end of it: each kind of message sealed and opened, shortest and longest, and
 //! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
 //! which drives it.
 #![no_std]
+#![forbid(unsafe_code)]
 
 use geometry::GoalEnd;
-use protocol::frame::TeamKey;
+use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
     Command, Condition, Directive, Duty, Hint, HostMessage, PART_ROBOTS_MAX, Telemetry, Welcome, WireBall,
     WireRobot, WireWho, WorldPart,
@@ -40,6 +41,8 @@ pub enum Work {
     OpenSmallWorld,
     /// A full part of the world.
     OpenWorld,
+    /// A command to another robot.
+    Skip,
     /// A frame that came before.
     RefuseReplay,
     /// A forged frame of a mate, as long as its longest.
@@ -48,7 +51,7 @@ pub enum Work {
 
 impl Work {
     /// Each.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::SealShort,
         Self::SealLong,
         Self::SealTelemetry,
@@ -58,6 +61,7 @@ impl Work {
         Self::OpenLong,
         Self::OpenSmallWorld,
         Self::OpenWorld,
+        Self::Skip,
         Self::RefuseReplay,
         Self::RefuseForged,
     ];
@@ -74,6 +78,7 @@ impl Work {
             Self::OpenLong => "open the longest beacon",
             Self::OpenSmallWorld => "open a world part with one robot",
             Self::OpenWorld => "open a full world part",
+            Self::Skip => "skip a command to another robot",
             Self::RefuseReplay => "refuse a replay",
             Self::RefuseForged => "refuse a forged frame",
         }
@@ -105,17 +110,19 @@ impl Bench {
     pub fn new() -> Self {
         let (team, key) = (TeamId(2), TeamKey(core::array::from_fn(|i| 7 * i as u8 + 1)));
         let mut bench = Self {
-            robot: Link::new(team, id(2), key, 9),
-            mate: Link::new(team, id(3), key, 4),
+            robot: Link::new(team, id(2), key.of_robot(id(2)), 9),
+            mate: Link::new(team, id(3), key.of_robot(id(3)), 4),
             host: HostLink::new(team, key, 70),
         };
-        let welcome = bench.host.seal(&HostMessage::Welcome(Welcome { to: id(2), life: 9 }));
-        let _welcomed = bench.robot.open(&welcome);
+        // Six robots play, as in division B.
+        bench.host.set_audience(Audience(0b11_1111));
+        let welcome = HostMessage::Welcome(Welcome { to: id(2), life: 9, offset: 0 });
+        let _welcomed = bench.robot.open(NOW, &bench.host.seal(NOW, &welcome));
         // The mate hears a first frame and greets; whom it has greeted believes it.
         let first = bench.robot.seal(&short());
-        let _heard = bench.mate.open(&first);
+        let _heard = bench.mate.open(NOW, &first);
         if let Some(greeting) = bench.mate.poll_greeting(Instant(0)) {
-            let _greeted = bench.robot.open(&greeting);
+            let _greeted = bench.robot.open(NOW, &greeting);
         }
         bench
     }
@@ -129,15 +136,16 @@ impl Bench {
             Work::SealShort => message = Some(short()),
             Work::SealLong => message = Some(long()),
             Work::SealTelemetry => message = Some(telemetry()),
-            Work::OpenCommand => packet = host.seal(&command(Directive::Stand)),
-            Work::OpenLongCommand => packet = host.seal(&command(longest())),
+            Work::OpenCommand => packet = host.seal(NOW, &command(2, Directive::Stand)),
+            Work::OpenLongCommand => packet = host.seal(NOW, &command(2, longest())),
             Work::OpenShort => packet = mate.seal(&short()),
             Work::OpenLong => packet = mate.seal(&long()),
-            Work::OpenSmallWorld => packet = host.seal(&world(1)),
-            Work::OpenWorld => packet = host.seal(&world(PART_ROBOTS_MAX)),
+            Work::OpenSmallWorld => packet = host.seal(NOW, &world(1)),
+            Work::OpenWorld => packet = host.seal(NOW, &world(PART_ROBOTS_MAX)),
+            Work::Skip => packet = host.seal(NOW, &command(3, longest())),
             Work::RefuseReplay => {
                 packet = mate.seal(&long());
-                let _believed = robot.open(&packet);
+                let _believed = robot.open(NOW, &packet);
             }
             Work::RefuseForged => {
                 packet = mate.seal(&long());
@@ -163,10 +171,13 @@ impl Task<'_> {
         if let Some(message) = &self.message {
             return self.link.seal(message).len() as u32;
         }
-        let believed = matches!(self.link.open(&self.packet), Ok(Heard::Mate(..) | Heard::Host(_)));
+        let believed = matches!(self.link.open(NOW, &self.packet), Ok(Heard::Mate(..) | Heard::Host(..)));
         self.packet.len() as u32 + 1_000 * u32::from(believed)
     }
 }
+
+/// Whatever time it is.
+const NOW: Instant = Instant(12_345_678);
 
 fn id(number: u8) -> RobotId {
     RobotId::new(number).unwrap_or(RobotId::ZERO)
@@ -208,9 +219,9 @@ fn telemetry() -> TeamMessage {
     TeamMessage::Telemetry(Telemetry { condition, battery: 1580, heard: 999, ..Telemetry::default() })
 }
 
-fn command(directive: Directive) -> HostMessage {
+fn command(to: u8, directive: Directive) -> HostMessage {
     let (defending, phase) = (GoalEnd::Negative, Phase::FreeKick(Side::Ours));
-    HostMessage::Command(Command { to: id(2), defending, phase, duty: Duty::Player, directive })
+    HostMessage::Command(Command { to: id(to), defending, phase, duty: Duty::Player, directive })
 }
 
 fn longest() -> Directive {

@@ -5,14 +5,14 @@
 
 use std::fmt::Debug;
 
-use protocol::frame::{FRAME_LEN_MAX, Frame, TeamKey};
+use protocol::frame::{FRAME_LEN_MAX, Frame, SHORT_TAG_LEN, TAG_LEN, TeamKey};
 use protocol::host::HostMessage;
 use protocol::host_link::HostLink;
-use protocol::link::{Link, overhear, overhear_host};
+use protocol::link::{Heard, Link, overhear, overhear_host};
 use protocol::lockstep::{FromRobot, ToRobot};
 use protocol::serial::{Lines, line as stuffed};
 use protocol::team::TeamMessage;
-use protocol::{RobotId, TeamId};
+use protocol::{Instant, RobotId, TeamId};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use ssl::log::{MessageKind, Packet, guess};
@@ -35,17 +35,23 @@ pub const TARGETS: [Target; 6] = [
 pub fn frame(bytes: &[u8]) {
     let (team, key) = (TeamId(1), TeamKey([0x5a; 16]));
     if let Ok(frame) = Frame::parse(bytes, team) {
-        let mut out = [0; FRAME_LEN_MAX];
-        let len = frame.emit(&TeamKey::ZERO, &mut out).expect("a frame that was read can be written");
+        let (mut out, keys) = ([0; FRAME_LEN_MAX], TeamKey::ZERO.of_team());
+        let (written, tags) = match frame.audience {
+            None => (frame.emit(keys.team(), &mut out), TAG_LEN),
+            Some(audience) => (frame.emit_to_audience(&keys, &mut out), SHORT_TAG_LEN * audience.len()),
+        };
+        let len = written.expect("a frame that was read can be written");
         assert_eq!(Frame::parse(&out[..len], team), Ok(frame));
-        assert_eq!(out[..len - 8], bytes[..len - 8]);
+        assert_eq!(out[..len - tags], bytes[..len - tags]);
     }
-    // The key is nobody's: nothing is believed.
-    let mut robot = Link::new(team, RobotId::ZERO, key, 3);
-    assert!(robot.open(bytes).is_err() && HostLink::new(team, key, 3).open(bytes).is_err());
-    assert_eq!(robot.refused().iter().sum::<u32>(), 1);
-    let _message = overhear(bytes, team, &TeamKey::ZERO);
-    let _message = overhear_host(bytes, team, &TeamKey::ZERO);
+    // The key belongs to no one: nothing is believed.
+    let (mut robot, now) = (Link::new(team, RobotId::ZERO, key.of_robot(RobotId::ZERO), 3), Instant(0));
+    let opened = robot.open(now, bytes);
+    assert!(matches!(opened, Err(_) | Ok(Heard::Elsewhere)));
+    assert!(HostLink::new(team, key, 3).open(now, bytes).is_err());
+    assert_eq!(robot.refused().iter().sum::<u32>(), u32::from(opened.is_err()));
+    let _message = overhear(bytes, team, &TeamKey::ZERO.of_team());
+    let _message = overhear_host(bytes, team, &TeamKey::ZERO.of_robot(RobotId::ZERO), RobotId::ZERO);
 }
 
 /// Bytes of a serial line.

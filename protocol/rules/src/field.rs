@@ -6,6 +6,8 @@
 use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
 use heapless::Vec;
 
+use crate::limits::ROBOT_RADIUS;
+
 /// Shapes that one defence area is made of, at most.
 pub const AREA_SHAPES_MAX: usize = 3;
 
@@ -20,6 +22,8 @@ pub struct FieldSpec {
     pub margin: f32,
     /// Carpet beyond the goal lines, up to the wall.
     pub goal_line_margin: f32,
+    /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is none.
+    pub goal_substitution: f32,
     /// Between the goalposts.
     pub goal_width: f32,
     /// From the goal line to the goal's back.
@@ -90,6 +94,7 @@ impl FieldSpec {
             ("width", self.width, LENGTH[0], LENGTH[1]),
             ("margin", self.margin, 0.0, MARGIN_MAX),
             ("goal_line_margin", self.goal_line_margin, 0.0, MARGIN_MAX),
+            ("goal_substitution", self.goal_substitution, 0.0, MARGIN_MAX),
             ("goal_width", self.goal_width, 0.1, self.width),
             ("goal_depth", self.goal_depth, 0.0, GOAL_DEPTH_MAX),
             ("goal_height", self.goal_height, 0.0, GOAL_DEPTH_MAX),
@@ -139,6 +144,26 @@ impl FieldSpec {
     pub fn carpet(&self) -> Shape<Field> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
+    }
+
+    /// Where the centre of a robot that defends `goal` lies while the robot does not count as being on the field: all of it in
+    /// the goal substitution area. None where that area is narrower than a robot.
+    ///
+    /// The league's game controller counts every robot outside this box (its `NumTeamRobotsExcludingSubstitutionZone`), in
+    /// both divisions; the centre substitution area does not stop it from counting.
+    pub fn goal_substitution_area(&self, goal: GoalEnd) -> Option<Shape<Field>> {
+        let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
+        let edge = x - self.goal_substitution + ROBOT_RADIUS;
+        if edge > x - ROBOT_RADIUS {
+            return None;
+        }
+        let (low, high) = if goal.sign() < 0 { (-x, -edge) } else { (edge, x) };
+        Some(Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) })
+    }
+
+    /// Whether a robot with its centre at `p` counts for the team that defends `goal`.
+    pub fn counts(&self, goal: GoalEnd, p: Point<Field>) -> bool {
+        self.goal_substitution_area(goal).is_none_or(|area| !area.contains(p))
     }
 
     /// The defence area at that end; together the shapes cover it. Behind the goal line they may cover more.
@@ -220,6 +245,25 @@ mod tests {
         // From the front, straight; from beside the curve, along its radius.
         assert!((field.distance_to_area(goal, Point::new(-1.2, 0.0)) - 1.0).abs() < 1e-6);
         assert!((field.distance_to_area(goal, Point::new(-3.0, 1.475)) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_robot_behind_its_own_goal_line_does_not_count_where_the_area_takes_all_of_it() {
+        // The game controller's own numbers: 6 + 0.6 − 0.3 + 0.09 = 6.39 m, up to the wall at 6.6 m, across all of the carpet.
+        let field = League::DivisionA.field();
+        for (x, counts) in [(6.385, true), (6.395, false), (6.595, false), (6.605, true)] {
+            assert_eq!(field.counts(GoalEnd::Positive, Point::new(x, 4.75)), counts, "{x}");
+            assert_eq!(field.counts(GoalEnd::Negative, Point::new(-x, -4.75)), counts, "−{x}");
+            assert!(field.counts(GoalEnd::Negative, Point::new(x, 0.0)), "behind their goal it counts");
+        }
+        assert!(field.counts(GoalEnd::Positive, Point::new(6.45, 4.85)), "beyond the wall");
+        // Division B has no such area by the rules; where vision tells of one all the same, the controller goes by that.
+        let field = League::DivisionB.field();
+        assert!(field.counts(GoalEnd::Positive, Point::new(4.65, 1.5)));
+        let field = FieldSpec { goal_substitution: 0.3, ..field };
+        assert!(!field.counts(GoalEnd::Positive, Point::new(4.65, 1.5)));
+        let narrow = FieldSpec { goal_substitution: 0.17, ..field };
+        assert!(narrow.goal_substitution_area(GoalEnd::Positive).is_none());
     }
 
     #[test]

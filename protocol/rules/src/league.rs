@@ -8,8 +8,8 @@
 //! field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75 m, 0.25 m of margin within
 //! the referee's walk.
 //!
-//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026; the
-//! goal walls are 0.02 m thick, all lines 0.01 m.
+//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026, of which
+//! the 0.3 m at the wall are the goal substitution area; division B has none (chapter on substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
 
 use serde::{Deserialize, Serialize};
 
@@ -63,6 +63,7 @@ impl League {
                 width: 3.6,
                 margin: 0.3,
                 goal_line_margin: 0.3,
+                goal_substitution: 0.0,
                 goal_width: 0.8,
                 goal_depth: 0.3,
                 goal_height: 0.3,
@@ -79,6 +80,7 @@ impl League {
                 width: 4.0,
                 margin: 0.25,
                 goal_line_margin: 0.25,
+                goal_substitution: 0.0,
                 goal_width: 0.7,
                 goal_depth: 0.18,
                 goal_height: 0.16,
@@ -95,6 +97,7 @@ impl League {
                 width: 6.0,
                 margin: 0.3,
                 goal_line_margin: 0.3,
+                goal_substitution: 0.0,
                 goal_width: 1.0,
                 goal_depth: 0.18,
                 goal_height: 0.16,
@@ -111,6 +114,7 @@ impl League {
                 width: 9.0,
                 margin: 0.3,
                 goal_line_margin: 0.6,
+                goal_substitution: 0.3,
                 goal_width: 1.8,
                 goal_depth: 0.18,
                 goal_height: 0.16,

@@ -7,6 +7,7 @@
 //! **Invariants.** No I/O, no clock, no allocation. One truth per fact: physics, brains, referee and pictures read the
 //! dimensions here.
 #![no_std]
+#![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;

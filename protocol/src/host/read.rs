@@ -7,7 +7,7 @@
 use rules::{Phase, Side};
 use serde::Deserialize;
 
-use super::{HostMessage, PART_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
+use super::{HostMessage, PART_ROBOTS_MAX, WIRE_ROBOT_LEN, WireBall, WireRobot, WireWho, WorldPart};
 use crate::link::decode;
 use crate::quantized::{WirePoint, WirePose};
 
@@ -66,9 +66,6 @@ impl WireRobot {
     }
 }
 
-/// Bytes of a robot: who, x, y, heading, two velocities.
-const WIRE_ROBOT_LEN: usize = 11;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,7 +96,7 @@ mod tests {
 
     #[test]
     fn what_is_read_is_what_postcard_reads_whatever_byte_is_changed_or_cut() {
-        let welcome = HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), life: 9 });
+        let welcome = HostMessage::Welcome(Welcome { to: RobotId::new(3).unwrap(), life: 9, offset: 7 });
         let (mut read, mut refused) = (0, 0);
         for message in (0..=PART_ROBOTS_MAX as u8).map(part).chain([welcome]) {
             let mut bytes = [0; 128];

@@ -1,12 +1,13 @@
-//! Tries at making a robot or its host believe something without the key, or with no more than recordings; of lives that are over
-//! too: robots boot anew all the while.
+//! Tries at making a robot or its host believe something without the key, or with no more than recordings; of earlier boot epochs
+//! too: robots and hosts start again all the while.
 
 use geometry::GoalEnd;
-use protocol::frame::{Frame, HEADER_LEN, Sender, TAG_LEN, TeamKey};
+use protocol::frame::{Audience, Frame, HEADER_LEN, Sender, TAG_LEN, TeamKey};
 use protocol::host::{Command, Directive, Duty, HostMessage, Telemetry, Welcome, WorldPart};
-use protocol::host_link::HostLink;
-use protocol::link::{Link, Packet};
-use protocol::team::TeamMessage;
+use protocol::host_link::{HostLink, Opened};
+use protocol::link::{Heard, Link, Packet};
+use protocol::quantized::WirePose;
+use protocol::team::{Beacon, Progress, Role, Status, TeamMessage};
 use protocol::{Instant, RobotId, TeamId};
 use rand_core::{RngCore as _, SeedableRng as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -16,18 +17,20 @@ const TEAM: TeamId = TeamId(1);
 const KEY: TeamKey = TeamKey([0x5a; 16]);
 /// Of the robot.
 const FIRST_LIFE: u32 = 9;
+/// Of the host.
+const FIRST_HOST: u32 = 70;
 
 fn robot(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
 /// The welcome first: without it the robot believes no host.
-fn messages(n: u32, life: u32) -> [HostMessage; 3] {
+fn messages(n: u32, welcome: Welcome) -> [HostMessage; 3] {
     let (phase, directive) = (Phase::Run, Directive::GetBall { face: None });
     let robots = heapless::Vec::new();
     let picture = n as u8;
     [
-        HostMessage::Welcome(Welcome { to: robot(2), life }),
+        HostMessage::Welcome(welcome),
         HostMessage::Command(Command {
             to: robot(2),
             defending: GoalEnd::Negative,
@@ -47,32 +50,50 @@ fn messages(n: u32, life: u32) -> [HostMessage; 3] {
     ]
 }
 
-fn telemetry(n: u32) -> TeamMessage {
-    TeamMessage::Telemetry(Telemetry { battery: n as u16, ..Telemetry::default() })
+fn beacon(n: u32) -> TeamMessage {
+    TeamMessage::Beacon(Beacon {
+        pose: WirePose::default(),
+        ball: None,
+        status: Status::AVAILABLE,
+        case_base: n,
+        cycle: None,
+        progress: Progress::Idle,
+        role: Role::None,
+    })
 }
 
-/// The team: robot 2, its mate 3, their host, all genuine and acquainted; and all they have said so far.
+fn telemetry(link: &mut Link, now: Instant) -> Packet {
+    let mut telemetry = Telemetry::default();
+    link.tell(now, &mut telemetry);
+    link.seal(&TeamMessage::Telemetry(telemetry))
+}
+
+/// The team: robot 2, its teammate 3, their host, all genuine and acquainted; and all they have said so far.
 struct Team {
     robot: Link,
     mate: Link,
     host: HostLink,
     recorded: Vec<Packet>,
-    /// The robot's life.
+    /// The robot's boot epoch, and the host's.
     life: u32,
-    /// Their clock, µs: a tick for every word.
-    now: u64,
+    host_life: u32,
+    /// Their clock.
+    now: Instant,
 }
 
 impl Team {
     fn new() -> Self {
+        let link = |n, epoch| Link::new(TEAM, robot(n), KEY.of_robot(robot(n)), epoch);
         let mut team = Self {
-            robot: Link::new(TEAM, robot(2), KEY, FIRST_LIFE),
-            mate: Link::new(TEAM, robot(3), KEY, 4),
-            host: HostLink::new(TEAM, KEY, 70),
+            robot: link(2, FIRST_LIFE),
+            mate: link(3, 4),
+            host: host(FIRST_HOST),
             recorded: Vec::new(),
             life: FIRST_LIFE,
-            now: 0,
+            host_life: FIRST_HOST,
+            now: Instant(0),
         };
+        team.meet_host();
         team.greet();
         for n in 0..100 {
             team.speak(n);
@@ -80,45 +101,81 @@ impl Team {
         team
     }
 
-    /// Mates believe each other once they have greeted.
+    /// Robots believe a host once it has welcomed them, and it believes them once they name it.
+    fn meet_host(&mut self) {
+        self.now.0 += 100_000;
+        for (link, id) in [(&mut self.robot, robot(2)), (&mut self.mate, robot(3))] {
+            let first = telemetry(link, self.now);
+            let _believed_or_not = self.host.open(self.now, &first);
+            let welcome = self.host.welcome(id).map(HostMessage::Welcome).unwrap();
+            let welcome = self.host.seal(self.now, &welcome);
+            assert!(link.open(self.now, &welcome).is_ok());
+            let second = telemetry(link, self.now);
+            assert!(matches!(self.host.open(self.now, &second), Ok(Opened::Believed(..))));
+            self.recorded.extend([first, welcome, second]);
+        }
+    }
+
+    /// Teammates believe each other once they have greeted.
     fn greet(&mut self) {
-        self.now += 100_000;
-        let (first, second) = (self.robot.seal(&telemetry(0)), self.mate.seal(&telemetry(0)));
-        assert!(self.robot.open(&second).is_err() && self.host.open(&second).is_ok());
-        // To the mate a new life is a stranger, and it greets it.
-        assert!(self.mate.open(&first).is_err() && self.host.open(&first).is_ok());
-        let greeting = self.mate.poll_greeting(Instant(self.now)).unwrap();
-        assert!(self.robot.open(&greeting).is_ok() && self.host.open(&greeting).is_ok());
+        self.now.0 += 100_000;
+        let (first, second) = (self.robot.seal(&beacon(0)), self.mate.seal(&beacon(0)));
+        assert!(self.robot.open(self.now, &second).is_err() && self.host.open(self.now, &second).is_ok());
+        // To the teammate a new epoch is a stranger, and it greets it.
+        assert!(self.mate.open(self.now, &first).is_err() && self.host.open(self.now, &first).is_ok());
+        let greeting = self.mate.poll_greeting(self.now).unwrap();
+        assert!(self.robot.open(self.now, &greeting).is_ok() && self.host.open(self.now, &greeting).is_ok());
         self.recorded.extend([first, second, greeting]);
     }
 
-    /// The robot boots anew: at once every recording is tried, then its mates make its acquaintance.
+    /// The robot boots, then the host starts again: each time every recording is tried, then the team makes acquaintance.
     fn boot(&mut self, tally: &mut Tally) {
-        self.life += 1;
-        self.robot = Link::new(TEAM, robot(2), KEY, self.life);
+        (self.life, self.host_life) = (self.life + 1, self.host_life + 1);
+        self.robot = Link::new(TEAM, robot(2), KEY.of_robot(robot(2)), self.life);
         for packet in &self.recorded {
-            assert!(self.robot.open(packet).is_err(), "after a boot: {packet:02x?}");
+            let opened = self.robot.open(self.now, packet);
+            assert!(!matches!(opened, Ok(Heard::Host(..) | Heard::Mate(..))), "after a boot: {packet:02x?}");
         }
         tally.after_boots += self.recorded.len() as u64;
+        self.meet_host();
         self.greet();
+        self.host = host(self.host_life);
+        for packet in &self.recorded {
+            let opened = self.host.open(self.now, packet);
+            assert!(!matches!(opened, Ok(Opened::Believed(..))), "a fresh host: {packet:02x?}");
+        }
+        tally.to_fresh_hosts += self.recorded.len() as u64;
+        self.meet_host();
     }
 
     /// Everybody says something, and everybody else believes it.
     fn speak(&mut self, n: u32) {
-        let said = messages(n, self.life).map(|message| self.host.seal(&message));
+        self.now.0 += 10_000;
+        let now = self.now;
+        let welcome = self.host.welcome(robot(2)).unwrap();
+        let said = messages(n, welcome).map(|message| self.host.seal(now, &message));
         for packet in &said {
-            assert!(self.robot.open(packet).is_ok());
+            assert!(matches!(self.robot.open(now, packet), Ok(Heard::Host(..))));
         }
-        let (own, mates) = (self.robot.seal(&telemetry(n)), self.mate.seal(&telemetry(n)));
-        assert!(self.host.open(&own).is_ok() && self.host.open(&mates).is_ok());
-        assert!(self.robot.open(&mates).is_ok());
+        let (own, mates) = (telemetry(&mut self.robot, now), self.mate.seal(&beacon(n)));
+        for packet in [&own, &mates] {
+            assert!(matches!(self.host.open(now, packet), Ok(Opened::Believed(..))));
+        }
+        assert!(matches!(self.robot.open(now, &mates), Ok(Heard::Mate(..))));
         self.recorded.extend(said);
         self.recorded.extend([own, mates]);
     }
 
     fn believes(&mut self, packet: &[u8]) -> bool {
-        self.robot.open(packet).is_ok() || self.host.open(packet).is_ok()
+        matches!(self.robot.open(self.now, packet), Ok(Heard::Host(..) | Heard::Mate(..)))
+            || matches!(self.host.open(self.now, packet), Ok(Opened::Believed(..)))
     }
+}
+
+fn host(epoch: u32) -> HostLink {
+    let mut host = HostLink::new(TEAM, KEY, epoch);
+    host.set_audience(Audience(0b1100));
+    host
 }
 
 /// What was tried.
@@ -130,6 +187,8 @@ pub(crate) struct Tally {
     pub after_boots: u64,
     /// See there.
     pub boots: u32,
+    /// Recordings heard by a host that had just started.
+    pub to_fresh_hosts: u64,
 }
 
 /// So many tries; panics with the first frame that is believed.
@@ -156,7 +215,7 @@ pub(crate) fn tries(count: u64, seed: u64) -> Tally {
             4 => bytes.resize(recorded.len() + 1 + draw(30), 0),
             // Somebody else's name, news too.
             5 => {
-                bytes[2] = (bytes[2] + 1 + draw(16) as u8) % 17;
+                bytes[2] = (bytes[2] + 1 + draw(17) as u8) % 18;
                 bytes[7..11].copy_from_slice(&(1_u32 << 30).to_le_bytes());
             }
             // A frame made from nothing with a guessed key and a guessed tag.
@@ -179,14 +238,21 @@ pub(crate) fn tries(count: u64, seed: u64) -> Tally {
 }
 
 fn forged(draw: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
-    let message = messages(0, FIRST_LIFE)[draw(3)].clone();
+    let message = messages(0, Welcome { to: robot(2), life: FIRST_LIFE, offset: 0 })[draw(3)].clone();
     let mut payload = [0; 101];
     let payload = &*postcard::to_slice(&message, &mut payload).unwrap();
     let sender = Sender::new(draw(Sender::COUNT) as u8).unwrap();
     let (epoch, counter) = ([70, 71, 9, 4, 5][draw(5)], 10_000 + draw(1_000_000) as u32);
-    let frame = Frame { team: TEAM, sender, epoch, counter, payload };
+    let audience = (sender == Sender::Host && draw(2) == 0).then_some(Audience(0b1100));
+    let frame = Frame { team: TEAM, sender, audience, epoch, counter, payload };
     let mut out = vec![0; HEADER_LEN + payload.len() + TAG_LEN];
     let key = TeamKey(std::array::from_fn(|_| draw(256) as u8));
-    frame.emit(&key, &mut out).unwrap();
+    let keys = key.of_team();
+    let len = if audience.is_some() {
+        frame.emit_to_audience(&keys, &mut out)
+    } else {
+        frame.emit(keys.team(), &mut out)
+    };
+    out.truncate(len.unwrap());
     out
 }

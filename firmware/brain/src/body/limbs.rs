@@ -50,10 +50,10 @@ impl Limbs {
         }
     }
 
-    /// A frame of the host came.
-    pub fn hear_host(&mut self, now: Instant) {
+    /// A frame of the host counts as heard at that time.
+    pub fn hear_host(&mut self, heard: Instant) {
         if let Self::Wheels(_, wheels) = self {
-            wheels.governor.hear_host(now);
+            wheels.governor.hear_host(heard);
         }
     }
 

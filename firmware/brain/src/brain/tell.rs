@@ -1,4 +1,4 @@
-//! What does it tell mates and host of itself? Beacons (DESIGN §5) and, where a host leads, telemetry (DESIGN §6).
+//! `tell`: what the robot sends of itself: beacons (DESIGN §5) and, where a host leads, telemetry (DESIGN §6).
 
 use protocol::host::{Condition, Telemetry};
 use protocol::quantized::length_to_mm;
@@ -16,6 +16,8 @@ pub(super) struct Spoken {
     /// Steps, counted round: see [`Spoken::has_turn`].
     steps: u8,
     telemetry: Option<(Instant, Condition)>,
+    /// The host that leads has not been told yet that it does.
+    new_host: bool,
     /// What the body said of itself last.
     battery: Option<f32>,
     contact: bool,
@@ -36,6 +38,11 @@ impl Spoken {
     pub(super) fn has_turn(&mut self, robot: RobotId, every: u8) -> bool {
         self.steps = (self.steps + 1) % every;
         usize::from(self.steps) == robot.index() % usize::from(every)
+    }
+
+    /// A host has welcomed this robot: it waits for telemetry that names it.
+    pub(super) fn owes_telemetry(&mut self) {
+        self.new_host = true;
     }
 
     pub(super) fn beacon(&mut self, now: Instant) {
@@ -71,7 +78,7 @@ impl Brain<'_> {
 
     /// What the host shall know, if it is time to say it: ten times a second, and at once when something changes.
     pub(super) fn telemetry(&mut self, now: Instant) -> Option<Telemetry> {
-        let hearing = self.host.as_ref()?.hearing();
+        let arrived = self.host.as_ref()?.arrived();
         let reasons = self.limbs.reasons();
         let spoken = &self.spoken;
         let condition = [
@@ -89,14 +96,15 @@ impl Brain<'_> {
         let due = !spoke_now
             && spoken.telemetry.is_none_or(|(last, said)| {
                 let since = now.since(last);
-                since >= TELEMETRY_PERIOD || (said != condition && since >= TELEMETRY_LEAST)
+                let news = said != condition || spoken.new_host;
+                since >= TELEMETRY_PERIOD || (news && since >= TELEMETRY_LEAST)
             });
         if !due {
             return None;
         }
-        self.spoken.telemetry = Some((now, condition));
+        (self.spoken.telemetry, self.spoken.new_host) = (Some((now, condition)), false);
         // In 0.1 ms: the host takes its round trips from it.
-        let silence = hearing.frame.map_or(u64::MAX, |last| now.since(last).0 / 100);
+        let silence = arrived.map_or(u64::MAX, |last| now.since(last).0 / 100);
         let battery = self.spoken.battery.map_or(0.0, |volts| volts * 100.0);
         Some(Telemetry {
             condition,

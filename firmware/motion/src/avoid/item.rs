@@ -1,4 +1,4 @@
-//! Does a straight piece of way touch an obstacle, and where is one out of it? Points and segments against shapes; m, s.
+//! Does a straight piece of way touch an obstacle? Points and segments against shapes; m, s.
 
 use core::cell::Cell;
 
@@ -69,20 +69,43 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.moves
     }
 
-    /// Routes keep [`SKIN`] from everything, but no more than start and goal do.
-    pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>) {
+    pub(super) fn within(&self) -> Option<Shape<F>> {
+        self.within
+    }
+
+    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. Who leaves may go through all regions; a body that
+    /// holds the start is taken to end just before it, so that no way leads into it. Walls meet: what is kept from the one that is
+    /// nearest to the start is kept from all of them, else none could be followed around to the next.
+    pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
+        let mut wall = SKIN;
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
+            if leaves && !obstacle.is_body {
+                item.leave_out();
+                continue;
+            }
             // Nearly all are far from both.
             if item.may_hold(from) || item.may_hold(goal) {
-                let nearest = math::min(gap(&obstacle.shape, from), gap(&obstacle.shape, goal));
-                item.margin = (nearest - TOUCH).clamp(0.0, SKIN);
+                let here = gap(&obstacle.shape, from);
+                let nearest = math::min(here, gap(&obstacle.shape, goal)) - TOUCH;
+                item.margin = if leaves && here < 0.0 { here - TOUCH } else { nearest.clamp(0.0, SKIN) };
                 item.enclose(&obstacle.shape);
+                if obstacle.is_wall() {
+                    wall = math::min(wall, item.margin);
+                }
+            }
+        }
+        if wall < SKIN {
+            for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
+                if obstacle.is_wall() {
+                    item.margin = wall;
+                    item.enclose(&obstacle.shape);
+                }
             }
         }
     }
 
     /// An obstacle nearer to the point than `least`, which is [`SKIN`] at most.
-    fn nearer(&self, point: Point<F>, least: f32) -> Option<&Obstacle<F>> {
+    pub(super) fn nearer(&self, point: Point<F>, least: f32) -> Option<&Obstacle<F>> {
         let near = |item: &Item<F>, obstacle: &Obstacle<F>| {
             item.may_hold(point) && obstacle.shape.distance_to(point) < least
         };
@@ -132,6 +155,25 @@ impl<'o, F: Copy> Scene<'o, F> {
         first
     }
 
+    /// Whether no body stands in the straight way; of one that covers the start, whether it does not lead deeper in.
+    pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
+        let way = to - from;
+        self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
+            if touches(from, way, item.center, item.route).is_none() {
+                return true;
+            }
+            let depth = obstacle.shape.distance_to(from);
+            if depth < 0.0 {
+                return obstacle.shape.distance_to(from + way * A_LITTLE) >= depth;
+            }
+            match obstacle.shape {
+                Shape::Disc { center, radius } => touches(from, way, center, square(radius)).is_none(),
+                Shape::Capsule { spine, radius } => hits_capsule(from, way, &spine, radius).is_none(),
+                Shape::Box { low, high } => hits_box(from, way, low, high, 0.0).is_none(),
+            }
+        })
+    }
+
     /// Nothing is touched, with a smaller margin: what is left of braking.
     pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
@@ -143,30 +185,6 @@ impl<'o, F: Copy> Scene<'o, F> {
                 .and_then(|share| item.hit(&obstacle.shape, from, way, margin, share))
                 .is_none()
         })
-    }
-
-    /// The point itself if it is free, else one nearby that is.
-    pub(super) fn nearest_free(&self, point: Point<F>) -> Point<F> {
-        let start = self.within.map_or(point, |within| inside(&within, point));
-        let mut at = start;
-        for _ in 0..PUSHES_MAX {
-            let Some(obstacle) = self.nearer(at, FREE) else { return at };
-            at = out_of(&obstacle.shape, at, 2.0 * FREE);
-            if let Some(within) = self.within {
-                at = inside(&within, at);
-            }
-        }
-        // Between obstacles that overlap: the first free point on growing rings.
-        for ring in RINGS {
-            for [x, y] in COMPASS {
-                let at = start + Vector::new(x, y) * ring;
-                self.spend(1, 1);
-                if self.stays_within(at) && self.nearer(at, FREE).is_none() {
-                    return at;
-                }
-            }
-        }
-        start
     }
 }
 
@@ -184,11 +202,17 @@ impl<F: Copy> Item<F> {
                 (low + half, half.norm(), core::f32::consts::SQRT_2)
             }
         };
-        let square = |x: f32| x * x;
         self.is_disc = matches!(shape, Shape::Disc { .. });
         self.center = center;
-        self.route = square(radius + corner * self.margin);
-        self.brake = square(radius + corner * math::min(self.margin, BRAKE_SKIN));
+        // A box that shrinks keeps its circle: the corners of what is left of it may be farther out than a smaller one.
+        let margin = if corner > 1.0 { math::max(self.margin, 0.0) } else { self.margin };
+        self.route = square(radius + corner * margin);
+        self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
+    }
+
+    /// No way touches it any more.
+    fn leave_out(&mut self) {
+        (self.route, self.brake) = (NOWHERE, NOWHERE);
     }
 
     /// Whether the point is in the circle, or no number tells.
@@ -317,52 +341,10 @@ fn hits_box<F: Copy>(
     (enters < leaves).then_some(enters)
 }
 
-/// The point nearest to `at` that is `by` outside of the shape.
-fn out_of<F: Copy>(shape: &Shape<F>, at: Point<F>, by: f32) -> Point<F> {
-    let off = |center: Point<F>, radius: f32| {
-        center + (at - center).unit().unwrap_or(Vector::new(1.0, 0.0)) * (radius + by)
-    };
-    match *shape {
-        Shape::Disc { center, radius } => off(center, radius),
-        Shape::Capsule { spine, radius } => {
-            let foot = spine.closest_to(at);
-            if at.distance(foot) > 0.0 {
-                off(foot, radius)
-            } else {
-                let bone = spine.vector().unit().unwrap_or(Vector::new(1.0, 0.0));
-                foot + Vector::new(-bone.y(), bone.x()) * (radius + by)
-            }
-        }
-        Shape::Box { low, high } => {
-            let [left, right] = [at.x() - low.x(), high.x() - at.x()];
-            let [down, up] = [at.y() - low.y(), high.y() - at.y()];
-            let least = left.min(right).min(down.min(up));
-            if least == left {
-                Point::new(low.x() - by, at.y())
-            } else if least == right {
-                Point::new(high.x() + by, at.y())
-            } else if least == down {
-                Point::new(at.x(), low.y() - by)
-            } else {
-                Point::new(at.x(), high.y() + by)
-            }
-        }
-    }
-}
-
-/// The point of the shape nearest to `at`.
-fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
-    match *shape {
-        _ if shape.distance_to(at) <= 0.0 => at,
-        Shape::Box { low, high } => Point::new(
-            at.x().max(low.x()).min(high.x().max(low.x())),
-            at.y().max(low.y()).min(high.y().max(low.y())),
-        ),
-        Shape::Disc { center, radius } => center + (at - center).clamped(radius),
-        Shape::Capsule { spine, radius } => {
-            let foot = spine.closest_to(at);
-            foot + (at - foot).clamped(radius)
-        }
+impl<F: Copy> Obstacle<F> {
+    /// A body with straight sides.
+    fn is_wall(&self) -> bool {
+        self.is_body && matches!(self.shape, Shape::Box { .. })
     }
 }
 
@@ -370,22 +352,16 @@ fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
 pub(super) const SKIN: f32 = 0.02;
 /// What braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
+/// A share of a way that tells where it leads.
+const A_LITTLE: f32 = 0.1;
+/// The square of no circle's radius: nothing comes nearer.
+const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.
 const TOUCH: f32 = 0.000_5;
-/// A free point is this far outside, m.
-const FREE: f32 = 0.002;
 /// Slower is standing, m/s.
 const SPEED_MIN: f32 = 0.02;
-/// Out of one obstacle after another.
-const PUSHES_MAX: usize = 6;
-/// Rings of 8 points around a covered point, m.
-const RINGS: [f32; 4] = [0.15, 0.3, 0.6, 1.2];
 /// What a piece of way takes besides looking at obstacles: its corner and its place in the search.
 const PIECE: u32 = 12;
-const COMPASS: [[f32; 2]; 8] = {
-    let h = core::f32::consts::FRAC_1_SQRT_2;
-    [[1.0, 0.0], [h, h], [0.0, 1.0], [-h, h], [-1.0, 0.0], [-h, -h], [0.0, -1.0], [h, -h]]
-};
 
 /// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for `side` +1.
 pub(super) fn tangent<F: Copy>(from: Point<F>, center: Point<F>, radius: f32, side: f32) -> Vector<F> {

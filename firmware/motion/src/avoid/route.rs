@@ -39,6 +39,7 @@ struct Search<'s, F> {
     velocity: Vector<F>,
     limits: &'s FreeLimits,
     nodes: heapless::Vec<Node<F>, NODES_MAX>,
+    /// Pieces of way that may still be looked at.
     checks: u32,
     /// Towards the goal, m/s.
     speed: f32,
@@ -51,13 +52,22 @@ impl<F: Copy> Route<F> {
         velocity: Vector<F>,
         goal: Point<F>,
         limits: &FreeLimits,
+        leaves: bool,
     ) -> Self {
         let length = from.distance(goal);
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
         let nodes = heapless::Vec::new();
-        let mut search = Search { scene, goal, velocity, limits, nodes, checks: 0, speed };
+        let mut search = Search {
+            scene,
+            goal,
+            velocity,
+            limits,
+            nodes,
+            checks: if leaves { CHECKS_TO_LEAVE } else { CHECKS_MAX },
+            speed,
+        };
         // The first of many.
         let _ = search.nodes.push(start);
         match search.run() {
@@ -70,7 +80,7 @@ impl<F: Copy> Route<F> {
 impl<F: Copy> Search<'_, F> {
     /// The number of the corner from which the goal is straight ahead.
     fn run(&mut self) -> Option<usize> {
-        while self.checks < CHECKS_MAX && !self.scene.is_spent() {
+        while self.checks > 0 && !self.scene.is_spent() {
             let (number, node) = self.cheapest()?;
             self.nodes.get_mut(number)?.estimate = f32::INFINITY;
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
@@ -104,7 +114,7 @@ impl<F: Copy> Search<'_, F> {
     }
 
     fn first_hit(&mut self, node: &Node<F>, to: Point<F>) -> Option<usize> {
-        self.checks += 1;
+        self.checks = self.checks.saturating_sub(1);
         let way = to - node.at;
         let (mut at, mut time) = (0.0, 0.0);
         if self.scene.moves() {
@@ -124,7 +134,7 @@ impl<F: Copy> Search<'_, F> {
 
     /// Adds a corner that can be reached from the node; else the number of what stands before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
-        if !self.scene.stays_within(at) || self.checks >= CHECKS_MAX || self.scene.is_spent() {
+        if !self.scene.stays_within(at) || self.checks == 0 || self.scene.is_spent() {
             return None;
         }
         if let Some(hit) = self.first_hit(node, at) {
@@ -319,8 +329,10 @@ fn around<F: Copy>(
 
 /// Most turns that are tried from a corner.
 const TURNS_MAX: usize = 12;
+/// Most straight pieces that a search for a way out looks at: around a goal and into its mouth it takes more.
+const CHECKS_TO_LEAVE: u32 = 24;
 /// Most corners of a search: one a piece, and the start.
-const NODES_MAX: usize = CHECKS_MAX as usize + 1;
+const NODES_MAX: usize = CHECKS_TO_LEAVE as usize + 1;
 /// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
 /// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.

@@ -215,6 +215,55 @@ fn who_is_inside_leaves_by_the_shortest_way() {
 }
 
 #[test]
+fn a_half_plane_that_ends_beyond_a_wall_is_left_on_the_carpets_side() {
+    // All of x > 0: the touch line is 0.3 m away, the legal edge 4 m.
+    let half = Obstacle::region(Shape::Box { low: at(0.0, -3.4), high: at(4.9, 3.4) });
+    let circle = Obstacle::region(Shape::Disc { center: at(0.0, 0.0), radius: 0.63 });
+    let post = disc(1.0, 3.0, 0.21);
+    for (y, scene) in
+        [(3.0, &[half][..]), (-3.1, &[half, circle]), (0.1, &[half, circle]), (3.0, &[half, post])]
+    {
+        let course = Course { within: Some(CARPET), ..course(at(4.0, y), at(4.6, y), scene) };
+        let Verdict::Escape { to } = plan(&course).verdict else { panic!() };
+        assert!(to.x() < 0.0 && to.x() > -1.0, "{y}: {to:?}");
+        let bodies: Vec<_> = scene.iter().copied().filter(|o| o.is_body).collect();
+        let mut driven = course;
+        for _ in 0..400 {
+            let way = plan(&driven);
+            (driven.from, driven.velocity) = (way.next.position, way.next.velocity);
+            assert!(
+                bodies.iter().all(|o| o.shape.distance_to(driven.from) > -1e-4),
+                "{y}: {:?}",
+                driven.from
+            );
+        }
+        assert!(scene.iter().all(|o| o.shape.distance_to(driven.from) > 0.0), "{y}: {:?}", driven.from);
+    }
+}
+
+#[test]
+fn every_place_of_overlapping_shapes_has_a_way_out() {
+    let mut dice = Dice::new(5);
+    for number in 0..2_000 {
+        let mut scene = scene(&mut dice);
+        // Half of the carpet is closed, up to a wall, in one of four directions.
+        let half = match number % 4 {
+            0 => Shape::Box { low: at(0.5, -3.5), high: at(5.0, 3.5) },
+            1 => Shape::Box { low: at(-5.0, -3.5), high: at(-0.5, 3.5) },
+            2 => Shape::Box { low: at(-5.0, 0.3), high: at(5.0, 3.5) },
+            _ => Shape::Box { low: at(-5.0, -3.5), high: at(5.0, -0.3) },
+        };
+        scene.push(Obstacle::region(half));
+        let from = at(dice.within(4.7), dice.within(3.2));
+        let mut found = Scene::new(&scene, Some(CARPET), EFFORT_MAX);
+        found.look();
+        let exit = found.nearest_free(from);
+        assert!(CARPET.contains(exit), "scene {number}: {from:?} → {exit:?}");
+        assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
+    }
+}
+
+#[test]
 fn a_target_inside_becomes_the_nearest_point_outside() {
     let obstacles = [disc(1.0, 0.0, 0.5)];
     let way = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
@@ -322,10 +371,8 @@ fn nothing_that_comes_in_makes_it_fall_over() {
         let mut point = || at(number(), number());
         let (from, velocity, to) = (point(), point() - at(0.0, 0.0), point());
         let obstacles = [
-            Obstacle {
-                shape: Shape::Disc { center: point(), radius: point().x() },
-                velocity: point() - point(),
-            },
+            Obstacle::moving(Shape::Disc { center: point(), radius: point().x() }, point() - point()),
+            Obstacle::region(Shape::Box { low: point(), high: point() }),
             Obstacle::standing(Shape::Box { low: point(), high: point() }),
             Obstacle::standing(Shape::Capsule { spine: Segment::new(point(), point()), radius: point().x() }),
         ];

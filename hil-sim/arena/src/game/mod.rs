@@ -10,6 +10,7 @@
 
 mod config;
 mod hand;
+pub mod penalty;
 mod recording;
 mod report;
 mod side;

@@ -45,7 +45,7 @@ pub(super) fn geometry(world: &World, quirks: &Quirks, views: &[View]) -> Geomet
             ball_radius: quirks.full_geometry.then_some(world.parameters().ball.radius * 1000.0),
             max_robot_radius: quirks.full_geometry.then_some(world.parameters().robot.radius * 1000.0),
             boundary_width_goal_line: newer,
-            goal_substitution_area_width: newer.map(|_| 0),
+            goal_substitution_area_width: newer.map(|_| mm(field.goal_substitution)),
         },
         calib: views.iter().map(|view| view.calibration(quirks.full_geometry)).collect(),
         models: Some(GeometryModels {

@@ -6,7 +6,7 @@ use geometry::{Field, Point};
 use protocol::{Duration, Instant, Who};
 use rules::restart::{AfterPlacement, placement_lack, placement_needless};
 use rules::state::{Command, Stage};
-use rules::{Colour, Phase, limits};
+use rules::{Colour, FieldSpec, Phase, limits};
 
 use super::InternalReferee;
 use super::event::{Kind, PenaltyEnd, Restart, What};
@@ -143,24 +143,16 @@ impl InternalReferee {
         [favoured, favoured.other()].into_iter().find(may).map_or(Placer::Person, Placer::Team)
     }
 
-    /// Robots can get at the ball: it is neither in or behind a goal nor in a corner of the carpet (rules: ball placement).
     fn is_reachable(&self, ball: Point<Field>) -> bool {
-        let (x, y) = (ball.x().abs(), ball.y().abs());
-        let field = &self.field;
-        let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
-        let behind = x > field.length * 0.5 && y < goal;
-        let from_wall =
-            (field.length * 0.5 + field.goal_line_margin - x, field.width * 0.5 + field.margin - y);
-        let corner = from_wall.0 < CORNER && from_wall.1 < CORNER;
-        !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
+        is_reachable(&self.field, ball)
     }
 
     /// Nothing speaks against going on: ball still, at its place and in the field, robots away from it, not too many.
     fn is_clear(&self, robots: &[RobotSeen], next: Restart, target: Point<Field>) -> bool {
         let (ball, speed) = (self.ball.position, self.ball.speed());
-        let mut numbers = super::scene::COLOURS.into_iter().map(|team| {
-            robots.iter().filter(|robot| robot.who.colour == team).count() as u32 <= self.allowed_now(team)
-        });
+        let mut numbers = super::scene::COLOURS
+            .into_iter()
+            .map(|team| self.on_field(robots, team) <= self.allowed_now(team));
         // The team that goes on with a free kick may be at the ball already, so that it can do so after its placement.
         let must_keep_away = |robot: &&RobotSeen| match next {
             Restart::FreeKick(team) => robot.who.colour != team,
@@ -256,6 +248,16 @@ impl InternalReferee {
         let spot = self.penalty_spot(team);
         ball.distance(spot) <= limits::PLACEMENT_TOLERANCE && robots.iter().all(&mut lawful)
     }
+}
+
+/// Robots can get at the ball: it is neither in or behind a goal nor in a corner of the carpet (rules: ball placement).
+pub(super) fn is_reachable(field: &FieldSpec, ball: Point<Field>) -> bool {
+    let (x, y) = (ball.x().abs(), ball.y().abs());
+    let goal = field.goal_width * 0.5 + field.goal_wall + limits::ROBOT_RADIUS;
+    let behind = x > field.length * 0.5 && y < goal;
+    let from_wall = (field.length * 0.5 + field.goal_line_margin - x, field.width * 0.5 + field.margin - y);
+    let corner = from_wall.0 < CORNER && from_wall.1 < CORNER;
+    !behind && !corner && from_wall.0 > 0.0 && from_wall.1 > 0.0
 }
 
 /// A stop lasts at least this long, so that nobody misses it: two packets.

@@ -11,19 +11,35 @@ impl InternalReferee {
     /// Looks at the world, every 10 ms or so; `events` are the world's since the last look. Carry out
     /// [`Self::poll_order`] afterwards.
     pub fn look(&mut self, world: &World, events: &[Event]) {
-        let before = self.now.0 / STEP_US;
-        let begun = self.begun;
+        let sight = Sight::of(world, events, self.begun.then_some(self.now));
+        self.observe(&sight.observation());
+    }
+}
+
+/// What an observation borrows, as the world has it.
+pub(super) struct Sight {
+    pub(super) time: Instant,
+    pub(super) ball: BallSeen,
+    pub(super) fastest: f32,
+    pub(super) robots: Vec<RobotSeen>,
+    pub(super) crashes: Vec<CrashSeen>,
+}
+
+impl Sight {
+    /// The world now, with its events since the last look, which was at `before`.
+    pub(super) fn of(world: &World, events: &[Event], before: Option<Instant>) -> Self {
+        let before = before.map(|at| at.0 / STEP_US);
+        let since = |step: u64| before.is_some_and(|before| step > before);
         let here = world.robots().iter().filter(|robot| robot.present);
-        let robots: Vec<RobotSeen> = here
+        let robots = here
             .map(|robot| RobotSeen {
                 who: robot.who,
                 pose: robot.pose,
                 velocity: robot.velocity,
-                touches_ball: begun && robot.touched_at.is_some_and(|step| step > before),
+                touches_ball: robot.touched_at.is_some_and(since),
             })
             .collect();
-        let mut fastest = 0.0;
-        let mut crashes = Vec::new();
+        let (mut fastest, mut crashes) = (0.0_f32, Vec::new());
         for event in events {
             match *event {
                 Event::Kicked { speed, .. } => fastest = speed.max(fastest),
@@ -34,13 +50,18 @@ impl InternalReferee {
             }
         }
         let Ball { position, height, velocity, climb, .. } = world.ball;
-        self.observe(&Observation {
-            time: Instant(world.now() * STEP_US),
-            ball: Some(BallSeen { position, height, velocity, climb }),
-            fastest,
-            robots: &robots,
-            crashes: &crashes,
-        });
+        let ball = BallSeen { position, height, velocity, climb };
+        Self { time: Instant(world.now() * STEP_US), ball, fastest, robots, crashes }
+    }
+
+    fn observation(&self) -> Observation<'_> {
+        Observation {
+            time: self.time,
+            ball: Some(self.ball),
+            fastest: self.fastest,
+            robots: &self.robots,
+            crashes: &self.crashes,
+        }
     }
 }
 
@@ -54,7 +75,7 @@ impl WorldOrder {
             }
             Self::RemoveRobot(who) => world.remove(who),
             Self::ReturnRobot(who, pose) => {
-                world.put(who, pose);
+                world.put(who, pose).tipped = false;
             }
         }
     }

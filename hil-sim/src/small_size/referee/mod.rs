@@ -23,6 +23,7 @@ mod look;
 mod metrics;
 mod observation;
 mod people;
+pub mod remote;
 mod scene;
 mod settings;
 mod spots;

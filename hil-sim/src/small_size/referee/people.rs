@@ -78,7 +78,7 @@ impl InternalReferee {
     pub(super) fn keep_numbers(&mut self, robots: &[RobotSeen]) {
         for (index, team) in COLOURS.into_iter().enumerate() {
             let ours = || robots.iter().filter(|robot| robot.who.colour == team);
-            let (on_field, allowed) = (ours().count() as u32, self.allowed_now(team));
+            let (on_field, allowed) = (self.on_field(robots, team), self.allowed_now(team));
             let just_changed =
                 self.people.changed[index].is_some_and(|at| self.now.since(at).0 < CHANGE_TIME);
             if on_field <= allowed {
@@ -114,6 +114,14 @@ impl InternalReferee {
                 self.people.changed[index] = Some(self.now);
             }
         }
+    }
+
+    /// How many robots of a team count: those outside its goal substitution area.
+    pub(super) fn on_field(&self, robots: &[RobotSeen], team: Colour) -> u32 {
+        let own = self.own_end(team);
+        let counts =
+            |robot: &&RobotSeen| robot.who.colour == team && self.field.counts(own, robot.pose.position);
+        robots.iter().filter(counts).count() as u32
     }
 
     /// In the centre substitution area, beside the touch line, and the ball is not near.

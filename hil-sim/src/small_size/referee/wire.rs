@@ -130,7 +130,8 @@ pub(super) const fn command(command: Command) -> wire::Command {
     }
 }
 
-const fn stage(stage: Stage) -> wire::Stage {
+/// The stage's number on the wire.
+pub(super) const fn stage(stage: Stage) -> wire::Stage {
     match stage {
         Stage::FirstHalfPre => wire::Stage::NormalFirstHalfPre,
         Stage::FirstHalf => wire::Stage::NormalFirstHalf,

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use host::Host;
-use page::{Page, Powers, Request};
+use page::{Happening, Kind, Page, Powers, Request};
 
 use crate::library::Shelf;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
@@ -39,6 +39,12 @@ impl Board {
 
     pub(super) fn referee(&mut self, bytes: &[u8], now: protocol::Instant) {
         self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
+    }
+
+    /// Something is wrong: a line among what happened.
+    pub(super) fn fault(&mut self, now: protocol::Instant, words: String) {
+        let t = now.0 as f64 * 1e-6;
+        self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
     }
 
     /// An input took so long.

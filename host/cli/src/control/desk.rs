@@ -9,12 +9,14 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Sender};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::TeamConfig;
 use host::radio::RadioSettings;
 use host::recording::{HostHeader, RecordingHeader};
-use host::shell::{BackgroundRecorder, Outbox, Recorder, SimSettings, key};
+use host::referee::team_port::Request;
+use host::shell::{BackgroundRecorder, Outbox, Recorder, SimSettings};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
 use protocol::RobotId;
@@ -27,10 +29,11 @@ use ssl::net::Interfaces;
 use super::board::Board;
 use super::alarms::Alarms;
 use super::inbox::{Inbox, Mail};
+use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
 use super::threads::{self, Source};
 use super::watch::Watch;
-use super::{Cases, port_for_teams, simulator};
+use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
@@ -53,11 +56,11 @@ pub(super) fn run(
     page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
-    let key = team_key(config)?;
+    let key = identity::team_key(config)?;
     let Cases { shelf, settings: retrieval, words } = cases;
     let link = open_link(config, robots, key, words)?;
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    let usual = HostSettings::new(config.colour, config.league, unix.as_secs() as u32);
+    let usual = HostSettings::new(config.colour, config.league, identity::this_epoch(config));
     let settings = HostSettings {
         keeper: config.keeper,
         referee: config.referee_source.clone(),
@@ -91,21 +94,24 @@ pub(super) fn run(
         threads::hear(Source::Referee, config.referee, by, mail.clone(), end.clone()),
         threads::carry(link, out.clone(), mail.clone(), end.clone()),
     ];
+    let (ask, asked) = mpsc::channel();
     if let Some(address) = config.game_controller {
         let who = (config.name.clone(), config.colour, config.keeper);
-        threads.push(port_for_teams::talk(address, who, mail.clone(), end.clone()));
+        threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
     }
     let speaks_by = config.interface.map(|ip| ip.to_string());
     let mut desk = Desk {
         host: Host::new(settings, protocol::Instant(0)),
         began: Instant::now(),
         out,
+        ask,
         us: config.colour,
         recorder,
         recording: Ok(()),
         trace_ended: false,
         watch,
         alarms: Alarms::default(),
+        radio_alarms: RadioAlarms::default(),
         publisher: Publisher::new(
             &format!("onetwo-{}-{}", config.colour.word(), unix.as_secs()),
             &config.name,
@@ -127,6 +133,7 @@ pub(super) fn run(
             desk.watch.look(now, &desk.host, config, &mut desk.words);
             desk.look_at_alarms(now, &mail);
             desk.look_at_recording();
+            desk.look_at_radio(now);
             terminal.status(desk.status());
         }
         desk.words.drain(..).for_each(|words| terminal.line(words));
@@ -161,15 +168,6 @@ fn header(settings: &HostSettings) -> RecordingHeader {
         zero_unix_us: Some(unix.as_micros() as u64),
         hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
     }
-}
-
-fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
-    let Some(file) = &config.key_file else { return Ok(TeamKey::ZERO) };
-    let read = key::read(file).map_err(|error| Failure::Network(error.to_string()))?;
-    if let Some(warning) = read.warning {
-        eprintln!("warning: {warning}");
-    }
-    Ok(read.key)
 }
 
 fn open_link(
@@ -207,6 +205,8 @@ struct Counts {
 struct Desk {
     host: Host,
     began: Instant,
+    /// What is asked of the game controller.
+    ask: Sender<Request>,
     out: Arc<Mutex<Outbox>>,
     us: Colour,
     recorder: Option<BackgroundRecorder>,
@@ -216,6 +216,7 @@ struct Desk {
     trace_ended: bool,
     watch: Watch,
     alarms: Alarms,
+    radio_alarms: RadioAlarms,
     publisher: Publisher,
     mouth: Mouth,
     counts: Counts,
@@ -299,6 +300,10 @@ impl Desk {
     }
 
     fn send(&mut self, now: protocol::Instant) {
+        while let Some(request) = self.host.poll_request() {
+            // Without a controller to ask there is no thread that takes it.
+            let _ = self.ask.send(request);
+        }
         let mut batch = Vec::new();
         while let Some((to, packet)) = self.host.poll_packet() {
             if let Some(recorder) = &mut self.recorder {
@@ -326,6 +331,16 @@ impl Desk {
         self.words.extend(self.mouth.send(&bytes).map(|words| format!("tracker  {words}")));
         if let Some(recorder) = &mut self.recorder {
             recorder.heard(now, MessageKind::Tracker2020, &bytes);
+        }
+    }
+
+    /// What keeps robots and host apart goes to terminal and page.
+    fn look_at_radio(&mut self, now: protocol::Instant) {
+        for words in self.radio_alarms.look(now, self.host.radio()) {
+            if let Some(board) = &mut self.board {
+                board.fault(now, words.clone());
+            }
+            self.words.push(words);
         }
     }
 

@@ -6,8 +6,10 @@
 mod alarms;
 mod board;
 mod desk;
+mod identity;
 mod inbox;
 mod port_for_teams;
+mod radio_alarms;
 mod terminal;
 mod threads;
 mod watch;
@@ -58,9 +60,12 @@ pub(crate) struct ControlArgs {
     /// Which robots are started in a simulator, such as 0-5 or 1,4,7; the league's number from 0 on unless told.
     #[arg(long, value_name = "IDS", value_parser = ids)]
     ids: Option<Ids>,
-    /// The team's key: 32 hexadecimal digits in a file; zeros unless told.
+    /// The team's key: 32 hexadecimal digits in a file, as `openssl rand -hex 16` makes them; needed for udp:// and serial:.
     #[arg(long, value_name = "FILE")]
     key_file: Option<PathBuf>,
+    /// Lead real robots without a key of the team's own: anybody in radio range can then command them.
+    #[arg(long)]
+    insecure_zero_key: bool,
     /// Where vision is heard: 224.5.23.2:10006, and 224.5.23.2:10020 for robots in a simulator.
     #[arg(long, value_name = "ADDRESS:PORT")]
     vision: Option<SocketAddr>,
@@ -159,6 +164,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         interface: args.interface,
         robots: args.robots.clone(),
         key_file: args.key_file.clone(),
+        insecure_zero_key: args.insecure_zero_key.then_some(true),
         vision: args.vision,
         referee: args.referee,
         referee_source: args.referee_source.clone(),

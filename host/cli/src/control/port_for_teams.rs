@@ -4,6 +4,7 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -19,10 +20,11 @@ const WAIT: Duration = Duration::from_millis(100);
 /// Somebody who does not take a connection in this time is not there.
 const CONNECT: Duration = Duration::from_secs(1);
 
-/// Registers us and asks for our keeper.
+/// Registers us, asks for our keeper, and for what the host asks by `asked`.
 pub(super) fn talk(
     address: SocketAddr,
     (name, colour, keeper): (String, Colour, RobotId),
+    asked: Receiver<Request>,
     mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
@@ -42,6 +44,7 @@ pub(super) fn talk(
             if !open && stream.take().is_some() {
                 port.lost(now());
             }
+            asked.try_iter().for_each(|request| port.ask(request, now()));
             port.tick(now());
             while let Some(event) = port.poll_event() {
                 if matches!(event, Event::GivenUp(_) | Event::RegistrationRefused { .. }) {

@@ -43,7 +43,7 @@ impl Ways<'_> {
             ball_in_play: true,
         });
         let regions = rules.forbidden.iter().map(|region| region.shape.grown(ROBOT_RADIUS + MARGIN));
-        let mut obstacles: Vec<_> = regions.map(Obstacle::standing).collect();
+        let mut obstacles: Vec<_> = regions.map(Obstacle::region).collect();
         let standing = obstacles.len();
         let others = self.world.robots().filter(|other| other.who != robot.who);
         let disc = 2.0 * ROBOT_RADIUS + MARGIN;

@@ -11,20 +11,21 @@ use std::time::{Duration, Instant};
 use hil_sim::small_size::referee::{InternalReferee, RefereeSettings};
 use hil_sim::small_size::server::{Destination, Port, Server, ServerSettings};
 use hil_sim::small_size::{Event, World};
-use host::referee::Listener;
 use host::tracking::{Publisher, Tracker};
 use indicatif::ProgressBar;
 use ssl::Message;
-use ssl::net::{Interfaces, LoopbackProbe, probe_loopback};
+use ssl::net::{LoopbackProbe, probe_loopback};
 use ssl::simulation::{SimulatorCommand, SimulatorControl};
 use ssl::vision::WrapperPacket;
 
 use super::board::Board;
+use super::crew::Crew;
 use super::ports::Ports;
+use super::sync::SyncPorts;
 use super::{SimulateArgs, Whistle};
 use crate::Failure;
 use crate::live::PageArgs;
-use crate::net::{Ear, Mouth};
+use crate::net::Mouth;
 use crate::stop::stopped_by_hand;
 
 /// The referee looks this often, simulated ms: what its detectors are tuned with.
@@ -47,7 +48,7 @@ pub(super) fn run(
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
     let mut words = Vec::new();
-    let mut ports = Ports::open(args.listen, args.ports, &mut words);
+    let mut ports = Ports::open(args.listen, args.ports, args.legacy_port(), &mut words);
     let mut vision = Mouth::new(args.vision, args.interface.as_deref());
     let mut whistle = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
@@ -59,8 +60,18 @@ pub(super) fn run(
         args.seed
     );
     eprintln!("control  {}", ports.words());
+    let mut sync = match args.sync.map(|blue| (blue, SyncPorts::open(blue))) {
+        None => None,
+        Some((_, Ok(sync))) => Some(sync),
+        Some((blue, Err(error))) => {
+            return Err(Failure::Network(format!(
+                "--sync {blue}: {error}; it and the next port must be free"
+            )));
+        }
+    };
+    sync.iter().for_each(|sync| eprintln!("{}", sync.line()));
     eprintln!("vision   to {}", vision.to());
-    eprintln!("referee  {}", whistle.words());
+    whistle.lines().iter().for_each(|line| eprintln!("{line}"));
     if let Some(tracked) = &tracker {
         eprintln!("tracker  to {}", tracked.mouth.to());
     }
@@ -78,7 +89,11 @@ pub(super) fn run(
             break;
         }
         ports.listen(&mut server, &mut words);
-        advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words);
+        whistle.listen(server.world(), running, &mut words);
+        match &mut sync {
+            Some(sync) => sync.serve(&mut server, &mut words, |world, lines| whistle.look(world, lines)),
+            None => advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words),
+        }
         if let Some(board) = &mut board {
             whistle.said.drain(..).for_each(|bytes| board.referee(&bytes, running));
             let wish = board.look(running, &mut server, whistle.ours());
@@ -87,7 +102,7 @@ pub(super) fn run(
             }
             for _ in 0..wish.ticks {
                 (0..REFEREE_EVERY).for_each(|_| server.step());
-                words.extend(whistle.look(server.world_mut()));
+                whistle.look(server.world_mut(), &mut words);
             }
             if let Some(seed) = wish.anew {
                 let pace = server.pace();
@@ -103,6 +118,7 @@ pub(super) fn run(
         while let Some(transmit) = server.poll_transmit() {
             match transmit.to {
                 Destination::Reply { from, to } => ports.answer(from, to, &transmit.bytes),
+                Destination::Status(to) => ports.tell(to, &transmit.bytes),
                 Destination::Vision(port) => {
                     if let Some(board) = &mut board {
                         board.vision(&transmit.bytes, running);
@@ -115,7 +131,6 @@ pub(super) fn run(
                 }
             }
         }
-        words.extend(whistle.listen(running));
         if running.as_secs() > second {
             second = running.as_secs();
             let late = server.counts().skipped - std::mem::replace(&mut skipped, server.counts().skipped);
@@ -159,7 +174,7 @@ fn advance(server: &mut Server, now: u64, whistle: &mut Referee, words: &mut Vec
     while at < now {
         at = (at + step.max(100)).min(now);
         server.advance(protocol::Instant(at));
-        words.extend(whistle.look(server.world_mut()));
+        whistle.look(server.world_mut(), words);
     }
     whistle.advanced = at;
 }
@@ -180,23 +195,21 @@ struct Referee {
 enum Blower {
     Ours(Box<InternalReferee>),
     Nobody,
-    Heard { ear: Option<Ear>, from: SocketAddr, listener: Box<Listener> },
+    Elsewhere(Box<Crew>),
 }
 
 impl Referee {
     fn new(args: &SimulateArgs, unix_us: u64) -> Result<Self, Failure> {
+        let crew = |from| {
+            let crew = Crew::new(from, args.league, args.assistant, args.autoref.as_deref());
+            crew.map(Box::new).map_err(|error| Failure::Network(error.to_string()))
+        };
+        let serves = args.assistant || args.autoref.is_some();
         let who = match args.referee {
-            Whistle::None => Blower::Nobody,
             Whistle::Internal => Blower::Ours(internal(args, unix_us, args.seed)?),
-            Whistle::Heard(from) => {
-                let limits = args.league.limits();
-                let limits = limits.ok_or_else(|| Failure::Network("a league without rules".to_owned()))?;
-                Blower::Heard {
-                    ear: None,
-                    from,
-                    listener: Box::new(Listener::new(limits, None, protocol::Instant(0))),
-                }
-            }
+            Whistle::None if serves => Blower::Elsewhere(crew(ssl::net::addresses::REFEREE.into())?),
+            Whistle::None => Blower::Nobody,
+            Whistle::Heard(from) => Blower::Elsewhere(crew(from)?),
         };
         let mouth = Mouth::new(args.referee_to, args.interface.as_deref());
         Ok(Self { who, mouth, events: Vec::new(), looked: 0, advanced: 0, said: Vec::new() })
@@ -204,26 +217,28 @@ impl Referee {
 
     /// Another game begins, which our referee leads from its beginning; a game controller of others knows nothing of it.
     fn anew(&mut self, args: &SimulateArgs, unix_us: u64, seed: u64) -> Result<(), Failure> {
-        if let Blower::Ours(ours) = &mut self.who {
-            *ours = internal(args, unix_us, seed)?;
+        match &mut self.who {
+            Blower::Ours(ours) => *ours = internal(args, unix_us, seed)?,
+            Blower::Elsewhere(crew) => crew.restart().map_err(|error| Failure::Network(error.to_string()))?,
+            Blower::Nobody => {}
         }
         self.events.clear();
         self.looked = 0;
         Ok(())
     }
 
-    fn words(&self) -> String {
+    fn lines(&self) -> Vec<String> {
         match &self.who {
-            Blower::Ours(_) => format!("internal, to {}", self.mouth.to()),
-            Blower::Nobody => "none".to_owned(),
-            Blower::Heard { from, .. } => format!("heard at {from}"),
+            Blower::Ours(_) => vec![format!("referee  internal, to {}", self.mouth.to())],
+            Blower::Nobody => vec!["referee  none".to_owned()],
+            Blower::Elsewhere(crew) => crew.lines(),
         }
     }
 
     fn ours(&mut self) -> Option<&mut InternalReferee> {
         match &mut self.who {
             Blower::Ours(ours) => Some(ours),
-            Blower::Nobody | Blower::Heard { .. } => None,
+            Blower::Nobody | Blower::Elsewhere(_) => None,
         }
     }
 
@@ -232,52 +247,40 @@ impl Referee {
         match &self.who {
             Blower::Ours(ours) => crate::replay::phase_words(ours.phase()),
             Blower::Nobody => "no referee".to_owned(),
-            Blower::Heard { listener, .. } => crate::replay::phase_words(listener.game().phase),
+            Blower::Elsewhere(crew) => crew.state(),
         }
     }
 
-    /// Our referee looks at the world, and what people do for it is done.
-    fn look(&mut self, world: &mut World) -> Option<String> {
+    /// The referee looks at the world, and what people do for it is done.
+    fn look(&mut self, world: &mut World, lines: &mut Vec<String>) {
         world.take_events(&mut self.events);
         if world.now() < self.looked + REFEREE_EVERY {
-            return None;
+            return;
         }
         self.looked = world.now();
-        let mut words = None;
-        if let Blower::Ours(ours) = &mut self.who {
-            ours.look(world, &self.events);
-            while let Some(order) = ours.poll_order() {
-                order.carry_out(world);
+        match &mut self.who {
+            Blower::Ours(ours) => {
+                ours.look(world, &self.events);
+                while let Some(order) = ours.poll_order() {
+                    order.carry_out(world);
+                }
+                while let Some(packet) = ours.poll_packet() {
+                    let bytes = packet.encode_to_vec();
+                    lines.extend(self.mouth.send(&bytes));
+                    self.said.push(bytes);
+                }
             }
-            while let Some(packet) = ours.poll_packet() {
-                let bytes = packet.encode_to_vec();
-                words = self.mouth.send(&bytes).or(words);
-                self.said.push(bytes);
-            }
+            Blower::Elsewhere(crew) => crew.look(world, &self.events, lines),
+            Blower::Nobody => {}
         }
         self.events.clear();
-        words
     }
 
-    /// A game controller of others is heard, where one is.
-    fn listen(&mut self, running: Duration) -> Option<String> {
-        let Blower::Heard { ear, from, listener } = &mut self.who else { return None };
-        let now = protocol::Instant(running.as_micros() as u64);
-        let open = match ear {
-            Some(open) => open,
-            // Tried once a second.
-            None if running.subsec_millis() < 2 => match Ear::open(*from, &Interfaces::All) {
-                Ok(open) => ear.insert(open),
-                Err(error) => return Some(format!("referee  {error}")),
-            },
-            None => return None,
-        };
-        while let Ok(Some(datagram)) = open.receive(Duration::ZERO) {
-            if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
-                listener.hear(&packet, datagram.from.into(), now, None);
-            }
+    /// A game controller elsewhere is heard, where one is.
+    fn listen(&mut self, world: &World, running: Duration, lines: &mut Vec<String>) {
+        if let Blower::Elsewhere(crew) = &mut self.who {
+            crew.listen(world, running, &mut self.said, lines);
         }
-        None
     }
 }
 

@@ -3,9 +3,12 @@
 //! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
 //! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.
 
+mod autoref;
 mod board;
+mod crew;
 mod hall;
 mod ports;
+mod sync;
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -51,6 +54,10 @@ pub(crate) struct SimulateArgs {
     /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
     #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
     ports: u16,
+    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation protocol's
+    /// SimulationSyncRequest, each after its length). 0: any two that are free.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    sync: Option<SocketAddr>,
     /// Whose address takes control; 127.0.0.1 keeps others away.
     #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
     listen: std::net::IpAddr,
@@ -60,6 +67,14 @@ pub(crate) struct SimulateArgs {
     /// Who blows the whistle: internal, none, or the ADDRESS:PORT of a game controller's packets, to be shown beside the field.
     #[arg(long, value_name = "WHO", default_value = "internal", value_parser = referee)]
     referee: Whistle,
+    /// With `--referee none` or an address: do the person's part that the game controller asks for: put the ball, take robots
+    /// off, bring them back. Each deed is told in a line.
+    #[arg(long)]
+    assistant: bool,
+    /// With `--referee none` or an address: report game events to that game controller as an automatic referee; port 10007 unless
+    /// told. With --assistant it also decides about goals.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = autoref::address)]
+    autoref: Option<String>,
     /// Where the internal referee's packets go.
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = addresses::REFEREE.into())]
     referee_to: SocketAddr,
@@ -75,6 +90,14 @@ pub(crate) struct SimulateArgs {
     /// End after so many seconds; else Ctrl-C ends it.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
+}
+
+impl SimulateArgs {
+    /// grSim's own port for commands, where the field has its manners; any free ports were asked for with 0.
+    fn legacy_port(&self) -> Option<u16> {
+        let number = if self.ports == 0 { 0 } else { addresses::GRSIM_PORT };
+        matches!(self.profile, ProfileWord::Grsim).then_some(number)
+    }
 }
 
 /// Who blows the whistle.
@@ -99,6 +122,12 @@ enum ProfileWord {
 
 /// `onetwo simulate`.
 pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
+    if args.referee == Whistle::Internal && (args.assistant || args.autoref.is_some()) {
+        return Err(Failure::Network(
+            "--assistant and --autoref serve a game controller elsewhere, and the internal referee needs neither; add --referee none, or the ADDRESS:PORT of its packets"
+                .to_owned(),
+        ));
+    }
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let profile = match args.profile {
         ProfileWord::Ours => Profile::Ours,

@@ -5,7 +5,7 @@ use protocol::RobotId;
 use rules::Phase;
 
 use super::super::order::{Order, Role, Task, Why};
-use super::super::view::View;
+use super::super::view::{Robot, View};
 use super::super::{defence, restart};
 use super::{Free, Orders};
 
@@ -34,25 +34,6 @@ impl<'v> Plan<'v> {
         self.free.len() < before
     }
 
-    /// Those with the highest numbers leave while we are too many; the keeper stays.
-    pub(super) fn send_off_surplus(&mut self) {
-        let view = self.view;
-        let surplus = self.free.len().saturating_sub(view.allowed);
-        let leaving: Free = view
-            .ours
-            .iter()
-            .rev()
-            .map(|robot| robot.id)
-            .filter(|id| *id != view.keeper)
-            .take(surplus)
-            .collect();
-        for (i, id) in leaving.into_iter().enumerate() {
-            self.take(id);
-            let at = Point::new(0.25 * i as f32, -view.field.width * 0.5 - LEAVE_BEYOND);
-            self.order(id, Role::Leaving, self.facing_ball(at), Why::TooMany { allowed: view.allowed });
-        }
-    }
-
     pub(super) fn keeper(&mut self) {
         if self.take(self.view.keeper) {
             let (task, why) = defence::keeper(self.view);
@@ -72,6 +53,19 @@ impl<'v> Plan<'v> {
         }
     }
 
+    /// Whoever is left stays; while the ball is not in play by going to where it is, so that it leaves what is forbidden.
+    pub(super) fn stay_lawful(&mut self) {
+        let view = self.view;
+        if view.phase == Phase::Run {
+            return self.everybody(Role::Player, Task::Stand, Why::NoBall);
+        }
+        for id in core::mem::take(&mut self.free) {
+            let here = |robot: &Robot| Task::GoTo { at: robot.position, face: robot.heading };
+            let task = view.our(id).map_or(Task::Stand, here);
+            self.order(id, Role::Player, task, Why::NoBall);
+        }
+    }
+
     pub(super) fn facing_ball(&self, at: Point<Attack>) -> Task {
         let face = self.view.ball.map_or(Angle::ZERO, |ball| at.direction_to(ball.position));
         Task::GoTo { at, face }
@@ -82,6 +76,3 @@ impl<'v> Plan<'v> {
         if self.view.phase == Phase::Run { at } else { restart::kept_off(self.view, at) }
     }
 }
-
-/// Robots that leave stand this far beyond the touch line, m: off the playing area, on the carpet.
-const LEAVE_BEYOND: f32 = 0.15;

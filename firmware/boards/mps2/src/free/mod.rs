@@ -17,7 +17,7 @@ mod uart;
 
 use casebase::CaseBase;
 use embassy_executor::{SpawnError, Spawner};
-use protocol::frame::TeamKey;
+use protocol::frame::RobotKeys;
 use protocol::provision::{self, PAGE_LEN};
 use runtime::hardware::{self, Wires};
 use runtime::{BrainConfig, Mailboxes, tasks};
@@ -53,7 +53,7 @@ fn main() -> ! {
     let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
     say(&[b"ready"]);
     clock::run(|spawner| {
-        start(spawner, config, case_library::division_b(), who.key).expect("every task is started once");
+        start(spawner, config, case_library::division_b(), who.keys).expect("every task is started once");
     })
 }
 
@@ -70,22 +70,22 @@ fn start(
     spawner: Spawner,
     config: BrainConfig,
     base: CaseBase<'static>,
-    key: TeamKey,
+    keys: RobotKeys,
 ) -> Result<(), SpawnError> {
     spawner.spawn(control()?);
     spawner.spawn(kicker()?);
     spawner.spawn(senses()?);
     spawner.spawn(radio_send()?);
     spawner.spawn(radio_receive()?);
-    spawner.spawn(brain(config, base, key)?);
+    spawner.spawn(brain(config, base, keys)?);
     spawner.spawn(watchdog()?);
     spawner.spawn(trial()?);
     Ok(())
 }
 
 #[embassy_executor::task]
-async fn brain(config: BrainConfig, base: CaseBase<'static>, key: TeamKey) -> ! {
-    tasks::brain_with_key(&config, base, key, &BOXES).await
+async fn brain(config: BrainConfig, base: CaseBase<'static>, keys: RobotKeys) -> ! {
+    tasks::brain_with_keys(&config, base, keys, &BOXES).await
 }
 
 #[embassy_executor::task]

@@ -18,7 +18,7 @@ use casebase::CaseBase;
 use embassy_executor::{Executor, SpawnError, Spawner};
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_time::{Duration, Ticker};
-use protocol::frame::TeamKey;
+use protocol::frame::RobotKeys;
 use protocol::provision::{self, ProvisionError};
 use runtime::hardware::{self, Wires};
 use runtime::{BrainConfig, Mailboxes, tasks};
@@ -53,7 +53,7 @@ fn main() -> ! {
     let dog = Watchdog::start(parts.keeper.watchdog);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {
-        let brain = (config, division_b(), who.key);
+        let brain = (config, division_b(), who.keys);
         start(spawner, brain, wheels, kicker, imu, analog, mouth, ear, dog, alive)
             .expect("every task is started once");
     })
@@ -65,7 +65,7 @@ static WIRES: Wires = Wires::new();
 #[allow(clippy::too_many_arguments, reason = "what is on the board, each for one task")]
 fn start(
     spawner: Spawner,
-    (config, base, key): (BrainConfig, CaseBase<'static>, TeamKey),
+    (config, base, keys): (BrainConfig, CaseBase<'static>, RobotKeys),
     wheels: Wheels,
     kicker: Kicker,
     imu: Imu,
@@ -81,15 +81,15 @@ fn start(
     spawner.spawn(senses()?);
     spawner.spawn(radio_send(mouth)?);
     spawner.spawn(radio_receive(ear)?);
-    spawner.spawn(brain(config, base, key)?);
+    spawner.spawn(brain(config, base, keys)?);
     spawner.spawn(watchdog(dog)?);
     spawner.spawn(report(alive)?);
     Ok(())
 }
 
 #[embassy_executor::task]
-async fn brain(config: BrainConfig, base: CaseBase<'static>, key: TeamKey) -> ! {
-    tasks::brain_with_key(&config, base, key, &BOXES).await
+async fn brain(config: BrainConfig, base: CaseBase<'static>, keys: RobotKeys) -> ! {
+    tasks::brain_with_keys(&config, base, keys, &BOXES).await
 }
 
 #[embassy_executor::task]

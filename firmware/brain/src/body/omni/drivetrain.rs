@@ -9,7 +9,7 @@ use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
-use rules::Phase;
+use rules::{Phase, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, Manner};
@@ -100,8 +100,8 @@ impl Drivetrain {
     fn follow(&mut self, belief: &Belief, step: f32, drive: &Drive) -> Wanted {
         let from = belief.pose.position;
         let rests = self.velocity.norm() < THERE_SPEED;
-        if rests && from.distance(drive.to) < THERE {
-            // Nothing to plan; whoever must leave is sent elsewhere, or pushed.
+        if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
+            // Nothing to plan.
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
@@ -115,7 +115,7 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: EFFORT,
+            effort: if belief.game.phase == Phase::Run { EFFORT } else { EFFORT_STOPPED },
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
@@ -155,6 +155,14 @@ impl Drivetrain {
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
 pub const EFFORT: u32 = 115;
+
+/// Whether where a robot may stand changes in this phase, though nobody tells it to go: with the ball, or with the phase itself.
+fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
+    !matches!(phase, Phase::Run | Phase::Halt | Phase::Timeout(_))
+}
+
+/// The same while the ball is not in play: no case is looked for then, and who must leave must find a way among everybody.
+const EFFORT_STOPPED: u32 = 4 * EFFORT;
 
 /// Standing with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {

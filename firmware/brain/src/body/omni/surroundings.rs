@@ -2,11 +2,11 @@
 //!
 //! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
 
-use geometry::{Field, GoalEnd, Point, Segment, Shape};
+use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
-use rules::keep_out::{KeepOut, Situation, keep_out};
+use rules::keep_out::{Forbidden, KeepOut, Situation, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
-use rules::{FieldSpec, Phase};
+use rules::{Duty, FieldSpec, Phase, Side};
 
 use super::Manner;
 use crate::belief::Belief;
@@ -34,21 +34,28 @@ impl Surroundings {
         // The way it means to go, and the one on which it could come to rest.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
-        for region in &forbidden {
-            let shape = region.shape.grown(BODY + LAW);
-            if is_near(&shape, way) || is_near(&shape, stops) {
-                self.add(Obstacle::standing(shape));
+        let grown = |region: &Forbidden| region.shape.grown(BODY + LAW);
+        // Who must leave a region may have to leave by another way than the one it means to go: all of them count.
+        let covers = |shape: Shape<Field>| shape.contains(me) || shape.contains(to);
+        let leaves = forbidden.iter().any(|region| covers(grown(region)));
+        for shape in forbidden.iter().map(grown) {
+            if leaves || is_near(&shape, way) || is_near(&shape, stops) {
+                self.add(Obstacle::region(shape));
             }
+        }
+        if let Some(lane) = kicking_lane(belief).filter(|lane| !lane.contains(to)) {
+            self.add(Obstacle::region(lane));
         }
         if manner == Manner::Shy
             && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
         {
             let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + SHY };
-            self.add(Obstacle { shape, velocity: ball.velocity });
+            self.add(Obstacle::moving(shape, ball.velocity));
         }
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
             let near = |p: Point<Field>| p.x() * goal.sign() as f32 > 0.5 * field.length - NEAR_GOAL;
-            if near(me) || near(to) {
+            let leaves_here = leaves && me.x() * goal.sign() as f32 >= 0.0;
+            if leaves_here || near(me) || near(to) {
                 self.add_goal(field, goal);
             }
         }
@@ -59,7 +66,7 @@ impl Surroundings {
             let at = other.pose.position;
             let speed = other.velocity.x().abs() + other.velocity.y().abs();
             let reach = radius + ASIDE + ASIDE_FOR * speed;
-            if way.distance_to(at) < reach || stops.distance_to(at) < reach {
+            if leaves || way.distance_to(at) < reach || stops.distance_to(at) < reach {
                 self.add(Obstacle::robot(at, other.velocity, radius + STRAYS_FOR * speed));
             }
         }
@@ -94,6 +101,26 @@ fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
         .any(|share| shape.distance_to(way.from + along * *share) < stretch + ASIDE)
 }
 
+/// Where the ball goes that a teammate is about to kick at our restart: a teammate behind it looks over it. Not to be crossed; who
+/// is sent into it waits there for the ball.
+fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
+    let phase = belief.game.phase;
+    let ours = matches!(
+        phase,
+        Phase::Kickoff(Side::Ours) | Phase::FreeKick(Side::Ours) | Phase::Penalty(Side::Ours)
+    );
+    if !ours || belief.game.duty == Duty::Taker {
+        return None;
+    }
+    let ball = belief.ball?.position;
+    let kicks = belief.others.iter().filter(|other| other.side == Side::Ours).find(|other| {
+        let at = other.pose.position;
+        at.distance(ball) < KICKS_WITHIN && (at.direction_to(ball) - other.pose.heading).abs() < LOOKS_AT
+    })?;
+    let spine = Segment::new(ball, ball + Vector::polar(LANE, kicks.pose.heading));
+    Some(Shape::Capsule { spine, radius: BODY + BALL_RADIUS + LANE_MARGIN })
+}
+
 /// The rules' question, as this robot sees it.
 pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     let game = &belief.game;
@@ -124,6 +151,14 @@ const SHY: f32 = 0.03;
 const ROBOTS: f32 = 0.03;
 /// From other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
+/// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room for a swing.
+const KICKS_WITHIN: f32 = 0.35;
+/// It looks at the ball within this, rad.
+const LOOKS_AT: f32 = 0.35;
+/// The lane ends so far from the ball, m: short of who waits for a pass of a metre.
+const LANE: f32 = 0.9;
+/// Beside the ball's way, m.
+const LANE_MARGIN: f32 = 0.03;
 /// Who stands farther beside the way than this is in nobody's way, m: a way around one robot keeps nearer.
 const ASIDE: f32 = 0.3;
 /// Who moves may come nearer for so long, s.

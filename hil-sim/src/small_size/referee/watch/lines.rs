@@ -9,6 +9,7 @@ use rules::restart::{OutKind, after_out};
 use rules::{Colour, Phase, limits};
 
 use super::super::event::{Event, PenaltyEnd, Shot, What};
+use super::super::observation::RobotSeen;
 use super::super::scene::Scene;
 use super::Touches;
 
@@ -91,13 +92,16 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
 }
 
 fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
-    let last = touches.last();
+    let (last, game) = (touches.last(), scene.game);
+    let own = game.own_end(scorer);
+    let counts =
+        |robot: &&RobotSeen| robot.who.colour == scorer && game.field.counts(own, robot.pose.position);
     Shot {
         kicker: last.map(|touch| touch.who),
         from: last.map_or(scene.ball.position, |touch| touch.ball),
         max_height: touches.height_since(scorer),
         last_touch: touches.last_of(scorer),
-        robots: scene.robots.iter().filter(|robot| robot.who.colour == scorer).count() as u32,
+        robots: scene.robots.iter().filter(counts).count() as u32,
     }
 }
 

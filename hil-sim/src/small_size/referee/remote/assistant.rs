@@ -1,0 +1,287 @@
+//! `assistant`: what people at a field do for a game controller elsewhere: put the ball down where no robot can or may, take robots
+//! off and bring them back. m, m/s, field frame; times of the simulation, µs.
+//!
+//! Rules 2026, chapters on ball placement, robot substitution and cards. Each deed has its reason with it.
+
+use core::fmt;
+
+use geometry::{Field, Point};
+use protocol::{Duration, Instant, Who};
+use rules::restart::{nearest_free_kick_spot, placement_needless};
+use rules::{Colour, Phase, limits};
+use ssl::event::GameEventType;
+
+use super::super::event::Restart;
+use super::super::flow::is_reachable;
+use super::super::people::WorldOrder;
+use super::super::scene::COLOURS;
+use super::{RemoteMatch, places};
+use crate::small_size::{Robot, World};
+
+/// Why a person does something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// The ball is set by hand for this kick-off or penalty.
+    SetByHand(Restart),
+    /// No team may place the ball, or both have failed.
+    NoTeamPlaces,
+    /// Robots cannot get at the ball: it is in or behind a goal, in a corner of the carpet, or outside the walls.
+    OutOfReach,
+    /// The ball lies in a place from which the controller does not go on, and nothing else happens.
+    NothingHappens,
+    /// The team has more robots than it may, and this one has left the field for it.
+    HasLeft,
+    /// The team has more robots than it may, for longer than it has to take one off.
+    TooMany,
+    /// The game is halted for the team to substitute a robot.
+    Substituted,
+    /// The team may have one more robot again.
+    MayComeBack,
+}
+
+/// One thing that a person does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deed {
+    /// What.
+    pub order: WorldOrder,
+    /// Why.
+    pub why: Why,
+}
+
+/// The person at the field.
+#[derive(Clone, Debug, Default)]
+pub struct Assistant {
+    commands: u64,
+    /// What is wrong with the ball, and since when.
+    ball: Option<(Why, Instant)>,
+    /// How often it was put down since the last command, and when last.
+    puts: u32,
+    put_at: Option<Instant>,
+    /// Both teams, in the order of [`COLOURS`].
+    teams: [Team; 2],
+}
+
+#[derive(Clone, Debug, Default)]
+struct Team {
+    /// Since when there are too many on the field.
+    crowded: Option<Instant>,
+    /// When a robot was taken off or put in.
+    changed: Option<Instant>,
+    /// Robots that were taken off, in this order.
+    off: Vec<Who>,
+    /// A robot was taken off in this substitution.
+    substituted: bool,
+}
+
+impl Assistant {
+    /// What is to be done now, in this order; to be asked every 10 ms or so. Carry the orders out.
+    pub fn look(&mut self, game: &RemoteMatch, world: &World) -> Vec<Deed> {
+        let now = game.now;
+        if game.is_silent(now) {
+            return Vec::new();
+        }
+        if self.commands != game.commands {
+            self.commands = game.commands;
+            (self.puts, self.put_at, self.ball) = (0, None, None);
+        }
+        let mut deeds: Vec<Deed> = self.put_ball(game, world).into_iter().collect();
+        for (index, colour) in COLOURS.into_iter().enumerate() {
+            deeds.extend(self.teams[index].look(game, world, colour));
+        }
+        deeds
+    }
+
+    fn put_ball(&mut self, game: &RemoteMatch, world: &World) -> Option<Deed> {
+        let now = game.now;
+        let Some((why, target)) = self.wanted(game, world) else {
+            self.ball = None;
+            return None;
+        };
+        let since = self.ball.filter(|(before, _)| *before == why).map_or(now, |(_, since)| since);
+        self.ball = Some((why, since));
+        let waited = now.since(self.put_at.map_or(since, |put| put.max(since)));
+        let delay = if why == Why::NothingHappens { PATIENCE } else { PERSON_DELAY };
+        let stands = |robot: &Robot| {
+            robot.present && robot.pose.position.distance(target) < limits::ROBOT_RADIUS + ROOM
+        };
+        let room = !world.robots().iter().any(stands);
+        if waited < delay || !room && waited < delay + PATIENCE || self.puts >= PUTS_MAX {
+            return None;
+        }
+        self.puts += 1;
+        self.put_at = Some(now);
+        self.ball = None;
+        Some(Deed { order: WorldOrder::PutBall(target), why })
+    }
+
+    /// Where the ball is to be put now by hand, if it is.
+    fn wanted(&self, game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
+        let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
+        let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
+        let set = match game.phase() {
+            Phase::BallPlacement(_) => {
+                let lost = still && !is_reachable(&game.field, ball);
+                return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+            }
+            // Robots stand around it now: only a ball from which the controller does not start is touched.
+            Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
+            Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
+            _ => None,
+        };
+        if let Some((restart, tolerance)) = set {
+            let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
+            return Some((Why::SetByHand(restart), mark));
+        }
+        let stopped = matches!(game.phase(), Phase::Stop);
+        if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
+            return None;
+        }
+        // Whoever decides about a goal wants to see where the ball lies.
+        let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
+        let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
+        let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
+        let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
+        match game.next() {
+            Some(next) if next.is_set_by_hand() => {
+                (!lies(SET_BY_HAND)).then_some((Why::SetByHand(next), target))
+            }
+            _ if !stopped || placement_needless(&game.field, ball, speed, target) => None,
+            _ if game.has_event(GameEventType::PlacementSucceeded) && lies(limits::PLACEMENT_TOLERANCE) => {
+                None
+            }
+            _ if game.placing_team().is_none() => Some((Why::NoTeamPlaces, target)),
+            _ => Some((Why::NothingHappens, target)),
+        }
+    }
+}
+
+impl Team {
+    fn look(&mut self, game: &RemoteMatch, world: &World, colour: Colour) -> Option<Deed> {
+        let (now, own) = (game.now, game.own_end(colour));
+        let (field, ball) = (&game.field, world.ball.position);
+        let ours = || world.robots().iter().filter(|robot| robot.present && robot.who.colour == colour);
+        let behind = |robot: &&Robot| !field.counts(own, robot.pose.position);
+        let here = ours().count() as u32;
+        let on_field = ours().filter(|robot| !behind(robot)).count() as u32;
+        let allowed = game.allowed(colour)?;
+        if on_field <= allowed {
+            self.crowded = None;
+        } else {
+            self.crowded.get_or_insert(now);
+        }
+        if !game.substitutes(colour) {
+            self.substituted = false;
+        }
+        if self.changed.is_some_and(|at| now.since(at) < CHANGE_TIME) {
+            return None;
+        }
+        let halted = matches!(game.phase(), Phase::Halt | Phase::Timeout(_));
+        let stopped = halted || game.phase() == Phase::Stop;
+        let may_be_taken = |robot: &&Robot| {
+            let p = robot.pose.position;
+            (behind(robot) || places::beside_halfway_line(field, p))
+                && p.distance(ball) >= limits::SUBSTITUTION_BALL_DISTANCE
+                && robot.velocity.norm() <= STANDING
+        };
+        let left = ours().filter(may_be_taken).max_by_key(|robot| (behind(robot), robot.who));
+        let crowded_for = self.crowded.map_or(Duration(0), |since| now.since(since));
+        let taken = if game.substitutes(colour) && halted && !self.substituted {
+            let any = || whom_to_take(game, ours(), ball);
+            left.or_else(any).map(|robot| (robot.who, Why::Substituted))
+        } else if here > allowed && left.is_some() {
+            left.map(|robot| (robot.who, Why::HasLeft))
+        } else if stopped && crowded_for.as_secs_f32() >= limits::CARD_REMOVAL_TIME {
+            whom_to_take(game, ours(), ball).map(|robot| (robot.who, Why::TooMany))
+        } else {
+            None
+        };
+        if let Some((who, why)) = taken {
+            self.changed = Some(now);
+            self.substituted |= why == Why::Substituted;
+            self.off.push(who);
+            return Some(Deed { order: WorldOrder::RemoveRobot(who), why });
+        }
+        // Robots that came back by another hand are not ours to bring.
+        self.off.retain(|who| world.robot(*who).is_some_and(|robot| !robot.present));
+        if here >= allowed {
+            return None;
+        }
+        let others: Vec<_> =
+            world.robots().iter().filter(|robot| robot.present).map(|robot| robot.pose.position).collect();
+        let pose = places::way_in(field, own, ball, &others)?;
+        let who = *self.off.first()?;
+        self.off.remove(0);
+        self.changed = Some(now);
+        Some(Deed { order: WorldOrder::ReturnRobot(who, pose), why: Why::MayComeBack })
+    }
+}
+
+/// One that lies on its side; else the robot farthest from the ball. The keeper only where there is no other.
+fn whom_to_take<'a>(
+    game: &RemoteMatch,
+    ours: impl Iterator<Item = &'a Robot>,
+    ball: Point<Field>,
+) -> Option<&'a Robot> {
+    let worth = |robot: &Robot| (robot.tipped, !game.accounts.is_keeper(robot.who));
+    let distance = |robot: &Robot| robot.pose.position.distance(ball);
+    ours.max_by(|a, b| {
+        let by_worth = worth(a).cmp(&worth(b)).then(distance(a).total_cmp(&distance(b)));
+        by_worth.then(b.who.cmp(&a.who))
+    })
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let team = |team: Colour| if team == Colour::Blue { "blue" } else { "yellow" };
+        match self {
+            Self::SetByHand(Restart::Penalty(by)) => write!(f, "for {}'s penalty", team(*by)),
+            Self::SetByHand(Restart::Kickoff(by)) => write!(f, "for {}'s kick-off", team(*by)),
+            Self::SetByHand(_) => write!(f, "for the restart"),
+            Self::NoTeamPlaces => write!(f, "no team may place it, or both have failed"),
+            Self::OutOfReach => write!(f, "it was where no robot can reach it"),
+            Self::NothingHappens => {
+                write!(f, "the controller does not go on from where it was, and no team placed it")
+            }
+            Self::HasLeft => write!(f, "the team has too many robots, and this one has left the field"),
+            Self::TooMany => {
+                write!(f, "the team has had too many robots for {} s", limits::CARD_REMOVAL_TIME)
+            }
+            Self::Substituted => write!(f, "the game is halted for the team to substitute a robot"),
+            Self::MayComeBack => write!(f, "the team may have another robot"),
+        }
+    }
+}
+
+impl fmt::Display for Deed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = |who: Who| {
+            let team = if who.colour == Colour::Blue { "blue" } else { "yellow" };
+            format!("{team} {}", who.id.number())
+        };
+        match self.order {
+            WorldOrder::PutBall(at) => write!(f, "puts the ball at ({:.2}, {:.2}) m", at.x(), at.y())?,
+            WorldOrder::RemoveRobot(who) => write!(f, "takes {} off", name(who))?,
+            WorldOrder::ReturnRobot(who, pose) => {
+                let at = pose.position;
+                write!(f, "puts {} in at ({:.2}, {:.2}) m", name(who), at.x(), at.y())?;
+            }
+        }
+        write!(f, ": {}", self.why)
+    }
+}
+
+/// A person needs this long to see that something is to be done and to do it, estimated: the internal referee's is the same.
+const PERSON_DELAY: Duration = Duration::millis(2_000);
+/// Then waits so long for robots to make room, and for a game that does not go on by itself: the controller's time for
+/// preparation.
+const PATIENCE: Duration = Duration::millis(10_000);
+/// Time in which a robot is taken off or put in: the controller's tolerance in counting robots.
+const CHANGE_TIME: Duration = Duration::millis(2_000);
+/// Room a person needs to put the ball down, m from a robot's side: a hand's breadth.
+const ROOM: f32 = 0.1;
+/// A ball set by hand lies this near to its mark, m: a third of what the controller tolerates.
+const SET_BY_HAND: f32 = 0.05;
+/// The ball is put down so often after one command; then something else is wrong.
+const PUTS_MAX: u32 = 5;
+/// A robot slower than this waits to be taken off, m/s: it may still turn, or be pushed a little.
+const STANDING: f32 = 0.2;

@@ -1,0 +1,205 @@
+//! `autoref`: the game events that an automatic referee reports to a game controller elsewhere, seen in the true state of the
+//! world by the watchers of the internal referee. m, m/s, field frame; times of the simulation, µs.
+//!
+//! What the controller finds by itself is not reported: no progress, a ball kept in a defence area, too many robots, time that is
+//! up. After an event that stops the game nothing of play is reported until the controller has stopped it: it waits 1 s for other
+//! automatic referees.
+
+use protocol::{Duration, Instant};
+use rules::legality::no_goal;
+use rules::restart::{AfterPlacement, placement_lack};
+use rules::{Colour, Phase, limits};
+
+use super::super::event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
+use super::super::look::Sight;
+use super::super::scene::{COLOURS, Scene, is_running};
+use super::super::watch::Watch;
+use super::RemoteMatch;
+use crate::small_size::{Event as WorldEvent, World};
+
+/// Who decides what automatic referees leave to people: whether a ball in the goal is a goal, and how play goes on after a ball out
+/// that no robot touched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decider {
+    /// A person at the controller: POSSIBLE_GOAL is reported, and the controller halts the game for the decision.
+    Person,
+    /// This automatic referee: the decision is reported, and the game goes on.
+    AutoReferee,
+}
+
+/// An automatic referee for a match that a game controller elsewhere runs.
+#[derive(Clone, Debug)]
+pub struct AutoReferee {
+    decider: Decider,
+    watch: Watch,
+    looked: Option<Instant>,
+    commands: u64,
+    /// When an event that stops the game was reported that the controller has not acted on.
+    stopping: Option<Instant>,
+    /// A success of this placement was reported.
+    placed: bool,
+    /// The last foul of each team after which the game went on, in the order of [`COLOURS`].
+    fouls: [Option<(Kind, Instant)>; 2],
+}
+
+impl AutoReferee {
+    /// One that has seen nothing yet.
+    pub fn new(decider: Decider) -> Self {
+        let watch = Watch::default();
+        Self { decider, watch, looked: None, commands: 0, stopping: None, placed: false, fouls: [None; 2] }
+    }
+
+    /// Looks at the world, every 10 ms or so; `events` are the world's since the last look. Gives what is to be reported.
+    pub fn look(&mut self, game: &RemoteMatch, world: &World, events: &[WorldEvent]) -> Vec<Event> {
+        let sight = Sight::of(world, events, self.looked);
+        let now = sight.time;
+        self.looked = Some(now);
+        if game.is_silent(now) {
+            return Vec::new();
+        }
+        if self.commands != game.commands {
+            self.commands = game.commands;
+            self.watch.command_given();
+            self.stopping = None;
+            self.placed = false;
+        }
+        if self.stopping.is_some_and(|at| now.since(at) > DECISION) {
+            self.stopping = None;
+        }
+        let view = game.view();
+        let scene = Scene {
+            now,
+            ball: sight.ball,
+            fastest: sight.fastest.max(sight.ball.speed()),
+            robots: &sight.robots,
+            crashes: &sight.crashes,
+            game: &view,
+        };
+        let mut seen = Vec::new();
+        self.watch.look(&scene, &mut seen);
+        seen.extend(self.placement(game, &scene));
+        seen.into_iter().flat_map(|event| self.report(game, event)).collect()
+    }
+
+    /// The event as it is reported: none, one, or two where it takes both to say where play goes on.
+    fn report(&mut self, game: &RemoteMatch, event: Event) -> Vec<Event> {
+        let phase = game.phase();
+        let kind = event.what.kind();
+        if is_the_controllers(&event.what) || !is_in_time(kind, phase) {
+            return Vec::new();
+        }
+        // Of what happens between the report and the stop only a ball over the wall counts: it was kicked in play.
+        if self.stopping.is_some() && kind != Kind::BoundaryCrossing {
+            return Vec::new();
+        }
+        if kind.is_non_stopping_foul() {
+            for (team, foul) in COLOURS.into_iter().zip(&mut self.fouls) {
+                if event.by.is_none_or(|by| by == team) {
+                    *foul = Some((kind, event.at));
+                }
+            }
+        }
+        let events = match event.what {
+            What::PossibleGoal { shot } => self.goal(game, shot, event),
+            // The controller knows no restart for it, and goes on by a force start where nothing moves.
+            What::LeftTouchLine | What::LeftGoalLine
+                if event.by.is_none() && self.decider == Decider::AutoReferee =>
+            {
+                vec![Event { what: What::NoProgress { duration: 0.0 }, ..event }]
+            }
+            _ => vec![event],
+        };
+        let stops = |event: &Event| {
+            event.what.kind().stops_the_game() || matches!(event.what, What::PossibleGoal { .. })
+        };
+        if events.iter().any(stops) && (is_running(phase) || matches!(phase, Phase::BallPlacement(_))) {
+            self.stopping = events.first().map(|event| event.at);
+        }
+        events
+    }
+
+    /// A ball in a goal, as whoever decides needs it.
+    fn goal(&self, game: &RemoteMatch, shot: Shot, event: Event) -> Vec<Event> {
+        let Some(scorer) = event.by else { return vec![event] };
+        if self.decider == Decider::Person {
+            return vec![Event { what: What::PossibleGoal { shot }, ..event }];
+        }
+        let invalid = self.invalid(game, scorer, &shot, event.at);
+        match invalid.filter(|_| !matches!(game.phase(), Phase::Penalty(_))) {
+            None => vec![Event { what: What::Goal { shot: Some(shot) }, ..event }],
+            Some(reason) => {
+                // The controller takes the place of the restart from a ball over the goal line, and none from a goal that is none.
+                let kicker = shot.kicker;
+                let out = Event {
+                    by: kicker.map_or(Some(scorer), |kicker| Some(kicker.colour)),
+                    robot: kicker.map(|kicker| kicker.id),
+                    what: What::LeftGoalLine,
+                    ..event.clone()
+                };
+                vec![Event { what: What::InvalidGoal { shot, reason }, ..event }, out]
+            }
+        }
+    }
+
+    fn invalid(&self, game: &RemoteMatch, scorer: Colour, shot: &Shot, at: Instant) -> Option<Invalid> {
+        use rules::legality::NoGoal;
+        let foul = self.fouls[usize::from(scorer == COLOURS[1])];
+        let since = foul.map(|(_, foul)| at.since(foul).as_secs_f32());
+        let allowed = game.allowed(scorer).unwrap_or(u32::MAX);
+        Some(match no_goal(shot.robots, allowed, shot.max_height, since)? {
+            NoGoal::TooManyRobots => Invalid::TooManyRobots,
+            NoGoal::Height(_) => Invalid::TooHigh,
+            NoGoal::Foul => Invalid::RecentFoul(foul?.0),
+        })
+    }
+
+    /// The ball lies where the placing team was to bring it: the controller takes this from automatic referees alone.
+    fn placement(&mut self, game: &RemoteMatch, scene: &Scene<'_>) -> Option<Event> {
+        let Phase::BallPlacement(team) = game.phase() else { return None };
+        let target = scene.game.target.filter(|_| !self.placed)?;
+        let after = match game.next() {
+            Some(Restart::FreeKick(favoured)) if favoured == team => AfterPlacement::FreeKick,
+            _ => AfterPlacement::ForceStart,
+        };
+        let (ball, took) = (scene.ball, scene.game.age(scene.now));
+        let places = scene.robots.iter().map(|robot| robot.pose.position);
+        let lack = placement_lack(ball.position, ball.speed(), target, places, after);
+        if lack.is_some() || took < limits::PLACEMENT_TIME_MIN {
+            return None;
+        }
+        self.placed = true;
+        let what = What::PlacementSucceeded {
+            took,
+            precision: ball.position.distance(target),
+            distance: scene.game.ball_at_command.distance(target),
+        };
+        Some(scene.of(Some(team), ball.position, what))
+    }
+}
+
+/// The controller finds these by itself.
+fn is_the_controllers(what: &What) -> bool {
+    matches!(
+        what,
+        What::NoProgress { .. }
+            | What::KeeperHeldBall { .. }
+            | What::TooManyRobots { .. }
+            | What::PlacementFailed { .. }
+            | What::PenaltyFailed { reason: PenaltyEnd::TimeUp }
+    )
+}
+
+/// Events of play belong to play, those of placements to placements.
+fn is_in_time(kind: Kind, phase: Phase<Colour>) -> bool {
+    match kind {
+        Kind::PlacementSucceeded => matches!(phase, Phase::BallPlacement(_)),
+        Kind::PenaltyFailed => matches!(phase, Phase::Penalty(_)),
+        Kind::AttackerTooClose | Kind::BoundaryCrossing => true,
+        Kind::PossibleGoal => is_running(phase),
+        _ => !kind.stops_the_game() || is_running(phase),
+    }
+}
+
+/// The controller has decided about a report within this: it waits 1 s for other automatic referees; twice that and a network's
+/// pauses.
+const DECISION: Duration = Duration::millis(2_500);

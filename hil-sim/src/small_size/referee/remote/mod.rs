@@ -1,0 +1,265 @@
+//! `remote`: a match that a game controller elsewhere runs, followed by its packets. m, field frame; times of the simulation, µs.
+//!
+//! [`RemoteMatch`] is what the packets tell; [`AutoReferee`] sees what an automatic referee reports to such a controller, and
+//! [`Assistant`] does by hand what it asks people at the field for. None has a socket: the caller brings packets and takes
+//! events and deeds.
+
+mod assistant;
+mod autoref;
+mod places;
+#[cfg(test)]
+mod tests;
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::{Duration, Instant, RobotId};
+use rules::state::{Command, GameState, Stage};
+use rules::{Colour, FieldSpec, League, Limits, Phase};
+use ssl::event::{Event as Told, GameEvent, GameEventType};
+use ssl::referee as packet;
+
+pub use assistant::{Assistant, Deed, Why};
+pub use autoref::{AutoReferee, Decider};
+
+use super::account::{Account, Accounts};
+use super::event::Restart;
+use super::scene::{self, COLOURS, GameView};
+use super::settings::TeamSettings;
+use super::{NoRules, wire};
+
+/// A match as a game controller's packets tell it.
+#[derive(Clone, Debug)]
+pub struct RemoteMatch {
+    field: FieldSpec,
+    limits: Limits,
+    state: GameState,
+    stage: Stage,
+    command: Option<Command>,
+    newest: Option<packet::Referee>,
+    heard: Instant,
+    now: Instant,
+    accounts: Accounts,
+    ball_at_command: Point<Field>,
+    /// Commands so far.
+    commands: u64,
+}
+
+impl RemoteMatch {
+    /// Nothing heard yet. Not for the four-legged league.
+    pub fn new(league: League) -> Result<Self, NoRules> {
+        let limits = league.limits().ok_or(NoRules(league))?;
+        let account =
+            || Account::new(&TeamSettings { name: String::new(), keeper: KEEPER, can_place_ball: true });
+        Ok(Self {
+            field: league.field(),
+            limits,
+            state: GameState::new(),
+            stage: Stage::FirstHalfPre,
+            command: None,
+            newest: None,
+            heard: Instant(0),
+            now: Instant(0),
+            accounts: Accounts { yellow: account(), blue: account() },
+            ball_at_command: Point::default(),
+            commands: 0,
+        })
+    }
+
+    /// A packet that came at `now`, with the ball here; true where it brings a new command. A packet of another sender than
+    /// the one that is followed is left out until that one has been silent for [`SILENCE`].
+    pub fn hear(&mut self, packet: packet::Referee, now: Instant, ball: Point<Field>) -> bool {
+        let before = self.newest.as_ref();
+        if before.is_some_and(|before| before.source_identifier != packet.source_identifier)
+            && !self.is_silent(now)
+        {
+            return false;
+        }
+        self.heard = now;
+        if let Some(stage) = Stage::ALL.into_iter().find(|stage| wire::stage(*stage) as i32 == packet.stage) {
+            self.stage = stage;
+        }
+        for (team, info) in [(Colour::Yellow, &packet.yellow), (Colour::Blue, &packet.blue)] {
+            if let Some(keeper) = u8::try_from(info.goalkeeper).ok().and_then(RobotId::new) {
+                self.accounts.of_mut(team).keeper = keeper;
+            }
+        }
+        let counted = |other: &packet::Referee| (other.command, other.command_counter);
+        let new = before.is_none_or(|before| counted(before) != counted(&packet));
+        // A goal's packet says so with a command of old and means nothing else by it.
+        let command = command_of(packet.command);
+        if let (true, Some(command)) = (new, command) {
+            let age = match packet.command_timestamp {
+                0 => 0,
+                given => packet.packet_timestamp.saturating_sub(given),
+            };
+            self.state.hear(command, now.0.saturating_sub(age), Some(ball));
+            self.ball_at_command = ball;
+            self.command = Some(command);
+            self.commands += 1;
+        }
+        self.newest = Some(packet);
+        new && command.is_some()
+    }
+
+    /// Time has come to `now`, and the ball is here.
+    pub fn tick(&mut self, now: Instant, ball: Point<Field>) {
+        self.now = now;
+        self.state.tick(now.0, Some(ball), &self.limits);
+    }
+
+    /// Another field.
+    pub fn set_field(&mut self, field: FieldSpec) {
+        self.field = field;
+    }
+
+    /// What may be done now.
+    pub fn phase(&self) -> Phase<Colour> {
+        self.state.phase()
+    }
+
+    /// The part of the match.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Nothing was heard for [`SILENCE`], or ever.
+    pub fn is_silent(&self, now: Instant) -> bool {
+        self.newest.is_none() || now.since(self.heard) > SILENCE
+    }
+
+    /// The end at which that team's own goal stands now.
+    pub fn own_end(&self, team: Colour) -> GoalEnd {
+        scene::own_end(self.blue_on_positive(), team)
+    }
+
+    fn blue_on_positive(&self) -> bool {
+        self.newest.as_ref().and_then(|newest| newest.blue_team_on_positive_half).unwrap_or(false)
+    }
+
+    fn team(&self, team: Colour) -> Option<&packet::TeamInfo> {
+        let newest = self.newest.as_ref()?;
+        Some(match team {
+            Colour::Yellow => &newest.yellow,
+            Colour::Blue => &newest.blue,
+        })
+    }
+
+    /// What follows the stop.
+    pub fn next(&self) -> Option<Restart> {
+        match command_of(self.newest.as_ref()?.next_command?)? {
+            Command::PrepareKickoff(team) => Some(Restart::Kickoff(team)),
+            Command::PreparePenalty(team) => Some(Restart::Penalty(team)),
+            Command::FreeKick(team) => Some(Restart::FreeKick(team)),
+            Command::ForceStart => Some(Restart::ForceStart),
+            _ => None,
+        }
+    }
+
+    /// Where the ball is to lie for what follows: where the controller says, which may be elsewhere than on the mark (a foul in
+    /// the stop before a kick-off moves it); else on the mark.
+    pub fn target(&self) -> Option<Point<Field>> {
+        self.designated().or_else(|| self.mark(self.next()?))
+    }
+
+    /// The mark that the ball is set on for that restart.
+    fn mark(&self, restart: Restart) -> Option<Point<Field>> {
+        match restart {
+            Restart::Kickoff(_) => Some(Point::new(0.0, 0.0)),
+            Restart::Penalty(team) => Some(self.field.penalty_spot(self.own_end(team).opposite())),
+            Restart::FreeKick(_) | Restart::ForceStart => None,
+        }
+    }
+
+    fn designated(&self) -> Option<Point<Field>> {
+        let told = self.newest.as_ref()?.designated_position?;
+        let place = Point::new(told.x * 0.001, told.y * 0.001);
+        place.is_finite().then_some(place)
+    }
+
+    /// Robots that team may have on the field now; `None` until the controller says.
+    pub fn allowed(&self, team: Colour) -> Option<u32> {
+        self.team(team)?.max_allowed_bots
+    }
+
+    /// That team may exchange a robot now: the match is halted for it.
+    pub fn substitutes(&self, team: Colour) -> bool {
+        self.team(team).and_then(|info| info.bot_substitution_allowed).unwrap_or(false)
+    }
+
+    /// The team that the controller would let place the ball now; `None`: a person does.
+    fn placing_team(&self) -> Option<Colour> {
+        let may = |team: &Colour| {
+            let Some(info) = self.team(*team) else { return false };
+            info.can_place_ball.unwrap_or(true) && !info.ball_placement_failures_reached.unwrap_or(false)
+        };
+        let mut failed = self.failed_placements();
+        match (failed.next(), failed.next()) {
+            (None, _) => COLOURS.into_iter().find(may),
+            (Some(team), None) => team.map(Colour::other).filter(may),
+            (Some(_), Some(_)) => None,
+        }
+    }
+
+    /// Whose placement failed in this stoppage, one item each.
+    fn failed_placements(&self) -> impl Iterator<Item = Option<Colour>> + '_ {
+        self.events().iter().filter_map(|event| match &event.event {
+            Some(Told::PlacementFailed(failed)) => Some(colour_of(failed.by_team)),
+            _ => None,
+        })
+    }
+
+    fn events(&self) -> &[GameEvent] {
+        self.newest.as_ref().map_or(&[], |newest| &newest.game_events)
+    }
+
+    fn has_event(&self, kind: GameEventType) -> bool {
+        self.events().iter().any(|event| event.r#type == Some(kind as i32))
+    }
+
+    fn view(&self) -> GameView<'_> {
+        GameView {
+            phase: self.phase(),
+            is_break: self.stage.is_break(),
+            before_half: matches!(self.stage, Stage::SecondHalfPre | Stage::ExtraSecondHalfPre),
+            since: Instant(self.state.since()),
+            ball_at_command: self.ball_at_command,
+            target: self.designated(),
+            field: &self.field,
+            limits: &self.limits,
+            blue_on_positive: self.blue_on_positive(),
+            accounts: &self.accounts,
+            judge_manual_fouls: false,
+        }
+    }
+}
+
+fn colour_of(team: i32) -> Option<Colour> {
+    use ssl::common::Team;
+    match Team::try_from(team) {
+        Ok(Team::Yellow) => Some(Colour::Yellow),
+        Ok(Team::Blue) => Some(Colour::Blue),
+        _ => None,
+    }
+}
+
+/// The command with that number on the wire; none for those of old (goals, indirect free kicks) and numbers that mean nothing.
+fn command_of(number: i32) -> Option<Command> {
+    let of_teams = COLOURS.into_iter().flat_map(|team| {
+        [
+            Command::PrepareKickoff(team),
+            Command::PreparePenalty(team),
+            Command::FreeKick(team),
+            Command::Timeout(team),
+            Command::BallPlacement(team),
+        ]
+    });
+    let plain = [Command::Halt, Command::Stop, Command::NormalStart, Command::ForceStart];
+    plain.into_iter().chain(of_teams).find(|command| wire::command(*command) as i32 == number)
+}
+
+/// A controller that has sent nothing for so long is not followed any more: it sends every 25 ms.
+pub const SILENCE: Duration = Duration::millis(3_000);
+/// The keeper's shell number until the controller names one.
+const KEEPER: RobotId = match RobotId::new(0) {
+    Some(id) => id,
+    None => unreachable!(),
+};

@@ -1,0 +1,186 @@
+//! `crew`: who serves a match that a game controller elsewhere runs: its packets are heard, an automatic referee reports to it
+//! (`--autoref`), a person does by hand what it asks for (`--assistant`).
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use hil_sim::small_size::referee::NoRules;
+use hil_sim::small_size::referee::remote::{Assistant, AutoReferee, Decider, RemoteMatch};
+use hil_sim::small_size::{Event, World};
+use rules::{Colour, League};
+use ssl::Message;
+use ssl::net::Interfaces;
+
+use super::autoref::Reporter;
+use crate::net::Ear;
+
+/// A port or group that cannot be opened is tried again this often.
+const AGAIN: Duration = Duration::from_secs(1);
+/// Packets heard between two looks, at most: a flood must not stop the world.
+const AT_ONCE: usize = 64;
+
+/// The controller as it is heard, and who serves it.
+pub(super) struct Crew {
+    from: SocketAddr,
+    ear: Option<Ear>,
+    /// When the ear was last tried, running time.
+    tried: Option<Duration>,
+    troubled: bool,
+    silent: bool,
+    league: League,
+    game: RemoteMatch,
+    assistant: Option<Assistant>,
+    autoref: Option<(AutoReferee, Reporter)>,
+}
+
+impl Crew {
+    /// Hears the controller at `from`; `assistant` and `autoref` say who else serves.
+    pub(super) fn new(
+        from: SocketAddr,
+        league: League,
+        assistant: bool,
+        autoref: Option<&str>,
+    ) -> Result<Self, NoRules> {
+        Ok(Self {
+            from,
+            ear: None,
+            tried: None,
+            troubled: false,
+            silent: true,
+            league,
+            game: RemoteMatch::new(league)?,
+            assistant: assistant.then(Assistant::default),
+            autoref: autoref.map(|to| (AutoReferee::new(decider(assistant)), Reporter::new(to))),
+        })
+    }
+
+    /// Another simulated game begins; the controller's own goes on.
+    pub(super) fn restart(&mut self) -> Result<(), NoRules> {
+        self.game = RemoteMatch::new(self.league)?;
+        let decides = self.assistant.is_some();
+        self.assistant = self.assistant.take().map(|_| Assistant::default());
+        if let Some((autoref, _)) = &mut self.autoref {
+            *autoref = AutoReferee::new(decider(decides));
+        }
+        Ok(())
+    }
+
+    /// For people: what it does.
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = vec![format!("referee  heard at {}", self.from)];
+        if self.assistant.is_some() {
+            lines.push("assistant  puts the ball, takes robots off and brings them back".to_owned());
+        }
+        if let Some((_, reporter)) = &self.autoref {
+            let goals =
+                if self.assistant.is_some() { "goals are decided" } else { "goals are left to a person" };
+            lines.push(format!("autoref  reports to {}; {goals}", reporter.to()));
+        }
+        lines
+    }
+
+    /// The state of the game, in a word.
+    pub(super) fn state(&self) -> String {
+        if self.silent { "no referee".to_owned() } else { crate::replay::phase_words(self.game.phase()) }
+    }
+
+    /// Hears what came; packets go to `said`, lines for people to `lines`.
+    pub(super) fn listen(
+        &mut self,
+        world: &World,
+        running: Duration,
+        said: &mut Vec<Vec<u8>>,
+        lines: &mut Vec<String>,
+    ) {
+        if self.ear.is_none() && self.tried.is_none_or(|tried| running.saturating_sub(tried) >= AGAIN) {
+            self.tried = Some(running);
+            match Ear::open(self.from, &Interfaces::All) {
+                Ok(ear) => {
+                    self.troubled = false;
+                    self.ear = Some(ear);
+                }
+                Err(error) if !std::mem::replace(&mut self.troubled, true) => {
+                    lines.push(format!("referee  {error}; it is tried again every second"));
+                }
+                Err(_) => {}
+            }
+        }
+        let (now, ball) = (time_of(world), world.ball.position);
+        if let Some(ear) = &mut self.ear {
+            for _ in 0..AT_ONCE {
+                match ear.receive(Duration::ZERO) {
+                    Ok(Some(datagram)) => {
+                        if let Ok(packet) = ssl::referee::Referee::decode(datagram.bytes) {
+                            said.push(datagram.bytes.to_vec());
+                            self.game.hear(packet, now, ball);
+                        }
+                    }
+                    Ok(None) => break,
+                    Err(error) => {
+                        lines.push(format!("referee  {error}; it is opened again"));
+                        self.ear = None;
+                        break;
+                    }
+                }
+            }
+        }
+        let silent = self.game.is_silent(now);
+        if silent != std::mem::replace(&mut self.silent, silent) {
+            lines.push(if silent {
+                format!("referee  nothing heard at {}", self.from)
+            } else {
+                format!("referee  a game controller is heard at {}", self.from)
+            });
+        }
+        if let Some((_, reporter)) = &mut self.autoref {
+            lines.extend(std::iter::from_fn(|| reporter.next_line()).map(|line| format!("autoref  {line}")));
+        }
+    }
+
+    /// Looks at the world, reports and does; `events` are the world's since the last look.
+    pub(super) fn look(&mut self, world: &mut World, events: &[Event], lines: &mut Vec<String>) {
+        self.game.set_field(world.pitch().field);
+        self.game.tick(time_of(world), world.ball.position);
+        if let Some((autoref, reporter)) = &mut self.autoref {
+            for event in autoref.look(&self.game, world, events) {
+                // Time and identifier are the controller's: its clock is not the simulation's.
+                let Some(mut told) = event.to_wire(0) else { continue };
+                (told.created_timestamp, told.id) = (None, None);
+                lines.push(format!("autoref  {}", line_of(&event)));
+                reporter.report(told);
+            }
+        }
+        if let Some(assistant) = &mut self.assistant {
+            for deed in assistant.look(&self.game, world) {
+                deed.order.carry_out(world);
+                lines.push(format!("assistant  {deed}"));
+            }
+        }
+    }
+}
+
+/// With nobody at the controller the automatic referee decides about goals too.
+const fn decider(assistant: bool) -> Decider {
+    if assistant { Decider::AutoReferee } else { Decider::Person }
+}
+
+/// The event, for people.
+fn line_of(event: &hil_sim::small_size::referee::Event) -> String {
+    let by = match (event.by, event.robot) {
+        (Some(team), Some(robot)) => format!(" by {} {}", team_of(team), robot.number()),
+        (Some(team), None) => format!(" by {}", team_of(team)),
+        (None, _) => String::new(),
+    };
+    format!("{}{by} at ({:.2}, {:.2}) m", event.what.kind().word(), event.place.x(), event.place.y())
+}
+
+const fn team_of(team: Colour) -> &'static str {
+    match team {
+        Colour::Blue => "blue",
+        Colour::Yellow => "yellow",
+    }
+}
+
+fn time_of(world: &World) -> protocol::Instant {
+    protocol::Instant(world.now() * 1000)
+}

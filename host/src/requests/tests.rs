@@ -1,0 +1,92 @@
+//! What is asked of the controller, and how often.
+
+use geometry::Point;
+use protocol::RobotId;
+use rules::{FieldSpec, League};
+
+use super::*;
+use crate::strategy::view::tests::view;
+
+const OURS: [(f32, f32); 4] = [(-4.4, 0.0), (-3.0, 0.5), (-1.0, 0.5), (0.5, 1.5)];
+const THEIRS: [(f32, f32); 4] = [(4.4, 0.0), (2.0, 1.0), (1.0, -1.0), (4.65, 2.0)];
+
+/// Division B's field, with an area behind the goals as vision may tell.
+fn stopped() -> View {
+    let mut view = view((1.0, 0.0), &OURS, &THEIRS);
+    view.field = FieldSpec { goal_substitution: 0.3, ..League::DivisionB.field() };
+    view.phase = Phase::Stop;
+    view
+}
+
+/// What is asked for in so many seconds of the same moment, looked at every 0.1 s.
+fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<Request> {
+    let mut asked = Vec::new();
+    for _ in 0..(seconds * 10.0) as u32 {
+        view.now = view.now + Duration::millis(100);
+        requests.look(view, false);
+        asked.extend(std::iter::from_fn(|| requests.poll()));
+    }
+    asked
+}
+
+#[test]
+fn a_keeper_that_is_gone_is_replaced_by_the_robot_nearest_to_our_goal_once_the_ball_is_out_of_play() {
+    let mut view = stopped();
+    let mut requests = Requests::default();
+    assert_eq!(asked(&mut requests, &mut view, 60.0), [], "it is there");
+    view.keeper = RobotId::new(7).unwrap();
+    view.phase = Phase::Run;
+    assert_eq!(asked(&mut requests, &mut view, 10.0), [], "refused while play runs");
+    view.phase = Phase::Stop;
+    let keeper = Request::Keeper(RobotId::ZERO);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), [keeper]);
+    assert_eq!(asked(&mut requests, &mut view, 2.0), []);
+    assert_eq!(asked(&mut requests, &mut view, 3.0), [keeper], "not granted: again");
+    view.keeper = RobotId::ZERO;
+    assert_eq!(asked(&mut requests, &mut view, 10.0), []);
+}
+
+#[test]
+fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_while_it_leaves() {
+    let mut view = stopped().allowing(3);
+    let mut requests = Requests::default();
+    assert_eq!(asked(&mut requests, &mut view, 11.0), []);
+    assert_eq!(asked(&mut requests, &mut view, 2.0), [Request::Substitute(true)]);
+    assert_eq!(asked(&mut requests, &mut view, 20.0), [], "once");
+    // It is behind our goal line now, and does not count.
+    view.ours[3].position = Point::new(-4.65, 1.5);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), [Request::Substitute(false)]);
+    // In play the controller gives us 10 s by itself.
+    view.ours[3].position = Point::new(0.0, 1.5);
+    view.phase = Phase::Run;
+    assert_eq!(asked(&mut requests, &mut view, 60.0), []);
+}
+
+#[test]
+fn a_robot_too_many_that_is_still_there_after_a_substitution_is_told_of_again_but_not_at_once() {
+    let mut view = stopped().allowing(3);
+    let mut requests = Requests::default();
+    assert_eq!(asked(&mut requests, &mut view, 13.0).len(), 1);
+    requests.look(&view, true);
+    assert_eq!(asked(&mut requests, &mut view, 40.0), []);
+    assert_eq!(asked(&mut requests, &mut view, 10.0), [Request::Substitute(true)]);
+}
+
+#[test]
+fn the_advantage_is_taken_while_they_are_too_many_and_we_attack() {
+    let mut view = stopped();
+    let mut requests = Requests::default();
+    let go_on = |go_on| [Request::Advantage { go_on }];
+    view.phase = Phase::PreparePenalty(Side::Ours);
+    // Three count: the fourth is behind their goal line.
+    let mut three = view.clone().allowing_them(3);
+    assert_eq!(asked(&mut requests, &mut three, 1.0), []);
+    let mut view = view.allowing_them(2);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), go_on(true));
+    view.phase = Phase::Penalty(Side::Ours);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), []);
+    view.phase = Phase::Penalty(Side::Theirs);
+    assert_eq!(asked(&mut requests, &mut view, 1.0), go_on(false));
+    view.phase = Phase::Run;
+    assert_eq!(asked(&mut requests, &mut view, 1.0), go_on(true), "the ball is in their half");
+}
