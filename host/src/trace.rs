@@ -52,15 +52,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 7] = [
-        Self::Vision,
-        Self::Referee,
-        Self::Robot,
-        Self::Timeout,
-        Self::Sent,
-        Self::Lost,
-        Self::Halt,
-    ];
+    const ALL: [Self; 7] =
+        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()

@@ -182,7 +182,8 @@ fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
         orientation: Some(0.0),
         ..DetectionRobot::default()
     };
-    let ball = |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
+    let ball =
+        |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
     let frame = DetectionFrame {
         frame_number: number,
         t_capture: unix_us() as f64 * 1e-6,
@@ -359,7 +360,7 @@ fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
 
 #[test]
 fn finding_3_datagrams_longer_than_vision_sends_are_refused() {
-    let frames = vec![camera_frame(1_000_000, 1_700)];
+    let frames = vec![camera_frame(1_000_000, 2_000)];
     assert!(frames[0].len() > 50_000, "{} bytes", frames[0].len());
     halts_under(frames, "longer than vision sends");
 }
@@ -373,7 +374,8 @@ fn finding_2_two_referees_that_disagree_are_reported_with_both_addresses() {
     let genuine = Controller::start("gc\u{1b}[31m", "127.0.0.1:0", field.referee, Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let other = Controller::start("other", "127.0.0.2:0", field.referee, Wire::Halt);
-    let line = field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
+    let line =
+        field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
     assert!(!line.contains('\u{1b}'), "{line:?}");
     wait_for(&frames, true, Instant::now());
     drop(other);

@@ -102,7 +102,9 @@ impl Listener {
 
     fn exclusions(&self, now: Instant) -> impl Iterator<Item = Warning> {
         let lately = self.excluded.iter().filter(move |(_, at)| now.since(*at) < SILENCE);
-        lately.filter_map(|(source, _)| Some(Warning::Excluded { source: source.clone(), pin: self.pin.clone()? }))
+        lately.filter_map(|(source, _)| {
+            Some(Warning::Excluded { source: source.clone(), pin: self.pin.clone()? })
+        })
     }
 }
 
