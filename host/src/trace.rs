@@ -184,7 +184,10 @@ impl fmt::Display for End {
             Self::Cut { at, last: None } => write!(f, "cut at byte {at}, before its first record"),
             Self::Lost { at } => {
                 let seconds = at.0 as f64 * 1e-6;
-                write!(f, "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read")
+                write!(
+                    f,
+                    "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read"
+                )
             }
             Self::Broken { at, what } => {
                 write!(f, "damaged at byte {at}: {what}; all before it was read")
@@ -300,9 +303,8 @@ impl<R: Read> Reader<R> {
         self.last = Some(at);
         let from = match kind {
             Kind::Lost => return Err(End::Lost { at }),
-            Kind::Referee if self.version >= WITH_SENDER => {
-                take_sender(&mut bytes).ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?
-            }
+            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
+                .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };
         Ok(Record { at, host, kind, from, bytes })

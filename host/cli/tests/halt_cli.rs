@@ -236,7 +236,8 @@ impl Robots {
         for link in &mut self.links {
             let _ = link.open(now, frame);
         }
-        let read = |robot: RobotId| overhear_host(frame, Self::TEAM, &TeamKey(KEY).of_robot(robot), robot).ok();
+        let read =
+            |robot: RobotId| overhear_host(frame, Self::TEAM, &TeamKey(KEY).of_robot(robot), robot).ok();
         match RobotId::all().take(6).find_map(read)? {
             HostMessage::World(part) => Some(part.phase == Phase::Halt),
             HostMessage::Command(command) => Some(command.phase == Phase::Halt),

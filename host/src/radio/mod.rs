@@ -280,7 +280,9 @@ impl Radio {
         let there = latest.world.at(now + self.settings.way);
         // Without robots one part goes out to an empty audience: a base station learns the host's address from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
-        for part in picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most) {
+        for part in
+            picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most)
+        {
             self.say(now, To::All, &HostMessage::World(part));
         }
         for command in latest.commands.iter().filter(|command| audience.has(command.to)) {

@@ -84,7 +84,9 @@ pub struct SourceKey {
 impl fmt::Display for SourceKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.identifier {
-            Some(identifier) => write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address),
+            Some(identifier) => {
+                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address)
+            }
             None => write!(f, "a referee without identifier at {}", self.address),
         }
     }

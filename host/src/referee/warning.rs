@@ -157,7 +157,11 @@ impl fmt::Display for Warning {
                 *by as f64 * 1e-6
             ),
             Self::Excluded { source, pin } => {
-                write!(f, "{source} is ignored: --referee-source chooses {}", foreign::printable(&pin.to_string()))
+                write!(
+                    f,
+                    "{source} is ignored: --referee-source chooses {}",
+                    foreign::printable(&pin.to_string())
+                )
             }
         }
     }
