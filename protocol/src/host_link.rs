@@ -28,19 +28,9 @@ pub struct HostLink {
     /// The newest telemetry of each robot that named our epoch, and the newest of its other frames.
     own: Sessions,
     shared: Sessions,
-    peers: [Peer; RobotId::COUNT],
+    /// By the newest telemetry of each robot, whether it named our epoch or not: its epoch, and our clock then less its own.
+    newest: [Option<(u32, u32)>; RobotId::COUNT],
     refused: [u32; Refusal::KINDS],
-}
-
-/// What is known of one robot.
-#[derive(Clone, Copy, Debug, Default)]
-struct Peer {
-    /// Its newest telemetry, whether it named our epoch or not: the robot's epoch, and our clock then less its own.
-    newest: Option<(u32, u32)>,
-    /// The host that it named, if that is another.
-    follows: Option<u32>,
-    /// Frames in its name with a wrong tag.
-    forged: u32,
 }
 
 /// What became of a packet.
@@ -50,7 +40,7 @@ pub enum Opened {
     /// A robot that is believed says this.
     Believed(RobotId, TeamMessage),
     /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It may be welcomed.
-    Stranger(RobotId),
+    Stranger(RobotId, Telemetry),
 }
 
 impl HostLink {
@@ -65,7 +55,7 @@ impl HostLink {
             audience: Audience::default(),
             own: Sessions::default(),
             shared: Sessions::default(),
-            peers: Default::default(),
+            newest: [None; RobotId::COUNT],
             refused: [0; Refusal::KINDS],
         }
     }
@@ -116,19 +106,9 @@ impl HostLink {
         &self.refused
     }
 
-    /// How many packets in that robot's name had a wrong tag: it has another key, or is imitated.
-    pub fn forged(&self, robot: RobotId) -> u32 {
-        self.peers[robot.index()].forged
-    }
-
-    /// The epoch of another host that this robot named in its newest telemetry.
-    pub fn follows(&self, robot: RobotId) -> Option<u32> {
-        self.peers[robot.index()].follows
-    }
-
     /// The welcome for that robot, by its newest telemetry.
     pub fn welcome(&self, robot: RobotId) -> Option<Welcome> {
-        let (life, offset) = self.peers[robot.index()].newest?;
+        let (life, offset) = self.newest[robot.index()]?;
         Some(Welcome { to: robot, life, offset })
     }
 
@@ -175,43 +155,33 @@ impl HostLink {
         robot: RobotId,
     ) -> Result<Opened, Refusal> {
         self.own.check(frame)?;
-        let peer = &mut self.peers[robot.index()];
         if !frame.is_genuine(packet, self.keys.of(robot), robot) {
-            peer.forged = peer.forged.saturating_add(1);
             return Err(Refusal::Tag);
         }
-        let Some(message @ TeamMessage::Telemetry(Telemetry { host, clock, .. })) = decode(frame.payload) else {
+        let Some(TeamMessage::Telemetry(telemetry)) = decode(frame.payload) else {
             return Err(Refusal::Payload);
         };
+        let Telemetry { host, clock, .. } = telemetry;
         let offset = ((now.0 >> TICK_BITS).saturating_sub(self.zero) as u32).wrapping_sub(clock);
-        peer.newest = Some((frame.epoch, offset));
+        self.newest[robot.index()] = Some((frame.epoch, offset));
         if host != self.epoch {
-            peer.follows = (host != 0).then_some(host);
-            return Ok(Opened::Stranger(robot));
+            return Ok(Opened::Stranger(robot, telemetry));
         }
-        peer.follows = None;
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             // What it said to its teammates before it knew us may be recorded.
             self.shared.accept(frame);
         }
         self.own.accept(frame);
-        Ok(Opened::Believed(robot, message))
+        Ok(Opened::Believed(robot, TeamMessage::Telemetry(telemetry)))
     }
 
     /// Beacons and greetings, under the key that all robots hold.
-    fn open_shared(
-        &mut self,
-        packet: &[u8],
-        frame: &Frame<'_>,
-        robot: RobotId,
-    ) -> Result<Opened, Refusal> {
+    fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });
         }
         self.shared.check(frame)?;
         if !frame.is_genuine(packet, self.keys.team(), robot) {
-            let peer = &mut self.peers[robot.index()];
-            peer.forged = peer.forged.saturating_add(1);
             return Err(Refusal::Tag);
         }
         self.shared.accept(frame);

@@ -16,7 +16,7 @@ use protocol::host::{
 use protocol::quantized::{WirePoint, WirePose, to_mm};
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::team::{Beacon, Closure, CycleState, Decision, Progress, Role, Status, TeamMessage};
-use protocol::{CycleId, Instant, RobotId, TeamId, Who};
+use protocol::{CycleId, Duration, Instant, RobotId, TeamId, Who};
 use rules::{Colour, League, Phase, Side};
 
 /// A field with our robots under brains, theirs standing where the test puts them.
@@ -232,7 +232,7 @@ impl<'a> Carpet<'a> {
             .collect();
         for (&id, brain) in &mut self.brains {
             for message in &messages {
-                brain.handle_host_message(now, message);
+                brain.handle_host_message(now, Duration(0), message);
             }
             if let Some((duty, directive)) = self.commands.get(&id) {
                 let command = Command {
@@ -242,7 +242,7 @@ impl<'a> Carpet<'a> {
                     duty: *duty,
                     directive: directive.clone(),
                 };
-                brain.handle_host_message(now, &HostMessage::Command(command));
+                brain.handle_host_message(now, Duration(0), &HostMessage::Command(command));
             }
         }
     }

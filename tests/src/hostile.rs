@@ -13,7 +13,7 @@ use hil_sim::Stream;
 use protocol::host::HostMessage;
 use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
 use protocol::team::TeamMessage;
-use protocol::{Instant, RobotId, TeamId};
+use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::League;
 
 #[path = "../../protocol/fuzz/src/lib.rs"]
@@ -103,7 +103,7 @@ impl Minds {
     fn think(&mut self, bytes: &[u8]) {
         let (brain, now) = (&mut self.brain, self.now);
         if let Ok(message) = postcard::from_bytes::<HostMessage>(bytes) {
-            brain.handle_host_message(now, &message);
+            brain.handle_host_message(now, Duration(0), &message);
             self.told += 1;
         }
         if let Ok(message) = postcard::from_bytes::<TeamMessage>(bytes) {

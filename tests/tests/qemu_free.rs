@@ -21,16 +21,18 @@ use match_tests::bad_line::{BadLine, Trouble};
 use protocol::frame::TeamKey;
 use protocol::host::{Command, Condition, Directive, Duty, HostMessage, Telemetry, Welcome};
 use protocol::host_link::HostLink;
+use protocol::link::overhear;
 use protocol::serial::{Lines, line};
 use protocol::slot::{PAGE_ADDRESS, TRIAL_ADDRESS};
 use protocol::team::TeamMessage;
 use protocol::{RobotId, TeamId};
 use rules::Phase;
 
-/// Key 01 02 … 10, robot 3, team 1, division B; the check was computed by a SipHash of another hand.
-const PAGE: [u8; 32] = [
-    0x31, 0x2d, 0x32, 0x4b, 0x01, 0x03, 0x01, 0x02, 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07, 0x08, 0x09,
-    0x0a, 0x0b, 0x0c, 0x0d, 0x0e, 0x0f, 0x10, 0x80, 0xbc, 0xf1, 0x87, 0xa5, 0x5a, 0x66, 0x6f,
+/// Robot 3, team 1, division B, with its keys of the team's key 01 02 … 10; keys and check were computed by a SipHash of another hand.
+const PAGE: [u8; 48] = [
+    0x31, 0x2d, 0x32, 0x4b, 0x02, 0x03, 0x01, 0x02, 0x19, 0x9a, 0x5b, 0xca, 0xd2, 0xdd, 0xb8, 0x46, 0x2d,
+    0xdc, 0x44, 0x2e, 0xe0, 0xfb, 0x84, 0x03, 0x51, 0xf0, 0x45, 0xa1, 0x95, 0x8e, 0xca, 0x8a, 0x2f, 0xa5,
+    0xeb, 0xd1, 0xfe, 0x16, 0x94, 0x65, 0xe0, 0xa0, 0x65, 0x85, 0x83, 0xbe, 0x29, 0xcd,
 ];
 const TEAM: TeamId = TeamId(1);
 /// For anything that must come in the end, on a machine however busy.
@@ -48,7 +50,7 @@ fn a_robot_obeys_its_own_host_while_it_speaks_and_nobody_elses() {
     let mut theirs = HostLink::new(TEAM, TeamKey([9; 16]), 8);
     let began = Instant::now();
     while began.elapsed() < Duration::from_millis(1_500) {
-        robot.say(&mut theirs, ours.life(id()).unwrap_or(1));
+        robot.say(&mut theirs, ours.welcome(id()));
         thread::sleep(Duration::from_millis(5));
     }
     robot.heard.try_iter().for_each(drop);
@@ -136,6 +138,7 @@ struct Robot {
     console: Receiver<Vec<u8>>,
     heard: Receiver<Vec<u8>>,
     lines: Lines,
+    began: Instant,
     last: Option<Telemetry>,
     page: PathBuf,
     /// What its line makes of bytes, either way.
@@ -144,11 +147,11 @@ struct Robot {
 }
 
 impl Robot {
-    fn start(page: Option<&[u8; 32]>, trial: u32) -> Self {
+    fn start(page: Option<&[u8; 48]>, trial: u32) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let file = std::env::temp_dir().join(format!("onetwo-page-{}-{number}", std::process::id()));
-        fs::write(&file, page.map_or(&[0xff; 32][..], |page| page)).expect("a temporary file");
+        fs::write(&file, page.map_or(&[0xff; 48][..], |page| page)).expect("a temporary file");
         let qemu = ensure_qemu(Install::ForUser).unwrap_or_else(|error| panic!("{error}"));
         let mut child = Process::new(qemu)
             .args(["-machine", MACHINE, "-display", "none", "-monitor", "none", "-serial", "stdio"])
@@ -169,6 +172,7 @@ impl Robot {
             console,
             heard,
             lines: Lines::new(),
+            began: Instant::now(),
             last: None,
             page: file,
             down: BadLine::new(1, "line down"),
@@ -192,8 +196,13 @@ impl Robot {
         }
     }
 
+    /// The host's clock.
+    fn now(&self) -> protocol::Instant {
+        protocol::Instant(self.began.elapsed().as_micros() as u64)
+    }
+
     /// A welcome and a command of that host.
-    fn say(&mut self, link: &mut HostLink, life: u32) {
+    fn say(&mut self, link: &mut HostLink, welcome: Option<Welcome>) {
         let command = Command {
             to: id(),
             defending: geometry::GoalEnd::Negative,
@@ -201,11 +210,13 @@ impl Robot {
             duty: Duty::Player,
             directive: Directive::Stand,
         };
-        let messages = [HostMessage::Welcome(Welcome { to: id(), life }), HostMessage::Command(command)];
+        let Some(welcome) = welcome else { return };
+        let now = self.now();
+        let messages = [HostMessage::Welcome(welcome), HostMessage::Command(command)];
         let stdin = self.child.stdin.as_mut().expect("piped");
         for message in messages {
             let bytes: Vec<u8> =
-                line(&link.seal(&message)).iter().flat_map(|byte| self.down.carry(*byte)).collect();
+                line(&link.seal(now, &message)).iter().flat_map(|byte| self.down.carry(*byte)).collect();
             stdin.write_all(&bytes).expect("it listens");
         }
         stdin.flush().expect("it listens");
@@ -215,14 +226,18 @@ impl Robot {
     fn until(&mut self, link: &mut HostLink, speaking: bool, like: impl Fn(&Telemetry) -> bool) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
-            if let (true, Some(life)) = (speaking, link.life(id())) {
-                self.say(link, life);
+            if speaking {
+                self.say(link, link.welcome(id()));
             }
             let Ok(bytes) = self.heard.recv_timeout(Duration::from_millis(5)) else { continue };
             let carried: Vec<u8> = bytes.iter().flat_map(|byte| self.up.carry(*byte)).collect();
             let packets: Vec<_> = carried.iter().filter_map(|byte| self.lines.push(*byte)).collect();
             for packet in packets {
-                if let Ok((_, TeamMessage::Telemetry(telemetry))) = link.open(&packet) {
+                // Of a robot that follows this host or not yet.
+                let keys = key().of_team();
+                if link.open(self.now(), &packet).is_ok()
+                    && let Ok((_, TeamMessage::Telemetry(telemetry))) = overhear(&packet, TEAM, &keys)
+                {
                     let liked = like(&telemetry);
                     self.last = Some(telemetry);
                     if liked {
@@ -270,7 +285,7 @@ fn id() -> RobotId {
     RobotId::new(3).expect("an id")
 }
 
-fn damaged() -> [u8; 32] {
+fn damaged() -> [u8; 48] {
     let mut page = PAGE;
     page[9] ^= 1;
     page

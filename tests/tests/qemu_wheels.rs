@@ -10,12 +10,12 @@ use brain::BrainConfig;
 use geometry::{Field, GoalEnd, Point, Pose, Twist, Vector};
 use hil_sim::small_size::{Ball, Drive, Order, Parameters, World};
 use hil_sim::{Backend, Mcu, Meter, NativeBackend, QemuBackend};
-use protocol::frame::TeamKey;
+use protocol::frame::{Audience, TeamKey};
 use protocol::host::{
     Command, Directive, Duty, HostMessage, KickOrder, PART_ROBOTS_MAX, Welcome, WireBall, WireRobot, WireWho,
     WorldPart,
 };
-use protocol::host_link::HostLink;
+use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::lockstep::TickIn;
 use protocol::quantized::{WirePoint, WirePose, to_mm};
@@ -114,7 +114,10 @@ impl Table {
             world.put(theirs(number), Pose::from_mm_deg(x, y, 180.0));
         }
         world.put_ball(Ball::at(Point::new(0.0, 0.1)));
-        Self { world, link: HostLink::new(TeamId(1), TeamKey::ZERO, 1), air: Vec::new(), ticks: 0 }
+        let mut link = HostLink::new(TeamId(1), TeamKey::ZERO, 1);
+        // As many tags as in a match of six.
+        link.set_audience(Audience(0b111_1110));
+        Self { world, link, air: Vec::new(), ticks: 0 }
     }
 
     fn tick(
@@ -132,11 +135,12 @@ impl Table {
             self.world.put_ball(Ball::at(Point::new(0.3, -0.4)));
         }
         let heard = std::mem::take(&mut self.air);
-        let parts = self.parts(phase);
+        let parts = self.parts(now, phase);
         for ((robot, computers), directive) in robots.iter_mut().zip(directives) {
             let mut packets: Vec<Packet> = Vec::new();
             if seq % 100 == 1 {
-                packets.push(self.link.seal(&HostMessage::Welcome(Welcome { to: *robot, life: 1 })));
+                let welcome = Welcome { to: *robot, life: 1, offset: 0 };
+                packets.push(self.link.seal(now, &HostMessage::Welcome(welcome)));
             }
             packets.extend(parts.iter().cloned());
             let command = Command {
@@ -150,7 +154,7 @@ impl Table {
                 },
                 directive: directive.clone(),
             };
-            packets.push(self.link.seal(&HostMessage::Command(command)));
+            packets.push(self.link.seal(now, &HostMessage::Command(command)));
             packets.extend(heard.iter().filter(|(from, _)| from != robot).map(|(_, packet)| packet.clone()));
             let sensors = self.world.sensors(ours(*robot)).expect("a robot");
             let tick = TickIn { seq, now, air: packets.iter().map(|p| &p[..]).collect(), sensors };
@@ -164,7 +168,8 @@ impl Table {
             }
             // The host passes on what is for mates.
             for packet in a.packets {
-                if let Ok((_, TeamMessage::Beacon(_) | TeamMessage::Greeting(_))) = self.link.open(&packet) {
+                let opened = self.link.open(now, &packet);
+                if let Ok(Opened::Believed(_, TeamMessage::Beacon(_) | TeamMessage::Greeting(_))) = opened {
                     self.air.push((*robot, packet));
                 }
             }
@@ -181,7 +186,7 @@ impl Table {
     }
 
     /// The picture, sealed.
-    fn parts(&mut self, phase: Phase<Side>) -> Vec<Packet> {
+    fn parts(&mut self, now: Instant, phase: Phase<Side>) -> Vec<Packet> {
         let ball = &self.world.ball;
         let ball = WireBall {
             at: ball.position.into(),
@@ -211,7 +216,7 @@ impl Table {
             robots: robots.iter().copied().collect(),
         };
         let parts: Vec<_> = (0..count).zip(chunks).map(part).collect();
-        parts.into_iter().map(|part| self.link.seal(&HostMessage::World(part))).collect()
+        parts.into_iter().map(|part| self.link.seal(now, &HostMessage::World(part))).collect()
     }
 }
 

@@ -67,7 +67,7 @@ struct Told {
 fn run(seed: u64, bad: Trouble, late: u32) -> Told {
     let id = RobotId::new(3).unwrap();
     let config = BrainConfig { epoch: 7, ..BrainConfig::hosted(id, TEAM, League::DivisionB) };
-    let mut station = Station::with_key(Instant(0), &config, case_library::division_b(), KEY);
+    let mut station = Station::with_keys(Instant(0), &config, case_library::division_b(), KEY.of_robot(id));
     let mut radio = Radio::new(RadioSettings { key: KEY, ..RadioSettings::new(TEAM, 70) });
     let (mut down, mut up) = (Uart::new(seed, "uart down"), Uart::new(seed, "uart up"));
     let (mut robots_lines, mut hosts_lines) = (Lines::new(), Lines::new());

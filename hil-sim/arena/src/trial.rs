@@ -6,7 +6,7 @@ use hil_sim::{
     AirSettings, Backend, Configuration, Layout, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
     ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, Verdict, world::World,
 };
-use protocol::frame::TeamKey;
+use protocol::frame::{TeamKey, TeamKeys};
 use protocol::link::overhear;
 use protocol::team::{Beacon, TeamMessage};
 use protocol::{Duration, RobotId, TeamId};
@@ -167,6 +167,7 @@ pub(crate) struct Game<'c, 'a> {
     defaults: DefaultWatch,
     beacons: Vec<(RobotId, Beacon)>,
     news: Vec<News>,
+    keys: TeamKeys,
 }
 
 impl<'c, 'a> Game<'c, 'a> {
@@ -191,6 +192,7 @@ impl<'c, 'a> Game<'c, 'a> {
             defaults: DefaultWatch::default(),
             beacons: Vec::new(),
             news: Vec::new(),
+            keys: TeamKey::ZERO.of_team(),
         })
     }
 
@@ -200,7 +202,7 @@ impl<'c, 'a> Game<'c, 'a> {
         self.beacons.clear();
         self.news.clear();
         for sent in &tick.sent {
-            let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO) else {
+            let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &self.keys) else {
                 continue;
             };
             self.backups.hear(tick.time, from, beacon.role);

@@ -1,4 +1,4 @@
-//! Does a virtual robot keep to its beat and survive whatever it is sent, with a clock of ours and with the system's?
+//! A virtual robot keeps its rate and survives whatever it is sent, with a clock of ours and with the system's.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +8,7 @@ use brain::BrainConfig;
 use casebase::CaseBase;
 use prost::Message as _;
 use protocol::frame::TeamKey;
-use protocol::host_link::HostLink;
+use protocol::host_link::{HostLink, Opened};
 use protocol::{Instant, RobotId, TeamId};
 use rules::{Colour, League};
 use ssl::simulation::{RobotControl, RobotControlResponse, RobotFeedback};
@@ -30,7 +30,7 @@ fn base() -> CaseBase<'static> {
 
 #[test]
 fn a_robot_nobody_speaks_to_commands_its_body_a_hundred_times_a_second_and_stands() {
-    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY);
+    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY.of_robot(id()));
     let (mut commands, mut frames) = (0, 0);
     while robot.poll_timeout() < Instant(1_000_000) {
         let now = robot.poll_timeout();
@@ -49,7 +49,7 @@ fn a_robot_nobody_speaks_to_commands_its_body_a_hundred_times_a_second_and_stand
 
 #[test]
 fn ticks_that_were_missed_are_over() {
-    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY);
+    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY.of_robot(id()));
     robot.handle_timeout(Instant(0));
     robot.handle_timeout(Instant(500_000));
     assert!(robot.poll_control().is_some());
@@ -58,7 +58,7 @@ fn ticks_that_were_missed_are_over() {
 
 #[test]
 fn random_datagrams_are_survived_and_counted() {
-    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY);
+    let mut robot = VirtualRobot::new(Instant(0), &config(), base(), KEY.of_robot(id()));
     let mut state = 3_u64;
     for n in 0..20_000_u64 {
         let mut bytes = [0; 160];
@@ -87,7 +87,7 @@ fn over_a_socket_it_is_heard_by_its_host_and_its_simulator_and_ends_when_asked()
     let (host, simulator) = (socket(), socket());
     let options = Options {
         brain: config(),
-        key: KEY,
+        keys: KEY.of_robot(id()),
         host: host.local_addr().unwrap(),
         simulator: simulator.local_addr().unwrap(),
     };
@@ -97,8 +97,8 @@ fn over_a_socket_it_is_heard_by_its_host_and_its_simulator_and_ends_when_asked()
         let mut link = HostLink::new(TeamId::of(Colour::Blue), KEY, 1);
         let mut bytes = [0; 1024];
         let (len, from) = host.recv_from(&mut bytes).unwrap();
-        assert_eq!(link.open(&bytes[..len]).unwrap().0, id());
-        assert_eq!(link.life(id()), Some(77));
+        assert!(matches!(link.open(Instant(0), &bytes[..len]), Ok(Opened::Stranger(..))));
+        assert_eq!(link.welcome(id()).map(|welcome| welcome.life), Some(77));
         let began = Clock::now();
         for _ in 0..20 {
             let (len, sender) = simulator.recv_from(&mut bytes).unwrap();

@@ -76,11 +76,12 @@ pub struct World {
     highest_robot: f32,
 }
 
-/// Somebody pulls the ball.
+/// The ball is pulled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct BallDrag {
     to: Point<Field>,
-    until: u64,
+    /// The step in which it ends; `None`: it lasts until it is ended.
+    until: Option<u64>,
 }
 
 impl World {
@@ -154,6 +155,7 @@ impl World {
         if let Ok(place) = self.place_of(who) {
             let robot = &mut self.robots[place];
             robot.present = false;
+            robot.dragged = None;
             robot.leave_ball();
             robot.push(Vector::default(), 0.0);
             self.look_again();
@@ -194,16 +196,45 @@ impl World {
         self.look_again();
     }
 
-    /// Somebody pulls the ball there along the carpet, through what gives way, for [`DRAG_STEPS`] at most.
+    /// A hand pulls the ball there along the carpet, through what gives way, for [`DRAG_STEPS`] at most.
     pub fn drag_ball(&mut self, to: Point<Field>) {
-        self.ball_drag = Some(BallDrag { to, until: self.step + DRAG_STEPS });
+        self.ball_drag = Some(BallDrag { to, until: Some(self.step + DRAG_STEPS) });
     }
 
-    /// Somebody pulls a robot there, for [`DRAG_STEPS`] at most.
+    /// A force pulls the ball there along the carpet, and holds it there until [`World::let_go_ball`].
+    pub fn pull_ball(&mut self, to: Point<Field>) {
+        self.ball_drag = Some(BallDrag { to, until: None });
+    }
+
+    /// Where the ball is pulled to now.
+    pub fn ball_pulled_to(&self) -> Option<Point<Field>> {
+        self.ball_drag.map(|drag| drag.to)
+    }
+
+    /// Nothing pulls the ball any longer.
+    pub fn let_go_ball(&mut self) {
+        self.ball_drag = None;
+    }
+
+    /// A hand pulls a robot there, for [`DRAG_STEPS`] at most.
     pub fn drag_robot(&mut self, who: Who, to: Point<Field>, heading: Option<Angle>) {
-        let until = self.step + DRAG_STEPS;
+        let until = Some(self.step + DRAG_STEPS);
+        self.drag(who, Some(robot::Drag { to, heading, until }));
+    }
+
+    /// A force pulls a robot there, and holds it there until [`World::let_go_robot`].
+    pub fn pull_robot(&mut self, who: Who, to: Point<Field>, heading: Option<Angle>) {
+        self.drag(who, Some(robot::Drag { to, heading, until: None }));
+    }
+
+    /// Nothing pulls that robot any longer.
+    pub fn let_go_robot(&mut self, who: Who) {
+        self.drag(who, None);
+    }
+
+    fn drag(&mut self, who: Who, drag: Option<robot::Drag>) {
         if let Ok(place) = self.place_of(who) {
-            self.robots[place].dragged = Some(robot::Drag { to, heading, until });
+            self.robots[place].dragged = drag;
         }
     }
 
@@ -239,7 +270,7 @@ impl World {
         for robot in &mut self.robots {
             if robot.present {
                 robot.drive(now, &self.parameters.battery);
-                if robot.dragged.is_some_and(|drag| drag.until <= now) {
+                if robot.dragged.and_then(|drag| drag.until).is_some_and(|until| until <= now) {
                     robot.dragged = None;
                 }
             }
@@ -247,17 +278,17 @@ impl World {
         self.part_robots();
         self.kick();
         self.dribble();
-        self.pull_ball();
+        self.follow_drag();
         self.move_ball();
         self.look_into_mouths();
         self.ball_was = self.ball.position;
     }
 
-    fn pull_ball(&mut self) {
+    fn follow_drag(&mut self) {
         let Some(drag) = self.ball_drag else { return };
         let way = drag.to - self.ball.position;
         let arrived = way.dot(way) < ARRIVED * ARRIVED;
-        if arrived || drag.until <= self.step {
+        if drag.until.is_some_and(|until| arrived || until <= self.step) {
             self.ball_drag = None;
         }
         let velocity = if arrived { Vector::default() } else { (way * DRAG_RATE).clamped(DRAG_SPEED) };
@@ -326,7 +357,7 @@ pub const STEP: f32 = 0.001;
 pub const SLOTS: usize = 2 * RobotId::COUNT;
 /// Steps apart after which robot and ball, or two robots, touch anew.
 pub const TOUCH_GAP_STEPS: u64 = 50;
-/// Steps that somebody pulls at most: a message of the protocol lasts half a second.
+/// Steps that a hand pulls at most: it says where again long before.
 pub const DRAG_STEPS: u64 = 500;
 /// m before the goal line where goals begin to be in the way: a robot's radius and a step.
 const GOAL_ZONE: f32 = 0.15;

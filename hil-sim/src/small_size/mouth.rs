@@ -48,6 +48,7 @@ impl World {
             self.touch(i);
             let robot = &mut self.robots[i];
             robot.discharge(self.step, of.recharge, self.parameters.battery.kick);
+            robot.kicked = Some((self.step, chip));
             robot.velocity += velocity * (-self.parameters.ball.mass / robot.body.mass);
             self.events.push(Event::Kicked { robot: who, at, velocity, speed, chip });
         }

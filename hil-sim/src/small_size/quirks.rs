@@ -52,18 +52,41 @@ pub struct Quirks {
     pub drawn_goals: bool,
     /// The ball's model told on the wire, if it is not the physics' own.
     pub told_ball: Option<ToldBall>,
-    /// Robots' answers name every robot of the team that there ever was.
-    pub answers_for_all: bool,
+    /// Whose state a robots' answer tells.
+    pub feedback: Feedback,
+    /// A control message is answered even where nothing was refused.
+    pub answers_control: bool,
     /// Probability that a robot's answer is left out.
     pub answer_loss: f32,
     /// A command without a dribbler's speed stops the dribbler; else it goes on as before.
     pub dribbler_resets: bool,
+    /// A dribbler's speed is not looked at: above 0 it turns.
+    pub dribbler_switches: bool,
+    /// Robots obey velocities in their own frame alone.
+    pub local_velocity_only: bool,
+    /// A command without a velocity leaves the robot moving as it did; else it brakes.
+    pub keeps_moving: bool,
     /// Nothing but robots' specifications may be set.
     pub only_specs: bool,
     /// `teleport_safely` and `roll` are understood.
     pub safe_teleport: bool,
-    /// What error codes begin with.
-    pub prefix: &'static str,
+    /// A teleport may leave out one coordinate of two, a robot's specification what is to stay.
+    pub partial: bool,
+    /// A robot may be put far outside the hall: it is parked.
+    pub parks: bool,
+    /// Vision tells the ball's height, and its place as it is instead of where a camera would see it.
+    pub ball_height: bool,
+}
+
+/// Whose state a robots' answer tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feedback {
+    /// Every robot's of the team that is on the field.
+    Present,
+    /// Every robot's that was commanded in the message, also of those that were taken away.
+    Commanded,
+    /// The same, but robots that were taken away say nothing, and a message without any is not sent.
+    CommandedPresent,
 }
 
 /// A ball model as geometry packets tell it.
@@ -101,12 +124,18 @@ impl Profile {
             full_geometry: true,
             drawn_goals: false,
             told_ball: None,
-            answers_for_all: false,
+            feedback: Feedback::Present,
+            answers_control: true,
             answer_loss: 0.0,
             dribbler_resets: false,
+            dribbler_switches: false,
+            local_velocity_only: false,
+            keeps_moving: false,
             only_specs: false,
             safe_teleport: true,
-            prefix: "ONETWO",
+            partial: true,
+            parks: false,
+            ball_height: false,
         };
         match self {
             Self::Ours => ours,
@@ -117,10 +146,13 @@ impl Profile {
                 full_geometry: false,
                 drawn_goals: true,
                 told_ball: Some(ToldBall { slide: -14.0, roll: -0.7, switch: 0.7, hops: [0.6, 0.96, 0.42] }),
-                answers_for_all: true,
+                feedback: Feedback::Commanded,
+                dribbler_switches: true,
+                keeps_moving: true,
                 only_specs: true,
                 safe_teleport: false,
-                prefix: "GRSIM",
+                parks: true,
+                ball_height: true,
                 ..ours
             },
             Self::ErForce => Quirks {
@@ -134,10 +166,12 @@ impl Profile {
                     switch: 0.69,
                     hops: [0.715, 1.0, 0.566],
                 }),
-                answers_for_all: true,
+                feedback: Feedback::CommandedPresent,
+                answers_control: false,
                 answer_loss: 0.1,
                 dribbler_resets: true,
-                prefix: "ERFORCE",
+                local_velocity_only: true,
+                partial: false,
                 ..ours
             },
         }

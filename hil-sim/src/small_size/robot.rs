@@ -123,6 +123,8 @@ pub struct Robot {
     /// It goes straight on with this velocity as long as nothing changes.
     cruise: Option<Vector<Field>>,
     pub(super) charged_at: u64,
+    /// The step of its last kick, and whether that was a chip.
+    pub(super) kicked: Option<(u64, bool)>,
     pub(super) touched_at: Option<u64>,
     pub(super) dragged: Option<Drag>,
     pub(super) odometer: Odometer,
@@ -133,12 +135,13 @@ pub struct Robot {
     used: f32,
 }
 
-/// Somebody pulls the robot, through whatever stands in the way.
+/// The robot is pulled, through whatever stands in the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub to: Point<Field>,
     pub heading: Option<geometry::Angle>,
-    pub until: u64,
+    /// The step in which it ends; `None`: it lasts until it is ended.
+    pub until: Option<u64>,
 }
 
 /// Rim speeds, and the motion of the body that they mean.
@@ -182,6 +185,7 @@ impl Robot {
             settled: false,
             cruise: None,
             charged_at: 0,
+            kicked: None,
             touched_at: None,
             dragged: None,
             odometer: Odometer::default(),
@@ -272,6 +276,11 @@ impl Robot {
     /// The kicker has what it needs for a kick.
     pub fn charged(&self, now: u64) -> bool {
         now >= self.charged_at
+    }
+
+    /// The step of its last kick, and whether that was a chip.
+    pub fn kicked(&self) -> Option<(u64, bool)> {
+        self.kicked
     }
 
     /// It kicked at step `now`.

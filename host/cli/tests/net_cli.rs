@@ -1,12 +1,13 @@
 //! Do the built `onetwo simulate` and `onetwo control` do what their help says on a network? Real sockets on this machine, ports
 //! that the system chooses, addresses of one machine, so that no multicast is needed.
 
-use std::io::{BufRead, BufReader};
+mod running;
+
 use std::net::{SocketAddr, UdpSocket};
-use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
+
+use running::{PATIENCE, Running};
 
 use ssl::Message;
 use ssl::simulation::{
@@ -14,67 +15,6 @@ use ssl::simulation::{
 };
 use ssl::tracker::{TeamColor, TrackerWrapperPacket};
 use ssl::vision::WrapperPacket;
-
-/// Generous: a loaded machine is no failure.
-const PATIENCE: Duration = Duration::from_secs(30);
-
-/// A running verb; its words on stderr come line by line. Ended when dropped.
-struct Running {
-    process: Child,
-    lines: Receiver<(Duration, String)>,
-    heard: Vec<(Duration, String)>,
-}
-
-impl Running {
-    fn start(arguments: &[&str]) -> Self {
-        let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
-            .args(arguments)
-            .stderr(Stdio::piped())
-            .stdout(Stdio::null())
-            .spawn()
-            .expect("the program starts");
-        let (began, words) = (Instant::now(), process.stderr.take().expect("a pipe"));
-        let (send, lines) = channel();
-        thread::spawn(move || {
-            for line in BufReader::new(words).lines().map_while(Result::ok) {
-                if send.send((began.elapsed(), line)).is_err() {
-                    break;
-                }
-            }
-        });
-        Self { process, lines, heard: Vec::new() }
-    }
-
-    /// Waits for a line with these words.
-    fn says(&mut self, words: &str) -> (Duration, String) {
-        let until = Instant::now() + PATIENCE;
-        loop {
-            let left = until.saturating_duration_since(Instant::now());
-            match self.lines.recv_timeout(left) {
-                Ok(line) => {
-                    self.heard.push(line.clone());
-                    if line.1.contains(words) {
-                        return line;
-                    }
-                }
-                Err(error) => panic!("`{words}` is not said ({error}); said is: {:#?}", self.heard),
-            }
-        }
-    }
-
-    fn control_port(&mut self) -> u16 {
-        let (_, line) = self.says("control  ");
-        let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
-        address.parse::<SocketAddr>().expect("an address").port()
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
-    }
-}
 
 fn socket() -> UdpSocket {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
@@ -173,8 +113,16 @@ fn the_internal_referee_speaks_and_the_simulator_ends_in_order() {
 #[test]
 fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let (vision, referee) = (free(), free());
-    let arguments =
-        ["control", "--robots", "udp://127.0.0.1:9", "--tracker", "127.0.0.1:9", "--duration", "60"];
+    let arguments = [
+        "control",
+        "--robots",
+        "udp://127.0.0.1:9",
+        "--insecure-zero-key",
+        "--tracker",
+        "127.0.0.1:9",
+        "--duration",
+        "60",
+    ];
     let mut control =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee", &referee]].concat());
     let mut waits: Vec<String> = Vec::new();

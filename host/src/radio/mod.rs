@@ -16,6 +16,7 @@
 mod picture;
 mod quality;
 mod tally;
+mod warning;
 
 use protocol::frame::{Audience, Frame, Refusal, TeamKey};
 use protocol::host::{Command, HostMessage, Telemetry};
@@ -25,10 +26,12 @@ use protocol::team::{Beacon, TeamMessage};
 use protocol::{Duration, Instant, RobotId, TeamId};
 
 use crate::world::World;
+use warning::Refusals;
 
 pub use picture::{PARTS_ROBOTS_MAX, Situation};
 pub use quality::{Quality, table};
 pub use tally::Tally;
+pub use warning::{RadioWarning, Why};
 
 /// Not more than one picture in this time: 100 Hz, as fast as the league's cameras and the best published radios.
 pub const PERIOD_MIN: Duration = Duration::millis(10);
@@ -117,6 +120,7 @@ pub struct Radio {
     robots: [Quality; RobotId::COUNT],
     out: heapless::Deque<(To, Packet), OUT_MAX>,
     dropped: u32,
+    refusals: Refusals,
 }
 
 /// What the strategy said last.
@@ -144,6 +148,7 @@ impl Radio {
             robots: Default::default(),
             out: heapless::Deque::new(),
             dropped: 0,
+            refusals: Refusals::default(),
         }
     }
 
@@ -169,6 +174,12 @@ impl Radio {
         }
     }
 
+    /// The next snapshot may go out at `now`, whatever the rate: it carries HALT. Once per HALT, so that the rate holds on
+    /// average.
+    pub fn hasten(&mut self, now: Instant) {
+        self.free = self.free.min(now);
+    }
+
     /// When to call [`Radio::handle_timeout`]; `None` while there is nothing to say.
     pub fn poll_timeout(&self) -> Option<Instant> {
         let latest = self.latest.as_ref()?;
@@ -186,16 +197,25 @@ impl Radio {
 
     /// A packet came from a robot's side: what it says, or why it is not believed (counted).
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
-        let (robot, message) = match self.link.open(now, packet)? {
+        let frame = Frame::parse(packet, self.settings.team);
+        let opened = self.link.open(now, packet);
+        if let Err(refusal) = opened {
+            let sender = frame.ok().and_then(|frame| frame.sender.robot());
+            self.refusals.refuse(now, refusal, sender);
+        }
+        let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
-            Opened::Stranger(robot) => {
+            Opened::Stranger(robot, telemetry) => {
+                self.refusals.tell(now, robot, &telemetry);
                 if self.robots[robot.index()].wants_welcome(now, STRANGER_EVERY) {
                     self.welcome(now, robot);
                 }
-                return Err(Refusal::Stranger { epoch: self.link.welcome(robot).map_or(0, |known| known.life) });
+                return Err(Refusal::Stranger {
+                    epoch: self.link.welcome(robot).map_or(0, |known| known.life),
+                });
             }
         };
-        let Ok(frame) = Frame::parse(packet, self.settings.team) else { return Err(Refusal::Payload) };
+        let frame = frame?;
         self.robots[robot.index()].hear(now, packet.len(), frame.epoch, frame.counter);
         match message {
             TeamMessage::Beacon(beacon) => {
@@ -208,6 +228,7 @@ impl Radio {
             }
             TeamMessage::Telemetry(telemetry) => {
                 let departed = self.departures[usize::from(telemetry.picture)];
+                self.refusals.tell(now, robot, &telemetry);
                 self.robots[robot.index()].tell(now, telemetry, departed);
                 Ok(Heard::Telemetry(robot, telemetry))
             }
@@ -237,9 +258,9 @@ impl Radio {
         kinds.iter().fold(0, |sum, kind| sum.saturating_add(refused[kind.kind()]))
     }
 
-    /// The link, to look at: why robots are not believed, and what they follow instead.
-    pub fn link(&self) -> &HostLink {
-        &self.link
+    /// What keeps robots and this host apart now, and what to do about it.
+    pub fn warnings(&self, now: Instant) -> impl Iterator<Item = RadioWarning> {
+        self.refusals.warnings(now, self.link.epoch())
     }
 
     /// Packets that nobody fetched in time.

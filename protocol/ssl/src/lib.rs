@@ -12,6 +12,7 @@
 //! | [`referee`], [`event`] | [`referee::Referee`] | UDP 224.5.23.1:10003 |
 //! | [`tracker`] | [`tracker::TrackerWrapperPacket`] | UDP 224.5.23.2:10010 |
 //! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
+//! | [`simulation`] | [`simulation::GrsimPacket`], [`simulation::RobotsStatus`] | UDP, grSim's own: 20011; 30011 blue, 30012 yellow |
 //! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007–10011, length-delimited |
 //! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
 //!
@@ -38,6 +39,7 @@
 //!
 //! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
 //! and each field says its own. The README has the traps of the league's programs and which test holds each.
+#![forbid(unsafe_code)]
 
 pub mod common;
 pub mod controller;

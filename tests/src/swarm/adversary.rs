@@ -2,14 +2,14 @@
 
 use geometry::GoalEnd;
 use hil_sim::Stream;
-use protocol::frame::{FRAME_LEN_MAX, Frame, Sender, TeamKey};
+use protocol::frame::{FRAME_LEN_MAX, Frame, Key, Sender};
 use protocol::host::{Command, Directive, Duty, HostMessage, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
 use protocol::lockstep::{AIR_IN_BYTES_MAX, AIR_IN_MAX};
 use protocol::quantized::{WirePoint, WirePose};
 use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, Role, Status, TeamMessage};
-use protocol::{CaseId, CycleId, RobotId, TeamId};
+use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::Phase;
 
 use super::honest::Sayings;
@@ -70,7 +70,7 @@ impl Adversary {
     /// Of another team, or of one who has not the key, or noise.
     fn foreign_packet(&mut self) -> Packet {
         let chance = &mut self.chance;
-        let key = TeamKey(std::array::from_fn(|_| chance.whole(0, 255) as u8));
+        let key = Key(std::array::from_fn(|_| chance.whole(0, 255) as u8));
         let team = if chance.chance(0.5) { TEAM } else { TeamId(2) };
         let epoch = if chance.chance(0.5) { u32::MAX } else { chance.whole(0, 20) };
         let sender = Sender::new(chance.whole(0, 16) as u8).unwrap_or(Sender::Host);
@@ -78,7 +78,7 @@ impl Adversary {
         let written = match (sender, chance.chance(0.5)) {
             (Sender::Host, true) => postcard::to_slice(&go_away(self.me), &mut payload),
             (Sender::Host, false) => {
-                let welcome = Welcome { to: self.me, life: FIRST_LIFE + chance.whole(0, 4) };
+                let welcome = Welcome { to: self.me, life: FIRST_LIFE + chance.whole(0, 4), offset: 0 };
                 postcard::to_slice(&HostMessage::Welcome(welcome), &mut payload)
             }
             (Sender::Robot(robot), _) => {
@@ -86,7 +86,8 @@ impl Adversary {
             }
         };
         let length = written.map_or(0, |bytes| bytes.len());
-        let frame = Frame { team, sender, epoch, counter: u32::MAX, payload: &payload[..length] };
+        let (audience, counter, payload) = (None, u32::MAX, &payload[..length]);
+        let frame = Frame { team, sender, audience, epoch, counter, payload };
         let mut packet = Packet::new();
         let _fits = packet.resize_default(FRAME_LEN_MAX);
         let length = frame.emit(&key, &mut packet).unwrap_or(0);
@@ -98,16 +99,16 @@ impl Adversary {
 /// What the team said in an earlier match, in earlier lives: with the team's own key.
 pub fn earlier_match(plan: &Plan) -> Vec<Packet> {
     let mut chance = Stream::new(plan.seed, "swarm earlier match");
-    let mut recorded = Vec::new();
+    let (mut recorded, now) = (Vec::new(), Instant(0));
     for life in 1..FIRST_LIFE {
         let mut host = HostLink::new(TEAM, plan.key, life);
         // More robots than play today.
         for robot in [0, 1, 2, 3, 5, 9].into_iter().filter_map(RobotId::new) {
-            recorded.push(host.seal(&HostMessage::Welcome(Welcome { to: robot, life })));
-            let mut link = Link::new(TEAM, robot, plan.key, life);
+            recorded.push(host.seal(now, &HostMessage::Welcome(Welcome { to: robot, life, offset: 0 })));
+            let mut link = Link::new(TEAM, robot, plan.key.of_robot(robot), life);
             for _ in 0..6 {
                 recorded.push(link.seal(&TeamMessage::Beacon(boast(robot, &mut chance))));
-                recorded.push(host.seal(&go_away(robot)));
+                recorded.push(host.seal(now, &go_away(robot)));
             }
         }
     }

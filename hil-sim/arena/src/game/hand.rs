@@ -1,7 +1,7 @@
 //! What may somebody change in a match under way? Ball and robots, the referee's word, robots' computers, the air. A match that nobody
 //! touches is the same to the bit; one that somebody did touch is not to be had again from its seed.
 
-use geometry::{Field, Point, Pose};
+use geometry::{Field, Point, Pose, Vector};
 use hil_sim::Backend;
 use hil_sim::small_size::Ball;
 use hil_sim::small_size::referee::{Card, Restart};
@@ -25,6 +25,12 @@ impl<'a> Game<'a> {
         } else {
             self.world.drag_ball(to);
         }
+    }
+
+    /// The ball leaves with this velocity, m/s, sliding, as kicked.
+    pub fn kick_ball(&mut self, velocity: Vector<Field>) {
+        let ball = Ball { velocity, ..self.world.ball };
+        self.world.put_ball(ball);
     }
 
     /// The ball is there at once, at rest or rolling; robots in its way are moved aside.

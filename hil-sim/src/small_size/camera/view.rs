@@ -1,7 +1,7 @@
 //! What does one camera see? Robots and balls in its rectangle of the field, blurred, missed, hidden; mm and rad on the wire.
 //!
 //! The camera looks straight down. A ball above the carpet is told where the line from the camera through it meets the ground,
-//! as vision, which knows no heights, does; a robot's cover height is known and its place is told as it is. A robot hides the
+//! as vision, which knows no heights, does (but where manners tell heights); a robot's cover height is known and its place is told as it is. A robot hides the
 //! ball where it stands in that line.
 
 use geometry::{Field, Point, Vector, math};
@@ -152,7 +152,8 @@ impl View {
 
     fn ball(&mut self, world: &World, settings: &CameraSettings) -> Option<DetectionBall> {
         let (ball, radius) = (&world.ball, world.parameters().ball.radius);
-        let seen = self.apparent(ball);
+        let told_height = settings.quirks.ball_height;
+        let seen = if told_height { ball.position } else { self.apparent(ball) };
         if !self.sees(seen) || self.chance.chance(settings.noise.missing_ball) {
             return None;
         }
@@ -169,7 +170,8 @@ impl View {
             area: (settings.quirks.profile != Profile::Grsim).then_some(area as u32),
             x: p.x() * 1000.0,
             y: p.y() * 1000.0,
-            z: None,
+            // Of its centre.
+            z: told_height.then_some((ball.height + radius) * 1000.0),
             pixel_x,
             pixel_y,
         })

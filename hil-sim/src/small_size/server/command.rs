@@ -6,6 +6,7 @@ use rules::Colour;
 use ssl::simulation::{MoveCommand, RobotCommand, RobotControl, RobotControlResponse, RobotFeedback};
 
 use super::{Refusal, Server};
+use crate::small_size::quirks::Feedback;
 use crate::small_size::{Drive, Kick, Order};
 
 impl Server {
@@ -24,19 +25,26 @@ impl Server {
             }
             self.command(Who { colour, id }, command, &mut refused);
         }
-        RobotControlResponse { errors: self.told(&refused), feedback: self.feedback(colour) }
+        RobotControlResponse { errors: self.told(&refused), feedback: self.feedback(colour, &commanded) }
     }
 
     fn command(&mut self, who: Who, command: &RobotCommand, refused: &mut Vec<Refusal>) {
+        let quirks = self.cameras.settings().quirks;
+        let form = command.move_command.and_then(|wanted| wanted.command);
+        let unknown_form = quirks.local_velocity_only
+            && matches!(form, Some(MoveCommand::WheelVelocity(_) | MoveCommand::GlobalVelocity(_)));
+        if unknown_form {
+            refused.push(Refusal::VelocityForm(command.id));
+        }
         let Some(robot) = self.world.robot(who).filter(|robot| robot.present) else {
             refused.push(Refusal::UnknownRobot(command.id));
             return;
         };
-        let before = robot.order().dribbler;
+        let before = *robot.order();
         let kick = kick(command, robot.kick_limits, refused);
         let dribbler = match command.dribbler_speed {
-            None if self.cameras.settings().quirks.dribbler_resets => 0.0,
-            None => before,
+            None if quirks.dribbler_resets => 0.0,
+            None => before.dribbler,
             Some(rpm) if !rpm.is_finite() => {
                 refused.push(Refusal::NotANumber("dribbler_speed"));
                 0.0
@@ -45,9 +53,23 @@ impl Server {
                 refused.push(Refusal::DribblerBackwards(command.id));
                 0.0
             }
+            Some(rpm) if quirks.dribbler_switches => f32::from(u8::from(rpm > 0.0)),
             Some(rpm) => (rpm / self.world.parameters().dribbler.full_rpm).min(1.0),
         };
-        let order = Order { drive: drive(command, refused), kick, dribbler, discharge: false };
+        let drive = match command.move_command.map(|wanted| wanted.command) {
+            None if quirks.keeps_moving => before.drive,
+            Some(None) if quirks.keeps_moving => {
+                refused.push(Refusal::EmptyMove(command.id));
+                before.drive
+            }
+            _ if unknown_form => Drive::Brake,
+            _ => drive(command, refused),
+        };
+        self.send_order(who, Order { drive, kick, dribbler, discharge: false });
+    }
+
+    /// An order goes on its way, or is lost on it.
+    pub(super) fn send_order(&mut self, who: Who, order: Order) {
         if self.chance.chance(self.radio.command_loss) {
             self.counts.lost += 1;
         } else {
@@ -55,13 +77,23 @@ impl Server {
         }
     }
 
-    /// What the team's robots tell of themselves.
-    pub(super) fn feedback(&mut self, colour: Colour) -> Vec<RobotFeedback> {
-        let all = self.cameras.settings().quirks.answers_for_all;
+    /// What the team's robots tell of themselves, after a message that commanded these.
+    pub(super) fn feedback(
+        &mut self,
+        colour: Colour,
+        commanded: &[bool; RobotId::COUNT],
+    ) -> Vec<RobotFeedback> {
+        let whose = self.cameras.settings().quirks.feedback;
         let loss = self.radio.answer_loss;
         let mut feedback = Vec::new();
-        for robot in self.world.robots() {
-            if robot.who.colour != colour || !(robot.present || all) || self.chance.chance(loss) {
+        for robot in self.world.robots().iter().filter(|robot| robot.who.colour == colour) {
+            let asked = commanded[robot.who.id.index()];
+            let answers = match whose {
+                Feedback::Present => robot.present,
+                Feedback::Commanded => asked,
+                Feedback::CommandedPresent => asked && robot.present,
+            };
+            if !answers || self.chance.chance(loss) {
                 continue;
             }
             feedback.push(RobotFeedback {

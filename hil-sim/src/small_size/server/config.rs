@@ -22,13 +22,14 @@ impl Server {
             }
         }
         if only_specs {
+            // One error for all of them, as grSim has it.
             let others = [
                 (config.geometry.is_some(), "geometry"),
                 (config.realism_config.is_some(), "realism_config"),
                 (config.vision_port.is_some(), "vision_port"),
             ];
             refused.extend(
-                others.into_iter().filter(|(set, _)| *set).map(|(_, what)| Refusal::MannersConfig(what)),
+                others.into_iter().find(|(set, _)| *set).map(|(_, what)| Refusal::MannersConfig(what)),
             );
             return;
         }
@@ -47,6 +48,11 @@ impl Server {
 
     fn specify(&mut self, specs: &RobotSpecs, refused: &mut Vec<Refusal>) -> Result<(), Refusal> {
         let who = who(&specs.id)?;
+        if !self.cameras.settings().quirks.partial
+            && let Some(lack) = lack(specs)
+        {
+            return Err(Refusal::SpecsLack(lack));
+        }
         if self.world.robot(who).is_none() {
             // Known from now on, but not on the field until it is teleported there.
             self.world.put(who, geometry::Pose::default());
@@ -96,7 +102,12 @@ impl Server {
             let mut ball = self.world.parameters().ball;
             ball.radius = geometry.field.ball_radius.map_or(ball.radius, |mm| mm / 1000.0);
             match ball_of(models, ball) {
-                Ok(ball) => self.world.set_ball_parameters(ball),
+                Ok(ball) => {
+                    self.world.set_ball_parameters(ball);
+                    let switch = models.straight_two_phase.map(|flat| flat.k_switch);
+                    let other = switch.filter(|switch| (switch - SOLID).abs() > SWITCH_TOLERANCE);
+                    refused.extend(other.map(Refusal::BallSwitch));
+                }
                 Err(why) => refused.push(Refusal::BallModel(why)),
             }
         }
@@ -169,6 +180,29 @@ impl Server {
         refused.extend(wanted.map(|(_, what)| Refusal::Unsupported(what)));
         Ok(())
     }
+}
+
+/// What a specification lacks for a simulator that takes whole ones alone.
+fn lack(specs: &RobotSpecs) -> Option<&'static str> {
+    let limits = specs.limits.unwrap_or_default();
+    let custom = specs
+        .custom
+        .iter()
+        .find_map(|custom| custom_of::<RobotSpecErForce>(custom, "RobotSpecErForce").ok())
+        .unwrap_or_default();
+    let needed = [
+        (specs.mass, "mass"),
+        (specs.center_to_dribbler, "center_to_dribbler"),
+        (limits.acc_speedup_absolute_max, "limits.acc_speedup_absolute_max"),
+        (limits.acc_speedup_angular_max, "limits.acc_speedup_angular_max"),
+        (limits.acc_brake_absolute_max, "limits.acc_brake_absolute_max"),
+        (limits.acc_brake_angular_max, "limits.acc_brake_angular_max"),
+        (limits.vel_absolute_max, "limits.vel_absolute_max"),
+        (limits.vel_angular_max, "limits.vel_angular_max"),
+        (custom.shoot_radius, "custom RobotSpecErForce.shoot_radius"),
+        (custom.dribbler_width, "custom RobotSpecErForce.dribbler_width"),
+    ];
+    needed.into_iter().find(|(value, _)| value.is_none()).map(|(_, name)| name)
 }
 
 fn set(place: &mut f32, value: Option<f32>) {
@@ -260,5 +294,9 @@ fn custom_of<T: Message + Default>(custom: &Any, name: &str) -> Result<T, Refusa
     T::decode(custom.value.as_deref().unwrap_or_default()).map_err(|_| Refusal::BrokenCustom(url))
 }
 
+/// A solid ball rolls from this share of a kick's speed on.
+const SOLID: f64 = 5.0 / 7.0;
+/// And a model that says so on the wire may have rounded it.
+const SWITCH_TOLERANCE: f64 = 1e-3;
 /// s: a command that comes later is none.
 const COMMAND_DELAY_MAX: f32 = 1.0;

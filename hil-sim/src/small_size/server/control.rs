@@ -27,7 +27,7 @@ impl Server {
 
     fn control(&mut self, control: &SimulatorControl, refused: &mut Vec<Refusal>) {
         for teleport in &control.teleport_robot {
-            if let Err(refusal) = self.teleport_robot(teleport) {
+            if let Err(refusal) = self.teleport_robot(teleport, refused) {
                 refused.push(refusal);
             }
         }
@@ -44,86 +44,137 @@ impl Server {
         }
     }
 
-    fn teleport_ball(&mut self, asked: &TeleportBall, refused: &mut Vec<Refusal>) {
+    pub(super) fn teleport_ball(&mut self, asked: &TeleportBall, refused: &mut Vec<Refusal>) {
+        let quirks = self.cameras.settings().quirks;
         let numbers = [asked.x, asked.y, asked.z, asked.vx, asked.vy, asked.vz];
         if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
             refused.push(Refusal::NotANumber("teleport_ball"));
             return;
         }
+        let by_force = asked.by_force.unwrap_or(false);
+        if !quirks.partial
+            && let Some(refusal) = partial_ball(asked)
+        {
+            refused.push(refusal);
+            return;
+        }
         let before = self.world.ball;
-        let to = Point::new(asked.x.unwrap_or(before.position.x()), asked.y.unwrap_or(before.position.y()));
+        let here = self.world.ball_pulled_to().filter(|_| by_force).unwrap_or(before.position);
+        let to = Point::new(asked.x.unwrap_or(here.x()), asked.y.unwrap_or(here.y()));
         let height = asked.z.unwrap_or(before.height);
         if !self.in_hall(to) || !(0.0..=HALL_HEIGHT).contains(&height) {
             refused.push(Refusal::OutsideHall("teleport_ball"));
             return;
         }
-        let known = self.cameras.settings().quirks.safe_teleport;
-        if asked.by_force.unwrap_or(false) {
-            self.world.drag_ball(to);
+        if by_force {
+            if asked.z.is_some_and(|z| z > 0.0) {
+                refused.push(Refusal::Unsupported("teleport_ball.z with by_force"));
+            }
+            self.world.pull_ball(to);
             return;
         }
-        let velocity =
-            Vector::new(asked.vx.unwrap_or(before.velocity.x()), asked.vy.unwrap_or(before.velocity.y()))
-                .clamped(BALL_SPEED_MAX);
+        self.world.let_go_ball();
+        let flat =
+            Vector::new(asked.vx.unwrap_or(before.velocity.x()), asked.vy.unwrap_or(before.velocity.y()));
+        let velocity = flat.clamped(BALL_SPEED_MAX);
         let climb = asked.vz.unwrap_or(before.climb).clamp(-BALL_SPEED_MAX, BALL_SPEED_MAX);
-        let roll = asked.roll.unwrap_or(false);
-        if roll && !known {
-            refused.push(Refusal::MannersTeleport("teleport_ball.roll"));
+        for (what, asked) in
+            [("teleport_ball.vx, vy", flat.norm()), ("teleport_ball.vz", asked.vz.unwrap_or(0.0).abs())]
+        {
+            if asked > BALL_SPEED_MAX {
+                refused.push(Refusal::TooFast { what, asked, most: BALL_SPEED_MAX });
+            }
+        }
+        // A simulator that cannot do these says so even where they are false.
+        if !quirks.safe_teleport {
+            refused.extend(asked.teleport_safely.map(|_| Refusal::MannersSafely));
+            refused.extend(asked.roll.map(|_| Refusal::MannersRoll));
         }
         let moved = asked.vx.is_some() || asked.vy.is_some();
-        let spin = match (roll && known, moved) {
+        let placed = asked.x.is_some() || asked.y.is_some() || asked.z.is_some();
+        let roll = asked.roll.unwrap_or(false) && quirks.safe_teleport;
+        let spin = match (roll, moved) {
             (true, _) => velocity,
             (false, true) => Vector::default(),
             (false, false) => before.spin,
         };
-        self.world.put_ball(Ball { position: to, height, velocity, climb, spin, hops: 0 });
-        if asked.teleport_safely.unwrap_or(false) {
-            if known {
-                self.world.make_room_for_ball();
-            } else {
-                refused.push(Refusal::MannersTeleport("teleport_ball.teleport_safely"));
-            }
+        // A message that says nothing ends a pull and moves nothing.
+        if moved || placed || roll || asked.vz.is_some() {
+            self.world.put_ball(Ball { position: to, height, velocity, climb, spin, hops: 0 });
+        }
+        if asked.teleport_safely.unwrap_or(false) && quirks.safe_teleport {
+            self.world.make_room_for_ball();
         }
     }
 
-    fn teleport_robot(&mut self, asked: &TeleportRobot) -> Result<(), Refusal> {
+    pub(super) fn teleport_robot(
+        &mut self,
+        asked: &TeleportRobot,
+        refused: &mut Vec<Refusal>,
+    ) -> Result<(), Refusal> {
         let who = who(&asked.id)?;
+        let id = u32::from(who.id.number());
+        let quirks = self.cameras.settings().quirks;
         let numbers = [asked.x, asked.y, asked.orientation, asked.v_x, asked.v_y, asked.v_angular];
         if numbers.into_iter().flatten().any(|number| !number.is_finite()) {
             return Err(Refusal::NotANumber("teleport_robot"));
         }
         if asked.present == Some(false) {
+            self.parked.remove(&who);
             self.world.remove(who);
             return Ok(());
         }
-        let known =
-            self.world.robot(who).map(|robot| (robot.present, robot.pose, robot.velocity, robot.turning));
-        let (present, pose, velocity, turning) = known.unwrap_or_default();
+        let known = self.world.robot(who).map(|robot| (robot.present, robot.pose));
+        let (present, pose) = known.unwrap_or_default();
+        let present = present || self.parked.contains(&who);
         if !present && asked.present != Some(true) {
-            return Err(Refusal::UnknownRobot(u32::from(who.id.number())));
+            return Err(Refusal::UnknownRobot(id));
         }
+        if !quirks.partial {
+            whole_robot(asked, present, known.is_some())?;
+        }
+        let by_force = asked.by_force.unwrap_or(false);
         let to = Pose {
             position: Point::new(asked.x.unwrap_or(pose.position.x()), asked.y.unwrap_or(pose.position.y())),
             heading: asked.orientation.map_or(pose.heading, Angle::new),
         };
         if !self.in_hall(to.position) {
-            return Err(Refusal::OutsideHall("teleport_robot"));
-        }
-        if present && asked.by_force.unwrap_or(false) {
-            self.world.drag_robot(who, to.position, asked.orientation.map(Angle::new));
+            if !quirks.parks {
+                return Err(Refusal::OutsideHall("teleport_robot"));
+            }
+            // So far away nothing sees it and nothing meets it: it is off the carpet until it is put on it again.
+            if known.is_some() {
+                self.world.remove(who);
+                self.parked.insert(who);
+            }
             return Ok(());
         }
+        self.parked.remove(&who);
+        if present && by_force {
+            self.world.pull_robot(who, to.position, asked.orientation.map(Angle::new));
+            return Ok(());
+        }
+        self.world.let_go_robot(who);
         let moves = asked.v_x.is_some() || asked.v_y.is_some() || asked.v_angular.is_some();
-        let placed = asked.x.is_some() || asked.y.is_some() || asked.orientation.is_some() || !present;
+        let here = self.world.robot(who).is_some_and(|robot| robot.present);
+        let placed = asked.x.is_some() || asked.y.is_some() || asked.orientation.is_some() || !here;
+        if !placed && !moves {
+            return Ok(());
+        }
         // A robot put somewhere stands there, as the protocol's defaults of 0 say, unless it is told to move.
-        let (velocity, turning) = if placed || moves {
-            (Vector::new(asked.v_x.unwrap_or(0.0), asked.v_y.unwrap_or(0.0)), asked.v_angular.unwrap_or(0.0))
-        } else {
-            (velocity, turning)
-        };
+        let wanted = Vector::new(asked.v_x.unwrap_or(0.0), asked.v_y.unwrap_or(0.0));
+        let turning = asked.v_angular.unwrap_or(0.0);
         let robot = self.world.put(who, to);
         let (speed, turn) = (robot.limits().speed, robot.limits().turn_speed);
-        robot.push(velocity.clamped(speed), turning.clamp(-turn, turn));
+        robot.push(wanted.clamped(speed), turning.clamp(-turn, turn));
+        for (what, asked, most) in [
+            ("teleport_robot.v_x, v_y", wanted.norm(), speed),
+            ("teleport_robot.v_angular", turning.abs(), turn),
+        ] {
+            if asked > most {
+                refused.push(Refusal::TooFast { what, asked, most });
+            }
+        }
         Ok(())
     }
 
@@ -131,6 +182,42 @@ impl Server {
         let [x, y] = self.world.pitch().corner();
         p.x().abs() <= x + HALL && p.y().abs() <= y + HALL
     }
+}
+
+/// What a simulator that takes whole coordinates alone refuses of a ball's teleport.
+fn partial_ball(asked: &TeleportBall) -> Option<Refusal> {
+    let place = [asked.x.is_some(), asked.y.is_some()];
+    if asked.teleport_safely.unwrap_or(false) && place != [true, true] {
+        return Some(Refusal::PartialSafely);
+    }
+    if place[0] != place[1] || asked.z.is_some() && !place[0] {
+        return Some(Refusal::Partial("teleport_ball"));
+    }
+    if asked.vx.is_some() && asked.vy.is_none() {
+        return Some(Refusal::Partial("teleport_ball"));
+    }
+    let moves = [asked.vx, asked.vy, asked.vz].into_iter().flatten().any(|v| v != 0.0);
+    let force = asked.by_force.unwrap_or(false) && asked.vx.is_some() && moves;
+    force.then_some(Refusal::VelocityForce("teleport_ball"))
+}
+
+/// The same of a robot's teleport; `present`: it is on the field, `known`: it was there once, or was specified.
+fn whole_robot(asked: &TeleportRobot, present: bool, known: bool) -> Result<(), Refusal> {
+    let id = asked.id.id.unwrap_or_default();
+    if !present && !known {
+        return Err(Refusal::Unspecified(id));
+    }
+    if !present && (asked.x.is_none() || asked.y.is_none()) {
+        return Err(Refusal::NoPlace(id));
+    }
+    let by_force = asked.by_force.unwrap_or(false);
+    let place = [asked.x.is_some(), asked.y.is_some()];
+    let turned = asked.orientation.is_some() || by_force || !place[0];
+    if place[0] != place[1] || !turned || asked.v_x.is_some() != asked.v_y.is_some() {
+        return Err(Refusal::Partial("teleport_robot"));
+    }
+    let moves = [asked.v_x, asked.v_y, asked.v_angular].into_iter().flatten().any(|v| v != 0.0);
+    if by_force && moves { Err(Refusal::VelocityForce("teleport_robot")) } else { Ok(()) }
 }
 
 /// A robot as the protocol names it.

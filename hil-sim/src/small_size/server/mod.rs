@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | 10300 | `SimulatorCommand` | `SimulatorResponse` with what could not be done |
 //! | 10301 blue, 10302 yellow | `RobotControl` | `RobotControlResponse`: the same, and each robot's light barrier |
+//! | 20011, manners of grSim alone | `grSim_Packet` | `Robots_Status` to 30011 (blue) and 30012 (yellow): what changed |
 //! | vision, multicast | – | `SSL_WrapperPacket` |
 //!
 //! No socket and no clock here: whoever has them calls [`Server::handle`] with what came, [`Server::advance`] with the time,
@@ -12,9 +13,10 @@
 mod command;
 mod config;
 mod control;
+mod legacy;
 mod refusal;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::net::SocketAddr;
 
 use geometry::Pose;
@@ -27,7 +29,7 @@ use ssl::simulation::{
 };
 
 use super::camera::Cameras;
-use super::quirks::Profile;
+use super::quirks::{Feedback, Profile};
 use super::{Order, Parameters, Who, World};
 use crate::rng::Stream;
 
@@ -68,6 +70,8 @@ pub enum Port {
     Simulator,
     /// 10301 for blue, 10302 for yellow.
     Team(Colour),
+    /// 20011, of grSim's older protocol.
+    Legacy,
 }
 
 impl Port {
@@ -77,6 +81,7 @@ impl Port {
             Self::Simulator => 10300,
             Self::Team(Colour::Blue) => 10301,
             Self::Team(Colour::Yellow) => 10302,
+            Self::Legacy => 20011,
         }
     }
 }
@@ -102,6 +107,8 @@ pub enum Destination {
         /// To there.
         to: SocketAddr,
     },
+    /// To the machine that commanded last, at grSim's port for robots' states.
+    Status(SocketAddr),
 }
 
 /// What came and what became of it.
@@ -136,6 +143,10 @@ pub struct Server {
     owed: f32,
     /// Orders on their way, by the step they take effect in.
     coming: VecDeque<(u64, Who, Order)>,
+    /// Robots that were put far outside the hall: off the carpet, but not taken away.
+    parked: BTreeSet<Who>,
+    /// Robots' states as they were last told in grSim's older protocol.
+    told: legacy::Told,
     out: VecDeque<Transmit>,
     counts: Counts,
 }
@@ -175,6 +186,8 @@ impl Server {
             last: None,
             owed: 0.0,
             coming: VecDeque::new(),
+            parked: BTreeSet::new(),
+            told: legacy::Told::default(),
             out: VecDeque::new(),
             counts: Counts::default(),
         }
@@ -207,7 +220,7 @@ impl Server {
 
     /// A datagram came to `port`.
     pub fn handle(&mut self, port: Port, from: SocketAddr, bytes: &[u8]) {
-        let reply = match port {
+        match port {
             Port::Simulator => {
                 let errors = match SimulatorCommand::decode(bytes) {
                     Ok(command) => {
@@ -216,7 +229,10 @@ impl Server {
                     }
                     Err(_) => self.undecodable(),
                 };
-                SimulatorResponse { errors: self.told(&errors) }.encode_to_vec()
+                let errors = self.told(&errors);
+                if !errors.is_empty() || self.cameras.settings().quirks.answers_control {
+                    self.reply(port, from, SimulatorResponse { errors }.encode_to_vec());
+                }
             }
             Port::Team(colour) => {
                 let answer = if let Ok(control) = RobotControl::decode(bytes) {
@@ -226,10 +242,31 @@ impl Server {
                     let errors = self.undecodable();
                     RobotControlResponse { errors: self.told(&errors), feedback: Vec::new() }
                 };
-                answer.encode_to_vec()
+                self.answer(port, from, answer);
             }
-        };
-        self.out.push_back(Transmit { to: Destination::Reply { from: port, to: from }, bytes: reply });
+            Port::Legacy => self.legacy(from, bytes),
+        }
+    }
+
+    fn answer(&mut self, port: Port, from: SocketAddr, answer: RobotControlResponse) {
+        if self.cameras.settings().quirks.feedback != Feedback::CommandedPresent {
+            self.reply(port, from, answer.encode_to_vec());
+            return;
+        }
+        // ER-Force's simulator sends errors and feedback apart, and neither where there is none.
+        let RobotControlResponse { errors, feedback } = answer;
+        if !errors.is_empty() {
+            let errors = RobotControlResponse { errors, feedback: Vec::new() };
+            self.reply(port, from, errors.encode_to_vec());
+        }
+        if !feedback.is_empty() {
+            let feedback = RobotControlResponse { errors: Vec::new(), feedback };
+            self.reply(port, from, feedback.encode_to_vec());
+        }
+    }
+
+    fn reply(&mut self, from: Port, to: SocketAddr, bytes: Vec<u8>) {
+        self.out.push_back(Transmit { to: Destination::Reply { from, to }, bytes });
     }
 
     /// Time has come to `now`: the world follows at its pace, and vision packets fall due.
@@ -271,20 +308,30 @@ impl Server {
         self.out.pop_front()
     }
 
-    /// The protocol's synchronous mode: does what is asked, simulates `sim_step` seconds, gives what cameras then see.
-    pub fn synchronous(&mut self, colour: Colour, request: &SimulationSyncRequest) -> SimulationSyncResponse {
+    /// The protocol's synchronous mode: does what is asked, simulates `sim_step` seconds (none: no time passes), gives what
+    /// cameras then see. After every step `each` gets the world, for a referee.
+    pub fn synchronous(
+        &mut self,
+        colour: Colour,
+        request: &SimulationSyncRequest,
+        mut each: impl FnMut(&mut World),
+    ) -> SimulationSyncResponse {
         let mut refused = match &request.simulator_command {
             Some(command) => self.steer(command),
             None => Vec::new(),
         };
-        let mut response = match &request.robot_control {
-            Some(control) => self.lead(colour, control),
-            None => RobotControlResponse::default(),
-        };
+        let mut commanded = [false; RobotId::COUNT];
+        let mut response = RobotControlResponse::default();
+        if let Some(control) = &request.robot_control {
+            let ids = control.robot_commands.iter().map(|command| command.id as usize);
+            ids.filter_map(|id| commanded.get_mut(id).map(|asked| *asked = true)).for_each(drop);
+            response.errors = self.lead(colour, control).errors;
+        }
         let step = request.sim_step.unwrap_or(0.0);
-        if step > 0.0 && step <= SYNC_MAX {
+        if (0.0..=SYNC_MAX).contains(&step) {
             for _ in 0..(step * 1000.0 + 0.5) as u32 {
                 self.step();
+                each(&mut self.world);
             }
             // Vision goes into the answer instead.
             self.out.retain(|transmit| !matches!(transmit.to, Destination::Vision(_)));
@@ -292,7 +339,7 @@ impl Server {
             refused.push(Refusal::SyncStep(step));
         }
         response.errors.extend(self.told(&refused));
-        response.feedback = self.feedback(colour);
+        response.feedback = self.feedback(colour, &commanded);
         SimulationSyncResponse {
             detection: self.cameras.snapshot(&self.world),
             robot_control_response: Some(response),
@@ -306,8 +353,8 @@ impl Server {
 
     fn told(&mut self, refusals: &[Refusal]) -> Vec<ssl::simulation::SimulatorError> {
         self.counts.refused += refusals.len() as u64;
-        let prefix = self.cameras.settings().quirks.prefix;
-        refusals.iter().map(|refusal| refusal.told(prefix)).collect()
+        let profile = self.profile;
+        refusals.iter().filter_map(|refusal| refusal.told(profile)).collect()
     }
 }
 

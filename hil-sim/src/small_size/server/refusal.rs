@@ -1,13 +1,14 @@
 //! What could the simulator not do, and how is that mended? Every error code of this simulator, one variant each.
 //!
-//! The protocol leaves codes to each simulator: ours are `ONETWO_…`. Under another's manners the prefix is theirs, and for what
-//! grSim refuses as a whole the code is its `GRSIM_UNSUPPORTED_CONFIG`; its other codes' names are ours.
+//! The protocol leaves codes to each simulator: ours are `ONETWO_…`. Under another's manners the codes are theirs, and what they
+//! have none for is not told, as they do not tell it. The messages are ours.
 
 use std::fmt;
 
 use ssl::simulation::SimulatorError;
 
 use crate::parameters::ParameterError;
+use crate::small_size::quirks::Profile;
 
 /// Why something was not done. Whatever else the message asked for was.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,10 @@ pub enum Refusal {
     Twice(u32),
     /// A command that does not say how to move; the robot brakes.
     MissingMove(u32),
+    /// A `move_command` that says nothing; the robot goes on as it did.
+    EmptyMove(u32),
+    /// A robot's velocity in a form that the simulator does not take; it brakes.
+    VelocityForm(u32),
     /// A number that is none; what it belongs to was left out.
     NotANumber(&'static str),
     /// A kick beyond the robot's strength; it will kick as hard as it can.
@@ -48,6 +53,27 @@ pub enum Refusal {
     DribblerBackwards(u32),
     /// A place beyond the hall's walls.
     OutsideHall(&'static str),
+    /// Something was put down faster than it can be; it got the greatest speed there is.
+    TooFast {
+        /// What.
+        what: &'static str,
+        /// m/s or rad/s, asked for.
+        asked: f32,
+        /// m/s or rad/s, possible.
+        most: f32,
+    },
+    /// One coordinate of two is missing; nothing was moved.
+    Partial(&'static str),
+    /// A safe teleport of the ball without both coordinates; nothing was moved.
+    PartialSafely,
+    /// A velocity with a pull by force; nothing was moved.
+    VelocityForce(&'static str),
+    /// A robot that is to be put on the field has never been specified.
+    Unspecified(u32),
+    /// A robot that is to be put on the field has no place given.
+    NoPlace(u32),
+    /// A robot's specification lacks something that this simulator needs.
+    SpecsLack(&'static str),
     /// A simulation speed that is negative or beyond [`super::SPEED_MAX`].
     Pace(f32),
     /// A robot's specification that no robot can have.
@@ -56,6 +82,8 @@ pub enum Refusal {
     Geometry(rules::FieldFault),
     /// A ball that no ball can be, or one that is not solid.
     BallModel(String),
+    /// The share of a kick's speed from which on the ball rolls is not a solid ball's; the rest of the model holds.
+    BallSwitch(f64),
     /// Noise, delays or losses out of their range.
     Realism(ParameterError),
     /// A custom setting of a type that is not known here.
@@ -70,8 +98,10 @@ pub enum Refusal {
     SyncStep(f32),
     /// The manners in force know no such setting.
     MannersConfig(&'static str),
-    /// The manners in force know no such teleport.
-    MannersTeleport(&'static str),
+    /// The manners in force know no safe teleport.
+    MannersSafely,
+    /// The manners in force cannot make a ball roll.
+    MannersRoll,
 }
 
 impl Refusal {
@@ -84,7 +114,17 @@ impl Refusal {
             Self::UnknownRobot(_) => "UNKNOWN_ROBOT",
             Self::Twice(_) => "COMMANDED_TWICE",
             Self::MissingMove(_) => "MISSING_MOVE_COMMAND",
+            Self::EmptyMove(_) => "EMPTY_MOVE_COMMAND",
+            Self::VelocityForm(_) => "VELOCITY_FORM",
             Self::NotANumber(_) => "NOT_A_NUMBER",
+            Self::TooFast { .. } => "TOO_FAST",
+            Self::Partial(_) => "PARTIAL",
+            Self::PartialSafely => "PARTIAL_SAFELY",
+            Self::VelocityForce(_) => "VELOCITY_FORCE",
+            Self::Unspecified(_) => "UNSPECIFIED",
+            Self::NoPlace(_) => "NO_PLACE",
+            Self::SpecsLack(_) => "SPECS_LACK",
+            Self::BallSwitch(_) => "BALL_SWITCH",
             Self::KickTooFast { .. } => "KICK_TOO_FAST",
             Self::KickBackwards(_) => "KICK_BACKWARDS",
             Self::KickAngle { .. } => "KICK_ANGLE",
@@ -101,13 +141,44 @@ impl Refusal {
             Self::VisionPort(_) => "VISION_PORT",
             Self::SyncStep(_) => "SYNC_STEP",
             Self::MannersConfig(_) => "UNSUPPORTED_CONFIG",
-            Self::MannersTeleport(_) => "UNSUPPORTED_TELEPORT",
+            Self::MannersSafely => "UNSUPPORTED_TELEPORT_SAFELY",
+            Self::MannersRoll => "UNSUPPORTED_ROLL_BALL",
         }
     }
 
-    /// As the protocol sends it.
-    pub fn told(&self, prefix: &str) -> SimulatorError {
-        SimulatorError { code: Some(format!("{prefix}_{}", self.code())), message: Some(self.to_string()) }
+    /// The whole code as a simulator of these manners tells it; `None` where it says nothing.
+    pub fn code_of(&self, profile: Profile) -> Option<String> {
+        match profile {
+            Profile::Ours => Some(format!("ONETWO_{}", self.code())),
+            Profile::Grsim => {
+                let known = matches!(
+                    self,
+                    Self::MannersConfig(_) | Self::MannersSafely | Self::MannersRoll | Self::EmptyMove(_)
+                );
+                let code =
+                    if matches!(self, Self::EmptyMove(_)) { "UNSUPPORTED_MOVE_COMMAND" } else { self.code() };
+                known.then(|| format!("GRSIM_{code}"))
+            }
+            Profile::ErForce => Some(
+                match self {
+                    Self::Undecodable => "UNREADABLE",
+                    Self::VelocityForm(_) => "VELOCITY_TYPE",
+                    Self::Partial(_) => "PARTIAL_COORD",
+                    Self::PartialSafely => "TELEPORT_SAFELY_PARTIAL",
+                    Self::VelocityForce(_) => "VELOCITY_FORCE",
+                    Self::Unspecified(_) => "CREATE_UNSPEC_ROBOT",
+                    Self::NoPlace(_) => "CREATE_NOPOS_ROBOT",
+                    Self::SpecsLack(_) | Self::Specs(_) => "INVALID_SPEC",
+                    _ => return None,
+                }
+                .to_owned(),
+            ),
+        }
+    }
+
+    /// As the protocol sends it, where it is told.
+    pub fn told(&self, profile: Profile) -> Option<SimulatorError> {
+        Some(SimulatorError { code: Some(self.code_of(profile)?), message: Some(self.to_string()) })
     }
 }
 
@@ -129,6 +200,33 @@ impl fmt::Display for Refusal {
             Self::MissingMove(id) => {
                 write!(f, "robot {id}: no move_command, so it brakes; set wheel, local or global velocity")
             }
+            Self::EmptyMove(id) => {
+                write!(f, "robot {id}: move_command without a velocity, so it goes on as it did; set one of the three")
+            }
+            Self::VelocityForm(id) => {
+                write!(f, "robot {id}: this simulator takes local_velocity alone; the robot brakes")
+            }
+            Self::TooFast { what, asked, most } => {
+                write!(f, "{what}: {asked} is more than the {most} that there can be; it got that")
+            }
+            Self::Partial(what) => {
+                write!(f, "{what}: one coordinate of two, which this simulator does not take; give x and y (and a robot's orientation), v_x and v_y")
+            }
+            Self::PartialSafely => f.write_str("teleport_ball.teleport_safely needs x and y"),
+            Self::VelocityForce(what) => {
+                write!(f, "{what}: a velocity makes no sense with by_force; leave one of them out")
+            }
+            Self::Unspecified(id) => {
+                write!(f, "robot {id} has no specification; send its robot_specs before it is put on the field")
+            }
+            Self::NoPlace(id) => write!(f, "robot {id} is to be put on the field; say where, x and y"),
+            Self::SpecsLack(what) => {
+                write!(f, "robot_specs without {what}, which this simulator needs; this robot stays as it was")
+            }
+            Self::BallSwitch(asked) => write!(
+                f,
+                "geometry.models.straight_two_phase.k_switch {asked}: the ball is solid here and rolls from 5/7 of a kick's speed on; the rest of the model was taken"
+            ),
             Self::NotANumber(what) => write!(f, "{what} is not a finite number; this part was left out"),
             Self::KickTooFast { id, asked, most } => {
                 write!(f, "robot {id}: kick_speed {asked} m/s; it can do {most} m/s and will (robot_specs change that)")
@@ -160,9 +258,8 @@ impl fmt::Display for Refusal {
                 write!(f, "sim_step {asked} s: more than 0 and at most {} s", super::SYNC_MAX)
             }
             Self::MannersConfig(what) => write!(f, "{what} cannot be set in this simulator; start it otherwise"),
-            Self::MannersTeleport(what) => {
-                write!(f, "{what} is not known to this simulator; the rest of the teleport was done")
-            }
+            Self::MannersSafely => f.write_str("teleport_safely is not known to this simulator; the rest of the teleport was done"),
+            Self::MannersRoll => f.write_str("roll is not known to this simulator; the rest of the teleport was done"),
         }
     }
 }

@@ -12,6 +12,7 @@ use ssl::vision::WrapperPacket;
 
 use super::*;
 use crate::small_size::NoiseParameters;
+use geometry::Point;
 
 fn from() -> SocketAddr {
     SocketAddr::from(([127, 0, 0, 1], 40_000))
@@ -34,6 +35,7 @@ fn sent(server: &mut Server) -> (Vec<WrapperPacket>, Vec<Vec<u8>>) {
         match to {
             Destination::Vision(_) => vision.push(WrapperPacket::decode(&bytes[..]).unwrap()),
             Destination::Reply { .. } => answers.push(bytes),
+            Destination::Status(_) => {}
         }
     }
     (vision, answers)
@@ -214,12 +216,56 @@ fn robots_leave_come_and_are_pulled() {
         y: Some(2.0),
         ..Default::default()
     };
-    for _ in 0..4 {
-        assert!(teleport(&mut server, pulled).is_empty());
-        steps(&mut server, 400);
+    assert!(teleport(&mut server, pulled).is_empty());
+    steps(&mut server, 2_000);
+    let place = |server: &Server| server.world().robot(own(15)).unwrap().pose.position;
+    assert!((place(&server).x() + 3.0).abs() < 0.02, "one message is enough: {:?}", place(&server));
+    // It stays pulled, whatever it is told to do ...
+    for _ in 0..100 {
+        lead(&mut server, Colour::Blue, &[ahead(15, 1.0)]);
+        steps(&mut server, 10);
     }
-    let p = server.world().robot(own(15)).unwrap().pose.position;
-    assert!((p.x() + 3.0).abs() < 0.02, "{p:?}");
+    assert!((place(&server).x() + 3.0).abs() < 0.02, "{:?}", place(&server));
+    // ... until a message without force, which moves nothing.
+    let before = place(&server);
+    assert!(teleport(&mut server, TeleportRobot { id: blue(15), ..Default::default() }).is_empty());
+    assert_eq!(place(&server), before);
+    for _ in 0..100 {
+        lead(&mut server, Colour::Blue, &[ahead(15, 1.0)]);
+        steps(&mut server, 10);
+    }
+    assert!(place(&server).x() > -2.7, "{:?}", place(&server));
+}
+
+#[test]
+fn a_ball_is_pulled_and_held_until_it_is_let_go() {
+    let mut server = server();
+    let ball = |server: &mut Server, ball: TeleportBall| {
+        control(server, SimulatorControl { teleport_ball: Some(ball), ..Default::default() })
+    };
+    let by_force = |x, y| TeleportBall { x, y, by_force: Some(true), ..Default::default() };
+    assert!(ball(&mut server, by_force(Some(0.0), Some(2.0))).is_empty());
+    steps(&mut server, 3_000);
+    let place = |server: &Server| server.world().ball.position;
+    assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.01, "{:?}", place(&server));
+    // A robot that drives through it does not take it along.
+    server.world_mut().put(own(0), geometry::Pose::from_mm_deg(-300.0, 2000.0, 0.0));
+    for _ in 0..200 {
+        lead(&mut server, Colour::Blue, &[ahead(0, 0.5)]);
+        steps(&mut server, 10);
+    }
+    assert!(place(&server).distance(Point::new(0.0, 2.0)) < 0.15, "{:?}", place(&server));
+    // One coordinate alone: the other stays as it was asked for.
+    assert!(ball(&mut server, by_force(Some(1.0), None)).is_empty());
+    steps(&mut server, 3_000);
+    assert!(place(&server).distance(Point::new(1.0, 2.0)) < 0.15, "{:?}", place(&server));
+    let before = server.world().ball;
+    assert!(ball(&mut server, TeleportBall::default()).is_empty());
+    assert_eq!(server.world().ball, before, "nothing is moved by letting go");
+    let kicked = TeleportBall { vx: Some(0.0), vy: Some(-2.0), ..Default::default() };
+    assert!(ball(&mut server, kicked).is_empty());
+    steps(&mut server, 500);
+    assert!(place(&server).y() < 1.5, "{:?}", place(&server));
 }
 
 #[test]
@@ -305,11 +351,38 @@ fn in_synchronous_mode_time_is_what_was_asked_for() {
         simulator_command: None,
         robot_control: Some(RobotControl { robot_commands: vec![ahead(0, 1.0)] }),
     };
-    let answer = server.synchronous(Colour::Blue, &request);
+    let mut looked = Vec::new();
+    let answer = server.synchronous(Colour::Blue, &request, |world| looked.push(world.now()));
     assert_eq!(server.world().now(), 20);
     assert_eq!(answer.detection.len(), 2);
     assert!((answer.detection[0].t_capture - 1_795_220_511.02).abs() < 1e-6);
     assert_eq!(answer.robot_control_response.unwrap().feedback.len(), 6);
+    assert_eq!(looked, (1..=20).collect::<Vec<u64>>(), "a referee sees every step");
+    assert!(server.poll_transmit().is_none(), "vision goes into the answer alone");
+    let none = SimulationSyncRequest { sim_step: None, ..Default::default() };
+    assert_eq!(server.synchronous(Colour::Yellow, &none, |_| {}).detection.len(), 2);
+    assert_eq!(server.world().now(), 20, "no step, no time");
+}
+
+#[test]
+fn the_same_requests_give_the_same_answers() {
+    let play = || {
+        let settings = ServerSettings::of(League::DivisionB, Profile::Ours, 5, 0.0).unwrap();
+        let mut server = Server::new(&settings);
+        let mut bytes = Vec::new();
+        for step in 0..200_u16 {
+            let request = SimulationSyncRequest {
+                sim_step: Some(0.016),
+                simulator_command: None,
+                robot_control: Some(RobotControl {
+                    robot_commands: vec![ahead(0, f32::from(step % 9) * 0.2)],
+                }),
+            };
+            bytes.extend(server.synchronous(Colour::Blue, &request, |_| {}).encode_to_vec());
+        }
+        bytes
+    };
+    assert_eq!(play(), play());
 }
 
 #[test]

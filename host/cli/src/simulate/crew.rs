@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use hil_sim::small_size::referee::NoRules;
-use hil_sim::small_size::referee::remote::{Assistant, AutoReferee, Goals, RemoteMatch};
+use hil_sim::small_size::referee::remote::{Assistant, AutoReferee, Decider, RemoteMatch};
 use hil_sim::small_size::{Event, World};
 use rules::{Colour, League};
 use ssl::Message;
@@ -50,7 +50,7 @@ impl Crew {
             league,
             game: RemoteMatch::new(league)?,
             assistant: assistant.then(Assistant::default),
-            autoref: autoref.map(|to| (AutoReferee::new(goals(assistant)), Reporter::new(to))),
+            autoref: autoref.map(|to| (AutoReferee::new(decider(assistant)), Reporter::new(to))),
         })
     }
 
@@ -60,7 +60,7 @@ impl Crew {
         let decides = self.assistant.is_some();
         self.assistant = self.assistant.take().map(|_| Assistant::default());
         if let Some((autoref, _)) = &mut self.autoref {
-            *autoref = AutoReferee::new(goals(decides));
+            *autoref = AutoReferee::new(decider(decides));
         }
         Ok(())
     }
@@ -160,8 +160,8 @@ impl Crew {
 }
 
 /// With nobody at the controller the automatic referee decides about goals too.
-const fn goals(assistant: bool) -> Goals {
-    if assistant { Goals::Us } else { Goals::Person }
+const fn decider(assistant: bool) -> Decider {
+    if assistant { Decider::AutoReferee } else { Decider::Person }
 }
 
 /// The event, for people.

@@ -21,10 +21,12 @@ use ssl::vision::WrapperPacket;
 use super::board::Board;
 use super::crew::Crew;
 use super::ports::Ports;
+use super::sync::SyncPorts;
 use super::{SimulateArgs, Whistle};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// The referee looks this often, simulated ms: what its detectors are tuned with.
@@ -47,22 +49,32 @@ pub(super) fn run(
 ) -> Result<ExitCode, Failure> {
     let stopped = stopped_by_hand();
     let mut words = Vec::new();
-    let mut ports = Ports::open(args.listen, args.ports, &mut words);
+    let mut ports = Ports::open(args.listen, args.ports, args.legacy_port(), &mut words);
     let mut vision = Mouth::new(args.vision, args.interface.as_deref());
     let mut whistle = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
-    eprintln!(
+    note!(
         "simulating {}, {} v {} robots, seed {}; Ctrl-C ends it",
         args.league.name(),
         settings.robots,
         settings.robots,
         args.seed
     );
-    eprintln!("control  {}", ports.words());
-    eprintln!("vision   to {}", vision.to());
-    whistle.lines().iter().for_each(|line| eprintln!("{line}"));
+    note!("control  {}", ports.words());
+    let mut sync = match args.sync.map(|blue| (blue, SyncPorts::open(blue))) {
+        None => None,
+        Some((_, Ok(sync))) => Some(sync),
+        Some((blue, Err(error))) => {
+            return Err(Failure::Network(format!(
+                "--sync {blue}: {error}; it and the next port must be free"
+            )));
+        }
+    };
+    sync.iter().for_each(|sync| note!("{}", sync.line()));
+    note!("vision   to {}", vision.to());
+    whistle.lines().iter().for_each(|line| note!("{line}"));
     if let Some(tracked) = &tracker {
-        eprintln!("tracker  to {}", tracked.mouth.to());
+        note!("tracker  to {}", tracked.mouth.to());
     }
     let page = PageArgs::at(args.page, "--page");
     let mut board =
@@ -79,7 +91,10 @@ pub(super) fn run(
         }
         ports.listen(&mut server, &mut words);
         whistle.listen(server.world(), running, &mut words);
-        advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words);
+        match &mut sync {
+            Some(sync) => sync.serve(&mut server, &mut words, |world, lines| whistle.look(world, lines)),
+            None => advance(&mut server, running.as_micros() as u64, &mut whistle, &mut words),
+        }
         if let Some(board) = &mut board {
             whistle.said.drain(..).for_each(|bytes| board.referee(&bytes, running));
             let wish = board.look(running, &mut server, whistle.ours());
@@ -104,6 +119,7 @@ pub(super) fn run(
         while let Some(transmit) = server.poll_transmit() {
             match transmit.to {
                 Destination::Reply { from, to } => ports.answer(from, to, &transmit.bytes),
+                Destination::Status(to) => ports.tell(to, &transmit.bytes),
                 Destination::Vision(port) => {
                     if let Some(board) = &mut board {
                         board.vision(&transmit.bytes, running);
@@ -129,13 +145,13 @@ pub(super) fn run(
             bar.tick();
         }
         for words in words.drain(..) {
-            bar.suspend(|| eprintln!("{words}"));
+            bar.suspend(|| note!("{words}"));
         }
         thread::sleep(BEAT.saturating_sub(began.elapsed().saturating_sub(running)));
     }
     bar.finish_and_clear();
     let counts = server.counts();
-    eprintln!(
+    note!(
         "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",
         server.world().time(),
         vision.sent,

@@ -8,6 +8,7 @@ mod board;
 mod crew;
 mod hall;
 mod ports;
+mod sync;
 
 use std::net::SocketAddr;
 use std::process::ExitCode;
@@ -53,6 +54,10 @@ pub(crate) struct SimulateArgs {
     /// The control port; blue's robots are at the next one, yellow's at the one after. 0: any three that are free.
     #[arg(long, value_name = "PORT", default_value_t = addresses::SIMULATOR_PORT, value_parser = clap::value_parser!(u16).range(0..=65533))]
     ports: u16,
+    /// Step the field by TCP instead of by the clock: blue's port, yellow's is the next one (the simulation protocol's
+    /// SimulationSyncRequest, each after its length). 0: any two that are free.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    sync: Option<SocketAddr>,
     /// Whose address takes control; 127.0.0.1 keeps others away.
     #[arg(long, value_name = "ADDRESS", default_value = "0.0.0.0")]
     listen: std::net::IpAddr,
@@ -85,6 +90,14 @@ pub(crate) struct SimulateArgs {
     /// End after so many seconds; else Ctrl-C ends it.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     duration: Option<f64>,
+}
+
+impl SimulateArgs {
+    /// grSim's own port for commands, where the field has its manners; any free ports were asked for with 0.
+    fn legacy_port(&self) -> Option<u16> {
+        let number = if self.ports == 0 { 0 } else { addresses::GRSIM_PORT };
+        matches!(self.profile, ProfileWord::Grsim).then_some(number)
+    }
 }
 
 /// Who blows the whistle.

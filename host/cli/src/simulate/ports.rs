@@ -1,4 +1,5 @@
-//! The three ports that clients command the simulator by. One that is taken is told, and taken as soon as it is free.
+//! The ports that clients command the simulator by: the league's three, and grSim's own. One that is taken is told, and taken as
+//! soon as it is free.
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
@@ -15,7 +16,7 @@ const AT_ONCE: usize = 64;
 /// Sockets of the simulation protocol.
 #[derive(Debug)]
 pub(super) struct Ports {
-    doors: [Door; 3],
+    doors: Vec<Door>,
     tried: Instant,
 }
 
@@ -29,19 +30,25 @@ struct Door {
 
 impl Ports {
     /// Opens what can be opened, and gives words for the rest.
-    pub(super) fn open(listen: IpAddr, base: u16, words: &mut Vec<String>) -> Self {
+    pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, words: &mut Vec<String>) -> Self {
         let door = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
             Door { port, address: SocketAddr::new(listen, number), socket: None, troubled: false }
         };
         let teams = [Colour::Blue, Colour::Yellow].map(server::Port::Team);
         let mut ports = Self {
-            doors: [door(0, server::Port::Simulator), door(1, teams[0]), door(2, teams[1])],
+            doors: vec![door(0, server::Port::Simulator), door(1, teams[0]), door(2, teams[1])],
             tried: Instant::now(),
         };
         if base == 0 {
             ports.take_any();
         }
+        ports.doors.extend(legacy.map(|number| Door {
+            port: server::Port::Legacy,
+            address: SocketAddr::new(listen, number),
+            socket: None,
+            troubled: false,
+        }));
         ports.take(words);
         ports
     }
@@ -115,15 +122,17 @@ impl Ports {
         }
     }
 
+    /// Robots' states, in grSim's older protocol. One that cannot be sent is lost, as any datagram may be.
+    pub(super) fn tell(&self, to: SocketAddr, bytes: &[u8]) {
+        self.answer(server::Port::Legacy, to, bytes);
+    }
+
     /// For people: where clients speak to.
     pub(super) fn words(&self) -> String {
-        let [simulator, blue, yellow] = &self.doors;
-        format!(
-            "{}, blue robots {}, yellow robots {}",
-            simulator.address,
-            blue.address.port(),
-            yellow.address.port()
-        )
+        let mut doors = self.doors.iter();
+        let first = doors.next().map(|door| door.address.to_string());
+        let others = doors.map(|door| format!("{} {}", door.name(), door.address.port()));
+        first.into_iter().chain(others).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -133,6 +142,7 @@ impl Door {
             server::Port::Simulator => "control",
             server::Port::Team(Colour::Blue) => "blue robots",
             server::Port::Team(Colour::Yellow) => "yellow robots",
+            server::Port::Legacy => "grSim's commands",
         }
     }
 }
@@ -145,10 +155,10 @@ mod tests {
     fn a_taken_port_is_told_and_the_others_serve() {
         let home: IpAddr = [127, 0, 0, 1].into();
         let mut words = Vec::new();
-        let first = Ports::open(home, 0, &mut words);
+        let first = Ports::open(home, 0, None, &mut words);
         assert!(words.is_empty(), "{words:?}");
         let base = first.doors[0].address.port();
-        let second = Ports::open(home, base, &mut words);
+        let second = Ports::open(home, base, None, &mut words);
         assert_eq!(words.len(), 3, "{words:?}");
         assert!(words[0].contains("is taken") && words[0].contains(&base.to_string()), "{}", words[0]);
         drop(first);

@@ -53,4 +53,10 @@ pub mod addresses {
     pub const ROBOTS_BLUE_PORT: u16 = 10301;
     /// A simulator's UDP port for the yellow team's [`RobotControl`](crate::simulation::RobotControl).
     pub const ROBOTS_YELLOW_PORT: u16 = 10302;
+    /// grSim's UDP port for [`GrsimPacket`](crate::simulation::GrsimPacket).
+    pub const GRSIM_PORT: u16 = 20011;
+    /// Where grSim sends [`RobotsStatus`](crate::simulation::RobotsStatus) of blue.
+    pub const GRSIM_BLUE_STATUS_PORT: u16 = 30011;
+    /// Where grSim sends [`RobotsStatus`](crate::simulation::RobotsStatus) of yellow.
+    pub const GRSIM_YELLOW_STATUS_PORT: u16 = 30012;
 }

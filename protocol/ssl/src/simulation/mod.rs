@@ -4,6 +4,7 @@
 //! absent stays as it is. What a simulator cannot do it answers with a [`SimulatorError`].
 
 mod custom;
+mod grsim;
 mod robot;
 
 use prost::Message;
@@ -12,6 +13,10 @@ use crate::common::{Any, RobotId};
 use crate::vision::{DetectionFrame, GeometryData};
 
 pub use custom::{RealismConfigErForce, RobotSpecErForce};
+pub use grsim::{
+    GrsimBallReplacement, GrsimCommands, GrsimPacket, GrsimReplacement, GrsimRobotCommand,
+    GrsimRobotReplacement, RobotStatus, RobotsStatus,
+};
 pub use robot::{
     MoveCommand, MoveGlobalVelocity, MoveLocalVelocity, MoveWheelVelocity, RobotCommand, RobotControl,
     RobotControlResponse, RobotFeedback, RobotMoveCommand,

@@ -7,7 +7,7 @@ use core::fmt;
 
 use geometry::{Field, Point};
 use protocol::{Duration, Instant, Who};
-use rules::restart::placement_needless;
+use rules::restart::{nearest_free_kick_spot, placement_needless};
 use rules::{Colour, Phase, limits};
 use ssl::event::GameEventType;
 
@@ -118,9 +118,19 @@ impl Assistant {
     fn wanted(&self, game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
         let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
         let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
-        if let Phase::BallPlacement(_) = game.phase() {
-            let lost = still && !is_reachable(&game.field, ball);
-            return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+        let set = match game.phase() {
+            Phase::BallPlacement(_) => {
+                let lost = still && !is_reachable(&game.field, ball);
+                return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+            }
+            // Robots stand around it now: only a ball from which the controller does not start is touched.
+            Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
+            Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
+            _ => None,
+        };
+        if let Some((restart, tolerance)) = set {
+            let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
+            return Some((Why::SetByHand(restart), mark));
         }
         let stopped = matches!(game.phase(), Phase::Stop);
         if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
@@ -128,7 +138,8 @@ impl Assistant {
         }
         // Whoever decides about a goal wants to see where the ball lies.
         let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
-        let target = game.target().filter(|_| !open || stopped)?;
+        let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
+        let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
         let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
         match game.next() {
             Some(next) if next.is_set_by_hand() => {
@@ -149,7 +160,7 @@ impl Team {
         let (now, own) = (game.now, game.own_end(colour));
         let (field, ball) = (&game.field, world.ball.position);
         let ours = || world.robots().iter().filter(|robot| robot.present && robot.who.colour == colour);
-        let behind = |robot: &&Robot| places::behind_own_goal(field, own, robot.pose.position);
+        let behind = |robot: &&Robot| !field.counts(own, robot.pose.position);
         let here = ours().count() as u32;
         let on_field = ours().filter(|robot| !behind(robot)).count() as u32;
         let allowed = game.allowed(colour)?;
@@ -166,12 +177,13 @@ impl Team {
         }
         let halted = matches!(game.phase(), Phase::Halt | Phase::Timeout(_));
         let stopped = halted || game.phase() == Phase::Stop;
-        let left = ours().find(|robot| {
+        let may_be_taken = |robot: &&Robot| {
             let p = robot.pose.position;
             (behind(robot) || places::beside_halfway_line(field, p))
                 && p.distance(ball) >= limits::SUBSTITUTION_BALL_DISTANCE
                 && robot.velocity.norm() <= STANDING
-        });
+        };
+        let left = ours().filter(may_be_taken).max_by_key(|robot| (behind(robot), robot.who));
         let crowded_for = self.crowded.map_or(Duration(0), |since| now.since(since));
         let taken = if game.substitutes(colour) && halted && !self.substituted {
             let any = || whom_to_take(game, ours(), ball);

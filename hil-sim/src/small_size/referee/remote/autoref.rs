@@ -14,22 +14,23 @@ use super::super::event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What}
 use super::super::look::Sight;
 use super::super::scene::{COLOURS, Scene, is_running};
 use super::super::watch::Watch;
-use super::{RemoteMatch, places};
+use super::RemoteMatch;
 use crate::small_size::{Event as WorldEvent, World};
 
-/// Who decides whether a ball in the goal is a goal.
+/// Who decides what automatic referees leave to people: whether a ball in the goal is a goal, and how play goes on after a ball out
+/// that no robot touched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Goals {
+pub enum Decider {
     /// A person at the controller: POSSIBLE_GOAL is reported, and the controller halts the game for the decision.
     Person,
-    /// This automatic referee: GOAL or INVALID_GOAL is reported, and the game goes on.
-    Us,
+    /// This automatic referee: the decision is reported, and the game goes on.
+    AutoReferee,
 }
 
 /// An automatic referee for a match that a game controller elsewhere runs.
 #[derive(Clone, Debug)]
 pub struct AutoReferee {
-    goals: Goals,
+    decider: Decider,
     watch: Watch,
     looked: Option<Instant>,
     commands: u64,
@@ -43,9 +44,9 @@ pub struct AutoReferee {
 
 impl AutoReferee {
     /// One that has seen nothing yet.
-    pub fn new(goals: Goals) -> Self {
+    pub fn new(decider: Decider) -> Self {
         let watch = Watch::default();
-        Self { goals, watch, looked: None, commands: 0, stopping: None, placed: false, fouls: [None; 2] }
+        Self { decider, watch, looked: None, commands: 0, stopping: None, placed: false, fouls: [None; 2] }
     }
 
     /// Looks at the world, every 10 ms or so; `events` are the world's since the last look. Gives what is to be reported.
@@ -77,19 +78,19 @@ impl AutoReferee {
         let mut seen = Vec::new();
         self.watch.look(&scene, &mut seen);
         seen.extend(self.placement(game, &scene));
-        seen.into_iter().filter_map(|event| self.report(game, &sight, event)).collect()
+        seen.into_iter().flat_map(|event| self.report(game, event)).collect()
     }
 
-    /// The event as it is reported, if it is.
-    fn report(&mut self, game: &RemoteMatch, sight: &Sight, event: Event) -> Option<Event> {
+    /// The event as it is reported: none, one, or two where it takes both to say where play goes on.
+    fn report(&mut self, game: &RemoteMatch, event: Event) -> Vec<Event> {
         let phase = game.phase();
         let kind = event.what.kind();
         if is_the_controllers(&event.what) || !is_in_time(kind, phase) {
-            return None;
+            return Vec::new();
         }
         // Of what happens between the report and the stop only a ball over the wall counts: it was kicked in play.
         if self.stopping.is_some() && kind != Kind::BoundaryCrossing {
-            return None;
+            return Vec::new();
         }
         if kind.is_non_stopping_foul() {
             for (team, foul) in COLOURS.into_iter().zip(&mut self.fouls) {
@@ -98,34 +99,46 @@ impl AutoReferee {
                 }
             }
         }
-        let event = match event.what {
-            What::PossibleGoal { shot } => self.goal(game, sight, shot, event),
-            _ => event,
+        let events = match event.what {
+            What::PossibleGoal { shot } => self.goal(game, shot, event),
+            // The controller knows no restart for it, and goes on by a force start where nothing moves.
+            What::LeftTouchLine | What::LeftGoalLine
+                if event.by.is_none() && self.decider == Decider::AutoReferee =>
+            {
+                vec![Event { what: What::NoProgress { duration: 0.0 }, ..event }]
+            }
+            _ => vec![event],
         };
-        let stops = event.what.kind().stops_the_game() || kind == Kind::PossibleGoal;
-        if stops && (is_running(phase) || matches!(phase, Phase::BallPlacement(_))) {
-            self.stopping = Some(event.at);
+        let stops = |event: &Event| {
+            event.what.kind().stops_the_game() || matches!(event.what, What::PossibleGoal { .. })
+        };
+        if events.iter().any(stops) && (is_running(phase) || matches!(phase, Phase::BallPlacement(_))) {
+            self.stopping = events.first().map(|event| event.at);
         }
-        Some(event)
+        events
     }
 
     /// A ball in a goal, as whoever decides needs it.
-    fn goal(&self, game: &RemoteMatch, sight: &Sight, shot: Shot, event: Event) -> Event {
-        let Some(scorer) = event.by else { return event };
-        let own = game.own_end(scorer);
-        let on_field = sight.robots.iter().filter(|robot| {
-            robot.who.colour == scorer && !places::behind_own_goal(&game.field, own, robot.pose.position)
-        });
-        let shot = Shot { robots: on_field.count() as u32, ..shot };
-        if self.goals == Goals::Person {
-            return Event { what: What::PossibleGoal { shot }, ..event };
+    fn goal(&self, game: &RemoteMatch, shot: Shot, event: Event) -> Vec<Event> {
+        let Some(scorer) = event.by else { return vec![event] };
+        if self.decider == Decider::Person {
+            return vec![Event { what: What::PossibleGoal { shot }, ..event }];
         }
         let invalid = self.invalid(game, scorer, &shot, event.at);
-        let what = match invalid.filter(|_| !matches!(game.phase(), Phase::Penalty(_))) {
-            None => What::Goal { shot: Some(shot) },
-            Some(reason) => What::InvalidGoal { shot, reason },
-        };
-        Event { what, ..event }
+        match invalid.filter(|_| !matches!(game.phase(), Phase::Penalty(_))) {
+            None => vec![Event { what: What::Goal { shot: Some(shot) }, ..event }],
+            Some(reason) => {
+                // The controller takes the place of the restart from a ball over the goal line, and none from a goal that is none.
+                let kicker = shot.kicker;
+                let out = Event {
+                    by: kicker.map_or(Some(scorer), |kicker| Some(kicker.colour)),
+                    robot: kicker.map(|kicker| kicker.id),
+                    what: What::LeftGoalLine,
+                    ..event.clone()
+                };
+                vec![Event { what: What::InvalidGoal { shot, reason }, ..event }, out]
+            }
+        }
     }
 
     fn invalid(&self, game: &RemoteMatch, scorer: Colour, shot: &Shot, at: Instant) -> Option<Invalid> {

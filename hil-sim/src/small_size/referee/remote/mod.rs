@@ -18,7 +18,7 @@ use ssl::event::{Event as Told, GameEvent, GameEventType};
 use ssl::referee as packet;
 
 pub use assistant::{Assistant, Deed, Why};
-pub use autoref::{AutoReferee, Goals};
+pub use autoref::{AutoReferee, Decider};
 
 use super::account::{Account, Accounts};
 use super::event::Restart;
@@ -154,13 +154,18 @@ impl RemoteMatch {
         }
     }
 
-    /// Where the ball is to lie for what follows.
+    /// Where the ball is to lie for what follows: where the controller says, which may be elsewhere than on the mark (a foul in
+    /// the stop before a kick-off moves it); else on the mark.
     pub fn target(&self) -> Option<Point<Field>> {
-        match self.next() {
-            // The controller gives no place for a kick-off by hand; the rules do.
-            Some(Restart::Kickoff(_)) => Some(Point::new(0.0, 0.0)),
-            Some(Restart::Penalty(team)) => Some(self.field.penalty_spot(self.own_end(team).opposite())),
-            _ => self.designated(),
+        self.designated().or_else(|| self.mark(self.next()?))
+    }
+
+    /// The mark that the ball is set on for that restart.
+    fn mark(&self, restart: Restart) -> Option<Point<Field>> {
+        match restart {
+            Restart::Kickoff(_) => Some(Point::new(0.0, 0.0)),
+            Restart::Penalty(team) => Some(self.field.penalty_spot(self.own_end(team).opposite())),
+            Restart::FreeKick(_) | Restart::ForceStart => None,
         }
     }
 

@@ -3,18 +3,10 @@
 use geometry::{Field, GoalEnd, Point, Pose};
 use rules::{FieldSpec, limits};
 
-/// Behind its own goal line, so far out that the game controller does not count it as on the field: its centre is within
-/// 0.3 m of the wall, less its radius.
-pub(super) fn behind_own_goal(field: &FieldSpec, own: GoalEnd, place: Point<Field>) -> bool {
-    let x = place.x() * own.sign() as f32;
-    let wall = field.length * 0.5 + field.goal_line_margin;
-    x >= wall - limits::GOAL_SUBSTITUTION_DISTANCE + limits::ROBOT_RADIUS && x <= wall + limits::ROBOT_RADIUS
-}
-
-/// In the centre substitution area: at least partly off the field beside the halfway line.
+/// In the centre substitution area, with its centre off the field: the rules let a robot be taken that is only partly in, but one
+/// that plays beside the touch line has not left.
 pub(super) fn beside_halfway_line(field: &FieldSpec, place: Point<Field>) -> bool {
-    place.x().abs() <= limits::SUBSTITUTION_REACH
-        && place.y().abs() > field.width * 0.5 - limits::ROBOT_RADIUS
+    place.x().abs() <= limits::SUBSTITUTION_REACH && place.y().abs() > field.width * 0.5
 }
 
 /// Where a robot of the team that owns `own` is put in: beside the touch line of its half, near the halfway line, where no

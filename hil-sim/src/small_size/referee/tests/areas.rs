@@ -275,3 +275,19 @@ fn the_third_card_at_a_time_is_red_and_cards_can_be_switched_off() {
     let account = &stage.referee.accounts().blue;
     assert_eq!((account.foul_count(), account.allowed(6)), (9, 6));
 }
+
+#[test]
+fn a_robot_behind_its_own_goal_line_is_off_the_field_where_there_is_a_substitution_area() {
+    for (league, place, counted) in [
+        (League::DivisionA, at(6.45, 2.5), 2),
+        (League::DivisionA, at(6.3, 2.5), 3),
+        (League::DivisionB, at(4.65, 2.5), 3),
+    ] {
+        let mut stage = stage_with(RefereeSettings::new(league));
+        stage.put(blue(1), place);
+        assert_eq!(stage.referee.on_field(&stage.robots, Colour::Blue), counted, "{league:?}");
+        // Behind the other team's goal line there is no such area for it.
+        stage.put(blue(1), at(-place.x(), place.y()));
+        assert_eq!(stage.referee.on_field(&stage.robots, Colour::Blue), 3, "{league:?}");
+    }
+}

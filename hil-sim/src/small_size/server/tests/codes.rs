@@ -56,6 +56,11 @@ fn every_code_of_the_simulators_port_has_its_cause() {
     let nobody = WireId { id: None, team: Some(Team::Blue as i32) };
     let teamless = WireId { id: Some(1), team: Some(Team::Unknown as i32) };
     let controls = [
+        (ball(|t| (t.vx, t.vy) = (Some(30.0), Some(0.0))), "TOO_FAST"),
+        (ball(|t| t.vz = Some(-30.0)), "TOO_FAST"),
+        (ball(|t| (t.z, t.by_force) = (Some(1.0), Some(true))), "UNSUPPORTED"),
+        (robot(blue(1), |t| (t.v_x, t.v_y) = (Some(9.0), Some(0.0))), "TOO_FAST"),
+        (robot(blue(1), |t| t.v_angular = Some(-900.0)), "TOO_FAST"),
         (robot(nobody, |_| {}), "NO_SUCH_ID"),
         (robot(blue(16), |_| {}), "NO_SUCH_ID"),
         (robot(teamless, |_| {}), "NO_TEAM"),
@@ -141,6 +146,22 @@ fn every_code_of_settings_has_its_cause_and_a_refused_setting_changes_nothing() 
 }
 
 #[test]
+fn a_ball_models_switch_that_is_not_simulated_is_told_and_the_rest_holds() {
+    for (k_switch, told) in [(5.0 / 7.0, false), (0.7143, false), (0.69, true), (0.7, true)] {
+        let mut server = server();
+        let mut geometry = server.cameras.geometry(server.world(), None);
+        geometry.calib.clear();
+        let flat = BallModelStraightTwoPhase { acc_slide: -4.5, acc_roll: -0.31, k_switch };
+        geometry.models = Some(GeometryModels { straight_two_phase: Some(flat), chip_fixed_loss: None });
+        let codes = config(&mut server, SimulatorConfig { geometry: Some(geometry), ..Default::default() });
+        let expected: &[&str] = if told { &["ONETWO_BALL_SWITCH"] } else { &[] };
+        assert_eq!(codes, expected, "{k_switch}");
+        let ball = server.world().parameters().ball;
+        assert_eq!((ball.slide, ball.roll), (4.5, 0.31));
+    }
+}
+
+#[test]
 fn a_datagram_of_another_kind_is_told_so_on_each_port() {
     let mut server = server();
     server.handle(Port::Simulator, from(), b"\xff\xff\xff");
@@ -154,11 +175,11 @@ fn a_datagram_of_another_kind_is_told_so_on_each_port() {
 }
 
 #[test]
-fn a_synchronous_step_of_no_time_is_refused() {
-    for sim_step in [None, Some(-1.0), Some(f32::NAN), Some(11.0)] {
+fn a_synchronous_step_that_no_time_can_be_is_refused() {
+    for sim_step in [-1.0, f32::NAN, 11.0] {
         let mut server = server();
-        let request = SimulationSyncRequest { sim_step, ..Default::default() };
-        let answer = server.synchronous(Colour::Blue, &request).robot_control_response.unwrap();
+        let request = SimulationSyncRequest { sim_step: Some(sim_step), ..Default::default() };
+        let answer = server.synchronous(Colour::Blue, &request, |_| {}).robot_control_response.unwrap();
         assert_eq!(codes_of(&answer.errors), ["ONETWO_SYNC_STEP"]);
         assert_eq!(server.world().now(), 0);
     }
@@ -192,7 +213,18 @@ fn no_two_refusals_share_a_code() {
         Refusal::VisionPort(0),
         Refusal::SyncStep(0.0),
         Refusal::MannersConfig(""),
-        Refusal::MannersTeleport(""),
+        Refusal::MannersSafely,
+        Refusal::MannersRoll,
+        Refusal::EmptyMove(0),
+        Refusal::VelocityForm(0),
+        Refusal::TooFast { what: "", asked: 0.0, most: 0.0 },
+        Refusal::Partial(""),
+        Refusal::PartialSafely,
+        Refusal::VelocityForce(""),
+        Refusal::Unspecified(0),
+        Refusal::NoPlace(0),
+        Refusal::SpecsLack(""),
+        Refusal::BallSwitch(0.0),
     ];
     let codes: BTreeSet<_> = all.iter().map(Refusal::code).collect();
     assert_eq!(codes.len(), all.len());

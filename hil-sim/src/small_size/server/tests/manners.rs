@@ -1,5 +1,10 @@
 //! Can a host be tried against the ways of the league's other simulators? The traps by their numbers.
 
+use ssl::simulation::{
+    GrsimBallReplacement, GrsimCommands, GrsimPacket, GrsimReplacement, GrsimRobotCommand,
+    GrsimRobotReplacement, RobotsStatus,
+};
+
 use super::*;
 
 #[test]
@@ -16,26 +21,178 @@ fn trap_01_and_02_vision_is_as_the_other_simulators_send_it() {
     assert!(packets.iter().all(|packet| packet.detection.as_ref().unwrap().t_capture > 1.7e9));
 }
 
+/// What a message to a team's port is answered with, datagram by datagram.
+fn answers(server: &mut Server, commands: &[RobotCommand]) -> Vec<RobotControlResponse> {
+    sent(server);
+    let control = RobotControl { robot_commands: commands.to_vec() };
+    server.handle(Port::Team(Colour::Blue), from(), &control.encode_to_vec());
+    let answers = sent(server).1;
+    answers.iter().map(|bytes| RobotControlResponse::decode(&bytes[..]).unwrap()).collect()
+}
+
+/// The codes of what a message to the simulator's port is answered with; `None`: it is not answered.
+fn codes(server: &mut Server, command: &SimulatorCommand) -> Option<Vec<String>> {
+    sent(server);
+    server.handle(Port::Simulator, from(), &command.encode_to_vec());
+    let answer = sent(server).1.pop()?;
+    let answer = SimulatorResponse::decode(&answer[..]).unwrap();
+    Some(answer.errors.iter().map(|error| error.code.clone().unwrap()).collect())
+}
+
+fn ids(answer: &RobotControlResponse) -> Vec<u32> {
+    answer.feedback.iter().map(|feedback| feedback.id).collect()
+}
+
 #[test]
-fn trap_09_answers_name_robots_that_are_gone_and_lack_some_that_are_there() {
+fn trap_09_answers_name_the_robots_that_were_commanded() {
     let gone = TeleportRobot { id: blue(0), present: Some(false), ..Default::default() };
+    let gone = SimulatorControl { teleport_robot: vec![gone], ..Default::default() };
+    let both = [ahead(0, 0.0), ahead(3, 0.0)];
     let mut grsim = server_like(Profile::Grsim);
-    control(&mut grsim, SimulatorControl { teleport_robot: vec![gone], ..Default::default() });
-    assert_eq!(lead(&mut grsim, Colour::Blue, &[]).feedback.len(), 6, "robot 0 is still named");
+    control(&mut grsim, gone.clone());
+    let told = answers(&mut grsim, &both);
+    assert_eq!((told.len(), ids(&told[0])), (1, vec![0, 3]), "robot 0 is still named");
+    assert!(told[0].errors.is_empty());
+    assert_eq!(ids(&answers(&mut grsim, &[])[0]), [0_u32; 0]);
 
     let mut erforce = server_like(Profile::ErForce);
-    let answers: Vec<_> = (0..500).map(|_| lead(&mut erforce, Colour::Blue, &[]).feedback.len()).collect();
-    let named: usize = answers.iter().sum();
+    erforce.radio.answer_loss = 0.0;
+    assert_eq!(codes(&mut erforce, &SimulatorCommand { control: Some(gone), config: None }), None);
+    let told = answers(&mut erforce, &both);
+    assert_eq!((told.len(), ids(&told[0])), (1, vec![3]), "robot 0 is gone and says nothing");
+    assert!(answers(&mut erforce, &[]).is_empty(), "nobody was commanded");
+}
+
+#[test]
+fn trap_09_a_tenth_of_er_forces_answers_is_lost() {
+    let mut erforce = server_like(Profile::ErForce);
+    let all: Vec<_> = (0..6).map(|id| ahead(id, 0.0)).collect();
+    let told: usize =
+        (0..500).flat_map(|_| answers(&mut erforce, &all)).map(|told| told.feedback.len()).sum();
     // 3,000 chances of 0.9: deviation 16.
-    assert!(named.abs_diff(2_700) < 66, "{named}");
-    assert!(answers.iter().any(|count| *count < 6));
+    assert!(told.abs_diff(2_700) < 66, "{told}");
+}
+
+#[test]
+fn er_force_tells_errors_alone_and_by_its_own_codes() {
+    let mut erforce = server_like(Profile::ErForce);
+    erforce.radio.answer_loss = 0.0;
+    let ball = |teleport| SimulatorCommand {
+        control: Some(SimulatorControl { teleport_ball: Some(teleport), ..Default::default() }),
+        config: None,
+    };
+    let robot = |teleport| SimulatorCommand {
+        control: Some(SimulatorControl { teleport_robot: vec![teleport], ..Default::default() }),
+        config: None,
+    };
+    let at = |x, y| TeleportBall { x, y, ..Default::default() };
+    let stand = TeleportRobot { id: blue(1), ..Default::default() };
+    let cases = [
+        (ball(at(Some(1.0), Some(0.5))), None),
+        (ball(at(Some(2.0), None)), Some("PARTIAL_COORD")),
+        (ball(at(None, Some(2.0))), Some("PARTIAL_COORD")),
+        (ball(TeleportBall { z: Some(1.0), ..Default::default() }), Some("PARTIAL_COORD")),
+        (ball(TeleportBall { vx: Some(1.0), ..Default::default() }), Some("PARTIAL_COORD")),
+        (
+            ball(TeleportBall { teleport_safely: Some(true), ..at(Some(2.0), None) }),
+            Some("TELEPORT_SAFELY_PARTIAL"),
+        ),
+        (
+            ball(TeleportBall {
+                vx: Some(1.0),
+                vy: Some(0.0),
+                by_force: Some(true),
+                ..at(Some(2.0), Some(0.0))
+            }),
+            Some("VELOCITY_FORCE"),
+        ),
+        (robot(TeleportRobot { x: Some(0.0), y: Some(0.0), ..stand }), Some("PARTIAL_COORD")),
+        (robot(TeleportRobot { y: Some(0.0), ..stand }), Some("PARTIAL_COORD")),
+        (robot(TeleportRobot { v_y: Some(0.0), ..stand }), Some("PARTIAL_COORD")),
+        (robot(TeleportRobot { x: Some(0.0), y: Some(0.0), orientation: Some(1.0), ..stand }), None),
+        (robot(TeleportRobot { id: blue(12), present: Some(true), ..stand }), Some("CREATE_UNSPEC_ROBOT")),
+        (robot(TeleportRobot { present: Some(false), ..stand }), None),
+        (robot(TeleportRobot { present: Some(true), ..stand }), Some("CREATE_NOPOS_ROBOT")),
+        // Nobody of that number is there: it says nothing of it.
+        (robot(TeleportRobot { id: blue(9), x: Some(1.0), y: Some(1.0), ..stand }), None),
+        (SimulatorCommand::default(), None),
+    ];
+    for (command, code) in cases {
+        let expected = code.map(|code| vec![code.to_owned()]);
+        assert_eq!(codes(&mut erforce, &command), expected, "{command:?}");
+    }
+    let ball = erforce.world().ball.position;
+    assert_eq!((ball.x(), ball.y()), (1.0, 0.5), "what was refused moved nothing");
+    erforce.handle(Port::Simulator, from(), b"\xff\xff\xff");
+    let answer = sent(&mut erforce).1.remove(0);
+    let answer = SimulatorResponse::decode(&answer[..]).unwrap();
+    assert_eq!(answer.errors[0].code.as_deref(), Some("UNREADABLE"));
+    // Robots: errors and feedback come apart; velocities in the robot's own frame alone.
+    let wheels = ssl::simulation::MoveWheelVelocity {
+        front_right: 1.0,
+        back_right: 1.0,
+        back_left: 1.0,
+        front_left: 1.0,
+    };
+    let wheels = RobotMoveCommand { command: Some(MoveCommand::WheelVelocity(wheels)) };
+    let told = answers(&mut erforce, &[RobotCommand { move_command: Some(wheels), ..ahead(2, 0.0) }]);
+    assert_eq!(told.len(), 2);
+    assert_eq!(told[0].errors[0].code.as_deref(), Some("VELOCITY_TYPE"));
+    assert_eq!((ids(&told[1]), told[1].errors.len()), (vec![2], 0));
+    assert!(
+        answers(&mut erforce, &[RobotCommand { kick_speed: Some(99.0), ..ahead(2, 0.0) }])[0]
+            .errors
+            .is_empty()
+    );
+}
+
+#[test]
+fn er_force_wants_whole_specifications() {
+    let mut erforce = server_like(Profile::ErForce);
+    let specs = |specs| SimulatorCommand {
+        control: None,
+        config: Some(SimulatorConfig { robot_specs: vec![specs], ..Default::default() }),
+    };
+    let some = RobotSpecs { id: blue(12), mass: Some(2.0), ..Default::default() };
+    assert_eq!(codes(&mut erforce, &specs(some.clone())), Some(vec!["INVALID_SPEC".to_owned()]));
+    let limits = RobotLimits {
+        acc_speedup_absolute_max: Some(3.0),
+        acc_speedup_angular_max: Some(30.0),
+        acc_brake_absolute_max: Some(4.0),
+        acc_brake_angular_max: Some(30.0),
+        vel_absolute_max: Some(3.0),
+        vel_angular_max: Some(20.0),
+    };
+    let custom = ssl::simulation::RobotSpecErForce {
+        shoot_radius: Some(0.067),
+        dribbler_width: Some(0.07),
+        ..Default::default()
+    };
+    let custom = Any {
+        type_url: Some("type.googleapis.com/sslsim.RobotSpecErForce".into()),
+        value: Some(custom.encode_to_vec()),
+    };
+    let whole =
+        RobotSpecs { limits: Some(limits), center_to_dribbler: Some(0.073), custom: vec![custom], ..some };
+    assert_eq!(codes(&mut erforce, &specs(whole)), None);
+    let put = TeleportRobot {
+        id: blue(12),
+        present: Some(true),
+        x: Some(-1.0),
+        y: Some(2.5),
+        orientation: Some(0.0),
+        ..Default::default()
+    };
+    let put = SimulatorControl { teleport_robot: vec![put], ..Default::default() };
+    assert_eq!(codes(&mut erforce, &SimulatorCommand { control: Some(put), config: None }), None);
+    assert!(erforce.world().robot(own(12)).unwrap().present);
 }
 
 #[test]
 fn trap_09_without_commands_for_a_tenth_of_a_second_robots_stand_by() {
     let mut erforce = server_like(Profile::ErForce);
     for _ in 0..30 {
-        lead(&mut erforce, Colour::Blue, &[ahead(2, 0.5)]);
+        answers(&mut erforce, &[ahead(2, 0.5)]);
         steps(&mut erforce, 10);
     }
     assert!(erforce.world().robot(own(2)).unwrap().velocity.norm() > 0.4);
@@ -47,9 +204,9 @@ fn trap_09_without_commands_for_a_tenth_of_a_second_robots_stand_by() {
 fn trap_09_a_command_without_a_dribblers_speed_resets_it_there_and_leaves_it_here() {
     let after = |profile| {
         let mut server = server_like(profile);
-        lead(&mut server, Colour::Blue, &[RobotCommand { dribbler_speed: Some(1_000.0), ..ahead(1, 0.0) }]);
+        answers(&mut server, &[RobotCommand { dribbler_speed: Some(1_000.0), ..ahead(1, 0.0) }]);
         steps(&mut server, 5);
-        lead(&mut server, Colour::Blue, &[ahead(1, 0.0)]);
+        answers(&mut server, &[ahead(1, 0.0)]);
         steps(&mut server, 5);
         server.world().robot(own(1)).unwrap().order().dribbler
     };
@@ -66,7 +223,7 @@ fn trap_10_grsim_takes_nothing_but_robots_specifications() {
         realism_config: Some(RealismConfig::default()),
         vision_port: Some(10_006),
     };
-    assert_eq!(config(&mut grsim, asked), ["GRSIM_UNSUPPORTED_CONFIG"; 3]);
+    assert_eq!(config(&mut grsim, asked), ["GRSIM_UNSUPPORTED_CONFIG"]);
     assert_eq!(grsim.world().robot(own(1)).unwrap().body.mass, 3.0);
     assert_eq!(grsim.vision_port, VISION_PORT);
     let ball = TeleportBall {
@@ -77,7 +234,7 @@ fn trap_10_grsim_takes_nothing_but_robots_specifications() {
         ..Default::default()
     };
     let codes = control(&mut grsim, SimulatorControl { teleport_ball: Some(ball), ..Default::default() });
-    assert_eq!(codes, ["GRSIM_UNSUPPORTED_TELEPORT"; 2]);
+    assert_eq!(codes, ["GRSIM_UNSUPPORTED_TELEPORT_SAFELY", "GRSIM_UNSUPPORTED_ROLL_BALL"]);
     assert_eq!(grsim.world().ball.position.x(), 1.0, "the rest of it is done");
 }
 
@@ -92,4 +249,153 @@ fn trap_11_a_ball_may_be_put_far_outside_and_vision_tells_it() {
     let frames: Vec<_> = sent(&mut server).0.into_iter().filter_map(|packet| packet.detection).collect();
     assert!(frames.iter().flat_map(|frame| &frame.balls).any(|ball| ball.x == 6_500.0));
     assert!(frames.iter().any(|frame| frame.balls.is_empty()));
+}
+
+#[test]
+fn grsims_dribbler_turns_above_0_and_a_robot_without_a_velocity_goes_on() {
+    let mut grsim = server_like(Profile::Grsim);
+    for (rpm, expected) in [(0.5, 1.0), (0.0, 0.0), (20_000.0, 1.0)] {
+        lead(&mut grsim, Colour::Blue, &[RobotCommand { dribbler_speed: Some(rpm), ..ahead(1, 0.7) }]);
+        steps(&mut grsim, 5);
+        assert_eq!(grsim.world().robot(own(1)).unwrap().order().dribbler, expected);
+    }
+    let silent = RobotCommand { id: 1, ..Default::default() };
+    assert!(lead(&mut grsim, Colour::Blue, &[silent]).errors.is_empty());
+    let empty = RobotCommand { move_command: Some(RobotMoveCommand { command: None }), ..silent };
+    let told = lead(&mut grsim, Colour::Blue, &[empty]);
+    assert_eq!(told.errors[0].code.as_deref(), Some("GRSIM_UNSUPPORTED_MOVE_COMMAND"));
+    steps(&mut grsim, 5);
+    let order = *grsim.world().robot(own(1)).unwrap().order();
+    assert_eq!((order.drive, order.dribbler), (drive_ahead(0.7), 1.0));
+}
+
+fn drive_ahead(speed: f32) -> crate::small_size::Drive {
+    let linear = geometry::Vector::new(speed, 0.0);
+    crate::small_size::Drive::Local(geometry::Twist { linear, angular: 0.0 })
+}
+
+#[test]
+fn grsims_vision_has_the_balls_height_and_its_place_as_it_is() {
+    let seen = |profile| {
+        let mut server = server_like(profile);
+        let up =
+            TeleportBall { x: Some(1.0), y: Some(1.0), z: Some(0.5), vz: Some(2.0), ..Default::default() };
+        control(&mut server, SimulatorControl { teleport_ball: Some(up), ..Default::default() });
+        steps(&mut server, 60);
+        let frames = sent(&mut server).0.into_iter().filter_map(|packet| packet.detection);
+        frames.flat_map(|frame| frame.balls).next().unwrap()
+    };
+    let ball = seen(Profile::Grsim);
+    assert!(ball.z.is_some_and(|z| (500.0..650.0).contains(&z)), "{ball:?}");
+    assert!((ball.x - 1000.0).abs() < 1.0 && (ball.y - 1000.0).abs() < 1.0, "{ball:?}");
+    let other = seen(Profile::Ours);
+    assert!(other.z.is_none() && (other.x - 1000.0).abs() > 10.0, "{other:?}");
+    // On the carpet: the height of its centre.
+    let mut grsim = server_like(Profile::Grsim);
+    steps(&mut grsim, 30);
+    let frames: Vec<_> = sent(&mut grsim).0.into_iter().filter_map(|packet| packet.detection).collect();
+    assert!(frames.iter().flat_map(|frame| &frame.balls).all(|ball| ball.z == Some(21.5)));
+}
+
+#[test]
+fn grsim_takes_robots_that_are_parked_off_the_field() {
+    let mut grsim = server_like(Profile::Grsim);
+    let put = |server: &mut Server, x: f32| {
+        let robot = TeleportRobot { id: blue(4), x: Some(x), y: Some(-2.5), ..Default::default() };
+        control(server, SimulatorControl { teleport_robot: vec![robot], ..Default::default() })
+    };
+    assert!(put(&mut grsim, 100.0).is_empty());
+    assert!(!grsim.world().robot(own(4)).unwrap().present);
+    assert_eq!(ids(&answers(&mut grsim, &[ahead(4, 1.0)])[0]), [4], "it is parked, not gone");
+    assert!(put(&mut grsim, 1.5).is_empty(), "and comes back without being told that it is present");
+    assert!(grsim.world().robot(own(4)).unwrap().present);
+    // Just outside the lines it stands on the carpet.
+    assert!(put(&mut grsim, 4.7).is_empty());
+    assert!(grsim.world().robot(own(4)).unwrap().present);
+    assert_eq!(put(&mut server(), 100.0), ["ONETWO_OUTSIDE_HALL"]);
+}
+
+/// The states that a message of grSim's older protocol brings back, by the port they go to.
+fn states(server: &mut Server, packet: &GrsimPacket) -> Vec<(u16, RobotsStatus)> {
+    while server.poll_transmit().is_some() {}
+    server.handle(Port::Legacy, from(), &packet.encode_to_vec());
+    let mut states = Vec::new();
+    while let Some(Transmit { to, bytes }) = server.poll_transmit() {
+        let Destination::Status(to) = to else { continue };
+        assert_eq!(to.ip(), from().ip(), "to whoever commanded");
+        states.push((to.port(), RobotsStatus::decode(&bytes[..]).unwrap()));
+    }
+    states
+}
+
+#[test]
+fn grsims_older_protocol_drives_kicks_and_puts_things() {
+    let mut grsim = server_like(Profile::Grsim);
+    let command = |of: fn(&mut GrsimRobotCommand)| {
+        let mut command = GrsimRobotCommand { id: 2, ..Default::default() };
+        of(&mut command);
+        let commands = GrsimCommands { timestamp: 0.0, isteamyellow: false, robot_commands: vec![command] };
+        GrsimPacket { commands: Some(commands), replacement: None }
+    };
+    assert!(states(&mut grsim, &GrsimPacket::default()).is_empty(), "nothing has changed");
+    let before = grsim.world().robot(own(2)).unwrap().pose.position;
+    for _ in 0..50 {
+        states(&mut grsim, &command(|c| (c.veltangent, c.velangular) = (1.0, 0.0)));
+        steps(&mut grsim, 10);
+    }
+    let after = grsim.world().robot(own(2)).unwrap().pose.position;
+    assert!(
+        (after.x() - before.x() - 0.389).abs() < 0.01,
+        "as by the league's protocol: {before:?} {after:?}"
+    );
+    // Wheels turn counter-clockwise together: it turns on the spot.
+    for _ in 0..50 {
+        let wheels = |c: &mut GrsimRobotCommand| {
+            c.wheelsspeed = true;
+            (c.wheel1, c.wheel2, c.wheel3, c.wheel4) = (Some(10.0), Some(10.0), Some(10.0), Some(10.0));
+        };
+        states(&mut grsim, &command(wheels));
+        steps(&mut grsim, 10);
+    }
+    let robot = grsim.world().robot(own(2)).unwrap();
+    // 10 rad/s of a wheel of 27 mm at 0.081 m from the middle or so.
+    assert!(robot.turning > 2.5 && robot.velocity.norm() < 0.05, "{robot:?}");
+    // The ball into its mouth, by replacement; a chip.
+    let robot_at =
+        GrsimRobotReplacement { x: 1.0, y: 1.0, dir: 90.0, id: 2, yellowteam: false, turnon: None };
+    let reach = f64::from(robot.body.front + 0.0215 + 0.001);
+    let ball = GrsimBallReplacement { x: Some(1.0), y: Some(1.0 + reach), vx: Some(0.0), vy: Some(0.0) };
+    let replacement = Some(GrsimReplacement { ball: Some(ball), robots: vec![robot_at] });
+    states(&mut grsim, &GrsimPacket { commands: None, replacement });
+    steps(&mut grsim, 1);
+    let told = states(&mut grsim, &command(|_| {}));
+    let [(30011, status)] = &told[..] else { panic!("{told:?}") };
+    assert!(status.robots_status.len() == 1 && status.robots_status[0].infrared);
+    states(&mut grsim, &command(|c| (c.kickspeedx, c.kickspeedz) = (3.0, 2.0)));
+    steps(&mut grsim, 5);
+    let told = states(&mut grsim, &command(|_| {}));
+    assert!(told[0].1.robots_status[0].chip_kick, "{told:?}");
+    let ball = grsim.world().ball;
+    assert!(ball.height > 0.0 && ball.velocity.y() > 2.0, "{ball:?}");
+    steps(&mut grsim, 200);
+    let told = states(&mut grsim, &command(|_| {}));
+    let state = told[0].1.robots_status[0];
+    assert!(!state.chip_kick && !state.infrared);
+    // Switched off: gone from the field, and back.
+    let replace = |turnon| {
+        let robot = GrsimRobotReplacement { turnon, ..robot_at };
+        let replacement = Some(GrsimReplacement { ball: None, robots: vec![robot] });
+        GrsimPacket { commands: None, replacement }
+    };
+    states(&mut grsim, &replace(Some(false)));
+    assert!(!grsim.world().robot(own(2)).unwrap().present);
+    states(&mut grsim, &replace(None));
+    assert!(grsim.world().robot(own(2)).unwrap().present);
+    // Bytes of another kind, ids that are none, numbers that are none.
+    grsim.handle(Port::Legacy, from(), b"\xff\xff");
+    let nonsense = |c: &mut GrsimRobotCommand| (c.id, c.veltangent) = (99, f32::NAN);
+    states(&mut grsim, &command(nonsense));
+    states(&mut grsim, &command(|c| (c.veltangent, c.kickspeedx) = (f32::NAN, f32::INFINITY)));
+    steps(&mut grsim, 100);
+    assert!(grsim.world().robots().iter().all(|robot| robot.pose.position.is_finite()));
 }

@@ -1,0 +1,96 @@
+//! `identity`: the team's key and this start's epoch, as `onetwo control` uses them.
+//!
+//! A link to real robots refuses the key of zeros, which is public, unless `--insecure-zero-key` says that it may be.
+
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use host::config::{RobotLink, TeamConfig};
+use host::shell::{epoch, key};
+use protocol::frame::TeamKey;
+
+use crate::Failure;
+use crate::output::note;
+
+/// The team's key: the file's, or zeros where that is allowed.
+pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
+    let failed = |words: String| Failure::Network(words);
+    let read =
+        config.key_file.as_deref().map(key::read).transpose().map_err(|error| failed(error.to_string()))?;
+    let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
+    let link = match &config.robots {
+        RobotLink::Simulator(_) => None,
+        RobotLink::Udp(address) => Some(format!("udp://{address}")),
+        RobotLink::Serial { device, .. } => Some(format!("serial:{device}")),
+    };
+    if let Some(link) = link.filter(|_| key == TeamKey::ZERO && !config.insecure_zero_key) {
+        let what = match &config.key_file {
+            Some(file) => format!("the key in {} is all zeros, which is public", file.display()),
+            None => "there is no --key-file, and the key of zeros is public".to_owned(),
+        };
+        return Err(failed(format!(
+            "{link}: {what}: anybody in radio range could command the robots. Make a key with `openssl rand -hex 16 > team.key`, \
+             provision the robots with it (docs/security.md) and add --key-file team.key; or add --insecure-zero-key"
+        )));
+    }
+    if let Some(warning) = read.and_then(|read| read.warning) {
+        note!("warning: {warning}");
+    }
+    Ok(key)
+}
+
+/// This start's epoch. Robots in a simulator start with their host, so nothing is kept for them.
+pub(super) fn this_epoch(config: &TeamConfig) -> u32 {
+    let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    let calendar = u32::try_from(unix.as_secs()).unwrap_or(u32::MAX);
+    if matches!(config.robots, RobotLink::Simulator(_)) {
+        return calendar;
+    }
+    let epoch = epoch::next(epoch::state_directory().as_deref(), calendar);
+    if let Some(warning) = epoch.warning {
+        note!("warning: {warning}");
+    }
+    epoch.epoch
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use host::config::TeamSettings;
+
+    fn key_for(robots: &str, key: Option<&str>, insecure: bool) -> Result<TeamKey, String> {
+        let path = std::env::temp_dir().join(format!(
+            "onetwo-identity-{}-{}",
+            std::process::id(),
+            key.unwrap_or("none")
+        ));
+        if let Some(key) = key {
+            std::fs::write(&path, key).unwrap();
+        }
+        let settings = TeamSettings {
+            robots: Some(robots.to_owned()),
+            key_file: key.map(|_| path.clone()),
+            insecure_zero_key: Some(insecure),
+            ..TeamSettings::default()
+        };
+        let found = team_key(&settings.complete().unwrap()).map_err(|failure| failure.to_string());
+        let _ = std::fs::remove_file(path);
+        found
+    }
+
+    #[test]
+    fn a_link_to_real_robots_needs_a_key_that_is_not_public() {
+        let (zeros, own) = ("0".repeat(32), format!("{}07", "0".repeat(30)));
+        for robots in ["udp://127.0.0.1:9", "serial:/dev/ttyACM0"] {
+            for key in [None, Some(&*zeros)] {
+                let words = key_for(robots, key, false).unwrap_err();
+                assert!(
+                    words.contains("openssl rand -hex 16") && words.contains("--insecure-zero-key"),
+                    "{words}"
+                );
+                assert!(key_for(robots, key, true) == Ok(TeamKey::ZERO));
+            }
+            assert!(key_for(robots, Some(&own), false).is_ok());
+        }
+        assert!(key_for("sim://127.0.0.1", None, false) == Ok(TeamKey::ZERO));
+    }
+}

@@ -1,0 +1,189 @@
+//! Does `onetwo simulate` serve a match that a game controller elsewhere runs? A scripted controller on this machine: referee packets
+//! made here, and the port for automatic referees; a client of the simulation protocol and of the vision sees what came of it.
+
+mod running;
+
+use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use running::{PATIENCE, Running};
+use ssl::Message;
+use ssl::controller::{
+    AutoRefRegistration, AutoRefToController, ControllerReply, ControllerToAutoRef, StatusCode,
+};
+use ssl::event::GameEventType;
+use ssl::net::Connection;
+use ssl::referee::{Command, Point, Referee, Stage, TeamInfo};
+use ssl::simulation::{SimulatorCommand, SimulatorControl, TeleportBall};
+use ssl::vision::{DetectionFrame, WrapperPacket};
+
+/// Sends what the script says about a hundred times a second, until it is dropped.
+struct Controller {
+    packet: Arc<Mutex<Option<Referee>>>,
+}
+
+impl Controller {
+    fn new(to: &str) -> Self {
+        let team =
+            || TeamInfo { max_allowed_bots: Some(6), can_place_ball: Some(true), ..TeamInfo::default() };
+        let packet = Referee {
+            stage: Stage::NormalFirstHalf as i32,
+            command: Command::Halt as i32,
+            yellow: team(),
+            blue: team(),
+            blue_team_on_positive_half: Some(false),
+            source_identifier: Some("scripted".into()),
+            ..Referee::default()
+        };
+        let packet = Arc::new(Mutex::new(Some(packet)));
+        let (said, to) = (packet.clone(), to.to_owned());
+        let (socket, began) = (UdpSocket::bind("127.0.0.1:0").expect("a port"), Instant::now());
+        thread::spawn(move || {
+            while let Some(packet) = &mut *said.lock().expect("the script") {
+                packet.packet_timestamp = 1_000_000 + began.elapsed().as_micros() as u64;
+                // Nobody may hear yet.
+                let _ = socket.send_to(&packet.encode_to_vec(), &to);
+                thread::sleep(Duration::from_millis(10));
+            }
+        });
+        Self { packet }
+    }
+
+    fn says(&self, change: impl FnOnce(&mut Referee)) {
+        let mut packet = self.packet.lock().expect("the script");
+        let packet = packet.as_mut().expect("still running");
+        change(packet);
+        packet.command_counter += 1;
+    }
+}
+
+impl Drop for Controller {
+    fn drop(&mut self) {
+        *self.packet.lock().expect("the script") = None;
+    }
+}
+
+fn socket() -> UdpSocket {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    socket.set_read_timeout(Some(PATIENCE)).expect("a time-out");
+    socket
+}
+
+/// A port that is free at the moment.
+fn free() -> String {
+    socket().local_addr().expect("an address").to_string()
+}
+
+/// The first image for which `holds`; earlier ones are passed over.
+fn image(socket: &UdpSocket, what: &str, holds: impl Fn(&DetectionFrame) -> bool) {
+    let (until, mut bytes, mut last) = (Instant::now() + PATIENCE, [0; 8192], None);
+    while Instant::now() < until {
+        let (length, _) = socket.recv_from(&mut bytes).expect("vision comes");
+        let packet = WrapperPacket::decode(&bytes[..length]).expect("a packet of the vision");
+        let Some(detection) = packet.detection else { continue };
+        if holds(&detection) {
+            return;
+        }
+        last = Some(detection);
+    }
+    panic!("{what}: {last:?}");
+}
+
+fn ball_at(frame: &DetectionFrame, x: f32, y: f32) -> bool {
+    frame.balls.iter().any(|ball| (ball.x - x).abs() < 1.0 && (ball.y - y).abs() < 1.0)
+}
+
+fn teleport(to: SocketAddr, ball: TeleportBall) {
+    let control = SimulatorControl { teleport_ball: Some(ball), ..SimulatorControl::default() };
+    let command = SimulatorCommand { control: Some(control), config: None };
+    socket().send_to(&command.encode_to_vec(), to).expect("sent");
+}
+
+#[test]
+fn the_assistant_puts_the_ball_takes_a_robot_off_and_brings_it_back() {
+    let (vision, referee) = (socket(), free());
+    let to = vision.local_addr().expect("an address").to_string();
+    let controller = Controller::new(&referee);
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--headless", "--assistant"];
+    let more = ["--referee", &referee, "--vision", &to, "--ideal", "--cameras", "1", "--speed", "4"];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    let control = SocketAddr::from(([127, 0, 0, 1], simulator.control_port()));
+    simulator.says("a game controller is heard at");
+    teleport(control, TeleportBall { x: Some(1.0), y: Some(-1.0), ..TeleportBall::default() });
+    image(&vision, "the ball is moved", |frame| ball_at(frame, 1_000.0, -1_000.0));
+    controller.says(|packet| {
+        packet.command = Command::Stop as i32;
+        packet.next_command = Some(Command::PrepareKickoffYellow as i32);
+        packet.designated_position = Some(Point { x: 0.0, y: 0.0 });
+    });
+    let (_, line) = simulator.says("assistant  puts the ball");
+    assert!(line.contains("(0.00, 0.00) m: for yellow's kick-off"), "{line}");
+    image(&vision, "the ball is in the middle", |frame| ball_at(frame, 0.0, 0.0));
+    // A yellow card: nobody leaves by itself, and after 10 s one is taken off.
+    controller.says(|packet| packet.blue.max_allowed_bots = Some(5));
+    let (_, line) = simulator.says("assistant  takes blue");
+    assert!(line.contains("too many robots for 10 s"), "{line}");
+    image(&vision, "five are left", |frame| frame.robots_blue.len() == 5);
+    controller.says(|packet| packet.blue.max_allowed_bots = Some(6));
+    let (_, line) = simulator.says("assistant  puts blue");
+    assert!(line.contains("may have another robot"), "{line}");
+    image(&vision, "six again", |frame| frame.robots_blue.len() == 6);
+}
+
+#[test]
+fn the_automatic_referee_registers_and_reports_what_it_sees() {
+    let (vision, referee) = (socket(), free());
+    let to = vision.local_addr().expect("an address").to_string();
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let autoref = listener.local_addr().expect("an address").to_string();
+    let controller = Controller::new(&referee);
+    let simulate = ["simulate", "--ports", "0", "--listen", "127.0.0.1", "--headless", "--ideal"];
+    let more = ["--referee", &referee, "--vision", &to, "--autoref", &autoref];
+    let mut simulator = Running::start(&[&simulate[..], &more[..]].concat());
+    let control = SocketAddr::from(([127, 0, 0, 1], simulator.control_port()));
+    let (stream, _) = listener.accept().expect("a connection");
+    let mut talk = Connection::over(stream).expect("a talk");
+    let reply = ControllerReply { status_code: Some(StatusCode::Ok as i32), ..ControllerReply::default() };
+    let reply = ControllerToAutoRef { controller_reply: Some(reply) };
+    talk.send(&reply).expect("greeted");
+    let registration: Option<AutoRefRegistration> = talk.receive(PATIENCE).expect("no error");
+    assert_eq!(registration.expect("a registration").identifier, "onetwo");
+    talk.send(&reply).expect("accepted");
+    simulator.says("a game controller is heard at");
+    controller.says(|packet| packet.command = Command::Stop as i32);
+    thread::sleep(Duration::from_millis(300));
+    controller.says(|packet| packet.command = Command::ForceStart as i32);
+    thread::sleep(Duration::from_millis(300));
+    for (x, y, vx, vy, kind) in [
+        (0.0, 2.5, 0.0, 4.0, GameEventType::BallLeftFieldTouchLine),
+        (4.0, 0.0, 4.0, 0.0, GameEventType::PossibleGoal),
+    ] {
+        let [x, y, vx, vy] = [x, y, vx, vy].map(Some);
+        teleport(control, TeleportBall { x, y, vx, vy, ..TeleportBall::default() });
+        let report: Option<AutoRefToController> = talk.receive(PATIENCE).expect("no error");
+        let event = report.expect("a report").game_event.expect("an event");
+        assert_eq!(event.r#type, Some(kind as i32), "{event:?}");
+        assert_eq!((event.created_timestamp, event.id), (None, None), "both are the controller's to give");
+        talk.send(&reply).expect("accepted");
+        // The controller stops the game, and it goes on.
+        controller.says(|packet| packet.command = Command::Stop as i32);
+        thread::sleep(Duration::from_millis(300));
+        controller.says(|packet| packet.command = Command::ForceStart as i32);
+        thread::sleep(Duration::from_millis(300));
+    }
+}
+
+#[test]
+fn without_a_game_controller_elsewhere_both_are_refused() {
+    for more in [&["--assistant"][..], &["--autoref", "127.0.0.1"][..]] {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_onetwo"))
+            .args([&["simulate", "--headless"][..], more].concat())
+            .output()
+            .expect("the program runs");
+        assert!(!output.status.success());
+        let words = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(words.contains("--referee none"), "{words}");
+    }
+}

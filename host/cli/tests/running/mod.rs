@@ -1,0 +1,73 @@
+//! `running`: a verb of the built program while it runs, and what it says on stderr, for the tests of the command line.
+
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Generous: a loaded machine is no failure.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A running verb; its words on stderr come line by line. Ended when dropped.
+pub struct Running {
+    pub process: Child,
+    lines: Receiver<(Duration, String)>,
+    heard: Vec<(Duration, String)>,
+}
+
+impl Running {
+    /// Starts the built program with these arguments.
+    pub fn start(arguments: &[&str]) -> Self {
+        let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+            .args(arguments)
+            // The host's epoch is kept there, not in the home of the user that runs the tests.
+            .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
+            .stderr(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let (began, words) = (Instant::now(), process.stderr.take().expect("a pipe"));
+        let (send, lines) = channel();
+        thread::spawn(move || {
+            for line in BufReader::new(words).lines().map_while(Result::ok) {
+                if send.send((began.elapsed(), line)).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { process, lines, heard: Vec::new() }
+    }
+
+    /// Waits for a line with these words.
+    pub fn says(&mut self, words: &str) -> (Duration, String) {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            match self.lines.recv_timeout(left) {
+                Ok(line) => {
+                    self.heard.push(line.clone());
+                    if line.1.contains(words) {
+                        return line;
+                    }
+                }
+                Err(error) => panic!("`{words}` is not said ({error}); said is: {:#?}", self.heard),
+            }
+        }
+    }
+
+    /// The control port that the simulator says it has.
+    pub fn control_port(&mut self) -> u16 {
+        let (_, line) = self.says("control  ");
+        let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
+        address.parse::<SocketAddr>().expect("an address").port()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

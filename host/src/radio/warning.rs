@@ -1,0 +1,279 @@
+//! `warning`: what an operator should know of robots that refuse this host, or that it refuses, and what to do about it. A matter
+//! is reported while it goes on: five frames within two seconds. Times on the host's clock.
+
+use std::fmt;
+
+use protocol::frame::Refusal;
+use protocol::host::Telemetry;
+use protocol::{Duration, Instant, RobotId, TeamId};
+
+/// How long a count is taken before it is begun again.
+const WINDOW: Duration = Duration::millis(1_000);
+/// A matter is over when nothing of it came for so long.
+const OVER: Duration = Duration::millis(2_000);
+/// So many frames within [`WINDOW`] are no accident: a line that corrupts one bit in 10⁵ breaks fewer.
+const MANY: u32 = 5;
+
+/// Something that keeps a robot and this host apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RadioWarning {
+    /// The robot follows a host with a later epoch, and refuses this one.
+    LaterHost(RobotId, u32),
+    /// The robot refuses frames for this reason.
+    Refuses(RobotId, Why),
+    /// Frames in that robot's name have a tag that is not its key's.
+    WrongKey(RobotId),
+    /// Frames of another team's number come in.
+    OtherTeam(TeamId),
+    /// Frames of another version of the protocol come in.
+    OtherVersion(u8),
+}
+
+/// Why a robot refuses frames, as its telemetry counts them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// They are another version's.
+    Version,
+    /// They are another team's.
+    Team,
+    /// They are of an earlier epoch of the host.
+    Epoch,
+    /// Their tags are not its key's.
+    Tag,
+    /// They are of a host or teammate that has not named its epoch.
+    Stranger,
+    /// They are more than 200 ms old.
+    Stale,
+}
+
+impl Why {
+    const ALL: [Self; 6] = [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Stranger, Self::Stale];
+
+    fn kind(self) -> usize {
+        match self {
+            Self::Version => Refusal::Version(0).kind(),
+            Self::Team => Refusal::Team(TeamId(0)).kind(),
+            Self::Epoch => Refusal::Epoch { seen: 0, current: 0 }.kind(),
+            Self::Tag => Refusal::Tag.kind(),
+            Self::Stranger => Refusal::Stranger { epoch: 0 }.kind(),
+            Self::Stale => Refusal::Stale.kind(),
+        }
+    }
+}
+
+impl fmt::Display for RadioWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LaterHost(robot, epoch) => write!(
+                f,
+                "robot {robot} refuses this host: a host with a later epoch ({epoch}) led it before; restart the robot or set \
+                 this computer's clock"
+            ),
+            Self::Refuses(robot, why) => {
+                let (what, remedy) = match why {
+                    Why::Version => {
+                        ("of another protocol version", "flash robots and host with the same release")
+                    }
+                    Why::Team => ("of another team's number", "give each team its own channel"),
+                    Why::Epoch => ("of an earlier host", "end the other host"),
+                    Why::Tag => (
+                        "with a wrong tag",
+                        "another host with another key, or an attacker, sends on this channel",
+                    ),
+                    Why::Stranger => (
+                        "of a sender it does not know",
+                        "another host or robot of this team number, or recordings, are on this channel",
+                    ),
+                    Why::Stale => (
+                        "that are over 200 ms old",
+                        "the radio is too slow or overloaded, or frames are withheld",
+                    ),
+                };
+                write!(f, "robot {robot} refuses frames {what}: {remedy}")
+            }
+            Self::WrongKey(robot) => write!(
+                f,
+                "frames of robot {robot} have a wrong tag: it holds another team's key, or is imitated; check --key-file, or write \
+                 its page again (`onetwo firmware provision --robot {robot}`)"
+            ),
+            Self::OtherTeam(team) => write!(
+                f,
+                "frames of team {} come in: a robot of the other team, or one of ours provisioned with its number (--team)",
+                team.0
+            ),
+            Self::OtherVersion(version) => {
+                write!(
+                    f,
+                    "frames of protocol version {version} come in: flash robots and host with the same release"
+                )
+            }
+        }
+    }
+}
+
+/// Frames of a kind, counted as they come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Rising {
+    window: Option<Instant>,
+    latest: Option<Instant>,
+    count: u32,
+    before: u32,
+}
+
+impl Rising {
+    fn add(&mut self, now: Instant, frames: u32) {
+        if frames == 0 {
+            return;
+        }
+        let age = self.window.map(|start| now.since(start));
+        if age.is_none_or(|age| age >= WINDOW) {
+            self.before = if age.is_some_and(|age| age < WINDOW * 2) { self.count } else { 0 };
+            (self.window, self.count) = (Some(now), 0);
+        }
+        self.count = self.count.saturating_add(frames);
+        self.latest = Some(now);
+    }
+
+    fn goes_on(&self, now: Instant) -> bool {
+        self.latest.is_some_and(|latest| now.since(latest) < OVER) && self.count.max(self.before) >= MANY
+    }
+}
+
+/// What is known of one robot's refusals.
+#[derive(Clone, Copy, Debug, Default)]
+struct OfRobot {
+    told: Option<[u16; Refusal::KINDS]>,
+    rising: [Rising; Why::ALL.len()],
+    forged: Rising,
+    follows: Option<(u32, Instant)>,
+}
+
+/// Counts what keeps robots and host apart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Refusals {
+    robots: [OfRobot; RobotId::COUNT],
+    team: (Rising, u8),
+    version: (Rising, u8),
+}
+
+impl Refusals {
+    /// Genuine telemetry came, of a robot that follows that host.
+    pub(super) fn tell(&mut self, now: Instant, robot: RobotId, telemetry: &Telemetry) {
+        let known = &mut self.robots[robot.index()];
+        known.follows = Some((telemetry.host, now));
+        let before = known.told.replace(telemetry.refused).unwrap_or(telemetry.refused);
+        for (why, rising) in Why::ALL.into_iter().zip(&mut known.rising) {
+            let of = |counts: &[u16; Refusal::KINDS]| counts.get(why.kind()).copied().unwrap_or(0);
+            // After a boot the counts begin again.
+            rising.add(now, u32::from(of(&telemetry.refused).saturating_sub(of(&before))));
+        }
+    }
+
+    /// A packet was refused; `sender` is the robot it names.
+    pub(super) fn refuse(&mut self, now: Instant, refusal: Refusal, sender: Option<RobotId>) {
+        match (refusal, sender) {
+            (Refusal::Tag, Some(robot)) => self.robots[robot.index()].forged.add(now, 1),
+            (Refusal::Team(TeamId(team)), _) => {
+                self.team.0.add(now, 1);
+                self.team.1 = team;
+            }
+            (Refusal::Version(version), _) => {
+                self.version.0.add(now, 1);
+                self.version.1 = version;
+            }
+            _ => {}
+        }
+    }
+
+    /// What goes on now, for a host of that epoch.
+    pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
+        let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
+            let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < OVER);
+            let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
+            let whys = Why::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
+                // That it refuses this host's epoch is said already.
+                rising.goes_on(now) && (*why != Why::Epoch || later.is_none())
+            });
+            let forged = known.forged.goes_on(now).then_some(RadioWarning::WrongKey(robot));
+            later.into_iter().chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why))).chain(forged)
+        };
+        let (team, version) = (self.team, self.version);
+        let team = team.0.goes_on(now).then_some(RadioWarning::OtherTeam(TeamId(team.1)));
+        let version = version.0.goes_on(now).then_some(RadioWarning::OtherVersion(version.1));
+        RobotId::all().zip(&self.robots).flat_map(of_robot).chain(team).chain(version)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn id() -> RobotId {
+        RobotId::new(3).unwrap()
+    }
+
+    fn told(refused: [u16; Refusal::KINDS], host: u32) -> Telemetry {
+        Telemetry { refused, host, ..Telemetry::default() }
+    }
+
+    fn ms(n: u64) -> Instant {
+        Instant(n * 1000)
+    }
+
+    #[test]
+    fn a_robot_that_follows_a_later_host_is_reported_at_once_with_the_remedy() {
+        let mut refusals = Refusals::default();
+        refusals.tell(ms(0), id(), &told([0; Refusal::KINDS], 71));
+        let warnings: Vec<_> = refusals.warnings(ms(10), 70).collect();
+        assert_eq!(warnings, [RadioWarning::LaterHost(id(), 71)]);
+        let words = warnings[0].to_string();
+        assert!(
+            words.starts_with("robot 3 refuses this host: a host with a later epoch (71) led it before;"),
+            "{words}"
+        );
+        assert!(words.ends_with("restart the robot or set this computer's clock"), "{words}");
+        assert_eq!(refusals.warnings(ms(10), 72).count(), 0, "that one is earlier: it will be taken over");
+        assert_eq!(refusals.warnings(ms(2_010), 70).count(), 0, "it is silent");
+    }
+
+    #[test]
+    fn counts_that_rise_are_reported_within_two_seconds_and_a_few_are_not() {
+        for why in Why::ALL {
+            let (mut refusals, mut counts) = (Refusals::default(), [0; Refusal::KINDS]);
+            let mut reported = None;
+            for n in 0..20_u64 {
+                counts[why.kind()] += 1;
+                refusals.tell(ms(100 * n), id(), &told(counts, 70));
+                if refusals
+                    .warnings(ms(100 * n), 70)
+                    .any(|warning| warning == RadioWarning::Refuses(id(), why))
+                {
+                    reported = reported.or(Some(100 * n));
+                }
+            }
+            assert!(reported.is_some_and(|at| at <= 1_000), "{why:?}: {reported:?}");
+            // One in a second is a bit that flipped; a reboot brings the counts back to nothing.
+            let mut refusals = Refusals::default();
+            for n in 0..60_u64 {
+                counts[why.kind()] = if n < 30 { (n / 10) as u16 } else { 0 };
+                refusals.tell(ms(100 * n), id(), &told(counts, 70));
+                assert_eq!(refusals.warnings(ms(100 * n), 70).count(), 0, "{why:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_with_another_key_another_team_and_another_version_are_reported() {
+        let mut refusals = Refusals::default();
+        for n in 0..10 {
+            refusals.refuse(ms(100 * n), Refusal::Tag, Some(id()));
+            refusals.refuse(ms(100 * n), Refusal::Team(TeamId(2)), None);
+            refusals.refuse(ms(100 * n), Refusal::Version(1), None);
+        }
+        let warnings: Vec<_> = refusals.warnings(ms(1_000), 70).collect();
+        let expected =
+            [RadioWarning::WrongKey(id()), RadioWarning::OtherTeam(TeamId(2)), RadioWarning::OtherVersion(1)];
+        assert_eq!(warnings, expected);
+        assert_eq!(refusals.warnings(ms(3_000), 70).count(), 0);
+    }
+}

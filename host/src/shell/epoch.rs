@@ -1,0 +1,159 @@
+//! `epoch`: the host's boot epoch, larger with every start even where this computer's clock was set back. Seconds since 1970, or one
+//! more than the last that was used, kept in a file per user.
+//!
+//! Robots refuse every host whose epoch is below that of the host they followed last. The file is one decimal number, replaced as a
+//! whole under a lock, so that neither a power cut nor two starts at once leave it damaged or give one epoch twice.
+
+use std::env;
+use std::fs::{self, File};
+use std::io::{self, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+/// The file's name in the directory of [`state_directory`].
+const FILE: &str = "host-epoch";
+/// A number of 32 bits has ten digits.
+const FILE_LEN_MAX: u64 = 16;
+
+/// An epoch, and what is to be said about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Epoch {
+    /// The epoch.
+    pub epoch: u32,
+    /// It could not be kept, or the clock is behind.
+    pub warning: Option<String>,
+}
+
+/// Where this user's programs keep what must survive a restart: `$XDG_STATE_HOME/onetwo`, or `~/.local/state/onetwo`.
+pub fn state_directory() -> Option<PathBuf> {
+    let absolute = |name| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let state = absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?;
+    Some(state.join("onetwo"))
+}
+
+/// The epoch of a start at `calendar`, seconds since 1970, kept in `directory` for the next one.
+pub fn next(directory: Option<&Path>, calendar: u32) -> Epoch {
+    let kept = directory.ok_or_else(|| "there is neither XDG_STATE_HOME nor HOME".to_owned());
+    let kept = kept.and_then(|directory| {
+        take(directory, calendar).map_err(|error| format!("{}: {error}", directory.join(FILE).display()))
+    });
+    match kept {
+        Ok(epoch) if epoch > calendar => {
+            let warning = format!(
+                "this computer's clock is {} s behind the last start of the host; robots are led with epoch {epoch} all the same. Set the \
+                 clock",
+                epoch - calendar
+            );
+            Epoch { epoch, warning: Some(warning) }
+        }
+        Ok(epoch) => Epoch { epoch, warning: None },
+        Err(why) => Epoch {
+            epoch: calendar.max(1),
+            warning: Some(format!(
+                "the host's epoch cannot be kept ({why}); if this computer's clock is set back, robots will refuse the next start until \
+                 they are restarted"
+            )),
+        },
+    }
+}
+
+fn take(directory: &Path, calendar: u32) -> io::Result<u32> {
+    fs::create_dir_all(directory)?;
+    let lock = File::create(directory.join(format!("{FILE}.lock")))?;
+    lock.lock()?;
+    let path = directory.join(FILE);
+    let last = read(&path)?;
+    let epoch = match last {
+        Some(last) => calendar.max(last.checked_add(1).ok_or_else(|| {
+            io::Error::other(
+                "the last epoch is the largest there is: delete the file and restart every robot",
+            )
+        })?),
+        None => calendar.max(1),
+    };
+    let new = directory.join(format!("{FILE}.new"));
+    let mut file = File::create(&new)?;
+    writeln!(file, "{epoch}")?;
+    file.sync_all()?;
+    fs::rename(&new, &path)?;
+    Ok(epoch)
+}
+
+/// The last epoch; `None` before the first start.
+fn read(path: &Path) -> io::Result<Option<u32>> {
+    let file = match File::open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        file => file?,
+    };
+    if !file.metadata()?.is_file() {
+        return Err(io::Error::other("it is no regular file; delete it"));
+    }
+    let mut text = String::new();
+    file.take(FILE_LEN_MAX).read_to_string(&mut text)?;
+    text.trim()
+        .parse()
+        .map(Some)
+        .map_err(|_| io::Error::other("it holds no epoch; delete it and restart every robot"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let path = env::temp_dir().join(format!("onetwo-epoch-{name}-{}", std::process::id()));
+            let _ = fs::remove_dir_all(&path);
+            Self(path)
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn epochs_are_the_calendars_and_rise_when_it_is_set_back() {
+        let folder = Folder::new("rise");
+        let epoch = |calendar| next(Some(&folder.0), calendar);
+        assert_eq!(epoch(1_000), Epoch { epoch: 1_000, warning: None });
+        assert_eq!(epoch(1_000).epoch, 1_001, "twice in a second");
+        assert_eq!(epoch(2_000), Epoch { epoch: 2_000, warning: None });
+        let behind = epoch(500);
+        assert_eq!(behind.epoch, 2_001);
+        assert!(behind.warning.is_some_and(|words| words.contains("1501 s behind")), "told");
+        assert_eq!(fs::read_to_string(folder.0.join(FILE)).unwrap(), "2001\n");
+    }
+
+    #[test]
+    fn many_starts_at_once_get_an_epoch_each() {
+        let folder = Folder::new("many");
+        let mut epochs: Vec<u32> = std::thread::scope(|scope| {
+            let starts: Vec<_> = (0..8).map(|_| scope.spawn(|| next(Some(&folder.0), 100).epoch)).collect();
+            starts.into_iter().map(|start| start.join().unwrap()).collect()
+        });
+        epochs.sort_unstable();
+        assert_eq!(epochs, (100..108).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_file_that_holds_no_epoch_and_a_directory_that_cannot_be_are_told_and_the_host_starts() {
+        let folder = Folder::new("bad");
+        fs::create_dir_all(&folder.0).unwrap();
+        fs::write(folder.0.join(FILE), "yesterday").unwrap();
+        let told = |directory| {
+            let Epoch { epoch, warning } = next(directory, 1_000);
+            assert_eq!(epoch, 1_000);
+            warning.unwrap()
+        };
+        assert!(told(Some(&folder.0)).contains("it holds no epoch; delete it"));
+        let no_directory = folder.0.join(FILE);
+        assert!(told(Some(&no_directory)).contains("cannot be kept"));
+        assert!(told(None).contains("XDG_STATE_HOME"));
+        fs::write(folder.0.join(FILE), u32::MAX.to_string()).unwrap();
+        assert!(told(Some(&folder.0)).contains("largest"));
+    }
+}

@@ -1,0 +1,383 @@
+//! A robot on wheels under a host whose radio is delayed, lossy, withheld, recorded or forged: it moves only on commands of its host that
+//! are at most 200 ms old. The host's radio and a robot's station in virtual time, ticks of 10 ms (DESIGN §6).
+
+use std::collections::VecDeque;
+
+use brain::{BrainConfig, Station};
+use geometry::{GoalEnd, Pose, Twist, Vector};
+use hil_sim::Stream;
+use host::radio::{Radio, RadioSettings, RadioWarning, Relay, Situation};
+use host::world::{BallModels, Robot, World};
+use protocol::frame::{Frame, Refusal, RobotKeys, TeamKey};
+use protocol::host::{Command, Directive, Duty};
+use protocol::link::Packet;
+use protocol::quantized::{WirePoint, WirePose};
+use protocol::robot_io::{ActuatorFrame, Health, SensorFrame};
+use protocol::{Duration, Instant, RobotId, TeamId, Who};
+use rules::{Colour, League, Phase};
+
+const KEY: TeamKey = TeamKey([0x3c; 16]);
+const TEAM: TeamId = TeamId(1);
+const TICK_MS: u64 = 10;
+
+fn id() -> RobotId {
+    RobotId::new(3).unwrap()
+}
+
+fn ms(n: u64) -> Instant {
+    Instant(n * 1000)
+}
+
+fn radio(epoch: u32) -> Radio {
+    Radio::new(RadioSettings { key: KEY, relay: Relay::ToEach, ..RadioSettings::new(TEAM, epoch) })
+}
+
+/// One way through the air: packets with the time in which they come out.
+struct Way {
+    chance: Stream,
+    packets: VecDeque<(u64, Packet)>,
+    latency_ms: (u32, u32),
+    loss: f32,
+}
+
+impl Way {
+    fn new(name: &str, latency_ms: (u32, u32), loss: f32) -> Self {
+        Self { chance: Stream::new(7, name), packets: VecDeque::new(), latency_ms, loss }
+    }
+
+    fn send(&mut self, now: u64, packet: Packet) {
+        if self.chance.chance(self.loss) {
+            return;
+        }
+        let late = u64::from(self.chance.whole(self.latency_ms.0, self.latency_ms.1));
+        let due = self.packets.back().map_or(now + late, |(last, _)| (now + late).max(*last));
+        self.packets.push_back((due, packet));
+    }
+
+    fn receive(&mut self, now: u64) -> Vec<Packet> {
+        let due = self.packets.iter().take_while(|(due, _)| *due <= now).count();
+        self.packets.drain(..due).map(|(_, packet)| packet).collect()
+    }
+}
+
+/// A robot whose wheels do at once what they are told, and its clock.
+struct Body {
+    station: Station<'static>,
+    speed: f32,
+    /// Its clock: starts that long after the host's, and runs so many parts in a million faster.
+    behind_ms: u64,
+    drift_ppm: f64,
+}
+
+impl Body {
+    fn new(epoch: u32) -> Self {
+        Self::with(epoch, 4_321, 0.0)
+    }
+
+    fn with(epoch: u32, behind_ms: u64, drift_ppm: f64) -> Self {
+        let config = BrainConfig { epoch, ..BrainConfig::hosted(id(), TEAM, League::DivisionB) };
+        let keys = KEY.of_robot(id());
+        let station = Station::with_keys(Instant(0), &config, case_library::division_b(), keys);
+        Self { station, speed: 0.0, behind_ms, drift_ppm }
+    }
+
+    fn clock(&self, now: u64) -> Instant {
+        let own = (now + 10_000 - self.behind_ms) as f64 * 1e3;
+        Instant((own * (1.0 + self.drift_ppm * 1e-6)) as u64)
+    }
+
+    /// A step: packets in, packets out.
+    fn step(&mut self, now: u64, heard: &[Packet]) -> Vec<Packet> {
+        let clock = self.clock(now);
+        for packet in heard {
+            self.station.handle_packet(clock, packet);
+        }
+        let odometry = Twist { linear: Vector::new(self.speed, 0.0), angular: 0.0 };
+        let sensors = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: false,
+            busy: false,
+            odometry,
+            health: Health { battery: Some(16.0), tipped: false, kicker_ready: true },
+        };
+        self.station.handle_sensors(clock, &sensors);
+        let said = std::iter::from_fn(|| self.station.poll_packet(clock)).collect();
+        self.speed = match self.station.poll_actuators(clock) {
+            Some(ActuatorFrame::Omni { wheels, .. }) => {
+                motion::omni::Omni::default().twist(wheels).linear.norm()
+            }
+            Some(ActuatorFrame::Released) | None => 0.0,
+            Some(order) => panic!("no wheels: {order:?}"),
+        };
+        said
+    }
+
+    fn refused(&self, refusal: Refusal) -> u32 {
+        self.station.link().refused()[refusal.kind()]
+    }
+}
+
+/// Drive to a place that is never reached.
+fn offer(radio: &mut Radio, now: u64) -> Vec<Packet> {
+    let mut world = World::empty(ms(now), BallModels::default());
+    world.put(Robot {
+        who: Who { colour: Colour::Blue, id: id() },
+        pose: Pose::default(),
+        velocity: Vector::default(),
+        angular: 0.0,
+        confidence: 1.0,
+        seen: ms(now),
+    });
+    let directive = Directive::GoTo { pose: WirePose { at: WirePoint { x: 3_000, y: 0 }, heading: 0 } };
+    let (defending, phase, duty) = (GoalEnd::Negative, Phase::Run, Duty::Player);
+    let command = Command { to: id(), defending, phase, duty, directive };
+    radio.offer(ms(now), &world, Situation { us: Colour::Blue, phase, placement: None }, &[command]);
+    fetch(radio)
+}
+
+fn fetch(radio: &mut Radio) -> Vec<Packet> {
+    std::iter::from_fn(|| radio.poll_packet()).map(|(_, packet)| packet).collect()
+}
+
+/// A radio, a robot and the air between them.
+struct Match {
+    radio: Radio,
+    body: Body,
+    down: Way,
+    up: Way,
+    now: u64,
+}
+
+impl Match {
+    fn new(body: Body, latency_ms: (u32, u32), loss: f32) -> Self {
+        let way = |name| Way::new(name, latency_ms, loss);
+        Self { radio: radio(70), body, down: way("down"), up: way("up"), now: 0 }
+    }
+
+    /// 10 ms in which the host speaks, or not.
+    fn step(&mut self, host_lives: bool) {
+        self.now += TICK_MS;
+        if host_lives {
+            for packet in self.up.receive(self.now) {
+                let _ = self.radio.handle_packet(ms(self.now), &packet);
+            }
+            for packet in offer(&mut self.radio, self.now) {
+                self.down.send(self.now, packet);
+            }
+        }
+        let heard = self.down.receive(self.now);
+        for packet in self.body.step(self.now, &heard) {
+            self.up.send(self.now, packet);
+        }
+    }
+
+    fn drive(&mut self) {
+        (0..200).for_each(|_| self.step(true));
+        assert!(self.body.speed > 0.5, "it drives: {} m/s", self.body.speed);
+    }
+}
+
+#[test]
+fn withheld_frames_of_a_dead_host_neither_start_nor_keep_a_robot() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.drive();
+    // The air is jammed: 500 snapshots and their commands are kept from the robot; then the host is dead.
+    let mut withheld = Vec::new();
+    for _ in 0..500 {
+        game.now += TICK_MS;
+        let said = game.body.step(game.now, &[]);
+        for packet in said {
+            let _ = game.radio.handle_packet(ms(game.now), &packet);
+        }
+        withheld.push(offer(&mut game.radio, game.now));
+    }
+    assert_eq!(game.body.speed, 0.0, "silence stopped it");
+    assert!(withheld.iter().all(|packets| packets.len() >= 2));
+    // Delivered one after the other over 15 s.
+    let before = game.body.refused(Refusal::Stale);
+    for packets in withheld {
+        for part in 0..3 {
+            game.now += TICK_MS;
+            game.body.step(game.now, if part == 0 { &packets } else { &[] });
+            assert_eq!(game.body.speed, 0.0, "{} ms", game.now);
+        }
+    }
+    assert!(game.body.refused(Refusal::Stale) >= before + 1_000);
+}
+
+#[test]
+fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
+    // The attacker delivers in slow motion: each frame comes, and without a gap, but a little later than the last.
+    for stretch in [2, 3, 5] {
+        let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+        game.drive();
+        let (start, driving) = (game.now, game.body.speed);
+        let frames: Vec<_> = (1..=200)
+            .map(|n| {
+                let sent = start + n * TICK_MS;
+                (sent, offer(&mut game.radio, sent))
+            })
+            .collect();
+        let mut oldest = 0;
+        for (n, (sent, packets)) in (1..).zip(&frames) {
+            for wait in 0..stretch {
+                game.now += TICK_MS;
+                game.body.step(game.now, if wait + 1 == stretch { packets } else { &[] });
+            }
+            assert_eq!(game.now, start + n * stretch * TICK_MS);
+            let age = game.now - sent;
+            oldest = oldest.max(age);
+            // From 200 ms on it brakes at 5 m/s²; a step may pass before.
+            let braked = (age.saturating_sub(200 + 2 * TICK_MS)) as f32 * 1e-3 / (stretch as f32 - 1.0)
+                * stretch as f32;
+            let most = (driving - 5.0 * braked).max(0.0);
+            assert!(
+                game.body.speed <= most + 1e-3 || age < 200,
+                "{} m/s at an age of {age} ms",
+                game.body.speed
+            );
+        }
+        assert!(oldest > 1_000 && game.body.speed == 0.0, "stretched by {stretch}");
+    }
+}
+
+#[test]
+fn a_host_that_dies_stops_its_robot_as_before_100_ms_after_the_last_frame() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.drive();
+    let (died, driving) = (game.now, game.body.speed);
+    let mut braked = None;
+    for _ in 0..200 {
+        game.step(false);
+        if game.body.speed < driving - 0.05 && braked.is_none() {
+            braked = Some(game.now - died);
+        }
+    }
+    assert!(braked.is_some_and(|after| (40..=120).contains(&after)), "{braked:?} ms");
+    assert_eq!(game.body.speed, 0.0);
+}
+
+#[test]
+fn sixty_milliseconds_each_way_a_third_lost_and_clocks_that_drift_apart_do_not_stop_a_robot() {
+    for (drift_ppm, latency) in [(0.0, (60, 60)), (200.0, (60, 60)), (-200.0, (60, 60)), (100.0, (3, 60))] {
+        let mut game = Match::new(Body::with(5, 9_000, drift_ppm), latency, 0.3);
+        (0..300).for_each(|_| game.step(true));
+        let (mut stood, mut steps) = (0, 0);
+        // Ten minutes: the clocks drift apart by 120 ms.
+        for _ in 0..60_000 {
+            game.step(true);
+            steps += 1;
+            stood += u32::from(game.body.speed == 0.0);
+        }
+        let share = f64::from(stood) / f64::from(steps);
+        println!(
+            "drift {drift_ppm} ppm, {latency:?} ms, 30 % lost: stands in {:.2} % of the steps",
+            100.0 * share
+        );
+        assert!(share < 0.02, "drift {drift_ppm} ppm: stands in {share} of the steps");
+        let stale = game.body.refused(Refusal::Stale);
+        assert_eq!(stale, 0, "drift {drift_ppm} ppm");
+        // And the age is still bounded: frames 250 ms late are none.
+        let late = offer(&mut game.radio, game.now);
+        (0..100).for_each(|_| {
+            drop(game.body.step(
+                {
+                    game.now += TICK_MS;
+                    game.now
+                },
+                &[],
+            ))
+        });
+        game.body.step(game.now, &late);
+        assert!(game.body.refused(Refusal::Stale) > 0);
+    }
+}
+
+#[test]
+fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_it() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.drive();
+    // The second computer's clock is behind.
+    game.radio = radio(69);
+    let start = game.now;
+    let mut told = None;
+    for _ in 0..300 {
+        game.step(true);
+        told = told
+            .or_else(|| game.radio.warnings(ms(game.now)).next().map(|warning| (game.now - start, warning)));
+    }
+    let (after, warning) = told.expect("told");
+    assert_eq!(warning, RadioWarning::LaterHost(id(), 70));
+    assert!(after <= 2_000, "{after} ms");
+    assert_eq!((game.radio.present(ms(game.now)).count(), game.body.speed), (0, 0.0));
+    // One more than the last: the robot follows, and nothing is wrong any more.
+    game.radio = radio(71);
+    (0..300).for_each(|_| game.step(true));
+    assert_eq!(game.radio.warnings(ms(game.now)).collect::<Vec<_>>(), []);
+    assert!(game.body.speed > 0.5);
+}
+
+#[test]
+fn a_robot_with_another_key_is_told_of_within_two_seconds() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.radio = Radio::new(RadioSettings { key: TeamKey([9; 16]), ..RadioSettings::new(TEAM, 70) });
+    (0..200).for_each(|_| game.step(true));
+    let warnings: Vec<_> = game.radio.warnings(ms(game.now)).collect();
+    assert_eq!(warnings, [RadioWarning::WrongKey(id())]);
+    assert_eq!(game.body.speed, 0.0);
+}
+
+#[test]
+fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.drive();
+    let genuine = offer(&mut game.radio, game.now + TICK_MS);
+    let stolen: Vec<RobotKeys> =
+        RobotId::all().filter(|other| *other != id()).map(|n| KEY.of_robot(n)).collect();
+    // The host dies; the thief sends what it heard with newer counters under every key it may have.
+    let mut forged = 0;
+    let driving = game.body.speed;
+    for n in 0..300_u32 {
+        game.now += TICK_MS;
+        let mut packets = Vec::new();
+        for packet in &genuine {
+            let frame = Frame::parse(packet, TEAM).unwrap();
+            let counter = (game.now * 1_000 / 64) as u32;
+            for keys in &stolen {
+                for key in [&keys.host, &keys.team] {
+                    let frame = Frame { counter: counter + n % 7, audience: None, ..frame };
+                    let mut out = [0; 120];
+                    let len = frame.emit(key, &mut out).unwrap();
+                    packets.push(Packet::from_slice(&out[..len]).unwrap());
+                }
+            }
+        }
+        forged += packets.len();
+        game.body.step(game.now, &packets);
+    }
+    assert!(driving > 0.5 && game.body.speed == 0.0, "{} m/s", game.body.speed);
+    assert!(forged > 10_000 && game.body.refused(Refusal::Tag) > 5_000);
+}
+
+#[test]
+fn a_robot_that_comes_back_is_led_again_and_its_old_frames_are_not_believed() {
+    let mut game = Match::new(Body::new(5), (3, 3), 0.0);
+    game.drive();
+    let mut recorded = Vec::new();
+    for _ in 0..50 {
+        game.now += TICK_MS;
+        recorded.extend(game.body.step(game.now, &[]));
+    }
+    // It boots; its recordings are played to a host that has started since.
+    game.body = Body::with(6, 9_999, 50.0);
+    game.radio = radio(71);
+    for packet in &recorded {
+        assert!(game.radio.handle_packet(ms(game.now), packet).is_err());
+    }
+    assert_eq!(game.radio.present(ms(game.now)).count(), 0);
+    (0..200).for_each(|_| game.step(true));
+    assert!(game.body.speed > 0.5);
+    assert!(game.radio.present(ms(game.now) + Duration::millis(5)).eq([id()]));
+}
