@@ -28,8 +28,8 @@ pub const LENGTH: u32 = 60_000;
 pub enum Broken {
     /// A robot stayed where it must not be.
     KeepOut(keep_out::Broken),
-    /// A robot stands that has to move.
-    Frozen(Frozen),
+    /// A robot stands that has to move; with what its host wants of it.
+    Frozen(Frozen, String),
     /// A robot moves in HALT after 2 s.
     MovedInHalt(Who, f32),
     /// A robot is faster than 1.5 m/s in STOP after 2 s.
@@ -45,7 +45,7 @@ impl Broken {
     pub fn kind(&self, phase: Phase<Colour>) -> String {
         match self {
             Self::KeepOut(broken) => format!("keep-out {:?} in {}", broken.within.why, bare(phase)),
-            Self::Frozen(frozen) => format!("frozen in {}", bare(phase) + must(frozen.must)),
+            Self::Frozen(frozen, _) => format!("frozen in {}", bare(phase) + must(frozen.must)),
             Self::MovedInHalt(..) => "moved in halt".into(),
             Self::FastInStop(..) => "fast in stop".into(),
             Self::Blocked(obstacle) => format!("blocked in {} by {}", bare(phase), obstacle.reason.word()),
@@ -99,8 +99,8 @@ impl fmt::Display for Found {
                 within.depth,
                 within.why
             ),
-            Broken::Frozen(Frozen { who, must, at }) => {
-                write!(f, "{} stands at ({:.2}, {:.2}): {must:?}", name(who), at.x(), at.y())
+            Broken::Frozen(Frozen { who, must, at }, order) => {
+                write!(f, "{} stands at ({:.2}, {:.2}): {must:?}; {order}", name(who), at.x(), at.y())
             }
             Broken::MovedInHalt(who, speed) => write!(f, "{} moves at {speed:.2} m/s", name(who)),
             Broken::FastInStop(who, speed) => write!(f, "{} goes {speed:.2} m/s", name(who)),

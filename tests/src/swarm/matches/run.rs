@@ -216,7 +216,8 @@ impl Watch {
             })
             .collect();
         for frozen in self.stands.look(time, &must) {
-            self.find(time, Broken::Frozen(frozen));
+            let words = wanted(game, own, frozen.who);
+            self.find(time, Broken::Frozen(frozen, words));
         }
         self.look_at_blocks(time, game);
     }
@@ -318,6 +319,23 @@ impl Watch {
         self.outcome.trace = game.trace().digits();
         self.outcome
     }
+}
+
+/// What a robot's host wants of it, and who stands next to it.
+fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
+    let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id);
+    let flip = Flip::defending(own[who.colour as usize]);
+    let mut words = order.map_or_else(
+        || "no order".to_owned(),
+        |order| format!("{:?} {:?}", order.role, order.task.directive(flip)),
+    );
+    let at = |who| game.world().robot(who).map(|robot| robot.pose.position);
+    let others = game.world().robots().iter().filter(|robot| robot.present && robot.who != who);
+    let near = others.filter_map(|robot| Some((robot.who, robot.pose.position.distance(at(who)?))));
+    if let Some((next, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        words += &format!("; {} {} is {distance:.2} m away", next.colour.word(), next.id);
+    }
+    words
 }
 
 const fn first() -> protocol::RobotId {
