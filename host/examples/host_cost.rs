@@ -58,10 +58,11 @@ fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
     for record in round {
         let input = match record.kind {
             Kind::Vision => Input::Vision(&record.bytes),
-            Kind::Referee => Input::Referee(&record.bytes),
+            Kind::Referee => Input::Referee(&record.bytes, record.from),
             Kind::Robot => Input::Robot(&record.bytes),
             Kind::Timeout => Input::Timeout,
-            Kind::Sent => continue,
+            Kind::Halt => Input::Halt,
+            Kind::Sent | Kind::Lost => continue,
         };
         host.handle(record.at, input);
         while let Some((_, packet)) = host.poll_packet() {

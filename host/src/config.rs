@@ -11,6 +11,7 @@
 //! insecure_zero_key = false       # true: real robots may be led with the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
+//! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
 //!
@@ -23,9 +24,12 @@ use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
+use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
+
+use crate::referee::SourcePin;
 
 /// A team's settings: as a file or flags give them, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -51,6 +55,8 @@ pub struct TeamSettings {
     pub vision: Option<SocketAddr>,
     /// The referee's group.
     pub referee: Option<SocketAddr>,
+    /// The only referee that is obeyed: see [`SourcePin`].
+    pub referee_source: Option<String>,
     /// Where tracker packets go.
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
@@ -98,6 +104,8 @@ pub struct TeamConfig {
     pub vision: SocketAddr,
     /// The referee's group.
     pub referee: SocketAddr,
+    /// The only referee that is obeyed; none: the strictest of all.
+    pub referee_source: Option<SourcePin>,
     /// Where tracker packets go.
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
@@ -143,10 +151,24 @@ fn error(key: &str, words: impl Into<String>) -> ConfigError {
     ConfigError { key: key.to_owned(), words: words.into() }
 }
 
+/// What is wrong in a file of settings, and where; of a long line its begin.
+fn place_of(text: &str, broken: &toml::de::Error) -> String {
+    let what = excerpt(broken.message(), MESSAGE_LEN);
+    let before = broken.span().and_then(|span| text.get(..span.start));
+    let Some(number) = before.map(|before| before.matches('\n').count()) else { return what };
+    let line = text.lines().nth(number).unwrap_or_default();
+    format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_LEN))
+}
+
+/// As much of an error in a file of settings as is shown, characters.
+const MESSAGE_LEN: usize = 300;
+/// As much of its line.
+const LINE_LEN: usize = 80;
+
 impl TeamSettings {
     /// Reads `team.toml`.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        toml::from_str(text).map_err(|broken| error("team.toml", broken.to_string()))
+        toml::from_str(text).map_err(|broken| error("team.toml", place_of(text, &broken)))
     }
 
     /// These settings where they say something, else those.
@@ -163,6 +185,7 @@ impl TeamSettings {
             insecure_zero_key: self.insecure_zero_key.or(below.insecure_zero_key),
             vision: self.vision.or(below.vision),
             referee: self.referee.or(below.referee),
+            referee_source: self.referee_source.or(below.referee_source),
             tracker: self.tracker.or(below.tracker),
             game_controller: self.game_controller.or(below.game_controller),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
@@ -199,6 +222,7 @@ impl TeamSettings {
             insecure_zero_key: self.insecure_zero_key.unwrap_or(false),
             vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
             referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
+            referee_source: self.referee_source.as_deref().map(pin).transpose()?,
             tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
             game_controller: self.game_controller,
             kick,
@@ -213,6 +237,11 @@ fn colour(word: &str) -> Result<Colour, ConfigError> {
         .into_iter()
         .find(|colour| colour.word() == word)
         .ok_or_else(|| error("colour", format!("`{word}` is none; blue or yellow")))
+}
+
+fn pin(text: &str) -> Result<SourcePin, ConfigError> {
+    let words = "empty; an address such as 192.168.1.5, one with a port, or a referee's identifier";
+    if text.trim().is_empty() { Err(error("referee_source", words)) } else { Ok(SourcePin::of(text.trim())) }
 }
 
 fn robot_id(key: &str, number: u8) -> Result<RobotId, ConfigError> {
@@ -248,7 +277,7 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 pictures a second for a team of eleven (§6's frames, some 60 kB/s).
+/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75 for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]
@@ -268,6 +297,7 @@ mod tests {
         assert_eq!(config.colour, Colour::Blue);
         assert_eq!(config.robots, RobotLink::Simulator("127.0.0.1".to_owned()));
         assert_eq!(config.kick[3], 1.06);
+        assert_eq!(config.referee_source, Some(SourcePin::of("192.168.1.5")));
         assert_eq!(config.game_controller.unwrap().port(), 10_008);
     }
 
@@ -286,11 +316,22 @@ mod tests {
         assert!(refused("color = \"blue\"").words.contains("color"));
         assert!(refused("colour = \"red\"").to_string().contains("blue or yellow"));
         assert!(refused("keeper = 16").to_string().contains("0 to 15"));
+        assert!(refused("referee_source = ' '").to_string().contains("192.168.1.5"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
         for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
             assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
         }
+    }
+
+    #[test]
+    fn a_broken_line_is_told_with_its_place_and_without_its_length() {
+        let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().words;
+        let words = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
+        assert!(words.starts_with("line 2: "), "{words}");
+        assert!(words.len() < 600, "{} bytes", words.len());
+        let words = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
+        assert!(words.contains("line 2") && !words.contains(char::is_control), "{words:?}");
     }
 
     #[test]

@@ -18,8 +18,9 @@ use ssl::vision::{GeometryData, GeometryFieldSize};
 pub use area::AreaSource;
 pub use camera::Camera;
 
-/// More cameras than any field has; another one's number is nonsense.
-pub const CAMERAS_MAX: usize = 64;
+/// Cameras have numbers below this, twice as many as any field has: a camera of another number is invented, and would take
+/// the place of a genuine one.
+pub const CAMERAS_MAX: u32 = 16;
 
 /// The goal substitution area that the game controller (2026) takes a field to have of which vision does not tell it, m.
 const SUBSTITUTION_UNTOLD: f32 = 0.3;
@@ -109,8 +110,8 @@ impl VisionGeometry {
         let mut news = News { field: self.field != Some(field), ..News::default() };
         self.field = Some(field);
         for calibration in &data.calib {
-            let known = self.cameras.len() < CAMERAS_MAX || self.cameras.contains_key(&calibration.camera_id);
-            match Camera::from_wire(calibration).filter(|_| known) {
+            let possible = calibration.camera_id < CAMERAS_MAX;
+            match Camera::from_wire(calibration).filter(|_| possible) {
                 None => news.cameras_refused += 1,
                 Some(camera) => {
                     if self.cameras.insert(calibration.camera_id, camera) != Some(camera) {

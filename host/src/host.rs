@@ -20,7 +20,7 @@ use crate::hidden_ball::HiddenBall;
 use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::team_port::Request;
-use crate::referee::{self, Listener};
+use crate::referee::{self, Listener, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::{Bookkeeper, PlayTally};
@@ -42,6 +42,8 @@ pub struct HostSettings {
     pub defending: GoalEnd,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// The only referee that is obeyed; none: every one, the strictest first.
+    pub referee: Option<SourcePin>,
     /// Who decides open play.
     pub team: Team,
     /// The radio's.
@@ -59,6 +61,7 @@ impl HostSettings {
             keeper: RobotId::ZERO,
             defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
             kick: [1.0; RobotId::COUNT],
+            referee: None,
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
@@ -71,10 +74,12 @@ impl HostSettings {
 pub enum Input<'a> {
     /// A datagram of the vision.
     Vision(&'a [u8]),
-    /// A datagram of the referee.
-    Referee(&'a [u8]),
+    /// A datagram of the referee, and where it came from.
+    Referee(&'a [u8], SenderAddress),
     /// A frame of a robot.
     Robot(&'a [u8]),
+    /// The operator halts our robots until the end of the program.
+    Halt,
     /// A deadline that [`Host::poll_timeout`] announced.
     Timeout,
 }
@@ -94,6 +99,8 @@ pub enum Verdict {
     Undecodable,
     /// A deadline.
     Timeout,
+    /// Our robots halt until the end.
+    Halted,
 }
 
 /// Datagrams that were no messages.
@@ -121,6 +128,10 @@ pub struct Host {
     hidden: HiddenBall,
     orders: Orders,
     planned: Option<Instant>,
+    /// When it was last planned because of the referee.
+    replanned: Option<Instant>,
+    /// The referee's phase in the newest orders.
+    ordered: Phase<Colour>,
     undecodable: Undecodable,
     halted: bool,
     books: Bookkeeper,
@@ -138,7 +149,11 @@ impl Host {
     /// A host that starts at `now`.
     pub fn new(settings: HostSettings, now: Instant) -> Self {
         Self {
-            listener: Listener::new(settings.league.limits().unwrap_or(LIMITS), now),
+            listener: Listener::new(
+                settings.league.limits().unwrap_or(LIMITS),
+                settings.referee.clone(),
+                now,
+            ),
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
@@ -148,6 +163,8 @@ impl Host {
             hidden: HiddenBall::default(),
             orders: Orders::new(),
             planned: None,
+            replanned: None,
+            ordered: Phase::Halt,
             undecodable: Undecodable::default(),
             halted: false,
             books: Bookkeeper::default(),
@@ -161,8 +178,12 @@ impl Host {
     pub fn handle(&mut self, now: Instant, input: Input<'_>) -> Verdict {
         match input {
             Input::Vision(bytes) => self.see(now, bytes),
-            Input::Referee(bytes) => self.obey(now, bytes),
+            Input::Referee(bytes, from) => self.obey(now, bytes, from),
             Input::Robot(bytes) => self.listen(now, bytes),
+            Input::Halt => {
+                self.halt(now);
+                Verdict::Halted
+            }
             Input::Timeout => {
                 self.radio.handle_timeout(now);
                 Verdict::Timeout
@@ -170,9 +191,11 @@ impl Host {
         }
     }
 
-    /// Our robots halt, whatever the referee says, until the end: somebody ends the program. No input, so no trace has it.
-    pub fn halt(&mut self, now: Instant) {
-        self.halted = true;
+    /// Our robots halt, whatever the referee says, until the end.
+    fn halt(&mut self, now: Instant) {
+        if !std::mem::replace(&mut self.halted, true) {
+            self.radio.hasten(now);
+        }
         self.plan(now);
     }
 
@@ -226,6 +249,11 @@ impl Host {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
+    /// Whether robots are told to halt now, by the referee or by [`Host::halt`].
+    pub fn is_halting(&self) -> bool {
+        self.halted || self.listener.game().phase == Phase::Halt
+    }
+
     /// The radio, to look at.
     pub fn radio(&self) -> &Radio {
         &self.radio
@@ -273,17 +301,22 @@ impl Host {
         Verdict::Vision(heard)
     }
 
-    fn obey(&mut self, now: Instant, bytes: &[u8]) -> Verdict {
+    fn obey(&mut self, now: Instant, bytes: &[u8], from: SenderAddress) -> Verdict {
         let Ok(packet) = ssl::referee::Referee::decode(bytes) else {
             self.undecodable.referee += 1;
             return Verdict::Undecodable;
         };
         let before = self.listener.game().phase;
         let ball = plainly_seen(now, self.tracker.world(now).ball);
-        let verdict = self.listener.hear(&packet, now, ball);
-        if self.listener.game().phase != before {
-            // A HALT does not wait for the next image.
-            self.plan(now);
+        let verdict = self.listener.hear(&packet, from, now, ball);
+        let phase = self.listener.game().phase;
+        let lately = self.replanned.is_some_and(|last| now.since(last) < PLAN_EVERY);
+        if phase == Phase::Halt && self.ordered != Phase::Halt {
+            // HALT waits neither for the next camera frame nor for the radio's rate.
+            self.radio.hasten(now);
+            self.replan(now);
+        } else if phase != before && !lately {
+            self.replan(now);
         }
         Verdict::Referee(Box::new(verdict))
     }
@@ -301,6 +334,13 @@ impl Host {
             Ok(radio::Heard::Greeting(robot)) => Verdict::Robot(robot),
             Err(refusal) => Verdict::Refused(refusal),
         }
+    }
+
+    /// Orders because the referee's phase changed. Not oftener than camera frames would give them, HALT aside: who forges
+    /// packets in turns shall not keep the processor busy.
+    fn replan(&mut self, now: Instant) {
+        self.replanned = Some(now);
+        self.plan(now);
     }
 
     /// Orders for the field as it is now, and out with them.
@@ -330,6 +370,7 @@ impl Host {
             directive: self.calibrated(order.robot, order.task.directive(flip)),
         };
         let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
+        self.ordered = self.listener.game().phase;
         let situation = Situation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
     }

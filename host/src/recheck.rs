@@ -139,9 +139,11 @@ impl Recheck {
         match record.kind {
             Kind::Sent => checked.compare(record),
             Kind::Vision => checked.tell(record.at, Input::Vision(&record.bytes)),
-            Kind::Referee => checked.tell(record.at, Input::Referee(&record.bytes)),
+            Kind::Referee => checked.tell(record.at, Input::Referee(&record.bytes, record.from)),
             Kind::Robot => checked.tell(record.at, Input::Robot(&record.bytes)),
             Kind::Timeout => checked.tell(record.at, Input::Timeout),
+            Kind::Halt => checked.tell(record.at, Input::Halt),
+            Kind::Lost => {}
         }
         true
     }
@@ -151,6 +153,12 @@ impl Recheck {
         for checked in self.hosts.iter_mut().filter(|_| !cut) {
             checked.expect_nothing_left();
         }
+    }
+
+    /// Whether a host said packets that the record has not, after its last input and nowhere before: the record of a match that was
+    /// cut there.
+    pub fn is_unfinished(&self) -> bool {
+        self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
     }
 
     /// Host by host, in the header's order: what it was fed, and where it parts from the record.
@@ -216,6 +224,7 @@ mod tests {
     use super::*;
     use crate::HostSettings;
     use crate::recording::HostHeader;
+    use crate::referee::SenderAddress;
 
     fn header() -> RecordingHeader {
         let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
@@ -255,11 +264,11 @@ mod tests {
             let at = Instant(1_000_000) + Duration(u64::from(number) * 16_000);
             let bytes = image(number);
             host.handle(at, Input::Vision(&bytes));
-            records.push(Record { at, host: 0, kind: Kind::Vision, bytes });
+            records.push(Record { at, host: 0, kind: Kind::Vision, from: SenderAddress::INTERNAL, bytes });
             while let Some((to, packet)) = host.poll_packet() {
                 let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
                 let bytes = [&[to], &packet[..]].concat();
-                records.push(Record { at, host: 0, kind: Kind::Sent, bytes });
+                records.push(Record { at, host: 0, kind: Kind::Sent, from: SenderAddress::INTERNAL, bytes });
             }
         }
         records
@@ -308,7 +317,8 @@ mod tests {
     #[test]
     fn a_record_of_no_host_is_not_fed() {
         let mut recheck = Recheck::new(&header(), TeamKey::ZERO).unwrap();
-        let stray = Record { at: Instant(0), host: 9, kind: Kind::Timeout, bytes: Vec::new() };
+        let from = SenderAddress::INTERNAL;
+        let stray = Record { at: Instant(0), host: 9, kind: Kind::Timeout, from, bytes: Vec::new() };
         assert!(!recheck.feed(&stray));
     }
 }

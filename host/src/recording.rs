@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::HostSettings;
 use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
+use crate::referee::SourcePin;
 use crate::strategy::{Tactics, Team};
 
 /// What a trace begins with.
@@ -60,6 +61,9 @@ pub struct HostHeader {
     pub relay: String,
     /// How long a packet is on its way, µs.
     pub way_us: u64,
+    /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub referee_source: Option<String>,
     /// Were frames sealed with a key other than zeros?
     #[serde(default)]
     pub keyed: bool,
@@ -139,6 +143,7 @@ impl HostHeader {
             epoch: radio.epoch,
             relay: relay.to_owned(),
             way_us: radio.way.0,
+            referee_source: None,
             keyed: radio.key != TeamKey::ZERO,
             tactics: Tactics::NONE,
             cases: None,
@@ -150,6 +155,7 @@ impl HostHeader {
         let who = (settings.us, settings.keeper, settings.defending);
         Self {
             plays: settings.team,
+            referee_source: settings.referee.as_ref().map(ToString::to_string),
             tactics: settings.tactics,
             cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
             ..Self::new(who, &settings.kick, &settings.radio, began)
@@ -170,6 +176,7 @@ impl HostHeader {
             keeper: self.keeper()?,
             defending: self.defending()?,
             kick: self.kick()?,
+            referee: self.referee_source.as_deref().map(SourcePin::of),
             team: self.plays,
             radio: self.radio(key)?,
             tactics: self.tactics,

@@ -1,143 +1,111 @@
-//! What does the referee say, and does it still say anything? The game controller's packets become a [`Game`].
+//! `referee`: the game controller's packets become the one [`Game`] that robots obey. Times: µs of the host's clock.
 //!
-//! [`Listener::hear`] takes packets, [`Listener::tick`] the time and the ball. Decided here:
+//! [`Listener::hear`] takes packets with their sender, [`Listener::tick`] the time and the ball. The rules, all of them on the
+//! side of standing still, because league multicast carries no proof of who sent it:
 //!
-//! - **Which referee.** The first source heard is followed. Another one on the same port is counted and told, and only
-//!   followed when the first has been silent for [`SILENCE`].
-//! - **Which packet.** One that was sent before the newest is old and dropped, unless it is older by more than
-//!   [`CLOCK_BACK`]: then the referee's clock was set back. Counters may start again; only a change of command or counter is
-//!   a command, and what the same command with a new counter means is for [`rules::state`] to say (trap 4).
-//! - **Silence is not loss** (trap 5). The phase stands; [`Listener::silence`] says for how long nothing came, to be told to
-//!   people from [`SILENCE`] on.
+//! - **Within one source** packets count by stamp and counter, but HALT and STOP count by arrival, whatever their stamp
+//!   (`source`). Stamps are held to our own clock within [`WINDOW`]; a referee's clock that steps is followed within that
+//!   time, and reported.
+//! - **Several sources** ([`SourceKey`]: identifier and sender's address). The first is followed: its sheet (sides, cards,
+//!   keeper, places) counts until it has been silent for [`SILENCE`]. Of what the sources say the strictest command is
+//!   obeyed, HALT before STOP and timeouts before everything else. Where two disagree and neither is stricter, ours is STOP
+//!   after [`WINDOW`]: neither can be trusted to let robots play. [`Listener::warnings`] reports every disagreement with
+//!   both addresses; [`SourcePin`] ends it.
+//! - **HALT that ends without a STOP** of the source that is followed (the other source fell silent, a late copy) is left
+//!   through [`GRACE`] of STOP: people may stand on the field.
+//! - **Silence is not loss** (trap 5). The phase stands; [`Listener::silence`] says how long nothing came.
 //!
-//! The referee's clock is Unix time, µs; ages of commands are differences on it, so that it need not agree with ours.
+//! Only a change of command or counter is a command, and what the same command with a new counter means is for
+//! [`rules::state`] to say (trap 4). The referee's clock is Unix time, µs; ages of commands are differences on it.
 
 mod game;
+mod identity;
+mod source;
+mod stamps;
 pub mod team_port;
+mod verdict;
+mod warning;
 mod words;
 
 use geometry::{Field, Point};
 use protocol::{Duration, Instant};
-use rules::Limits;
-use rules::state::{Command, GameState, Heard, Ticked};
+use rules::limits::GRACE;
+use rules::state::{GameState, Ticked};
+use rules::{Colour, Limits, Phase};
 use ssl::referee::Referee;
 
+use source::{Outcome, Source, Strictness};
+
 pub use game::{Game, TeamAccount};
+pub use identity::{SenderAddress, SourceKey, SourcePin};
+pub use source::{CONFIRM, HOLD};
+pub use stamps::WINDOW;
+pub use verdict::{Counts, Doubt, Taken, Verdict};
+pub use warning::Warning;
 pub use words::{command_of, stage_of};
 
-/// People are told that the referee is silent after this: it sends every 25 ms, pauses of 1.6 s were recorded on a loaded
-/// machine, and twice that is no pause any more.
+/// The operator is told that the referee is silent after this: it sends every 25 ms, pauses of 1.6 s were recorded on a
+/// loaded machine, and twice that is no pause any more. A source that is silent longer has no say.
 pub const SILENCE: Duration = Duration::millis(3_000);
-/// A packet that is older than the newest by more than this says that the referee's clock was set back. Copies that
-/// come over a second network are late by much less.
-pub const CLOCK_BACK: Duration = Duration::millis(5_000);
-/// A command without a time, as the controller's first HALT, is taken for new, µs.
-const NO_TIME: u64 = 0;
+/// Sources that are told apart. When full, the least strict one makes room, so that no flood of sources hides a HALT.
+const SOURCES_MAX: usize = 8;
 
-/// Hears the referee.
+/// Receives the referee's packets.
 #[derive(Clone, Debug)]
 pub struct Listener {
     limits: Limits,
-    state: GameState,
-    source: Option<Source>,
-    game: Game,
+    pin: Option<SourcePin>,
+    /// The first is followed.
+    sources: Vec<Source>,
+    /// Sources that the pin excludes, with their newest packets; as many as [`SOURCES_MAX`].
+    excluded: Vec<(SourceKey, Instant)>,
+    /// What others or packets out of order impose on the source that is followed.
+    imposed: Strictness,
+    /// Sources disagree and neither is stricter, since.
+    undecided: Option<Instant>,
+    /// STOP until then, because an imposed HALT ended.
+    still_until: Instant,
+    none: (Game, GameState),
     counts: Counts,
     started: Instant,
 }
 
-/// The referee that is followed.
-#[derive(Clone, Debug)]
-struct Source {
-    name: Option<String>,
-    /// When its newest packet came, host's clock.
-    heard: Instant,
-    /// When that was sent, µs, its clock.
-    sent: u64,
-    command: i32,
-    counter: u32,
-}
-
-/// How many packets came to what.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Packets that were followed.
-    pub taken: u64,
-    /// Commands among them, repeated ones too.
-    pub commands: u64,
-    /// Commands that were never heard, by the counter.
-    pub missed: u64,
-    /// Packets that were sent before the newest.
-    pub old: u64,
-    /// Copies of the newest.
-    pub copies: u64,
-    /// Packets of a referee that is not followed.
-    pub other_source: u64,
-    /// Commands whose number means nothing to us, taken for HALT.
-    pub unknown: u64,
-}
-
-/// What came of a packet.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// It was followed.
-    Taken(Taken),
-    /// It was sent before the newest.
-    Old {
-        /// By how much.
-        by: Duration,
-    },
-    /// It is the newest once more.
-    Copy,
-    /// Another referee sent it than the one that is followed.
-    OtherSource {
-        /// Its name.
-        name: Option<String>,
-    },
-}
-
-/// What was new in a packet.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Taken {
-    /// A command, and what it means.
-    pub command: Option<(Command, Heard)>,
-    /// Commands that were never heard, by the counter.
-    pub missed: u32,
-    /// The counter began again: a new match, or another program.
-    pub counter_restarted: bool,
-    /// The referee's clock was set back.
-    pub clock_back: bool,
-    /// This referee is followed from now on; the name is the one followed before, if any.
-    pub new_source: Option<Option<String>>,
-    /// The command's number, if it means nothing to us.
-    pub unknown: Option<i32>,
-}
-
-/// How long the referee has said nothing.
+/// How long the referee has sent nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Silence {
-    /// Nothing was ever heard, for so long.
+    /// Nothing was ever received, for so long.
     Never(Duration),
-    /// It was heard this long ago, which is nothing to worry about.
+    /// It was received this long ago, which is nothing to worry about.
     Heard(Duration),
-    /// It has been silent for so long that people should be told. What it said last stands.
+    /// It has been silent for so long that the operator should know. Its last command stands.
     Silent(Duration),
 }
 
 impl Listener {
-    /// Begins to listen at `now`, host's clock.
-    pub fn new(limits: Limits, now: Instant) -> Self {
-        let (state, game) = (GameState::new(), Game::default());
-        Self { limits, state, source: None, game, counts: Counts::default(), started: now }
+    /// Starts to listen at `now`, to every source or only to the pinned one.
+    pub fn new(limits: Limits, pin: Option<SourcePin>, now: Instant) -> Self {
+        Self {
+            limits,
+            pin,
+            sources: Vec::new(),
+            excluded: Vec::new(),
+            imposed: Strictness::Play,
+            undecided: None,
+            still_until: Instant(0),
+            none: (Game::default(), GameState::new()),
+            counts: Counts::default(),
+            started: now,
+        }
     }
 
-    /// The game as it stands.
+    /// The game as it is to be obeyed.
     pub fn game(&self) -> &Game {
-        &self.game
+        self.sources.first().map_or(&self.none.0, |source| &source.game)
     }
 
-    /// The state of the game, with the ball's part in it.
+    /// The state of the game by the commands of the source that is followed, with the ball's part in it.
     pub fn state(&self) -> &GameState {
-        &self.state
+        self.sources.first().map_or(&self.none.1, |source| &source.state)
     }
 
     /// How many packets came to what.
@@ -145,14 +113,14 @@ impl Listener {
         self.counts
     }
 
-    /// The name of the referee that is followed, if one is and it has a name.
-    pub fn source(&self) -> Option<&str> {
-        self.source.as_ref()?.name.as_deref()
+    /// The source that is followed, if one is.
+    pub fn source(&self) -> Option<&SourceKey> {
+        self.sources.first().map(|source| &source.key)
     }
 
     /// How long nothing came.
     pub fn silence(&self, now: Instant) -> Silence {
-        match &self.source {
+        match self.sources.first() {
             None => Silence::Never(now.since(self.started)),
             Some(source) if now.since(source.heard) < SILENCE => Silence::Heard(now.since(source.heard)),
             Some(source) => Silence::Silent(now.since(source.heard)),
@@ -161,80 +129,161 @@ impl Listener {
 
     /// The time is `now`, and the ball is here.
     pub fn tick(&mut self, now: Instant, ball: Option<Point<Field>>) -> Ticked {
-        let ticked = self.state.tick(now.0, ball, &self.limits);
-        self.game.stands(&self.state);
+        let mut ticked = Ticked::Same;
+        for (place, source) in self.sources.iter_mut().enumerate() {
+            let came = source.tick(now, ball, &self.limits);
+            if place == 0 {
+                ticked = came;
+            }
+        }
+        self.settle(now);
         ticked
     }
 
-    /// A packet that came at `now`; `ball` is where it is seen then.
-    pub fn hear(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Verdict {
-        let mut taken = Taken::default();
-        match &self.source {
-            None => taken.new_source = Some(None),
-            Some(source) if source.name != packet.source_identifier => {
-                if now.since(source.heard) < SILENCE {
-                    self.counts.other_source += 1;
-                    return Verdict::OtherSource { name: packet.source_identifier.clone() };
-                }
-                taken.new_source = Some(source.name.clone());
+    /// A packet that came `from` there at `now`; `ball` is where it is seen then.
+    pub fn hear(
+        &mut self,
+        packet: &Referee,
+        from: SenderAddress,
+        now: Instant,
+        ball: Option<Point<Field>>,
+    ) -> Verdict {
+        let key = SourceKey { identifier: packet.source_identifier.clone(), address: from };
+        if self.pin.as_ref().is_some_and(|pin| !pin.matches(&key)) {
+            self.counts.excluded += 1;
+            self.exclude(key.clone(), now);
+            return Verdict::Excluded { source: key };
+        }
+        let before = self.source().cloned();
+        let known = self.sources.iter_mut().find(|source| source.key == key);
+        let mut outcome = match known {
+            Some(source) => source.hear(packet, now, ball),
+            None => {
+                let (source, taken) = Source::new(key.clone(), packet, now, ball);
+                self.admit(source, now);
+                Outcome::Taken(taken)
             }
-            Some(source) => {
-                let by = Duration(source.sent.saturating_sub(packet.packet_timestamp));
-                let same = (source.command, source.counter) == (packet.command, packet.command_counter);
-                if by.0 > CLOCK_BACK.0 {
-                    taken.clock_back = true;
-                } else if by.0 > 0 {
-                    self.counts.old += 1;
-                    return Verdict::Old { by };
-                } else if source.sent == packet.packet_timestamp && same {
-                    self.counts.copies += 1;
-                    return Verdict::Copy;
-                }
+        };
+        self.count(&outcome);
+        self.settle(now);
+        if let Outcome::Taken(taken) = &mut outcome
+            && self.source() == Some(&key)
+            && before.as_ref() != Some(&key)
+        {
+            taken.new_source = Some(before);
+        }
+        match outcome {
+            Outcome::Copy => Verdict::Copy,
+            _ if self.source() != Some(&key) => {
+                self.counts.other_source += 1;
+                Verdict::OtherSource { source: key }
+            }
+            Outcome::Doubted { doubt, restrains } => Verdict::Doubted { doubt, restrains },
+            Outcome::Taken(taken) => {
+                self.counts.taken += 1;
+                self.counts.commands += u64::from(taken.command.is_some());
+                self.counts.missed += u64::from(taken.missed);
+                Verdict::Taken(taken)
             }
         }
-        self.counts.taken += 1;
-        self.command(packet, now, ball, &mut taken);
-        self.source = Some(Source {
-            name: packet.source_identifier.clone(),
-            heard: now,
-            sent: packet.packet_timestamp,
-            command: packet.command,
-            counter: packet.command_counter,
-        });
-        self.game.read(packet);
-        self.game.stands(&self.state);
-        Verdict::Taken(taken)
     }
 
-    fn command(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>, taken: &mut Taken) {
-        let before = self.source.as_ref().filter(|_| taken.new_source.is_none());
-        if let Some(before) = before {
-            if (before.command, before.counter) == (packet.command, packet.command_counter) {
-                return;
+    /// A new source. Where there is no room the least strict one goes, the longest silent first, but never the one that is
+    /// followed; a newcomer that is less strict than all of them is not admitted, since what it says would not be obeyed.
+    fn admit(&mut self, source: Source, now: Instant) {
+        if self.sources.len() < SOURCES_MAX {
+            self.sources.push(source);
+            return;
+        }
+        let others = self.sources.iter_mut().skip(1);
+        if let Some(weakest) = others.min_by_key(|other| (other.strictness(now), other.heard))
+            && weakest.strictness(now) <= source.strictness(now)
+        {
+            *weakest = source;
+        }
+    }
+
+    fn exclude(&mut self, key: SourceKey, now: Instant) {
+        self.excluded.retain(|(known, _)| *known != key);
+        if self.excluded.len() == SOURCES_MAX {
+            self.excluded.remove(0);
+        }
+        self.excluded.push((key, now));
+    }
+
+    fn count(&mut self, outcome: &Outcome) {
+        match outcome {
+            Outcome::Copy => self.counts.copies += 1,
+            Outcome::Doubted { doubt, restrains } => {
+                let old = matches!(doubt, Doubt::Old(_));
+                self.counts.old += u64::from(old);
+                self.counts.doubted += u64::from(!old);
+                self.counts.restrained += u64::from(*restrains);
             }
-            // A counter of 2³² commands may wrap; a step back of half of that is a new beginning.
-            let steps = packet.command_counter.wrapping_sub(before.counter);
-            if steps > u32::MAX / 2 {
-                taken.counter_restarted = true;
-            } else {
-                taken.missed = steps.saturating_sub(1);
+            Outcome::Taken(taken) => {
+                self.counts.steps += u64::from(taken.clock_stepped.is_some() || taken.counter_restarted);
+                self.counts.unknown += u64::from(taken.unknown.is_some());
             }
         }
-        let command = command_of(packet.command).unwrap_or_else(|| {
-            taken.unknown = Some(packet.command);
-            self.counts.unknown += 1;
-            Command::Halt
+    }
+
+    /// Who is followed now, and what is imposed on it.
+    fn settle(&mut self, now: Instant) {
+        let audible = |source: &Source| now.since(source.heard) < SILENCE;
+        let successor = self.sources.iter().position(audible).filter(|place| *place > 0);
+        if let Some(place) = successor {
+            // It has been silent, and somebody else is there: those before it have no say any more.
+            self.sources.drain(..place);
+        }
+        let mut place = 0;
+        self.sources.retain(|source| {
+            place += 1;
+            place == 1 || audible(source)
         });
-        self.counts.commands += 1;
-        self.counts.missed += u64::from(taken.missed);
-        let age = match packet.command_timestamp {
-            NO_TIME => 0,
-            given => packet.packet_timestamp.saturating_sub(given),
+        let Some((followed, others)) = self.sources.split_first_mut() else { return };
+        let own = Strictness::of(followed.command);
+        // One that agrees imposes only what came out of order; one that does not, all that it says.
+        let imposes = |other: &Source| {
+            if other.command == followed.command { other.restraint(now) } else { other.strictness(now) }
         };
-        let heard = self.state.hear(command, now.0.saturating_sub(age), ball);
-        taken.command = Some((command, heard));
+        let others_strictest = others.iter().map(imposes).max();
+        let mut strictest = followed.restraint(now).max(others_strictest.unwrap_or(Strictness::Play));
+        let contradicted = own == Strictness::Play
+            && others
+                .iter()
+                .any(|other| Strictness::of(other.command) == own && other.command != followed.command);
+        if contradicted {
+            let since = *self.undecided.get_or_insert(now);
+            if now.since(since).0 >= WINDOW.0 {
+                strictest = strictest.max(Strictness::Stop);
+            }
+        } else {
+            self.undecided = None;
+        }
+        let plays = !matches!(followed.state.phase(), Phase::Halt | Phase::Stop | Phase::Timeout(_));
+        if self.imposed == Strictness::Halt && strictest < Strictness::Halt && plays {
+            self.still_until = now + Duration::from_secs_f32(GRACE);
+        }
+        self.imposed = strictest;
+        if now < self.still_until {
+            strictest = strictest.max(Strictness::Stop);
+        }
+        let phase = imposed_on(followed.state.phase(), strictest);
+        followed.game.stands(&followed.state, phase);
     }
 }
 
+/// The phase that is obeyed where one of that strictness is imposed.
+fn imposed_on(phase: Phase<Colour>, strictness: Strictness) -> Phase<Colour> {
+    match (strictness, phase) {
+        (Strictness::Halt, _) => Phase::Halt,
+        (Strictness::Stop, Phase::Halt) => Phase::Halt,
+        (Strictness::Stop, _) => Phase::Stop,
+        (Strictness::Play, phase) => phase,
+    }
+}
+
+#[cfg(test)]
+mod attacks;
 #[cfg(test)]
 mod tests;

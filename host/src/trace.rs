@@ -5,19 +5,30 @@
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
+//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the datagram. Version 1 had
+//! no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record of kind [`Kind::Lost`] says that the
+//! recorder could not keep up from then on.
+//!
 //! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
-//! before the cut and says that it was cut. Compression is the file's business, not this format's.
+//! before the cut and says that it was cut, and where. Compression is the file's business, not this format's: where it ends before
+//! its own end mark (gzip's checksum) the trace is cut, even if the last record is whole.
 
 use std::fmt;
 use std::io::{self, Read, Write};
 
 use protocol::Instant;
 
+use crate::referee::SenderAddress;
+
 const MAGIC: &[u8; 12] = b"ONETWO_TRACE";
 /// The version of the format.
-pub const VERSION: u32 = 1;
-/// The longest record, bytes: a datagram.
-pub const RECORD_LEN_MAX: usize = 65_536;
+pub const VERSION: u32 = 2;
+/// The oldest version that is read.
+const OLDEST: u32 = 1;
+/// Version 1 did not store a referee's address.
+const WITH_SENDER: u32 = 2;
+/// The longest record, bytes: a datagram and its sender.
+pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
 pub const HEADER_LEN_MAX: usize = 1 << 20;
 
@@ -34,10 +45,15 @@ pub enum Kind {
     Timeout,
     /// The host sent a frame: the first byte is the robot it is for, 255 for all.
     Sent,
+    /// The recorder could not keep up: what follows is not recorded. Nothing comes after it.
+    Lost,
+    /// The operator halted the host's robots.
+    Halt,
 }
 
 impl Kind {
-    const ALL: [Self; 5] = [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent];
+    const ALL: [Self; 7] =
+        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()
@@ -45,7 +61,7 @@ impl Kind {
 
     /// Whether it is something that came to the host.
     pub fn is_input(self) -> bool {
-        self != Self::Sent
+        !matches!(self, Self::Sent | Self::Lost)
     }
 }
 
@@ -58,6 +74,8 @@ pub struct Record {
     pub host: u8,
     /// What.
     pub kind: Kind,
+    /// Who sent it, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
+    pub from: SenderAddress,
     /// Its bytes.
     pub bytes: Vec<u8>,
 }
@@ -93,6 +111,11 @@ impl<W: Write> Writer<W> {
         bytes.iter().try_for_each(|part| self.out.write_all(part))
     }
 
+    /// Writes what is buffered: a reader of what is then in the file finds every record so far.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
     /// Gives back what is written to.
     pub fn into_inner(self) -> W {
         self.out
@@ -107,8 +130,13 @@ fn len(bytes: &[u8]) -> io::Result<u32> {
 #[derive(Debug)]
 pub struct Reader<R: Read> {
     from: R,
+    version: u32,
     header: String,
     end: Option<End>,
+    /// Where the next record begins.
+    at: u64,
+    /// When the last one was.
+    last: Option<Instant>,
 }
 
 /// How a trace ended.
@@ -116,13 +144,53 @@ pub struct Reader<R: Read> {
 pub enum End {
     /// After a whole record.
     Whole,
-    /// Within a record.
-    Cut,
-    /// A record that cannot be one.
+    /// Where the recorder could not keep up.
+    Lost {
+        /// When.
+        at: Instant,
+    },
+    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or the file was not
+    /// copied whole.
+    Cut {
+        /// Where the first record that is missing begins, bytes of the uncompressed trace.
+        at: u64,
+        /// When the last whole record was.
+        last: Option<Instant>,
+    },
+    /// At a record that cannot be one, or that cannot be read.
     Broken {
+        /// Where it begins, bytes of the uncompressed trace.
+        at: u64,
         /// What is wrong with it.
         what: String,
     },
+}
+
+impl End {
+    /// Did the trace end as it should?
+    pub const fn is_whole(&self) -> bool {
+        matches!(self, Self::Whole)
+    }
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("whole"),
+            Self::Cut { at, last: Some(last) } => {
+                let seconds = last.0 as f64 * 1e-6;
+                write!(f, "cut at byte {at}, after the record at {seconds:.6} s; all before it was read")
+            }
+            Self::Cut { at, last: None } => write!(f, "cut at byte {at}, before its first record"),
+            Self::Lost { at } => {
+                let seconds = at.0 as f64 * 1e-6;
+                write!(f, "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read")
+            }
+            Self::Broken { at, what } => {
+                write!(f, "damaged at byte {at}: {what}; all before it was read")
+            }
+        }
+    }
 }
 
 /// Why a file is no trace.
@@ -146,7 +214,7 @@ impl fmt::Display for TraceError {
             Self::Version(seen) => {
                 write!(
                     f,
-                    "a trace of version {seen}, this program reads {VERSION}: use the program that wrote it"
+                    "a trace of version {seen}, this program reads {OLDEST} to {VERSION}: use the program that wrote it"
                 )
             }
             Self::Header => {
@@ -177,7 +245,7 @@ impl<R: Read> Reader<R> {
         let mut word = [0; 4];
         from.read_exact(&mut word)?;
         let version = u32::from_le_bytes(word);
-        if version != VERSION {
+        if !(OLDEST..=VERSION).contains(&version) {
             return Err(TraceError::Version(version));
         }
         from.read_exact(&mut word)?;
@@ -188,7 +256,8 @@ impl<R: Read> Reader<R> {
         let mut header = vec![0; length];
         from.read_exact(&mut header)?;
         let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
-        Ok(Self { from, header, end: None })
+        let at = (MAGIC.len() + 2 * word.len() + header.len()) as u64;
+        Ok(Self { from, version, header, end: None, at, last: None })
     }
 
     /// What was said at its beginning: JSON.
@@ -202,43 +271,64 @@ impl<R: Read> Reader<R> {
     }
 
     fn read(&mut self) -> Result<Record, End> {
+        let (begin, last) = (self.at, self.last);
+        let cut = || End::Cut { at: begin, last };
+        let broken = |what: String| End::Broken { at: begin, what };
+        // A compressed stream that stops in its middle is a cut file; anything else is damage.
+        let failed = |error: io::Error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => cut(),
+            _ => broken(error.to_string()),
+        };
         let mut head = [0; 14];
-        let got = fill(&mut self.from, &mut head);
-        if got == 0 {
-            return Err(End::Whole);
-        }
-        if got < head.len() {
-            return Err(End::Cut);
+        match fill(&mut self.from, &mut head).map_err(failed)? {
+            0 => return Err(End::Whole),
+            got if got < head.len() => return Err(cut()),
+            _ => {}
         }
         let [t0, t1, t2, t3, t4, t5, t6, t7, host, kind, l0, l1, l2, l3] = head;
         let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
-        let kind = Kind::from_byte(kind)
-            .ok_or_else(|| End::Broken { what: format!("no record is of kind {kind}") })?;
+        let kind = Kind::from_byte(kind).ok_or_else(|| broken(format!("no record is of kind {kind}")))?;
         if length > RECORD_LEN_MAX {
-            return Err(End::Broken {
-                what: format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written"),
-            });
+            return Err(broken(format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written")));
         }
         let mut bytes = vec![0; length];
-        if fill(&mut self.from, &mut bytes) < length {
-            return Err(End::Cut);
+        if fill(&mut self.from, &mut bytes).map_err(failed)? < length {
+            return Err(cut());
         }
         let at = Instant(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
-        Ok(Record { at, host, kind, bytes })
+        self.at += (head.len() + length) as u64;
+        self.last = Some(at);
+        let from = match kind {
+            Kind::Lost => return Err(End::Lost { at }),
+            Kind::Referee if self.version >= WITH_SENDER => {
+                take_sender(&mut bytes).ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?
+            }
+            _ => SenderAddress::INTERNAL,
+        };
+        Ok(Record { at, host, kind, from, bytes })
     }
 }
 
-/// As much of `into` as there is; a read that fails (a damaged compressed file, too) ends it.
-fn fill(from: &mut impl Read, into: &mut [u8]) -> usize {
+/// Takes the sender from the beginning of a referee's record.
+fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
+    let (sender, packet) = bytes.split_first_chunk()?;
+    let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());
+    *bytes = packet;
+    Some(sender)
+}
+
+/// As much of `into` as there is.
+fn fill(from: &mut impl Read, into: &mut [u8]) -> io::Result<usize> {
     let mut done = 0;
     while done < into.len() {
         match from.read(&mut into[done..]) {
-            Ok(n) if n > 0 => done += n,
+            Ok(0) => break,
+            Ok(n) => done += n,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            _ => break,
+            Err(error) => return Err(error),
         }
     }
-    done
+    Ok(done)
 }
 
 impl<R: Read> Iterator for Reader<R> {
@@ -273,7 +363,13 @@ mod tests {
         assert_eq!(records.len(), 3);
         assert_eq!(
             records[2],
-            Record { at: Instant(30), host: 1, kind: Kind::Sent, bytes: b"\xffframe".to_vec() }
+            Record {
+                at: Instant(30),
+                host: 1,
+                kind: Kind::Sent,
+                from: SenderAddress::INTERNAL,
+                bytes: b"\xffframe".to_vec()
+            }
         );
         assert_eq!(reader.end(), Some(&End::Whole));
     }
@@ -290,10 +386,59 @@ mod tests {
                     let got = reader.by_ref().count();
                     let whole = [30 + 17, 30 + 17 + 14].iter().filter(|end| **end <= cut).count();
                     assert_eq!(got, whole, "{cut}");
-                    let clean = [30, 47, 61].contains(&cut);
-                    assert_eq!(reader.end() == Some(&End::Whole), clean, "{cut}");
+                    let begins = [30, 47, 61];
+                    let expected = if begins.contains(&cut) {
+                        End::Whole
+                    } else {
+                        let last = [Instant(10), Instant(20)].into_iter().take(whole).last();
+                        End::Cut { at: begins[whole], last }
+                    };
+                    assert_eq!(reader.end(), Some(&expected), "{cut}");
                 }
             }
+        }
+    }
+
+    /// As a recording lies on the disk, with what is flushed after each record.
+    fn zipped() -> (Vec<u8>, Vec<usize>) {
+        let zip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        let mut writer = Writer::new(zip, r#"{"seed":7}"#).unwrap();
+        let mut flushed = Vec::new();
+        for number in 0..20_u8 {
+            writer.write(Instant(u64::from(number)), 0, Kind::Vision, &[&[number; 90]]).unwrap();
+            writer.flush().unwrap();
+            flushed.push(writer.out.get_ref().len());
+        }
+        (writer.into_inner().finish().unwrap(), flushed)
+    }
+
+    #[test]
+    fn a_gzipped_trace_cut_at_any_byte_is_cut_even_between_two_records() {
+        let (bytes, flushed) = zipped();
+        for cut in 0..bytes.len() {
+            let zip = flate2::bufread::MultiGzDecoder::new(&bytes[..cut]);
+            let Ok(mut reader) = Reader::new(zip) else { continue };
+            let got = reader.by_ref().count();
+            let whole = flushed.iter().filter(|at| **at <= cut).count();
+            assert!(got >= whole, "{cut}: {got} of {whole} records that were flushed");
+            let last = got.checked_sub(1).map(|last| Instant(last as u64));
+            assert_eq!(reader.end(), Some(&End::Cut { at: 30 + 104 * got as u64, last }), "{cut}");
+        }
+        let mut reader = Reader::new(flate2::bufread::MultiGzDecoder::new(&bytes[..])).unwrap();
+        assert_eq!((reader.by_ref().count(), reader.end()), (20, Some(&End::Whole)));
+    }
+
+    #[test]
+    fn a_gzipped_trace_with_a_damaged_byte_is_never_whole() {
+        let (bytes, _) = zipped();
+        // Byte 4 to 9 are gzip's time, flags and system: no part of the trace.
+        for at in 10..bytes.len() {
+            let mut bytes = bytes.clone();
+            bytes[at] ^= 0x55;
+            let zip = flate2::bufread::MultiGzDecoder::new(&bytes[..]);
+            let Ok(mut reader) = Reader::new(zip) else { continue };
+            assert!(reader.by_ref().count() <= 20);
+            assert!(!reader.end().unwrap().is_whole(), "{at}");
         }
     }
 
@@ -306,7 +451,37 @@ mod tests {
         bytes[30 + 9] = 77;
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.by_ref().count(), 0);
-        assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("77")));
+        assert!(matches!(reader.end(), Some(End::Broken { at: 30, what }) if what.contains("77")));
+    }
+
+    #[test]
+    fn a_referees_packet_keeps_its_sender_and_one_of_version_1_has_none() {
+        let from = SenderAddress::new(([10, 0, 0, 7], 41_234).into());
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Referee, &[&from.to_bytes(), b"packet"]).unwrap();
+        let mut bytes = writer.into_inner();
+        let record = Reader::new(&bytes[..]).unwrap().next().unwrap();
+        assert_eq!((record.from, &record.bytes[..]), (from, &b"packet"[..]));
+        bytes[12] = 1;
+        let record = Reader::new(&bytes[..]).unwrap().next().unwrap();
+        assert_eq!((record.from, record.bytes.len()), (SenderAddress::INTERNAL, SenderAddress::LEN + 6));
+        // A record too short for a sender is damage, not a panic.
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Referee, &[b"short"]).unwrap();
+        let bytes = writer.into_inner();
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!(reader.next(), None);
+        assert!(matches!(reader.end(), Some(End::Broken { what, .. }) if what.contains("no sender")));
+    }
+
+    #[test]
+    fn a_trace_that_lost_records_ends_there() {
+        let mut writer = Writer::new(Vec::new(), "{}").unwrap();
+        writer.write(Instant(1), 0, Kind::Timeout, &[]).unwrap();
+        writer.write(Instant(2), 0, Kind::Lost, &[]).unwrap();
+        let bytes = writer.into_inner();
+        let mut reader = Reader::new(&bytes[..]).unwrap();
+        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&End::Lost { at: Instant(2) })));
     }
 
     #[test]

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use geometry::Point;
 use host::geometry::VisionGeometry;
-use host::referee::Listener;
 use host::referee::team_port::TeamPort;
+use host::referee::{Listener, SenderAddress};
 use protocol::Instant;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -45,13 +45,13 @@ fn turned_packets_of_the_referee_leave_a_game_with_finite_places() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let names = ["ball_placement_blue", "halt", "normal_start", "with_yellow_card", "prepare_penalty_blue"];
     let packets = names.map(|name| packet(&format!("referee_{name}.bin")));
-    let mut listener = Listener::new(League::DivisionB.limits().unwrap(), Instant(0));
+    let mut listener = Listener::new(League::DivisionB.limits().unwrap(), None, Instant(0));
     let mut heard = 0;
     for round in 0..ROUNDS {
         let bytes = turned(&packets[round as usize % packets.len()], &mut random);
         let now = Instant(u64::from(round) * 25_000);
         if let Ok(packet) = Referee::decode(&bytes[..]) {
-            listener.hear(&packet, now, None);
+            listener.hear(&packet, SenderAddress::INTERNAL, now, None);
             heard += 1;
         }
         listener.tick(now, None);
@@ -64,7 +64,7 @@ fn turned_packets_of_the_referee_leave_a_game_with_finite_places() {
 fn numbers_that_no_referee_sends_are_survived() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
     let good = Referee::decode(&packet("referee_ball_placement_blue.bin")[..]).unwrap();
-    let mut listener = Listener::new(League::DivisionA.limits().unwrap(), Instant(0));
+    let mut listener = Listener::new(League::DivisionA.limits().unwrap(), None, Instant(0));
     // Any number, or one near to what was there.
     let mut any = move |near: u64| match random.next_u32() % 4 {
         0 => random.next_u64(),
@@ -85,15 +85,22 @@ fn numbers_that_no_referee_sends_are_survived() {
         odd.blue.timeout_time = any(0) as u32;
         let [x, y] = [any(0), any(0)].map(|bits| f32::from_bits(bits as u32));
         odd.designated_position = Some(ssl::referee::Point { x, y });
-        odd.source_identifier = (any(0) % 3 > 0).then(|| "b".into());
-        let (now, ball) = (Instant(any(u64::from(round) * 25_000)), Some(Point::new(x, y)));
-        listener.hear(&odd, now, ball);
+        odd.source_identifier = (any(0) % 16 > 0).then(|| "b".into());
+        // Our own clock may do anything too, but mostly goes on.
+        let now = u64::from(round) * 25_000;
+        let (now, ball) = (Instant(if any(0) % 64 == 0 { any(now) } else { now }), Some(Point::new(x, y)));
+        // One machine sends most of them, eleven others the rest.
+        let machine = if any(0) % 4 == 0 { any(0) as u8 % 12 } else { 1 };
+        let from = SenderAddress::new(([10, 0, 0, machine], 40_000).into());
+        listener.hear(&odd, from, now, ball);
+        listener.warnings(now).iter().for_each(|warning| assert!(!warning.to_string().is_empty()));
         listener.tick(Instant(any(0)), ball);
         listener.silence(Instant(any(0)));
         sound(&listener);
     }
     let counts = listener.counts();
-    assert!(counts.taken > 1000 && counts.old > 100 && counts.other_source > 100, "{counts:?}");
+    assert!(counts.taken > 100 && counts.doubted > 1000 && counts.other_source > 100, "{counts:?}");
+    assert!(counts.old > 10 && counts.steps > 10 && counts.restrained > 100, "{counts:?}");
 }
 
 #[test]

@@ -217,6 +217,14 @@ impl core::fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
+/// Who a frame claims to be from, by its header alone; nothing is checked.
+pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
+    bytes.get(SENDER_AT).and_then(|number| Sender::new(*number))
+}
+
+/// Where the sender stands: after version and team.
+const SENDER_AT: usize = 2;
+
 impl<'a> Frame<'a> {
     /// Reads the envelope; the tag is not looked at yet, see [`Frame::is_genuine`].
     pub fn parse(bytes: &'a [u8], team: TeamId) -> Result<Self, Refusal> {
@@ -403,7 +411,11 @@ mod tests {
             for (place, reader) in [0, 4, 15].map(robot).into_iter().enumerate() {
                 let own = covered + 3 * place..covered + 3 * place + 3;
                 let concerns = bit / 8 < covered || own.contains(&(bit / 8));
-                assert_eq!(sent.is_genuine(&out[..n], keys.of(reader), reader), !concerns, "bit {bit}, {reader}");
+                assert_eq!(
+                    sent.is_genuine(&out[..n], keys.of(reader), reader),
+                    !concerns,
+                    "bit {bit}, {reader}"
+                );
             }
             out[bit / 8] ^= 1 << (bit % 8);
         }
@@ -427,7 +439,11 @@ mod tests {
         assert_eq!(Frame::parse(&[9; 19], TEAM), Err(Refusal::Version(9)));
         let mut bytes = [0; 19];
         bytes[0] = 1;
-        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Version(1)), "the version before keys were derived");
+        assert_eq!(
+            Frame::parse(&bytes, TEAM),
+            Err(Refusal::Version(1)),
+            "the version before keys were derived"
+        );
         bytes[0] = VERSION;
         assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Team(TeamId(0))));
         (bytes[1], bytes[2]) = (3, 18);

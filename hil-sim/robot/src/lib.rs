@@ -6,6 +6,7 @@
 //! each robot.
 //!
 //! **Invariants.** Times come from the caller everywhere but in [`run`]. Whatever comes from outside is counted and survived.
+#![forbid(unsafe_code)]
 
 mod body;
 mod robot;

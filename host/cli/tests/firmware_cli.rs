@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
+use protocol::frame::TeamKey;
 use protocol::provision::read;
 use protocol::{RobotId, TeamId};
 use rules::League;
@@ -51,7 +52,10 @@ fn the_page_that_is_written_is_the_one_a_robot_reads_and_its_owner_alone_may() {
     assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
     let who = read(&fs::read(&page).expect("the page"), false).expect("a robot can read it");
     assert_eq!((Some(who.robot), who.team, who.league), (RobotId::new(5), TeamId(2), League::DivisionB));
-    assert_eq!(who.key.0, std::array::from_fn(|n| n as u8));
+    let team = TeamKey(std::array::from_fn(|n| n as u8));
+    assert_eq!(who.keys, team.of_robot(who.robot));
+    let bytes = fs::read(&page).expect("the page");
+    assert!(!bytes.windows(16).any(|window| window == team.0), "the team's key stays at home");
     assert!(!String::from_utf8_lossy(&told.stdout).contains("0001020304"), "the key is nobody's business");
     #[cfg(unix)]
     {

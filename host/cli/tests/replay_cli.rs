@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 use host::radio::To;
 use host::recheck::Recheck;
 use host::recording::{HostHeader, RecordingHeader};
+use host::referee::SenderAddress;
 use host::strategy::Why;
 use host::trace::{Kind, Reader, Writer};
 use host::{Host, HostSettings, Input};
@@ -116,7 +117,7 @@ fn cut_and_foreign_files_are_told_with_their_place() {
     let bytes = fs::read(recording("grsim_divB_22s_indexed.log")).expect("the recording");
     let cut = scratch("cut.log");
     fs::write(&cut, &bytes[..100_001]).expect("a file");
-    let report = json(&[&cut.display().to_string()], 0);
+    let report = json(&[&cut.display().to_string()], 1);
     assert!(report["damage"].as_str().is_some_and(|words| words.contains("byte")), "{}", report["damage"]);
     assert!(report["messages"].as_object().is_some_and(|kinds| !kinds.is_empty()));
     let foreign = scratch("foreign.log");
@@ -146,12 +147,17 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     for (number, record) in (1_u64..).zip(log.take(2000)) {
         let (kind, input) = match record.kind {
             MessageKind::Vision2014 => (Kind::Vision, Input::Vision(&record.payload)),
-            MessageKind::Refbox2013 => (Kind::Referee, Input::Referee(&record.payload)),
+            MessageKind::Refbox2013 => {
+                (Kind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL))
+            }
             _ => continue,
         };
         let at = Instant(number * 5_000);
-        writer.write(at, 0, kind, &[&record.payload]).expect("memory");
-        length += 14 + record.payload.len();
+        // Before a packet of the referee stands who sent it.
+        let sender = SenderAddress::INTERNAL.to_bytes();
+        let sender = if kind == Kind::Referee { &sender[..] } else { &[] };
+        writer.write(at, 0, kind, &[sender, &record.payload]).expect("memory");
+        length += 14 + sender.len() + record.payload.len();
         host.handle(at, input);
         while let Some((to, packet)) = host.poll_packet() {
             let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
@@ -194,8 +200,12 @@ fn one_bit_that_was_turned_in_a_packet_is_found() {
 #[test]
 fn a_trace_cut_in_a_record_is_checked_up_to_there() {
     let file = trace("cut.trace", |bytes, _| bytes.truncate(bytes.len() / 2));
-    let report = json(&[&file], 0);
-    assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut")), "{}", report["damage"]);
+    let report = json(&[&file], 1);
+    assert!(
+        report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")),
+        "{}",
+        report["damage"]
+    );
     assert_eq!(report["same_decisions"], true);
     let begin = trace("begin.trace", |bytes, _| bytes.truncate(20));
     assert!(refused(&[&begin]).contains("header"));

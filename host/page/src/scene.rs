@@ -29,6 +29,9 @@ pub struct Scene {
     pub layers: Vec<Layer>,
     /// Numbers that are shown and plotted.
     pub gauges: Vec<Gauge>,
+    /// What is wrong now and an operator should act on, each in a sentence.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alarms: Vec<String>,
     /// How many happenings there were up to now.
     pub happened: u64,
     /// It stands still because somebody asked for it.

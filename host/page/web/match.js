@@ -24,6 +24,9 @@ export function showBoard() {
   const act = scene.game.action_left == null || scene.game.action_left <= 0 || ["run", "halt", "stop"].includes(scene.game.phase) ? "" : ` · ${number(scene.game.action_left)} s left`;
   const next = scene.game.next ? ` · then ${scene.game.next}` : "";
   say(byId("phase-more"), `${scene.game.stage}${left}${act}${next}`);
+  const alarms = scene.alarms ?? [];
+  byId("alarms").hidden = alarms.length === 0;
+  fill(byId("alarms"), JSON.stringify(alarms), () => alarms.map((words) => el("li", {}, words)));
 }
 
 export function showMatch() {

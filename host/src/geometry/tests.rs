@@ -123,6 +123,20 @@ fn trap_08_ball_models_are_the_ones_on_the_wire() {
 }
 
 #[test]
+fn finding_21_invented_cameras_take_no_place_of_genuine_ones() {
+    let data = recorded("grsim_divB_22s.log.gz")[0].clone();
+    let real = data.calib[0];
+    let mut geometry = VisionGeometry::default();
+    let camera = |camera_id| GeometryCameraCalibration { camera_id, ..real };
+    let invented =
+        GeometryData { calib: (16..2_000).chain([u32::MAX]).map(camera).collect(), ..data.clone() };
+    let news = geometry.hear(&invented).unwrap();
+    assert_eq!((news.cameras, news.cameras_refused, geometry.cameras().len()), (0, 1_985, 0));
+    let genuine = GeometryData { calib: (0..16).map(camera).collect(), ..data };
+    assert_eq!(geometry.hear(&genuine).unwrap().cameras, 16);
+}
+
+#[test]
 fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     let dummy = recorded("grsim_divB_22s.log.gz")[0].calib[0];
     assert_eq!([dummy.q0, dummy.q1, dummy.q2, dummy.q3], [0.7; 4]);

@@ -128,18 +128,21 @@ impl Game {
         self.teams[Colour::Blue as usize].read(&packet.blue);
     }
 
-    /// Takes what the state of the game says.
-    pub(super) fn stands(&mut self, state: &GameState) {
-        self.phase = state.phase();
+    /// Takes what the state of the game says; `phase` is the one that is obeyed, which may be stricter.
+    pub(super) fn stands(&mut self, state: &GameState, phase: Phase<Colour>) {
+        self.phase = phase;
         let placing = matches!(self.phase, Phase::BallPlacement(_));
         self.placement = self.designated.filter(|_| placing);
-        let next = self.next_command.and_then(words::command_of);
+        // What follows is not known where another phase is imposed.
+        let next = self.next_command.filter(|_| phase == state.phase()).and_then(words::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 
-    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick.
+    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick or penalty. In other
+    /// phases packets hold a place too, that of what was before (trap 3).
     pub fn ball_goes_to(&self) -> Option<Point<Field>> {
-        let by_hand = self.phase == Phase::Stop && matches!(self.next, Some(Phase::FreeKick(_)));
+        let follows = matches!(self.next, Some(Phase::FreeKick(_) | Phase::PreparePenalty(_)));
+        let by_hand = self.phase == Phase::Stop && follows;
         self.designated.filter(|_| by_hand).or(self.placement)
     }
 }

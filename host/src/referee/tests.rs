@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use geometry::GoalEnd;
-use rules::state::Stage;
+use rules::state::{Heard, Stage};
 use rules::{Colour, League, Phase};
 use ssl::Message;
 use ssl::log::Packet;
@@ -22,7 +22,14 @@ fn data(name: &str) -> PathBuf {
 }
 
 fn listener() -> Listener {
-    Listener::new(League::DivisionB.limits().unwrap(), Instant(0))
+    Listener::new(League::DivisionB.limits().unwrap(), None, Instant(0))
+}
+
+impl Listener {
+    /// A packet of a referee in this program.
+    fn hears(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Verdict {
+        self.hear(packet, SenderAddress::INTERNAL, now, ball)
+    }
 }
 
 /// A packet sent `sent` µs after the epoch, its command as old as the packet.
@@ -55,7 +62,7 @@ fn phases(name: &str) -> (Vec<Phase<Colour>>, Listener) {
         let now = Instant(record.timestamp_ns as u64 / 1000);
         listener.tick(now, None);
         if let Ok(Some(Packet::Referee(packet))) = record.decode() {
-            let verdict = listener.hear(&packet, now, None);
+            let verdict = listener.hears(&packet, now, None);
             assert!(matches!(verdict, Verdict::Taken(_) | Verdict::Copy), "{verdict:?}");
         }
         let phase = listener.game().phase;
@@ -120,7 +127,7 @@ fn single_packets_say_what_an_independent_decoder_reads_in_them() {
         let json = std::fs::read_to_string(path.with_extension("json")).unwrap();
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         let mut listener = listener();
-        listener.hear(&packet, Instant(S), None);
+        listener.hears(&packet, Instant(S), None);
         let game = listener.game();
         for (colour, word) in [(Y, "yellow"), (B, "blue")] {
             let (team, json) = (game.team(colour), &json[word]);
@@ -168,7 +175,7 @@ fn trap_03_a_designated_position_counts_in_ball_placement_only() {
         let packet = Referee::decode(&bytes(name)[..]).unwrap();
         assert!(packet.designated_position.is_some(), "{name} shows the trap");
         let mut listener = listener();
-        listener.hear(&packet, Instant(S), None);
+        listener.hears(&packet, Instant(S), None);
         let placing = matches!(listener.game().phase, Phase::BallPlacement(_));
         let expected = placing.then(|| Point::new(1.2, 2.8));
         assert_eq!(listener.game().placement, expected, "{name}");
@@ -180,7 +187,7 @@ fn trap_03_a_designated_position_counts_in_ball_placement_only() {
         let mut packet = packet(0, Wire::BallPlacementBlue, 1);
         packet.designated_position = Some(WirePoint { x, y: 0.0 });
         let mut listener = listener();
-        listener.hear(&packet, Instant(S), None);
+        listener.hears(&packet, Instant(S), None);
         assert_eq!((listener.game().phase, listener.game().placement), (Phase::BallPlacement(B), None));
     }
 }
@@ -191,7 +198,7 @@ fn trap_04_a_rising_counter_is_no_changed_command() {
     let mut now = S;
     let mut say = |command, counter| {
         now += S;
-        let heard = listener.hear(&packet(now, command, counter), Instant(now), None);
+        let heard = listener.hears(&packet(now, command, counter), Instant(now), None);
         (super::tests::command(heard), listener.game().phase)
     };
     say(Wire::Stop, 1);
@@ -210,7 +217,7 @@ fn trap_04_a_rising_counter_is_no_changed_command() {
 fn trap_05_a_pause_of_the_referee_is_no_loss() {
     let mut listener = listener();
     assert_eq!(listener.silence(Instant(S)), Silence::Never(Duration(S)));
-    listener.hear(&packet(0, Wire::ForceStart, 1), Instant(S), None);
+    listener.hears(&packet(0, Wire::ForceStart, 1), Instant(S), None);
     // The longest pause of the recordings is 1.56 s.
     for pause in [25_000, 100_000, 1_562_466] {
         let now = Instant(S + pause);
@@ -220,42 +227,29 @@ fn trap_05_a_pause_of_the_referee_is_no_loss() {
     }
     assert_eq!(listener.silence(Instant(5 * S)), Silence::Silent(Duration(4 * S)));
     assert_eq!(listener.game().phase, Phase::Run, "what was said last stands");
-    listener.hear(&packet(5 * S, Wire::ForceStart, 1), Instant(6 * S), None);
+    listener.hears(&packet(5 * S, Wire::ForceStart, 1), Instant(6 * S), None);
     assert_eq!(listener.silence(Instant(6 * S)), Silence::Heard(Duration(0)));
 }
 
 #[test]
 fn packets_out_of_order_and_copies_change_nothing() {
     let mut listener = listener();
-    let (stop, halt) = (packet(0, Wire::Stop, 1), packet(40_000, Wire::Halt, 2));
-    listener.hear(&stop, Instant(S), None);
-    listener.hear(&halt, Instant(S), None);
-    assert_eq!(listener.hear(&stop, Instant(S), None), Verdict::Old { by: Duration(40_000) });
-    assert_eq!(listener.hear(&halt, Instant(S), None), Verdict::Copy);
+    let (run, halt) = (packet(0, Wire::ForceStart, 1), packet(40_000, Wire::Halt, 2));
+    listener.hears(&run, Instant(S), None);
+    listener.hears(&halt, Instant(S), None);
+    assert_eq!(listener.hears(&run, Instant(S), None), Verdict::Copy);
+    assert_eq!(listener.hears(&halt, Instant(S), None), Verdict::Copy);
+    let late = listener.hears(&packet(20_000, Wire::ForceStart, 1), Instant(S), None);
+    assert_eq!(late, Verdict::Doubted { doubt: Doubt::Old(Duration(20_000)), restrains: false });
     assert_eq!(listener.game().phase, Phase::Halt);
-    assert_eq!((listener.counts().old, listener.counts().copies, listener.counts().taken), (1, 1, 2));
+    assert_eq!((listener.counts().old, listener.counts().copies, listener.counts().taken), (1, 2, 2));
 }
 
 #[test]
-fn a_referees_clock_that_is_set_back_does_not_make_us_deaf() {
+fn commands_never_received_are_reported() {
     let mut listener = listener();
-    listener.hear(&packet(100 * S, Wire::Halt, 1), Instant(S), None);
-    let Verdict::Taken(taken) = listener.hear(&packet(0, Wire::Stop, 2), Instant(2 * S), None) else {
-        panic!("not taken")
-    };
-    assert!(taken.clock_back);
-    assert_eq!(listener.game().phase, Phase::Stop);
-}
-
-#[test]
-fn a_counter_that_begins_again_and_commands_never_heard_are_told() {
-    let mut listener = listener();
-    listener.hear(&packet(0, Wire::Halt, 40), Instant(S), None);
-    let Verdict::Taken(taken) = listener.hear(&packet(S, Wire::Stop, 0), Instant(2 * S), None) else {
-        panic!("not taken")
-    };
-    assert!(taken.counter_restarted && taken.missed == 0);
-    let Verdict::Taken(taken) = listener.hear(&packet(2 * S, Wire::ForceStart, 4), Instant(3 * S), None)
+    listener.hears(&packet(S, Wire::Stop, 0), Instant(2 * S), None);
+    let Verdict::Taken(taken) = listener.hears(&packet(2 * S, Wire::ForceStart, 4), Instant(3 * S), None)
     else {
         panic!("not taken")
     };
@@ -263,26 +257,28 @@ fn a_counter_that_begins_again_and_commands_never_heard_are_told() {
 }
 
 #[test]
-fn of_two_referees_the_first_is_followed_until_it_is_silent() {
+fn a_silent_source_is_succeeded_by_another() {
     let mut listener = listener();
-    listener.hear(&packet(0, Wire::Stop, 1), Instant(0), None);
-    let mut other = packet(0, Wire::Halt, 9);
+    listener.hears(&packet(0, Wire::Stop, 1), Instant(0), None);
+    let mut other = packet(0, Wire::ForceStart, 9);
     other.source_identifier = Some("b".into());
-    let verdict = listener.hear(&other, Instant(2 * S), None);
-    assert_eq!(verdict, Verdict::OtherSource { name: Some("b".into()) });
-    assert_eq!((listener.game().phase, listener.source()), (Phase::Stop, Some("a")));
-    let Verdict::Taken(taken) = listener.hear(&other, Instant(3 * S), None) else { panic!("not taken") };
-    assert_eq!(taken.new_source, Some(Some("a".into())));
-    assert_eq!((listener.game().phase, listener.source()), (Phase::Halt, Some("b")));
+    let identifier = |listener: &Listener| listener.source().and_then(|source| source.identifier.clone());
+    let verdict = listener.hears(&other, Instant(2 * S), None);
+    assert!(matches!(verdict, Verdict::OtherSource { .. }), "{verdict:?}");
+    assert_eq!((listener.game().phase, identifier(&listener)), (Phase::Stop, Some("a".into())));
+    other.packet_timestamp += S;
+    let Verdict::Taken(taken) = listener.hears(&other, Instant(3 * S), None) else { panic!("not taken") };
+    assert_eq!(taken.new_source.flatten().and_then(|source| source.identifier), Some("a".into()));
+    assert_eq!((listener.game().phase, identifier(&listener)), (Phase::Run, Some("b".into())));
 }
 
 #[test]
 fn a_command_without_a_meaning_is_taken_for_halt() {
     let mut listener = listener();
-    listener.hear(&packet(0, Wire::ForceStart, 1), Instant(S), None);
+    listener.hears(&packet(0, Wire::ForceStart, 1), Instant(S), None);
     let mut odd = packet(S, Wire::Halt, 2);
     odd.command = 18;
-    let Verdict::Taken(taken) = listener.hear(&odd, Instant(2 * S), None) else { panic!("not taken") };
+    let Verdict::Taken(taken) = listener.hears(&odd, Instant(2 * S), None) else { panic!("not taken") };
     assert_eq!((taken.unknown, listener.game().phase), (Some(18), Phase::Halt));
 }
 
@@ -292,7 +288,7 @@ fn who_joins_in_the_middle_knows_the_age_of_the_command() {
     let mut listener = listener();
     let mut first = packet(20 * S, Wire::NormalStart, 7);
     first.command_timestamp -= 8 * S;
-    listener.hear(&first, Instant(100 * S), None);
+    listener.hears(&first, Instant(100 * S), None);
     assert_eq!(listener.game().phase, Phase::Stop);
     listener.tick(Instant(102 * S - 1), None);
     assert_eq!(listener.game().phase, Phase::Stop);
@@ -301,7 +297,7 @@ fn who_joins_in_the_middle_knows_the_age_of_the_command() {
     // A command without a time is new.
     let mut listener = super::tests::listener();
     first.command_timestamp = 0;
-    listener.hear(&first, Instant(100 * S), None);
+    listener.hears(&first, Instant(100 * S), None);
     listener.tick(Instant(109 * S), None);
     assert_eq!(listener.game().phase, Phase::Stop);
 }
@@ -311,13 +307,13 @@ fn what_follows_is_told_in_phases() {
     let mut listener = listener();
     let mut stop = packet(0, Wire::Stop, 1);
     stop.next_command = Some(Wire::DirectFreeBlue as i32);
-    listener.hear(&stop, Instant(S), None);
+    listener.hears(&stop, Instant(S), None);
     assert_eq!(listener.game().next, Some(Phase::FreeKick(B)));
     let mut prepare = packet(S, Wire::PreparePenaltyYellow, 2);
     prepare.next_command = Some(Wire::NormalStart as i32);
-    listener.hear(&prepare, Instant(2 * S), None);
+    listener.hears(&prepare, Instant(2 * S), None);
     assert_eq!(listener.game().next, Some(Phase::Penalty(Y)));
-    listener.hear(&packet(2 * S, Wire::Stop, 3), Instant(3 * S), None);
+    listener.hears(&packet(2 * S, Wire::Stop, 3), Instant(3 * S), None);
     assert_eq!(listener.game().next, None);
 }
 
@@ -327,7 +323,7 @@ fn a_keeper_no_robot_can_be_is_none() {
     let mut odd = packet(0, Wire::Stop, 1);
     odd.blue.goalkeeper = 16;
     odd.yellow.goalkeeper = u32::MAX;
-    listener.hear(&odd, Instant(S), None);
+    listener.hears(&odd, Instant(S), None);
     assert_eq!((listener.game().team(B).keeper, listener.game().team(Y).keeper), (None, None));
 }
 
@@ -337,8 +333,8 @@ fn a_side_once_told_stands_when_a_packet_leaves_it_out() {
     assert_eq!(listener.game().own_goal(B), None);
     let mut told = packet(0, Wire::Stop, 1);
     told.blue_team_on_positive_half = Some(true);
-    listener.hear(&told, Instant(S), None);
-    listener.hear(&packet(S, Wire::Stop, 1), Instant(2 * S), None);
+    listener.hears(&told, Instant(S), None);
+    listener.hears(&packet(S, Wire::Stop, 1), Instant(2 * S), None);
     assert_eq!(listener.game().own_goal(B), Some(GoalEnd::Positive));
     assert_eq!(listener.game().own_goal(Y), Some(GoalEnd::Negative));
 }

@@ -4,10 +4,12 @@
 //! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;
 //! [`Recorder`] keeps a match.
 
+mod background;
+pub mod epoch;
 mod error;
 mod hub;
-pub mod epoch;
 pub mod key;
+mod outbox;
 mod recorder;
 mod serial;
 mod sim;
@@ -20,7 +22,9 @@ use protocol::link::Packet;
 use crate::config::RobotLink;
 use crate::radio::{Relay, To};
 
+pub use background::BackgroundRecorder;
 pub use error::LinkError;
+pub use outbox::{OutCounts, Outbox};
 pub use recorder::Recorder;
 pub use serial::SerialLink;
 pub use sim::{SimLink, SimSettings};
@@ -42,8 +46,42 @@ pub trait Link: Send {
         None
     }
 
+    /// Whether a frame would go out at once: while it would only wait on the way, it waits where newer ones replace it.
+    fn has_room(&mut self) -> bool {
+        true
+    }
+
+    /// Throws away what was taken and has not left yet: HALT comes.
+    fn discard(&mut self) {}
+
+    /// The rate of a line, where it has one.
+    fn line_rate(&self) -> Option<LineRate> {
+        None
+    }
+
     /// What to look at where no robot is heard.
     fn advice(&self) -> String;
+}
+
+/// How fast a line is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineRate {
+    /// Its name.
+    pub device: String,
+    /// Bits a second; a byte takes [`BITS_PER_BYTE`](Self::BITS_PER_BYTE).
+    pub baud: u32,
+}
+
+impl LineRate {
+    /// Start bit, eight bits, stop bit.
+    pub const BITS_PER_BYTE: u64 = 10;
+    /// Bytes of a line beside the frame: COBS and the zero.
+    pub const FRAME_OVERHEAD: u64 = 2;
+
+    /// Bits a second that so much traffic in one second needs.
+    pub const fn needed(frames: u64, bytes: u64) -> u64 {
+        (bytes + frames * Self::FRAME_OVERHEAD) * Self::BITS_PER_BYTE
+    }
 }
 
 /// Opens the link that `settings` name; virtual robots are started as `sim` says.

@@ -1,4 +1,8 @@
-//! How are robots reached through a base station at a serial line? Frames between zero bytes (`protocol::serial`).
+//! `serial`: robots through a base station at a serial line. Frames between zero bytes (`protocol::serial`).
+//!
+//! What the system has taken can neither be replaced nor overtaken, and how much of it waits is not to be learnt everywhere (a
+//! pseudo terminal and some USB adapters always say 0). So the link hands over no more than the line carries at its rate:
+//! at most [`LEAD`] waits behind it, and HALT throws even that away.
 
 use std::io;
 use std::path::Path;
@@ -8,11 +12,16 @@ use protocol::link::Packet;
 use protocol::serial::{Lines, line};
 use serial2::SerialPort;
 
-use super::{Link, LinkError};
+use super::{LineRate, Link, LinkError};
 use crate::radio::{Relay, To};
 
 /// How long a write may wait for room: the time of one picture. What does not fit by then is old.
 const WRITE_MAX: Duration = Duration::from_millis(10);
+/// The line has work for so long in the system's buffer: twice the period in which the link's thread looks, so that the line
+/// does not pause. At 115,200 bit/s these are 35 bytes.
+const LEAD: Duration = Duration::from_millis(3);
+/// That the line takes less than its rate is reported this often.
+const STUCK_EVERY: Duration = Duration::from_secs(10);
 
 /// A serial line.
 #[derive(Debug)]
@@ -24,6 +33,11 @@ pub struct SerialLink {
     read: Vec<u8>,
     /// A line broke off: the next begins with a zero, so that the other side finds it.
     broken: bool,
+    baud: u32,
+    /// When the line has sent what it was given, by its rate.
+    busy_until: Instant,
+    /// Writes that found no room, and when that was last reported.
+    stuck: (u32, Option<Instant>),
 }
 
 impl SerialLink {
@@ -31,13 +45,27 @@ impl SerialLink {
     pub fn open(device: &str, baud: u32) -> Result<Self, LinkError> {
         let mut port = SerialPort::open(device, baud).map_err(|error| why(device, error))?;
         port.set_write_timeout(WRITE_MAX).map_err(|error| why(device, error))?;
-        Ok(Self {
+        Ok(Self::over(device, port, baud))
+    }
+
+    fn over(device: &str, port: SerialPort, baud: u32) -> Self {
+        Self {
             device: device.to_owned(),
             port,
             lines: Lines::new(),
             read: Vec::with_capacity(READ_LEN),
             broken: true,
-        })
+            baud,
+            busy_until: Instant::now(),
+            stuck: (0, None),
+        }
+    }
+
+    /// The line has so many bytes more to send.
+    fn give(&mut self, bytes: usize) {
+        let bits = bytes as u64 * LineRate::BITS_PER_BYTE;
+        let takes = Duration::from_micros((bits * 1_000_000).div_ceil(u64::from(self.baud.max(1))));
+        self.busy_until = self.busy_until.max(Instant::now()) + takes;
     }
 
     fn take(&mut self) -> Option<Packet> {
@@ -55,6 +83,7 @@ impl SerialLink {
 impl Link for SerialLink {
     fn send(&mut self, _to: To, packet: &[u8]) -> Result<(), LinkError> {
         let line = line(packet);
+        self.give(line.len() + usize::from(self.broken));
         let whole = if self.broken { self.port.write_all(&[0]) } else { Ok(()) };
         match whole.and_then(|()| self.port.write_all(&line)) {
             Ok(()) => {
@@ -62,7 +91,9 @@ impl Link for SerialLink {
                 Ok(())
             }
             Err(error) if error.kind() == io::ErrorKind::TimedOut => {
-                self.broken = true;
+                // The line takes less than its rate: what waits there is stale.
+                self.stuck.0 = self.stuck.0.saturating_add(1);
+                self.discard();
                 Ok(())
             }
             Err(error) => {
@@ -103,6 +134,34 @@ impl Link for SerialLink {
         Relay::ToAll
     }
 
+    fn has_room(&mut self) -> bool {
+        self.busy_until.saturating_duration_since(Instant::now()) <= LEAD
+    }
+
+    fn discard(&mut self) {
+        // A line may break off within a frame: the next begins with a zero, so that the other side finds it.
+        let _ = self.port.discard_output_buffer();
+        self.broken = true;
+        self.busy_until = Instant::now();
+    }
+
+    fn line_rate(&self) -> Option<LineRate> {
+        Some(LineRate { device: self.device.clone(), baud: self.baud })
+    }
+
+    fn notice(&mut self) -> Option<String> {
+        let (stuck, reported) = self.stuck;
+        if stuck == 0 || reported.is_some_and(|at| at.elapsed() < STUCK_EVERY) {
+            return None;
+        }
+        self.stuck = (0, Some(Instant::now()));
+        Some(format!(
+            "{} takes less than its {} bit/s: {stuck} frames found no room and were dropped; is the base station running, and \
+             does it run at this rate (serial:{}:BAUD)?",
+            self.device, self.baud, self.device
+        ))
+    }
+
     fn advice(&self) -> String {
         format!(
             "does the base station at {} run at this rate, and are the robots on its channel and of this team and key? {} pieces \
@@ -140,14 +199,7 @@ mod tests {
     /// A line whose other end is in our hands.
     fn pair() -> (SerialPort, SerialLink) {
         let (ours, theirs) = SerialPort::pair().unwrap();
-        let link = SerialLink {
-            device: "pair".into(),
-            port: theirs,
-            lines: Lines::new(),
-            read: Vec::new(),
-            broken: true,
-        };
-        (ours, link)
+        (ours, SerialLink::over("pair", theirs, 1_000_000))
     }
 
     #[test]

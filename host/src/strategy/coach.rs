@@ -74,6 +74,8 @@ pub struct Coach {
     cap: Cap,
     /// A pass ahead did not come off in time at this restart.
     gave_up: bool,
+    /// How near to its place the ball has come in our placement, m, and when.
+    placing: Option<(f32, Instant)>,
     /// The ball is theirs.
     attacked: bool,
     /// The pass of our restart that is on its way.
@@ -110,6 +112,7 @@ impl Coach {
             ball_lay: None,
             sent: None,
             gave_up: false,
+            placing: None,
             attacked: false,
             pass: None,
             barred: None,
@@ -156,7 +159,7 @@ impl Coach {
                 _ => self.free_kick(&mut plan, Side::Theirs),
             },
         }
-        plan.everybody(Role::Player, Task::Stand, Why::NoBall);
+        plan.stay_lawful();
         plan.orders.sort_unstable_by_key(|order| order.robot);
         plan.orders
     }
@@ -180,6 +183,7 @@ impl Coach {
             self.phase = Some(view.phase);
             self.aim = None;
             self.intent = None;
+            self.placing = None;
             (self.ahead, self.gave_up) = (None, false);
             self.cap.forget();
             self.since = view.now;

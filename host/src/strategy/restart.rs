@@ -4,6 +4,9 @@
 
 use geometry::{Angle, Attack, Point, Segment, Vector};
 
+use rules::Phase;
+use rules::limits::ROBOT_RADIUS;
+
 use super::order::{Task, Why};
 use super::support::{self, Target};
 use super::view::{Ball, View};
@@ -15,6 +18,14 @@ pub const OFF_BALL: f32 = 0.78;
 const TAKER_WAITS: f32 = 0.7;
 /// How far behind the ball everybody but taker and keeper is at a penalty, m: the rules' 1 m, a body and a margin.
 const BEHIND_PENALTY: f32 = 1.3;
+/// Between robots that wait at a penalty, m: two bodies, and room for a third.
+const PENALTY_APART: f32 = 0.36;
+/// Robots in a row behind a penalty: 1.8 m, what half of the smallest field holds.
+const PENALTY_ROW: usize = 5;
+/// A ball this near the mark lies for the penalty, m: the game controller starts it within 0.15 m.
+const NEAR_MARK: f32 = 0.3;
+/// Beside a body that passes between two walls, m.
+const ROOM_TO_PASS: f32 = 0.04;
 /// Steps by which the way out is turned, degrees: 24 of them are once around.
 const TURN_STEP_DEG: f32 = 15.0;
 /// How far from the halfway line field players stand at kick-off, m: as far from an opponent as lets them take a pass.
@@ -64,18 +75,43 @@ pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
     ball.position + home * OFF_BALL
 }
 
-/// Everybody but taker and keeper at a penalty towards `goal_x`: in a row behind the ball, on the other side of the field.
-pub fn behind_penalty(view: &View, ball: &Ball, ours: bool, slot: usize) -> Point<Attack> {
+/// Where a penalty is taken from, ours or theirs: where the referee wants the ball, or lets it lie, else the mark.
+pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
+    let ahead = if ours { 1.0 } else { -1.0 };
+    let mark = Point::new(ahead * (view.field.length * 0.5 - view.field.penalty_mark), 0.0);
+    let lies = view.ball.map(|ball| ball.position).filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
+    view.placement.or(lies).unwrap_or(mark)
+}
+
+/// Everybody but taker and keeper at a penalty from `spot`: in rows behind it, each team on its own left, so that no two are sent to
+/// one place.
+pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let x = ball.position.x() + back * (BEHIND_PENALTY + 0.4 * (slot / 4) as f32);
-    let y = ((slot % 4) as f32 - 1.5) * 0.8;
+    let (row, place) = (slot / PENALTY_ROW, slot % PENALTY_ROW);
+    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART * row as f32);
+    let y = PENALTY_APART * (place as f32 + 1.0);
     view.clamp(Point::new(x, y), 0.2)
+}
+
+/// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.
+pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
+    let field = &view.field;
+    let behind = ball.x().abs() - field.length * 0.5 - field.goal_depth;
+    let aside = ball.y().abs() - field.goal_width * 0.5 - field.goal_wall;
+    let room = field.goal_line_margin - field.goal_depth - field.goal_wall;
+    let hidden = behind > 0.0 && aside < 0.0 && room < 2.0 * ROBOT_RADIUS + ROOM_TO_PASS;
+    let off = behind + field.goal_depth > field.goal_line_margin
+        || ball.y().abs() - field.width * 0.5 > field.margin;
+    hidden || off
 }
 
 /// `at`, moved out of the circle that nobody may be in around the ball, and out of the way of a ball being placed.
 pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     let Some(ball) = view.ball else { return at };
-    let spine = Segment::new(ball.position, view.placement.unwrap_or(ball.position));
+    // Nobody rolls the ball to a penalty's mark: people put it there.
+    let rolls = !matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
+    let target = view.placement.filter(|_| rolls).unwrap_or(ball.position);
+    let spine = Segment::new(ball.position, target);
     let closest = spine.closest_to(at);
     let away = at - closest;
     if away.norm() >= OFF_BALL {
@@ -107,6 +143,7 @@ pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
 mod tests {
     use super::super::view::tests::view;
     use super::*;
+    use rules::{League, Side};
 
     #[test]
     fn nobody_is_sent_into_the_circle_around_the_ball_nor_over_the_line_for_it() {
@@ -139,12 +176,46 @@ mod tests {
     }
 
     #[test]
-    fn at_a_penalty_everybody_else_is_a_metre_behind_the_ball() {
-        let view = view((-1.5, 0.0), &[], &[]);
-        let ball = view.ball.unwrap();
-        for slot in 0..9 {
-            assert!(behind_penalty(&view, &ball, false, slot).x() > ball.position.x() + 1.1);
-            assert!(behind_penalty(&view, &ball, true, slot).x() < ball.position.x() - 1.1);
+    fn at_a_penalty_everybody_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
+        for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
+            let field = league.field();
+            // The ball still lies somewhere else.
+            let mut view = View::still(field, Point::new(0.4, -0.6), [], []);
+            view.phase = Phase::Stop;
+            let robots = if league == League::DivisionA { 10 } else { 5 };
+            let (shooting, defending) = (penalty_spot(&view, true), penalty_spot(&view, false));
+            assert_eq!(shooting, Point::new(field.length * 0.5 - field.penalty_mark, 0.0));
+            // The same mark, seen from the other side.
+            assert_eq!(defending, Point::new(-shooting.x(), -shooting.y()));
+            let turned = |at: Point<Attack>| Point::<Attack>::new(-at.x(), -at.y());
+            let ours = (0..robots).map(|slot| behind_penalty(&view, shooting, true, slot));
+            let theirs = (0..robots).map(|slot| turned(behind_penalty(&view, defending, false, slot)));
+            let all: Vec<_> = ours.chain(theirs).collect();
+            for (i, at) in all.iter().enumerate() {
+                assert!(shooting.x() - at.x() > 1.1, "{league:?}: {at:?}");
+                assert!(view.clamp(*at, 0.1) == *at, "{league:?}: {at:?}");
+                assert!(all[..i].iter().all(|other| other.distance(*at) > 0.3), "{league:?}: {all:?}");
+            }
         }
+    }
+
+    #[test]
+    fn a_penalty_is_taken_from_where_the_referee_wants_the_ball() {
+        let mut view = view((-3.0, 2.0), &[], &[]);
+        (view.phase, view.next) = (Phase::Stop, Some(Phase::PreparePenalty(Side::Ours)));
+        view.placement = Some(Point::new(-1.4, 0.05));
+        assert_eq!(penalty_spot(&view, true), Point::new(-1.4, 0.05));
+        // Nobody keeps out of the line from the ball to it.
+        let between = Point::new(-2.2, 1.0);
+        assert_eq!(kept_off(&view, between), between);
+    }
+
+    #[test]
+    fn behind_a_goal_a_ball_is_out_of_reach_where_no_body_fits() {
+        let reach = |league: League, x, y| is_out_of_reach(&View::still(league.field(), Point::new(0.0, 0.0), [], []), Point::new(x, y));
+        assert!(reach(League::DivisionB, 4.75, 0.3) && reach(League::DivisionB, -4.75, -0.3));
+        assert!(!reach(League::DivisionB, 4.6, 0.3), "in the goal");
+        assert!(!reach(League::DivisionB, 4.75, 0.7), "beside it");
+        assert!(!reach(League::DivisionA, 6.4, 0.3), "0.4 m of room");
     }
 }

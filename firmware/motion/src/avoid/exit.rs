@@ -171,13 +171,13 @@ const FREE: f32 = 0.002;
 /// Candidates are this far outside, m.
 const OFF: f32 = 2.0 * FREE;
 /// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may leave narrow gaps.
-const SAME: f32 = 0.005;
+const SAME: f32 = 0.001;
 /// The same around discs and capsules, of which there would be too many.
 const SAME_AROUND: f32 = 0.03;
 /// Most candidates that are looked at: with 16, keepers do not find into a mouth in which another robot stands.
-const TRIES_MAX: usize = 24;
+const TRIES_MAX: usize = 32;
 /// Most candidates that are noted.
-const EXITS_MAX: usize = 48;
+const EXITS_MAX: usize = 64;
 /// Points of the lattice along the region's x and y.
 const COLUMNS: u8 = 6;
 const ROWS: u8 = 4;

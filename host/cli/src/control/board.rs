@@ -3,10 +3,11 @@
 use std::time::{Duration, Instant};
 
 use host::Host;
-use page::{Page, Powers, Request};
+use page::{Happening, Kind, Page, Powers, Request};
 
 use crate::library::Shelf;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
+use crate::output::note;
 
 /// A page and what fills it.
 pub(super) struct Board {
@@ -30,7 +31,7 @@ impl Board {
             let page = args.open(title, false, Powers::Halt, CaseOracle::new(shelf, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
         };
-        open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()
+        open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }
 
     pub(super) fn vision(&mut self, bytes: &[u8]) {
@@ -41,20 +42,27 @@ impl Board {
         self.composer.referee(bytes, now.0 as f64 * 1e-6, false);
     }
 
+    /// Something is wrong: a line among what happened.
+    pub(super) fn fault(&mut self, now: protocol::Instant, words: String) {
+        let t = now.0 as f64 * 1e-6;
+        self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+    }
+
     /// An input took so long.
     pub(super) fn took(&mut self, time: Duration) {
         self.took = (self.took * 15 + time) / 16;
     }
 
     /// Shows the moment, if it is time; true: a viewer asks for HALT.
-    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host) -> bool {
+    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: &[String]) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
             self.shown = Some(Instant::now());
             let t = now.0 as f64 * 1e-6;
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
-            let sketch = self.composer.compose(moment);
+            let mut sketch = self.composer.compose(moment);
+            sketch.scene.alarms = alarms.to_vec();
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }

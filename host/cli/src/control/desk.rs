@@ -7,34 +7,37 @@ use std::ffi::OsString;
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::TeamConfig;
-use host::radio::{RadioSettings, To};
+use host::radio::RadioSettings;
 use host::recording::{HostHeader, RecordingHeader};
 use host::referee::team_port::Request;
-use host::shell::{Recorder, SimSettings};
+use host::shell::{BackgroundRecorder, Outbox, Recorder, SimSettings};
 use host::tracking::{Heard, Publisher};
 use host::{Host, HostSettings, Input, Verdict};
-use indicatif::ProgressBar;
 use protocol::RobotId;
 use protocol::frame::TeamKey;
-use protocol::link::Packet;
 use rules::Colour;
 use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::Interfaces;
 
+use super::alarms::Alarms;
 use super::board::Board;
-use super::threads::{self, Mail, Source};
+use super::inbox::{Inbox, Mail};
+use super::radio_alarms::RadioAlarms;
+use super::terminal::Terminal;
+use super::threads::{self, Source};
 use super::watch::Watch;
 use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// Looks at what is missing, and at Ctrl-C, at least this often.
@@ -61,16 +64,18 @@ pub(super) fn run(
     let usual = HostSettings::new(config.colour, config.league, identity::this_epoch(config));
     let settings = HostSettings {
         keeper: config.keeper,
+        referee: config.referee_source.clone(),
         kick: config.kick,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
         ..usual
     };
     let recorder = record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
+            .and_then(BackgroundRecorder::start)
             .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
     });
     let recorder = recorder.transpose()?;
-    eprintln!(
+    note!(
         "controlling {}, {}, {}; Ctrl-C halts the robots and ends it",
         config.name,
         config.colour.word(),
@@ -80,22 +85,21 @@ pub(super) fn run(
     let title = format!("{}, {}", config.name, config.colour.word());
     let board = page.and_then(|args| Board::open(args, title, shelf, retrieval));
 
-    let (mail, inbox) = mpsc::channel();
-    let (out, frames) = mpsc::channel();
+    let mail = Arc::new(Inbox::new());
+    let out = Arc::new(Mutex::new(Outbox::default()));
     let end = Arc::new(AtomicBool::new(false));
     let by = config.interface.map_or(Interfaces::All, |ip| Interfaces::These(vec![ip.to_string()]));
     let watch = Watch::new(link.advice());
     let mut threads = vec![
         threads::hear(Source::Vision, config.vision, by.clone(), mail.clone(), end.clone()),
         threads::hear(Source::Referee, config.referee, by, mail.clone(), end.clone()),
-        threads::carry(link, frames, mail.clone(), end.clone()),
+        threads::carry(link, out.clone(), mail.clone(), end.clone()),
     ];
     let (ask, asked) = mpsc::channel();
     if let Some(address) = config.game_controller {
         let who = (config.name.clone(), config.colour, config.keeper);
         threads.push(port_for_teams::talk(address, who, asked, mail.clone(), end.clone()));
     }
-    drop(mail);
     let speaks_by = config.interface.map(|ip| ip.to_string());
     let mut desk = Desk {
         host: Host::new(settings, protocol::Instant(0)),
@@ -105,7 +109,10 @@ pub(super) fn run(
         us: config.colour,
         recorder,
         recording: Ok(()),
+        trace_ended: false,
         watch,
+        alarms: Alarms::default(),
+        radio_alarms: RadioAlarms::default(),
         publisher: Publisher::new(
             &format!("onetwo-{}-{}", config.colour.word(), unix.as_secs()),
             &config.name,
@@ -115,38 +122,40 @@ pub(super) fn run(
         words: Vec::new(),
         board,
     };
-    let bar = ProgressBar::new_spinner();
+    let mut terminal = Terminal::open();
     let mut looked = Instant::now();
     while !stopped.load(Ordering::Relaxed) && duration.is_none_or(|s| desk.began.elapsed().as_secs_f64() < s)
     {
-        desk.wait(&inbox);
+        desk.wait(&mail);
         desk.show();
         if looked.elapsed() >= LOOK {
             looked = Instant::now();
             let now = desk.now();
             desk.watch.look(now, &desk.host, config, &mut desk.words);
-            if desk.recorder.as_ref().is_some_and(Recorder::failed) {
-                desk.end_recording();
-            }
-            bar.set_message(desk.status());
-            bar.tick();
+            desk.look_at_alarms(now, &mail);
+            desk.look_at_recording();
+            desk.look_at_radio(now);
+            terminal.status(desk.status());
         }
-        for words in desk.words.drain(..) {
-            bar.suspend(|| eprintln!("{words}"));
-        }
+        desk.words.drain(..).for_each(|words| terminal.line(words));
     }
-    bar.finish_and_clear();
-    desk.end_recording();
+    // HALT before anything that may wait: the disk, the terminal.
+    let recorder = desk.recorder.take();
     desk.halt();
     end.store(true, Ordering::Relaxed);
-    let Desk { counts, out, recording, .. } = desk;
-    drop(out);
     for thread in threads {
         let _ = thread.join();
     }
-    eprintln!(
+    terminal.close();
+    desk.end_recording(recorder);
+    desk.words.drain(..).for_each(|words| note!("{words}"));
+    let Desk { counts, recording, .. } = desk;
+    note!(
         "robots halted; ended after {} vision and {} referee packets, {} frames from robots and {} to them",
-        counts.vision, counts.referee, counts.robots, counts.sent
+        counts.vision,
+        counts.referee,
+        counts.robots,
+        counts.sent
     );
     recording.map_err(|error| Failure::Recording(format!("it is not whole: {error}")))?;
     Ok(ExitCode::SUCCESS)
@@ -200,14 +209,18 @@ struct Counts {
 struct Desk {
     host: Host,
     began: Instant,
-    out: Sender<(To, Packet)>,
     /// What is asked of the game controller.
     ask: Sender<Request>,
+    out: Arc<Mutex<Outbox>>,
     us: Colour,
-    recorder: Option<Recorder>,
+    recorder: Option<BackgroundRecorder>,
     /// How a recording ended that ended before the match.
     recording: io::Result<()>,
+    /// It was reported that the trace has ended.
+    trace_ended: bool,
     watch: Watch,
+    alarms: Alarms,
+    radio_alarms: RadioAlarms,
     publisher: Publisher,
     mouth: Mouth,
     counts: Counts,
@@ -221,13 +234,10 @@ impl Desk {
     }
 
     /// Waits for mail or the host's deadline, and does what it brings.
-    fn wait(&mut self, inbox: &Receiver<Mail>) {
+    fn wait(&mut self, inbox: &Inbox) {
         let due = self.host.poll_timeout().map(|due| Duration::from_micros(due.since(self.now()).0));
-        match inbox.recv_timeout(due.unwrap_or(LOOK).min(LOOK)) {
-            Ok(mail) => self.open(mail),
-            // Everybody has hung up: nothing will come but deadlines.
-            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(HALT_EVERY),
-            Err(RecvTimeoutError::Timeout) => {}
+        if let Some(mail) = inbox.take(due.unwrap_or(LOOK).min(LOOK)) {
+            self.open(mail);
         }
         let now = self.now();
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
@@ -248,9 +258,9 @@ impl Desk {
                     self.publish(now);
                 }
             }
-            Mail::Referee(bytes) => {
+            Mail::Referee(bytes, from) => {
                 self.counts.referee += 1;
-                self.tell(now, Input::Referee(&bytes));
+                self.tell(now, Input::Referee(&bytes, from));
             }
             Mail::Robot(packet) => {
                 self.counts.robots += 1;
@@ -262,6 +272,7 @@ impl Desk {
                 self.words.push(words);
             }
             Mail::Word(words) => self.words.push(words),
+            Mail::Slow(words) => self.alarms.slow(now, words),
         }
     }
 
@@ -270,8 +281,8 @@ impl Desk {
         if let Some(recorder) = &mut self.recorder {
             let heard = match input {
                 Input::Vision(bytes) => Some((MessageKind::Vision2014, bytes)),
-                Input::Referee(bytes) => Some((MessageKind::Refbox2013, bytes)),
-                Input::Robot(_) | Input::Timeout => None,
+                Input::Referee(bytes, _) => Some((MessageKind::Refbox2013, bytes)),
+                Input::Robot(_) | Input::Halt | Input::Timeout => None,
             };
             if let Some((kind, bytes)) = heard {
                 recorder.heard(now, kind, bytes);
@@ -284,8 +295,8 @@ impl Desk {
             board.took(began.elapsed());
             match input {
                 Input::Vision(bytes) => board.vision(bytes),
-                Input::Referee(bytes) => board.referee(bytes, now),
-                Input::Robot(_) | Input::Timeout => {}
+                Input::Referee(bytes, _) => board.referee(bytes, now),
+                Input::Robot(_) | Input::Halt | Input::Timeout => {}
             }
         }
         self.send(now);
@@ -297,23 +308,24 @@ impl Desk {
             // Without a controller to ask there is no thread that takes it.
             let _ = self.ask.send(request);
         }
+        let mut batch = Vec::new();
         while let Some((to, packet)) = self.host.poll_packet() {
             if let Some(recorder) = &mut self.recorder {
                 recorder.sent(now, self.us, to, &packet);
             }
             self.counts.sent += 1;
-            let _ = self.out.send((to, packet));
+            batch.push((to, packet));
         }
+        self.out.lock().unwrap_or_else(PoisonError::into_inner).push(batch, self.host.is_halting());
     }
 
     /// The moment on the page, and HALT if somebody there asks for it.
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
-        if board.look(now, &self.host) {
+        if board.look(now, &self.host, self.alarms.now()) {
             self.words.push("HALT was asked for on the page: the robots stand until the end".to_owned());
-            self.host.halt(now);
-            self.send(now);
+            self.tell(now, Input::Halt);
         }
     }
 
@@ -326,8 +338,43 @@ impl Desk {
         }
     }
 
-    fn end_recording(&mut self) {
-        let Some(recorder) = self.recorder.take() else { return };
+    /// What keeps robots and host apart goes to terminal and page.
+    fn look_at_radio(&mut self, now: protocol::Instant) {
+        for words in self.radio_alarms.look(now, self.host.radio()) {
+            if let Some(board) = &mut self.board {
+                board.fault(now, words.clone());
+            }
+            self.words.push(words);
+        }
+    }
+
+    fn look_at_alarms(&mut self, now: protocol::Instant, inbox: &Inbox) {
+        self.words.extend(self.alarms.look(now, &self.host, inbox.dropped()));
+    }
+
+    /// Whether the recording keeps up, and whether the disk takes it.
+    fn look_at_recording(&mut self) {
+        let Some(recorder) = &self.recorder else { return };
+        if recorder.failed() {
+            let recorder = self.recorder.take();
+            self.end_recording(recorder);
+        } else if let (Some(at), false) = (recorder.trace_ended(), self.trace_ended) {
+            self.trace_ended = true;
+            self.words.push(format!(
+                "recording  the disk is too slow: the trace ends at {:.1} s, the log goes on with gaps",
+                at.0 as f64 * 1e-6
+            ));
+        }
+    }
+
+    fn end_recording(&mut self, recorder: Option<BackgroundRecorder>) {
+        let Some(recorder) = recorder else { return };
+        if recorder.dropped() > 0 {
+            self.words.push(format!(
+                "recording  {} messages were dropped: the disk was too slow",
+                recorder.dropped()
+            ));
+        }
         self.recording = recorder.finish();
         if let Err(error) = &self.recording {
             self.words.push(format!("recording  {error}: nothing more is kept; is the disk full?"));
@@ -339,7 +386,7 @@ impl Desk {
         let began = Instant::now();
         while began.elapsed() < HALTING {
             let now = self.now();
-            self.host.halt(now);
+            self.host.handle(now, Input::Halt);
             if self.host.poll_timeout().is_some_and(|due| due <= now) {
                 self.host.handle(now, Input::Timeout);
             }

@@ -3,10 +3,14 @@
 //! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
 //! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.
 
+mod alarms;
 mod board;
 mod desk;
 mod identity;
+mod inbox;
 mod port_for_teams;
+mod radio_alarms;
+mod terminal;
 mod threads;
 mod watch;
 
@@ -26,6 +30,7 @@ use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{PageArgs, shelf_of};
+use crate::output::shown;
 use crate::simulate::seconds;
 
 /// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
@@ -68,6 +73,10 @@ pub(crate) struct ControlArgs {
     /// Where the referee is heard: 224.5.23.1:10003.
     #[arg(long, value_name = "ADDRESS:PORT")]
     referee: Option<SocketAddr>,
+    /// The only referee that is obeyed: the address of its machine (192.168.1.5), its address with port, or its identifier. Others
+    /// are ignored and reported. Without it the strictest command of all of them is obeyed.
+    #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
+    referee_source: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
@@ -138,13 +147,16 @@ impl Cases {
     }
 }
 
+/// Longest file of settings that is read, bytes: one with every setting has 1 kB.
+const CONFIG_LEN_MAX: u64 = 1 << 20;
+
 /// Flags over the file over what is usual.
 fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     let file = match &args.config {
         None => TeamSettings::default(),
         Some(path) => {
-            let said = |words: String| Failure::Network(format!("{}: {words}", path.display()));
-            let text = std::fs::read_to_string(path).map_err(|error| said(error.to_string()))?;
+            let said = |words: String| Failure::Network(format!("{}: {words}", shown(path)));
+            let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
             TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))?
         }
     };
@@ -159,6 +171,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         insecure_zero_key: args.insecure_zero_key.then_some(true),
         vision: args.vision,
         referee: args.referee,
+        referee_source: args.referee_source.clone(),
         tracker: args.tracker,
         game_controller: args.game_controller,
         calibration: args.kicks.clone(),

@@ -4,15 +4,17 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use foreign::excerpt;
 use host::referee::team_port::{Event, Request, TeamPort};
 use protocol::RobotId;
 use rules::Colour;
 
-use super::threads::{Mail, sleep};
+use super::inbox::{Inbox, Mail};
+use super::threads::sleep;
 
 /// An open connection is read at most so long before the time is looked at.
 const WAIT: Duration = Duration::from_millis(100);
@@ -24,7 +26,7 @@ pub(super) fn talk(
     address: SocketAddr,
     (name, colour, keeper): (String, Colour, RobotId),
     asked: Receiver<Request>,
-    mail: Sender<Mail>,
+    mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
@@ -52,7 +54,7 @@ pub(super) fn talk(
                 let words = words(&event, address);
                 // A controller that is away is told of once.
                 if words.is_some() && words != last {
-                    let _ = mail.send(Mail::Word(words.clone().unwrap_or_default()));
+                    mail.put(Mail::Word(words.clone().unwrap_or_default()));
                     last = words;
                 }
             }
@@ -90,15 +92,21 @@ fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant)
     }
 }
 
+/// As much of a reason as is shown, characters.
+const REASON_LEN: usize = 200;
+
 fn words(event: &Event, address: SocketAddr) -> Option<String> {
     Some(match event {
         Event::Registered { .. } => format!("game controller  at {address} knows us now"),
         Event::RegistrationRefused { reason } => format!(
-            "game controller  at {address} will not have us: {reason}; is our --name the one it shows, and our --colour?"
+            "game controller  at {address} will not have us: {}; is our --name the one it shows, and our --colour?",
+            excerpt(reason, REASON_LEN)
         ),
         Event::Granted(Request::Ping) => return None,
         Event::Granted(request) => format!("game controller  granted: {request:?}"),
-        Event::Refused { request, reason } => format!("game controller  refused {request:?}: {reason}"),
+        Event::Refused { request, reason } => {
+            format!("game controller  refused {request:?}: {}", excerpt(reason, REASON_LEN))
+        }
         Event::GivenUp(trouble) => format!("waiting for the game controller at {address}: {trouble}"),
     })
 }

@@ -1,34 +1,16 @@
 //! A thread for each socket: it waits, and passes on what came. One that cannot be opened is tried again every second.
 
 use std::net::SocketAddr;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use host::radio::To;
-use host::shell::Link;
-use protocol::link::Packet;
-use ssl::net::Interfaces;
+use host::shell::{LineRate, Link, OutCounts, Outbox};
+use ssl::net::{Datagram, Interfaces};
 
+use super::inbox::{Inbox, Mail, REFEREE_LEN_MAX, VISION_LEN_MAX};
 use crate::net::Ear;
-
-/// What comes to the host's desk.
-pub(super) enum Mail {
-    /// A datagram of the vision.
-    Vision(Vec<u8>),
-    /// A datagram of the referee.
-    Referee(Vec<u8>),
-    /// A frame of a robot.
-    Robot(Packet),
-    /// Where a source is heard now.
-    Open(Source, String),
-    /// Why a source cannot be heard.
-    Trouble(Source, String),
-    /// Something to be told.
-    Word(String),
-}
 
 /// Where mail comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,12 +40,21 @@ const TROUBLE_EVERY: Duration = Duration::from_secs(10);
 /// The link's thread waits so long for robots before it looks for what is to be sent: a tenth of a picture's period.
 const LINK_WAIT: Duration = Duration::from_millis(1);
 
+/// Whether a line keeps up is looked at this often.
+const PACE_EVERY: Duration = Duration::from_secs(1);
+/// One of so many snapshots may be replaced by a newer one: threads are late now and then.
+const SPARED: u64 = 20;
+/// Rates that adapters have, bit/s.
+const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
+/// At the end the last frames have so long to go out.
+const AT_END: Duration = Duration::from_millis(200);
+
 /// Hears `address` until `end`.
 pub(super) fn hear(
     source: Source,
     address: SocketAddr,
     by: Interfaces,
-    mail: Sender<Mail>,
+    mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
@@ -74,7 +65,7 @@ pub(super) fn hear(
                 Err(error) => {
                     let words = error.to_string();
                     if told.as_ref() != Some(&words) {
-                        let _ = mail.send(Mail::Trouble(source, words.clone()));
+                        mail.put(Mail::Trouble(source, words.clone()));
                         told = Some(words);
                     }
                     sleep(AGAIN, &end);
@@ -82,32 +73,40 @@ pub(super) fn hear(
                 }
             };
             told = None;
-            let _ = mail.send(Mail::Open(source, ear.words()));
+            mail.put(Mail::Open(source, ear.words()));
             while !end.load(Ordering::Relaxed) {
-                let bytes = match ear.receive(LOOK) {
-                    Ok(Some(datagram)) => datagram.bytes.to_vec(),
-                    Ok(None) => continue,
+                match ear.receive(LOOK) {
+                    Ok(Some(datagram)) => match letter(source, datagram) {
+                        Some(letter) => mail.put(letter),
+                        None => mail.refuse(source),
+                    },
+                    Ok(None) => {}
                     Err(error) => {
-                        let _ = mail.send(Mail::Trouble(source, error.to_string()));
+                        mail.put(Mail::Trouble(source, error.to_string()));
                         sleep(AGAIN, &end);
                         break;
                     }
-                };
-                let letter =
-                    if source == Source::Vision { Mail::Vision(bytes) } else { Mail::Referee(bytes) };
-                if mail.send(letter).is_err() {
-                    return;
                 }
             }
         }
     })
 }
 
-/// Carries frames to the robots and back, until the desk hangs up.
+/// A datagram as it waits; none where it is longer than any of its kind.
+fn letter(source: Source, Datagram { bytes, from }: Datagram<'_>) -> Option<Mail> {
+    let most = if source == Source::Vision { VISION_LEN_MAX } else { REFEREE_LEN_MAX };
+    let fits = bytes.len() <= most;
+    fits.then(|| match source {
+        Source::Vision => Mail::Vision(bytes.to_vec()),
+        _ => Mail::Referee(bytes.to_vec(), from.into()),
+    })
+}
+
+/// Carries frames to the robots and back, until `end`; then what waits goes out, HALT as a rule.
 pub(super) fn carry(
     mut link: Box<dyn Link>,
-    frames: Receiver<(To, Packet)>,
-    mail: Sender<Mail>,
+    frames: Arc<Mutex<Outbox>>,
+    mail: Arc<Inbox>,
     end: Arc<AtomicBool>,
 ) -> JoinHandle<()> {
     thread::spawn(move || {
@@ -117,33 +116,101 @@ pub(super) fn carry(
                 && told.is_none_or(|told| told.elapsed() >= TROUBLE_EVERY)
             {
                 told = Some(Instant::now());
-                let _ = mail.send(Mail::Trouble(Source::Robots, words));
+                mail.put(Mail::Trouble(Source::Robots, words));
             }
         };
+        let mut pace = Pace::new();
         while !end.load(Ordering::Relaxed) {
-            for (to, packet) in frames.try_iter() {
-                note(link.send(to, &packet).map_err(|error| error.to_string()));
-            }
+            note(send(&mut *link, &frames));
             match link.receive(LINK_WAIT) {
                 Ok(None) => {}
-                Ok(Some(packet)) => {
-                    if mail.send(Mail::Robot(packet)).is_err() {
-                        return;
-                    }
-                }
+                Ok(Some(packet)) => mail.put(Mail::Robot(packet)),
                 Err(error) => {
                     note(Err(error.to_string()));
                     thread::sleep(LOOK);
                 }
             }
             while let Some(words) = link.notice() {
-                let _ = mail.send(Mail::Word(words));
+                mail.put(Mail::Word(words));
+            }
+            if let Some(words) = pace.look(&*link, &frames) {
+                mail.put(Mail::Slow(words));
             }
         }
-        for (to, packet) in frames.try_iter() {
-            let _ = link.send(to, &packet);
+        let until = Instant::now() + AT_END;
+        while look_at(&frames).waiting() > 0 && Instant::now() < until {
+            let _ = send(&mut *link, &frames);
+            thread::sleep(LINK_WAIT);
         }
     })
+}
+
+fn look_at(frames: &Mutex<Outbox>) -> std::sync::MutexGuard<'_, Outbox> {
+    frames.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Sends what the link takes at once.
+fn send(link: &mut dyn Link, frames: &Mutex<Outbox>) -> Result<(), String> {
+    let mut result = Ok(());
+    loop {
+        let discard = look_at(frames).take_discard();
+        if discard {
+            link.discard();
+        }
+        if !link.has_room() {
+            return result;
+        }
+        let frame = look_at(frames).take();
+        let Some((to, packet)) = frame else { return result };
+        if let Err(error) = link.send(to, &packet) {
+            result = Err(error.to_string());
+        }
+    }
+}
+
+/// Whether a line keeps up, looked at every second.
+struct Pace {
+    since: Instant,
+    before: OutCounts,
+}
+
+impl Pace {
+    fn new() -> Self {
+        Self { since: Instant::now(), before: OutCounts::default() }
+    }
+
+    /// Words where the line did not keep up in the last second, with the rate it needs.
+    fn look(&mut self, link: &dyn Link, frames: &Mutex<Outbox>) -> Option<String> {
+        let passed = self.since.elapsed();
+        if passed < PACE_EVERY {
+            return None;
+        }
+        let counts = look_at(frames).counts();
+        let before = std::mem::replace(&mut self.before, counts);
+        self.since = Instant::now();
+        too_slow(&link.line_rate()?, before, counts, passed)
+    }
+}
+
+/// Words for a line that dropped more than [`SPARED`] of its snapshots between two counts.
+fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Duration) -> Option<String> {
+    let lost = counts.superseded - before.superseded;
+    let offered = counts.snapshots - before.snapshots;
+    if lost <= offered / SPARED {
+        return None;
+    }
+    let in_a_second = |number: u64| (number as f64 / passed.as_secs_f64()) as u64;
+    let needed = in_a_second(LineRate::needed(counts.frames - before.frames, counts.bytes - before.bytes));
+    let rate = RATES.into_iter().find(|rate| *rate >= needed);
+    let remedy = rate.map_or_else(
+        || "no usual rate is enough: use fewer robots, or udp://".to_owned(),
+        |rate| format!("set the base station and --robots serial:{}:{rate}", line.device),
+    );
+    Some(format!(
+        "robots' line  {} at {} bit/s is too slow: {lost} of {offered} snapshots of the last second were replaced by newer ones; the \
+         traffic needs {needed} bit/s: {remedy}",
+        line.device, line.baud
+    ))
 }
 
 /// Sleeps, but not beyond the end.
@@ -153,5 +220,27 @@ pub(super) fn sleep(time: Duration, end: &AtomicBool) {
         let now = left.min(LOOK);
         thread::sleep(now);
         left -= now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_that_is_too_slow_is_reported_with_the_rate_that_it_needs() {
+        let line = LineRate { device: "/dev/ttyACM0".to_owned(), baud: 115_200 };
+        let before =
+            OutCounts { snapshots: 1_000, superseded: 400, frames: 5_000, bytes: 200_000, side_dropped: 0 };
+        // 100 snapshots of 290 bytes in 8 frames.
+        let counts =
+            OutCounts { snapshots: 1_100, superseded: 460, frames: 5_800, bytes: 229_000, side_dropped: 0 };
+        let words = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
+        assert!(
+            words.contains("needs 306000 bit/s") && words.contains("serial:/dev/ttyACM0:460800"),
+            "{words}"
+        );
+        let kept_up = OutCounts { superseded: 405, ..counts };
+        assert_eq!(too_slow(&line, before, kept_up, Duration::from_secs(1)), None);
     }
 }

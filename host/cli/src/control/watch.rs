@@ -108,7 +108,7 @@ impl Watch {
                     config.referee, referee.way
                 )
             },
-            || format!("the referee is heard: {}", host.listener().source().unwrap_or("without a name")),
+            || format!("the referee is heard: {}", host.listener().source().map_or_else(String::new, ToString::to_string)),
         ));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
@@ -125,6 +125,13 @@ impl Watch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_referee_s_name_cannot_speak_to_the_terminal() {
+        let words = heard(Some("gc\u{1b}]0;pwn\u{7}\u{1b}[31mRED\nrobots halted"));
+        assert_eq!(words, "the referee is heard: gc\\u001b]0;pwn\\u0007\\u001b[31mRED\\nrobots halted");
+        assert_eq!(heard(None), "the referee is heard: without a name");
+    }
 
     #[test]
     fn what_is_missing_is_told_once_and_so_is_that_it_came() {

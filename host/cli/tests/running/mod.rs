@@ -22,6 +22,8 @@ impl Running {
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
             .args(arguments)
+            // The host's epoch is kept there, not in the home of the user that runs the tests.
+            .env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"))
             .stderr(Stdio::piped())
             .stdout(Stdio::null())
             .spawn()

@@ -5,7 +5,7 @@ use protocol::RobotId;
 use rules::Phase;
 
 use super::super::order::{Order, Role, Task, Why};
-use super::super::view::View;
+use super::super::view::{Robot, View};
 use super::super::{defence, restart};
 use super::{Free, Orders};
 
@@ -50,6 +50,19 @@ impl<'v> Plan<'v> {
     pub(super) fn everybody(&mut self, role: Role, task: Task, why: Why) {
         for id in core::mem::take(&mut self.free) {
             self.order(id, role, task, why);
+        }
+    }
+
+    /// Whoever is left stays; while the ball is not in play by going to where it is, so that it leaves what is forbidden.
+    pub(super) fn stay_lawful(&mut self) {
+        let view = self.view;
+        if view.phase == Phase::Run {
+            return self.everybody(Role::Player, Task::Stand, Why::NoBall);
+        }
+        for id in core::mem::take(&mut self.free) {
+            let here = |robot: &Robot| Task::GoTo { at: robot.position, face: robot.heading };
+            let task = view.our(id).map_or(Task::Stand, here);
+            self.order(id, Role::Player, task, Why::NoBall);
         }
     }
 

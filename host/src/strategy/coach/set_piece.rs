@@ -1,19 +1,23 @@
 //! How are restarts played, and where is everybody meanwhile? Ours with a taker and mates to pass to, theirs with a wall.
 
+use geometry::{Attack, Point};
 use protocol::Duration;
 use rules::{Phase, Side};
 
 use super::super::order::{Role, Task, Why};
 use super::super::support::{self, Target};
-use super::super::view::{Ball, ROBOTS_MAX};
+use super::super::view::{Ball, ROBOTS_MAX, View};
 use super::super::{defence, restart, roles};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Our ball placement: the nearest brings it, the others keep out of its way.
+    /// Our ball placement: the nearest brings it, the others keep out of its way. One that gets nowhere is given up: everybody keeps
+    /// away from ball and target as at the opponents', until the referee goes on.
     pub(super) fn place_ball(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
-        if let (Some(ball), Some(at)) = (view.ball, view.placement) {
+        if let (Some(ball), Some(at)) = (view.ball, view.placement)
+            && !self.gives_up_placing(view, &ball, at)
+        {
             let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
             let first = roles::choose(field_players, self.first, roles::WORTH, |robot| {
                 roles::time_to(robot, ball.position)
@@ -29,11 +33,23 @@ impl Coach {
         self.spread(plan);
     }
 
+    /// Whether the ball has not come nearer to its place for so long that it will not.
+    fn gives_up_placing(&mut self, view: &View, ball: &Ball, at: Point<Attack>) -> bool {
+        let left = ball.position.distance(at);
+        let (least, since) = *self.placing.get_or_insert((left, view.now));
+        if left < least - PLACING_GAINS {
+            self.placing = Some((left, view.now));
+            return false;
+        }
+        let waited = view.now.since(since);
+        waited > PLACING_PATIENCE || waited > BALL_ROLLS && restart::is_out_of_reach(view, ball.position)
+    }
+
     /// Kick-off: ours with a taker and mates to pass to, theirs with everybody at home.
     pub(super) fn kickoff(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         if side == Side::Ours {
-            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), false);
+            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), None);
             self.receiver(plan);
         }
         self.defend(plan, false);
@@ -46,7 +62,7 @@ impl Coach {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
         if side == Side::Ours {
-            self.taker(plan, matches!(view.phase, Phase::FreeKick(_)), false);
+            self.taker(plan, matches!(view.phase, Phase::FreeKick(_)), None);
             self.receiver(plan);
             self.defend(plan, false);
             return self.spread(plan);
@@ -71,8 +87,8 @@ impl Coach {
         self.spread(plan);
     }
 
-    /// Our taker: behind the ball until it may kick, then the kick.
-    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, penalty: bool) {
+    /// Our taker: behind the ball until it may kick, then the kick; a penalty's behind its mark.
+    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, penalty: Option<Point<Attack>>) {
         let view = plan.view;
         let Some(ball) = view.ball else { return };
         let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
@@ -85,18 +101,19 @@ impl Coach {
             return;
         }
         if !started {
-            let at = plan.kept_off(restart::taker_waits(view, view.placement.unwrap_or(ball.position)));
+            let spot = penalty.or(view.placement).unwrap_or(ball.position);
+            let at = plan.kept_off(restart::taker_waits(view, spot));
             return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
         }
         self.ball_lay = Some(ball.position);
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Taker, task, why);
         }
-        let wait = if penalty { Duration(0) } else { MATES_GET_READY };
+        let wait = if penalty.is_some() { Duration(0) } else { MATES_GET_READY };
         let stands =
             self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
         if self.age(view) >= wait && !stands {
-            let target = if penalty {
+            let target = if penalty.is_some() {
                 let (at, room) = support::best_shot(view, ball.position);
                 Target::Shot { at, room }
             } else {
@@ -157,3 +174,10 @@ const MATES_GET_READY: Duration = Duration::millis(200);
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
 const WALL_BEYOND: f32 = 2.2;
+/// A ball that has come nearer to its place by this much is on its way, m.
+const PLACING_GAINS: f32 = 0.1;
+/// A ball that has not for this long is given up: of the 30 s of a placement, twice what a robot takes across division B's field and
+/// around a goal.
+const PLACING_PATIENCE: Duration = Duration::millis(12_000);
+/// One that no robot can get at is given up as soon as it lies still.
+const BALL_ROLLS: Duration = Duration::millis(2_000);

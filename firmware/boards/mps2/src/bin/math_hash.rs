@@ -36,11 +36,14 @@ mod check {
 
     /// Every length up to a few rounds of the loop, at every alignment: the bytes arrive, and their neighbours stay.
     fn copies_are_exact() -> bool {
+        // SAFETY: `is_exact` gives pointers into two arrays that do not overlap, each with at least `len` bytes behind its pointer.
         let any = |to, from, len| unsafe { __aeabi_memcpy(to, from, len) };
+        // SAFETY: as above; it is called with both offsets 0, where the arrays are aligned to four bytes.
         let words = |to, from, len| unsafe { __aeabi_memcpy4(to, from, len) };
         // The compiler knows what `memcpy` returns and would not look; what it cannot see through, it has to call.
         let memcpy = core::hint::black_box(memcpy as Memcpy);
         let returning = |to, from, len| {
+            // SAFETY: as above.
             let returned = unsafe { memcpy(to, from, len) };
             assert_eq!(returned, to, "memcpy gives back where it copied to");
         };

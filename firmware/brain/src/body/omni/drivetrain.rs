@@ -162,7 +162,7 @@ fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
 }
 
 /// The same while the ball is not in play: no case is looked for then, and who must leave must find a way among everybody.
-pub const EFFORT_STOPPED: u32 = 4 * EFFORT;
+const EFFORT_STOPPED: u32 = 4 * EFFORT;
 
 /// Standing with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {

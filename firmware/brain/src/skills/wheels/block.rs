@@ -3,9 +3,10 @@
 //! A ball that comes: where `motion::intercept` finds the most slack on its way, but never behind the stretch. A ball that
 //! does not: on the line from it to the own goal, or along where its holder looks. The keeper's stretch lies before its goal.
 
-use geometry::{Field, Point, Segment};
+use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
 use motion::intercept::{Interception, Verdict, Wish};
+use rules::{Phase, Side};
 
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
@@ -58,11 +59,18 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
 /// Where a ball that does not come would cross the stretch.
 fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
+    // Who takes a penalty tells by where it lines up: there is no time to wait for the ball.
+    let (near, looks_at): (f32, fn(Pose<Field>, Point<Field>) -> bool) =
+        if belief.game.phase == Phase::Penalty(Side::Theirs) {
+            (LINES_UP, |pose, ball| (pose.position.direction_to(ball) - pose.heading).abs() < LOOKS_AT)
+        } else {
+            (HOLDS, |_, _| true)
+        };
     let holder = belief
         .others
         .iter()
-        .filter(|other| other.side == rules::Side::Theirs)
-        .find(|other| other.pose.position.distance(ball.position) < HOLDS);
+        .filter(|other| other.side == Side::Theirs)
+        .find(|other| other.pose.position.distance(ball.position) < near && looks_at(other.pose, ball.position));
     let shot = holder.and_then(|other| {
         let along = geometry::Vector::polar(FAR_BACK, other.pose.heading);
         crossing(Segment::new(ball.position, ball.position + along), stretch, 0.0)
@@ -91,6 +99,9 @@ const COMING: f32 = 0.3;
 const BESIDE: f32 = 0.18;
 /// An opponent this near the ball has it, m.
 const HOLDS: f32 = 0.15;
+/// The taker of a penalty this near the ball lines up for its shot, m; and looks at it within this, rad.
+const LINES_UP: f32 = 0.6;
+const LOOKS_AT: f32 = 0.3;
 /// A point far along a line, m.
 const FAR_BACK: f32 = 20.0;
 
@@ -128,6 +139,22 @@ mod tests {
         // One too fast to be met is still gone for, on the stretch.
         let b = rolling(belief((-4.3, -0.5, 0.0), (-3.6, 0.45)), (-6.0, 0.0));
         assert!(goes_to(block(&b, line())).distance(Point::new(-4.3, 0.45)) < 1e-3);
+    }
+
+    #[test]
+    fn at_a_penalty_the_keeper_goes_where_the_taker_lines_up_to_shoot() {
+        let mut b = belief((-4.5, 0.0, 0.0), (1.5, 0.0));
+        b.game.defending = GoalEnd::Negative;
+        let goal_line = Segment::new(Point::new(-4.5, -0.5), Point::new(-4.5, 0.5));
+        // 0.4 m behind the ball, looking over it at the goal line's y = −0.3: 6 m on, 0.3 m aside.
+        let along = Point::<Field>::new(1.5, 0.0).direction_to(Point::new(-4.5, -0.3));
+        let pose = Pose { position: Point::new(1.5, 0.0) - geometry::Vector::polar(0.4, along), heading: along };
+        let id = protocol::RobotId::ZERO;
+        b.others.push(crate::belief::Other { side: Side::Theirs, id, pose, velocity: geometry::Vector::default() }).unwrap();
+        b.game.phase = Phase::PreparePenalty(Side::Theirs);
+        assert!(goes_to(block(&b, goal_line)).y().abs() < 1e-3, "not before it may shoot");
+        b.game.phase = Phase::Penalty(Side::Theirs);
+        assert!((goes_to(block(&b, goal_line)).y() + 0.3).abs() < 0.01, "{:?}", goes_to(block(&b, goal_line)));
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! The ball is pulled, the robot going backwards before it: so it works from walls and corners, where nobody comes behind a
 //! ball. At a wall the robot comes at right angles to it and pulls the ball clear first. At the place it stops, lets the
-//! dribbler run out, backs off straight without touching, and watches: a ball that did not stay is fetched again.
+//! dribbler run out, backs off straight without touching, and watches: a ball that did not stay is fetched again. A ball that is shown
+//! at its mouth and that it does not feel is not there: it backs off, so that cameras see where the ball is.
 
 use geometry::{Angle, Field, Point, Vector};
 use protocol::{Duration, Instant};
@@ -19,6 +20,18 @@ pub enum Placing {
     /// Getting the ball.
     #[default]
     Fetching,
+    /// At the place where the ball is shown, and it feels none.
+    Feeling {
+        /// Since when.
+        since: Instant,
+    },
+    /// Backing off from there, so that cameras see whether the ball is there at all.
+    Revealing {
+        /// Since when.
+        since: Instant,
+        /// The heading it keeps.
+        facing: Angle,
+    },
     /// Pulling it.
     Pulling,
     /// It is there; the roller runs out.
@@ -41,7 +54,11 @@ pub fn place_ball(now: Instant, placing: &mut Placing, belief: &Belief, at: Poin
     let me = belief.pose.position;
     *placing = next(now, *placing, belief, &ball, at);
     match *placing {
-        Placing::Fetching => fetch(belief, &ball, at),
+        Placing::Fetching | Placing::Feeling { .. } => fetch(belief, &ball, at),
+        Placing::Revealing { facing, .. } => {
+            let back = ball.position - Vector::polar(BALL_AT + REVEALS, facing);
+            Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into()
+        }
         Placing::Pulling => {
             let wall = at_wall(belief, &ball);
             let face = match wall {
@@ -79,8 +96,18 @@ fn next(now: Instant, placing: Placing, belief: &Belief, ball: &Ball, at: Point<
     let off = ball.position.distance(at);
     let slow = ball.velocity.norm() < AT_REST;
     let clear = belief.pose.position.distance(ball.position) - BALL_AT;
+    let at_mouth = belief.mouth().distance(ball.position) < AT_MOUTH;
     match placing {
-        Placing::Fetching if belief.holds_ball => Placing::Pulling,
+        Placing::Fetching | Placing::Feeling { .. } if belief.holds_ball => Placing::Pulling,
+        Placing::Fetching if at_mouth && slow => Placing::Feeling { since: now },
+        Placing::Feeling { .. } if !at_mouth => Placing::Fetching,
+        Placing::Feeling { since } if now.since(since) > FEELS => {
+            Placing::Revealing { since: now, facing: belief.pose.heading }
+        }
+        Placing::Revealing { .. } if belief.holds_ball => Placing::Pulling,
+        Placing::Revealing { since, .. } if clear > REVEALS - GAP || now.since(since) > FEELS => {
+            Placing::Fetching
+        }
         Placing::Fetching if off < NEAR_ENOUGH && slow && clear > GAP => {
             Placing::Leaving { facing: facing(belief, ball) }
         }
@@ -168,6 +195,12 @@ const AT_REST: f32 = 0.06;
 const NEAR_ENOUGH: f32 = 0.1;
 /// A ball in the mouth is there, m.
 const THERE: f32 = 0.03;
+/// Where the ball is shown this near the mouth, it should be felt, m.
+const AT_MOUTH: f32 = 0.04;
+/// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is blind.
+const FEELS: Duration = Duration::millis(1500);
+/// It backs off by so much to show the place to the cameras, m.
+const REVEALS: f32 = 0.3;
 /// So much between front and ball, and it is not held, m.
 const GAP: f32 = 0.04;
 /// The dribbler runs out for so long.
@@ -200,6 +233,31 @@ mod tests {
         assert!(at_wall(&goal, &goal.ball.unwrap()).unwrap().abs() > 3.1);
         let free = belief((3.0, 2.0, 0.0), (1.0, 1.0));
         assert_eq!(at_wall(&free, &free.ball.unwrap()), None);
+    }
+
+    #[test]
+    fn a_placer_that_feels_no_ball_where_one_is_shown_backs_off_and_tries_again() {
+        // The mouth is where a hidden ball is believed.
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        let mut placing = Placing::default();
+        let (mut revealed, mut tried_again) = (0, 0);
+        for tick in 0..1_000_u64 {
+            let now = Instant(tick * 10_000);
+            let before = placing;
+            let intent = place_ball(now, &mut placing, &b, Point::new(-2.0, 0.0));
+            let Intent::Drive(drive) = intent else { panic!("{intent:?}") };
+            // A robot that drives as it is told, at its own pace.
+            b.pose.position += (drive.to - b.pose.position).clamped(drive.speed.min(1.0) * 0.01);
+            b.pose.heading = drive.face;
+            revealed += u32::from(matches!(placing, Placing::Revealing { .. }) && before != placing);
+            tried_again += u32::from(placing == Placing::Fetching && before != placing);
+        }
+        assert!(revealed >= 2 && tried_again >= 2, "{revealed}, {tried_again}");
+        // Felt in time, it is pulled.
+        b.holds_ball = true;
+        place_ball(Instant(20_000_000), &mut placing, &b, Point::new(-2.0, 0.0));
+        place_ball(Instant(20_010_000), &mut placing, &b, Point::new(-2.0, 0.0));
+        assert_eq!(placing, Placing::Pulling);
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl RemoteMatch {
     pub fn new(league: League) -> Result<Self, NoRules> {
         let limits = league.limits().ok_or(NoRules(league))?;
         let account =
-            || Account::new(&TeamSettings { name: String::new(), keeper: KEEPER, can_place_ball: true });
+            || Account::new(&TeamSettings { name: String::new(), keeper: KEEPER, can_place_ball: true, drives: true });
         Ok(Self {
             field: league.field(),
             limits,

@@ -1,0 +1,162 @@
+//! `alarms`: what is wrong now and an operator should act on, for terminal and page. Each is printed at once, and again every
+//! [`AGAIN`] while it lasts. Times on the host's clock.
+
+use host::Host;
+use protocol::{Duration, Instant};
+
+use super::inbox::Dropped;
+
+/// An alarm that lasts is printed again after this.
+const AGAIN: Duration = Duration::millis(10_000);
+/// One that was away for so long is a new one.
+const FORGOTTEN: Duration = Duration::millis(10_000);
+/// Drops and the line's lateness are shown for so long after the last.
+const LASTS: Duration = Duration::millis(3_000);
+
+/// Something that is wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Alarm {
+    /// What it is about: words change with figures, this does not.
+    matter: String,
+    words: String,
+    /// It is printed again while it lasts.
+    repeats: bool,
+}
+
+/// What is wrong, and what of it was printed when.
+#[derive(Debug, Default)]
+pub(super) struct Alarms {
+    printed: Vec<(String, Instant, Instant)>,
+    dropped: Dropped,
+    /// What was dropped lately, and until when that is shown.
+    drops: Vec<(&'static str, u64, Instant)>,
+    slow: Option<(String, Instant)>,
+    now: Vec<String>,
+}
+
+impl Alarms {
+    /// The robots' line is too slow.
+    pub(super) fn slow(&mut self, now: Instant, words: String) {
+        self.slow = Some((words, now));
+    }
+
+    /// What is wrong now, for the page.
+    pub(super) fn now(&self) -> &[String] {
+        &self.now
+    }
+
+    /// Looks at everything; gives the lines to print.
+    pub(super) fn look(&mut self, now: Instant, host: &Host, dropped: Dropped) -> Vec<String> {
+        let mut alarms: Vec<_> = (host.listener().warnings(now).iter())
+            .map(|warning| Alarm {
+                matter: warning.matter(),
+                words: format!("referee  {warning}"),
+                repeats: warning.is_urgent(),
+            })
+            .collect();
+        alarms.extend(self.drops(now, dropped));
+        if let Some((words, _)) = self.slow.as_ref().filter(|(_, at)| now.since(*at) < LASTS) {
+            alarms.push(Alarm { matter: "line".to_owned(), words: words.clone(), repeats: true });
+        }
+        self.print(now, alarms)
+    }
+
+    fn drops(&mut self, now: Instant, dropped: Dropped) -> Vec<Alarm> {
+        let before = std::mem::replace(&mut self.dropped, dropped);
+        let news = [
+            (
+                "vision packets came faster than they can be used; the oldest were dropped",
+                dropped.vision,
+                before.vision,
+            ),
+            (
+                "referee packets came faster than they can be used; the oldest were dropped",
+                dropped.referee,
+                before.referee,
+            ),
+            (
+                "frames of robots came faster than they can be used; the oldest were dropped",
+                dropped.robots,
+                before.robots,
+            ),
+            (
+                "datagrams on vision's port were longer than vision sends, and refused",
+                dropped.vision_oversized,
+                before.vision_oversized,
+            ),
+            (
+                "datagrams on the referee's port were longer than it sends, and refused",
+                dropped.referee_oversized,
+                before.referee_oversized,
+            ),
+        ];
+        for (what, after, before) in news.into_iter().filter(|(_, after, before)| after > before) {
+            match self.drops.iter_mut().find(|(known, ..)| *known == what) {
+                Some((_, number, at)) => (*number, *at) = (*number + (after - before), now),
+                None => self.drops.push((what, after - before, now)),
+            }
+        }
+        self.drops.retain(|(_, _, at)| now.since(*at) < LASTS);
+        let alarm = |(what, number, _): &(&str, u64, Instant)| Alarm {
+            matter: (*what).to_owned(),
+            words: format!("network  {number} {what}; does another program flood the port?"),
+            repeats: true,
+        };
+        self.drops.iter().map(alarm).collect()
+    }
+
+    fn print(&mut self, now: Instant, alarms: Vec<Alarm>) -> Vec<String> {
+        self.printed.retain(|(_, seen, _)| now.since(*seen) < FORGOTTEN);
+        self.now = alarms.iter().map(|alarm| alarm.words.clone()).collect();
+        let mut lines = Vec::new();
+        for Alarm { matter, words, repeats } in alarms {
+            match self.printed.iter_mut().find(|(known, ..)| *known == matter) {
+                Some((_, seen, last)) => {
+                    *seen = now;
+                    if repeats && now.since(*last) >= AGAIN {
+                        *last = now;
+                        lines.push(words);
+                    }
+                }
+                None => {
+                    self.printed.push((matter, now, now));
+                    lines.push(words);
+                }
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alarm(repeats: bool) -> Vec<Alarm> {
+        vec![Alarm { matter: "m".into(), words: "w".into(), repeats }]
+    }
+
+    #[test]
+    fn an_alarm_is_printed_at_once_and_again_while_it_lasts() {
+        let mut alarms = Alarms::default();
+        let printed = |alarms: &mut Alarms, from: u64, repeats| {
+            let times = (from..from + 35_000).step_by(100).map(Instant).map(|now| Instant(now.0 * 1_000));
+            times.map(|now| alarms.print(now, alarm(repeats)).len()).sum::<usize>()
+        };
+        assert_eq!(printed(&mut alarms, 0, true), 4, "at 0, 10, 20 and 30 s");
+        assert_eq!(alarms.now(), ["w"]);
+        assert!(alarms.print(Instant(36_000_000), vec![]).is_empty() && alarms.now().is_empty());
+        assert_eq!(printed(&mut alarms, 50_000, false), 1);
+    }
+
+    #[test]
+    fn drops_are_counted_up_while_they_go_on() {
+        let mut alarms = Alarms::default();
+        let dropped = |vision| Dropped { vision, ..Dropped::default() };
+        assert_eq!(alarms.drops(Instant(0), dropped(0)).len(), 0);
+        alarms.drops(Instant(100_000), dropped(5));
+        let now = alarms.drops(Instant(200_000), dropped(12));
+        assert!(now[0].words.contains("12 vision packets"), "{now:?}");
+        assert!(alarms.drops(Instant(200_000) + LASTS, dropped(12)).is_empty());
+    }
+}

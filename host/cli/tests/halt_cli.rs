@@ -1,0 +1,469 @@
+//! `halt_cli`: HALT against floods, second referees and slow lines, with the built `onetwo control` on loopback and a pseudo
+//! terminal. Measured values are printed; limits are generous, because machines that test are loaded. Times: s and ms.
+#![cfg(target_os = "linux")]
+
+use std::io::{BufRead, BufReader};
+use std::net::{SocketAddr, UdpSocket};
+use std::os::fd::AsRawFd;
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use protocol::frame::TeamKey;
+use protocol::host::{HostMessage, Telemetry};
+use protocol::link::{Link, Packet, overhear_host};
+use protocol::serial::{self, Lines};
+use protocol::team::TeamMessage;
+use protocol::{RobotId, TeamId};
+use rules::{Colour, Phase};
+use serial2::SerialPort;
+use ssl::Message;
+use ssl::referee::{Command as Wire, Referee, TeamInfo};
+use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
+
+/// Generous: a loaded machine is no failure.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
+const HALT_MAX: Duration = Duration::from_millis(500);
+/// Resident memory may grow by so much under a flood, bytes; 465 MB before.
+const GROWTH_MAX: u64 = 24 << 20;
+/// A gigabit network, bytes a second.
+const LINE_RATE: u64 = 125_000_000;
+const KEY: [u8; 16] = [0x5a; 16];
+
+/// `onetwo control` with its referee, vision and base station in the test's hands.
+struct Field {
+    process: Child,
+    lines: Receiver<String>,
+    said: Vec<String>,
+    vision: SocketAddr,
+    referee: SocketAddr,
+}
+
+fn socket(address: &str) -> UdpSocket {
+    UdpSocket::bind(address).expect("a port")
+}
+
+/// A port that is free at the moment.
+fn free() -> SocketAddr {
+    socket("127.0.0.1:0").local_addr().expect("an address")
+}
+
+impl Field {
+    fn start(robots: &str, more: &[&str]) -> Self {
+        let (vision, referee) = (free(), free());
+        let name = format!("onetwo-halt-{}-{}.key", std::process::id(), vision.port());
+        let key = std::env::temp_dir().join(name);
+        std::fs::write(&key, "5a".repeat(16)).expect("a key file");
+        let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
+            .args(["control", "--name", "T", "--colour", "blue", "--headless", "--duration", "120"])
+            .args(["--robots", robots, "--vision", &vision.to_string(), "--referee", &referee.to_string()])
+            .args(["--tracker", &free().to_string(), "--key-file"])
+            .arg(key)
+            .args(more)
+            .stderr(Stdio::piped())
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        let words = process.stderr.take().expect("a pipe");
+        let (send, lines) = channel();
+        thread::spawn(move || {
+            for line in BufReader::new(words).lines().map_while(Result::ok) {
+                let _ = send.send(line);
+            }
+        });
+        Self { process, lines, said: Vec::new(), vision, referee }
+    }
+
+    /// Waits for a line with all of these words.
+    fn says(&mut self, words: &[&str]) -> String {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            match self.lines.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok(line) => {
+                    self.said.push(line.clone());
+                    if words.iter().all(|word| line.contains(word)) {
+                        return line;
+                    }
+                }
+                Err(error) => panic!("{words:?} is not said ({error}); said is: {:#?}", self.said),
+            }
+        }
+    }
+
+    /// Resident memory, bytes.
+    fn memory(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).expect("it runs");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("its memory");
+        line.trim().trim_end_matches(" kB").parse::<u64>().expect("a number") * 1024
+    }
+}
+
+impl Drop for Field {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn unix_us() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).expect("after 1970").as_micros() as u64
+}
+
+/// A program that sends referee packets at 40 Hz.
+struct Controller {
+    command: Arc<Mutex<(Wire, u32)>>,
+    socket: Arc<UdpSocket>,
+    to: SocketAddr,
+    identifier: &'static str,
+    end: Arc<AtomicBool>,
+}
+
+impl Controller {
+    fn start(identifier: &'static str, from: &str, to: SocketAddr, command: Wire) -> Self {
+        let socket = Arc::new(socket(from));
+        let (command, end) = (Arc::new(Mutex::new((command, 1))), Arc::new(AtomicBool::new(false)));
+        let this = Self { command, socket, to, identifier, end };
+        let (command, socket, end) = (this.command.clone(), this.socket.clone(), this.end.clone());
+        thread::spawn(move || {
+            while !end.load(Ordering::Relaxed) {
+                let (command, counter) = *command.lock().expect("no panic");
+                let _ = socket.send_to(&packet(identifier, command, counter), to);
+                thread::sleep(Duration::from_millis(25));
+            }
+        });
+        this
+    }
+
+    /// Gives a command, at once.
+    fn say(&self, command: Wire) -> Instant {
+        let counter = {
+            let mut said = self.command.lock().expect("no panic");
+            *said = (command, said.1 + 1);
+            said.1
+        };
+        let at = Instant::now();
+        self.socket.send_to(&packet(self.identifier, command, counter), self.to).expect("loopback");
+        at
+    }
+}
+
+impl Drop for Controller {
+    fn drop(&mut self) {
+        self.end.store(true, Ordering::Relaxed);
+    }
+}
+
+fn packet(identifier: &str, command: Wire, counter: u32) -> Vec<u8> {
+    let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
+    let packet = Referee {
+        packet_timestamp: unix_us(),
+        command: command as i32,
+        command_counter: counter,
+        command_timestamp: unix_us(),
+        yellow: team("yellow"),
+        blue: team("T"),
+        source_identifier: Some(identifier.into()),
+        ..Referee::default()
+    };
+    packet.encode_to_vec()
+}
+
+/// A camera frame with six robots a team and so many balls.
+fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
+    let robot = |id: u32, y: f32| DetectionRobot {
+        confidence: 1.0,
+        robot_id: Some(id),
+        x: id as f32 * 500.0 - 1_500.0,
+        y,
+        orientation: Some(0.0),
+        ..DetectionRobot::default()
+    };
+    let ball =
+        |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
+    let frame = DetectionFrame {
+        frame_number: number,
+        t_capture: unix_us() as f64 * 1e-6,
+        t_sent: unix_us() as f64 * 1e-6,
+        robots_blue: (0..6).map(|id| robot(id, -800.0)).collect(),
+        robots_yellow: (0..6).map(|id| robot(id, 800.0)).collect(),
+        balls: (0..balls).map(ball).collect(),
+        ..DetectionFrame::default()
+    };
+    WrapperPacket { detection: Some(frame), ..WrapperPacket::default() }.encode_to_vec()
+}
+
+/// Camera frames at 60 Hz until the test ends.
+fn camera(to: SocketAddr, end: &Arc<AtomicBool>) {
+    let end = end.clone();
+    thread::spawn(move || {
+        let socket = socket("127.0.0.1:0");
+        for number in 0.. {
+            if end.load(Ordering::Relaxed) {
+                return;
+            }
+            let _ = socket.send_to(&camera_frame(number, 1), to);
+            thread::sleep(Duration::from_millis(16));
+        }
+    });
+}
+
+/// The radio ends of six robots: they answer the host's welcomes, so that it leads them.
+struct Robots {
+    links: Vec<Link>,
+    began: Instant,
+    reported: Option<Instant>,
+}
+
+impl Robots {
+    const TEAM: TeamId = TeamId::of(Colour::Blue);
+
+    fn new() -> Self {
+        let link = |robot| Link::new(Self::TEAM, robot, TeamKey(KEY).of_robot(robot), 1);
+        Self { links: RobotId::all().take(6).map(link).collect(), began: Instant::now(), reported: None }
+    }
+
+    fn now(&self) -> protocol::Instant {
+        protocol::Instant(self.began.elapsed().as_micros() as u64)
+    }
+
+    /// Takes a frame of the host: whether it says HALT, where it says anything of the phase.
+    fn receive(&mut self, frame: &[u8]) -> Option<bool> {
+        let now = self.now();
+        for link in &mut self.links {
+            let _ = link.open(now, frame);
+        }
+        let read = |robot: RobotId| overhear_host(frame, Self::TEAM, &TeamKey(KEY).of_robot(robot), robot).ok();
+        match RobotId::all().take(6).find_map(read)? {
+            HostMessage::World(part) => Some(part.phase == Phase::Halt),
+            HostMessage::Command(command) => Some(command.phase == Phase::Halt),
+            HostMessage::Welcome(_) => None,
+        }
+    }
+
+    /// Telemetry of all robots, ten times a second.
+    fn poll(&mut self) -> Vec<Packet> {
+        if self.reported.is_some_and(|reported| reported.elapsed() < Duration::from_millis(100)) {
+            return Vec::new();
+        }
+        self.reported = Some(Instant::now());
+        let now = self.now();
+        let tell = |link: &mut Link| {
+            let mut telemetry = Telemetry::default();
+            link.tell(now, &mut telemetry);
+            link.seal(&TeamMessage::Telemetry(telemetry))
+        };
+        self.links.iter_mut().map(tell).collect()
+    }
+}
+
+/// What the base station receives: whether the newest frame says HALT, and when.
+fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
+    let socket = socket("127.0.0.1:0");
+    let (send, frames) = channel();
+    let address = socket.local_addr().expect("an address");
+    thread::spawn(move || {
+        let (mut bytes, mut robots) = ([0; 256], Robots::new());
+        while let Ok((length, host)) = socket.recv_from(&mut bytes) {
+            if let Some(halt) = robots.receive(&bytes[..length])
+                && send.send((Instant::now(), halt)).is_err()
+            {
+                return;
+            }
+            for packet in robots.poll() {
+                let _ = socket.send_to(&packet, host);
+            }
+        }
+    });
+    (address, frames)
+}
+
+/// Waits for a frame that says HALT, or one that does not, sent after `since`.
+fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> Duration {
+    let until = Instant::now() + PATIENCE;
+    loop {
+        let left = until.saturating_duration_since(Instant::now());
+        match frames.recv_timeout(left) {
+            Ok((at, says)) if says == halt && at >= since => return at - since,
+            Ok(_) => {}
+            Err(error) => panic!("no frame with halt = {halt} comes: {error}"),
+        }
+    }
+}
+
+/// Sends datagrams at a gigabit until the end; how many it sent.
+fn flood(to: SocketAddr, datagrams: Vec<Vec<u8>>, end: &Arc<AtomicBool>) -> Arc<AtomicU64> {
+    let (sent, end) = (Arc::new(AtomicU64::new(0)), end.clone());
+    let count = sent.clone();
+    thread::spawn(move || {
+        let socket = socket("127.0.0.1:0");
+        let (began, mut bytes) = (Instant::now(), 0);
+        for datagram in datagrams.iter().cycle() {
+            if end.load(Ordering::Relaxed) {
+                return;
+            }
+            let _ = socket.send_to(datagram, to);
+            count.fetch_add(1, Ordering::Relaxed);
+            bytes += datagram.len() as u64;
+            let due = Duration::from_secs_f64(bytes as f64 / LINE_RATE as f64);
+            thread::sleep(due.saturating_sub(began.elapsed()));
+        }
+    });
+    sent
+}
+
+/// HALT under a flood of those datagrams on vision's port: median and worst of several HALTs, and what memory grew by.
+fn halts_under(flooded: Vec<Vec<u8>>, alarm: &str) {
+    let (robots, frames) = station();
+    let mut field = Field::start(&format!("udp://{robots}"), &[]);
+    let end = Arc::new(AtomicBool::new(false));
+    camera(field.vision, &end);
+    let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
+    field.says(&["the referee is heard"]);
+    controller.say(Wire::ForceStart);
+    wait_for(&frames, false, Instant::now());
+    let before = field.memory();
+    let sent = flood(field.vision, flooded, &end);
+    thread::sleep(Duration::from_secs(2));
+    let (mut took, mut most) = (Vec::new(), before);
+    for _ in 0..8 {
+        let since = controller.say(Wire::Halt);
+        took.push(wait_for(&frames, true, since));
+        thread::sleep(Duration::from_millis(100));
+        controller.say(Wire::Stop);
+        wait_for(&frames, false, Instant::now());
+        most = most.max(field.memory());
+    }
+    field.says(&[alarm]);
+    end.store(true, Ordering::Relaxed);
+    took.sort();
+    let (median, worst) = (took[took.len() / 2], took[took.len() - 1]);
+    eprintln!(
+        "HALT to the first HALT on the radio under {} datagrams: median {median:.1?}, worst {worst:.1?}; memory {} kB before, {} kB most",
+        sent.load(Ordering::Relaxed),
+        before / 1024,
+        most / 1024
+    );
+    assert!(median <= HALT_MAX, "{took:?}");
+    assert!(most <= before + GROWTH_MAX, "{before} bytes before, {most} under the flood");
+}
+
+#[test]
+fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
+    let frames: Vec<_> = (0..64).map(|number| camera_frame(number + 1_000_000, 300)).collect();
+    assert!((8_000..10_240).contains(&frames[0].len()), "{} bytes", frames[0].len());
+    halts_under(frames, "vision packets came faster");
+}
+
+#[test]
+fn finding_3_datagrams_longer_than_vision_sends_are_refused() {
+    let frames = vec![camera_frame(1_000_000, 2_000)];
+    assert!(frames[0].len() > 50_000, "{} bytes", frames[0].len());
+    halts_under(frames, "longer than vision sends");
+}
+
+#[test]
+fn finding_2_two_referees_that_disagree_are_reported_with_both_addresses() {
+    let (robots, frames) = station();
+    let mut field = Field::start(&format!("udp://{robots}"), &[]);
+    let end = Arc::new(AtomicBool::new(false));
+    camera(field.vision, &end);
+    let genuine = Controller::start("gc\u{1b}[31m", "127.0.0.1:0", field.referee, Wire::ForceStart);
+    wait_for(&frames, false, Instant::now());
+    let other = Controller::start("other", "127.0.0.2:0", field.referee, Wire::Halt);
+    let line =
+        field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
+    assert!(!line.contains('\u{1b}'), "{line:?}");
+    wait_for(&frames, true, Instant::now());
+    drop(other);
+    wait_for(&frames, false, Instant::now());
+    drop(genuine);
+    end.store(true, Ordering::Relaxed);
+}
+
+#[test]
+fn a_pinned_referee_is_obeyed_and_the_other_one_reported() {
+    let (robots, frames) = station();
+    let mut field = Field::start(&format!("udp://{robots}"), &["--referee-source", "127.0.0.2"]);
+    let end = Arc::new(AtomicBool::new(false));
+    camera(field.vision, &end);
+    let _other = Controller::start("other", "127.0.0.1:0", field.referee, Wire::Halt);
+    let pinned = Controller::start("gc", "127.0.0.2:0", field.referee, Wire::ForceStart);
+    field.says(&["\"other\" at 127.0.0.1:", "is ignored", "127.0.0.2"]);
+    wait_for(&frames, false, Instant::now());
+    let since = pinned.say(Wire::Halt);
+    wait_for(&frames, true, since);
+    end.store(true, Ordering::Relaxed);
+}
+
+#[test]
+fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_reported() {
+    /// Bytes a second of a line with 115,200 bit/s.
+    const RATE: f64 = 11_520.0;
+    /// Bytes that may come before HALT: 0.2 s of the line; 22,000 before.
+    const STALE_MAX: u64 = 2_304;
+    let (station, line) = SerialPort::pair().expect("a pseudo terminal");
+    let device = std::fs::read_link(format!("/proc/self/fd/{}", line.as_raw_fd())).expect("its name");
+    let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
+    let end = Arc::new(AtomicBool::new(false));
+    let read = Arc::new(AtomicU64::new(0));
+    // The base station takes bytes as fast as the line brings them; for each frame: HALT or not, and bytes so far.
+    let (send, frames) = channel();
+    let (count, stop) = (read.clone(), end.clone());
+    thread::spawn(move || {
+        let (mut lines, mut robots) = (Lines::new(), Robots::new());
+        let (began, mut taken) = (Instant::now(), 0_u64);
+        while !stop.load(Ordering::Relaxed) {
+            for packet in robots.poll() {
+                let _ = station.write_all(&serial::line(&packet));
+            }
+            let may = (began.elapsed().as_secs_f64() * RATE) as u64;
+            let mut bytes = [0; 64];
+            let room = may.saturating_sub(taken).min(64) as usize;
+            if room == 0 {
+                thread::sleep(Duration::from_millis(2));
+                continue;
+            }
+            let got = station.read(&mut bytes[..room]).unwrap_or(0);
+            // What the line did not use is gone.
+            taken = if got == 0 { may } else { taken + got as u64 };
+            count.fetch_add(got as u64, Ordering::Relaxed);
+            for byte in &bytes[..got] {
+                if let Some(halt) = lines.push(*byte).and_then(|frame| robots.receive(&frame)) {
+                    let _ = send.send((count.load(Ordering::Relaxed), halt));
+                }
+            }
+        }
+    });
+    camera(field.vision, &end);
+    let controller = Controller::start("gc", "127.0.0.1:0", field.referee, Wire::Stop);
+    field.says(&["the referee is heard"]);
+    controller.say(Wire::ForceStart);
+    let words = field.says(&["robots' line", "is too slow", "bit/s"]);
+    eprintln!("{words}");
+    thread::sleep(Duration::from_secs(3));
+    let mut stale = Vec::new();
+    for _ in 0..5 {
+        while frames.try_recv().is_ok() {}
+        let before = read.load(Ordering::Relaxed);
+        controller.say(Wire::Halt);
+        let until = Instant::now() + PATIENCE;
+        let at = loop {
+            match frames.recv_timeout(until.saturating_duration_since(Instant::now())) {
+                Ok((at, true)) => break at,
+                Ok(_) => {}
+                Err(error) => panic!("no HALT comes: {error}"),
+            }
+        };
+        stale.push(at - before);
+        controller.say(Wire::Stop);
+        thread::sleep(Duration::from_millis(500));
+    }
+    end.store(true, Ordering::Relaxed);
+    stale.sort_unstable();
+    eprintln!("bytes on the line from HALT's packet to HALT's frame, that frame included: {stale:?}");
+    assert!(stale[stale.len() / 2] <= STALE_MAX, "{stale:?}");
+}

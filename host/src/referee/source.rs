@@ -1,0 +1,297 @@
+//! `source`: the packets of one referee in the order in which they count, the game as it tells it, and the restraint that its
+//! packets out of order impose. Times: µs, the host's clock for arrivals, the referee's for stamps.
+//!
+//! A packet is *in order* when its stamp is within [`WINDOW`] of where the referee's clock should be, not before the newest
+//! stamp, and its counter either belongs to the same command or has risen. Only packets in order change the game.
+//!
+//! HALT and STOP out of order restrain all the same, for [`HOLD`] from their arrival, without changing the game underneath.
+//! That is safe in both directions: a genuine HALT whose stamp looks old keeps coming every 25 ms and keeps the robots
+//! standing, while a late copy of an old STOP stands in the way of a newer command once, for 0.3 s. Copies that a second
+//! network brings are known by stamp, command and counter for [`COPY`] and restrain nothing.
+//!
+//! A clock or a counter that steps is followed when its packets agree with each other for [`CONFIRM`] and none came in order
+//! meanwhile: two programs that speak as one never get there, and only HALT and STOP of both are obeyed.
+
+use std::collections::VecDeque;
+
+use geometry::{Field, Point};
+use protocol::{Duration, Instant};
+use rules::Limits;
+use rules::state::{Command, GameState};
+use ssl::referee::Referee;
+
+use super::identity::SourceKey;
+use super::stamps::{StampClock, WINDOW};
+use super::verdict::{Doubt, Taken};
+use super::{Game, words};
+
+/// HALT or STOP out of order restrains for so long: 12 periods of the controller, and twice [`COPY`], so that a referee
+/// whose stamps stand still restrains without a gap.
+pub const HOLD: Duration = WINDOW;
+/// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.
+pub const CONFIRM: Duration = Duration::millis(200);
+/// The same packet once more within this time is a copy.
+const COPY: Duration = Duration::millis(150);
+/// Packets that are remembered to know copies: [`COPY`] at ten times the controller's rate.
+const REMEMBERED: usize = 64;
+/// A command without a time, as the controller's first HALT, is taken for new, µs.
+const NO_TIME: u64 = 0;
+
+/// How strict a command is. Ordered: what restrains more is greater.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Strictness {
+    /// Robots play.
+    Play,
+    /// STOP or a timeout: slow and away from the ball.
+    Stop,
+    /// Robots stand.
+    Halt,
+}
+
+impl Strictness {
+    pub(super) const fn of(command: Command) -> Self {
+        match command {
+            Command::Halt => Self::Halt,
+            Command::Stop | Command::Timeout(_) => Self::Stop,
+            _ => Self::Play,
+        }
+    }
+}
+
+/// One referee.
+#[derive(Clone, Debug)]
+pub(super) struct Source {
+    pub(super) key: SourceKey,
+    /// When its newest packet came, copies aside.
+    pub(super) heard: Instant,
+    pub(super) state: GameState,
+    pub(super) game: Game,
+    /// Its newest command in order.
+    pub(super) command: Command,
+    /// Why a packet of it was not in order, and when that was.
+    pub(super) doubted: Option<(Doubt, Instant)>,
+    /// Its clock stepped by so many µs, and when that was followed.
+    pub(super) stepped: Option<(i64, Instant)>,
+    newest: Stamped,
+    clock: StampClock,
+    candidate: Option<Candidate>,
+    /// Until when STOP and HALT out of order restrain.
+    stop_until: Instant,
+    halt_until: Instant,
+    recent: VecDeque<(Stamped, Instant)>,
+}
+
+/// What orders a packet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Stamped {
+    stamp: u64,
+    command: i32,
+    counter: u32,
+}
+
+impl Stamped {
+    const fn of(packet: &Referee) -> Self {
+        let Referee { packet_timestamp: stamp, command, command_counter: counter, .. } = *packet;
+        Self { stamp, command, counter }
+    }
+
+    const fn same_command(self, other: Self) -> bool {
+        self.command == other.command && self.counter == other.counter
+    }
+
+    /// Commands given since `before`; none where the counter contradicts: it fell, or stands though the command changed.
+    fn steps(self, before: Self) -> Option<u32> {
+        // A counter of 2³² commands may wrap; a step back of half of that is a restart.
+        let steps = self.counter.wrapping_sub(before.counter);
+        (self.same_command(before) || (1..=u32::MAX / 2).contains(&steps)).then_some(steps)
+    }
+}
+
+/// A clock or counter that a source may have stepped to.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    clock: StampClock,
+    newest: Stamped,
+    since: Instant,
+}
+
+/// What became of a packet of one source.
+#[derive(Debug)]
+pub(super) enum Outcome {
+    /// In order.
+    Taken(Taken),
+    /// Out of order; `restrains`: it is HALT or STOP, and obeyed.
+    Doubted { doubt: Doubt, restrains: bool },
+    /// Known already.
+    Copy,
+}
+
+impl Source {
+    /// By its first packet, which is in order.
+    pub(super) fn new(
+        key: SourceKey,
+        packet: &Referee,
+        now: Instant,
+        ball: Option<Point<Field>>,
+    ) -> (Self, Taken) {
+        let newest = Stamped::of(packet);
+        let mut source = Self {
+            key,
+            heard: now,
+            state: GameState::new(),
+            game: Game::default(),
+            command: Command::Halt,
+            doubted: None,
+            stepped: None,
+            newest,
+            clock: StampClock::new(newest.stamp, now),
+            candidate: None,
+            stop_until: Instant(0),
+            halt_until: Instant(0),
+            recent: VecDeque::with_capacity(REMEMBERED),
+        };
+        let mut taken = Taken::default();
+        source.remember(newest, now);
+        source.follow_command(packet, now, ball, &mut taken);
+        source.game.read(packet);
+        (source, taken)
+    }
+
+    /// A packet of this source that came at `now`.
+    pub(super) fn hear(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> Outcome {
+        let came = Stamped::of(packet);
+        if self.recent.iter().any(|(known, at)| *known == came && now.since(*at).0 < COPY.0) {
+            return Outcome::Copy;
+        }
+        self.remember(came, now);
+        self.heard = self.heard.max(now);
+        let mut taken = Taken::default();
+        if let Some(doubt) = self.doubt(came, now) {
+            if !self.confirmed(came, doubt, now) {
+                self.doubted = Some((doubt, now));
+                return Outcome::Doubted { doubt, restrains: self.restrain(packet, now) };
+            }
+            taken.counter_restarted = came.steps(self.newest).is_none();
+            self.step(came, now, &mut taken);
+        } else {
+            self.candidate = None;
+            self.clock.follow(came.stamp, now);
+            taken.missed = came.steps(self.newest).unwrap_or(0).saturating_sub(1);
+        }
+        if !came.same_command(self.newest) {
+            self.follow_command(packet, now, ball, &mut taken);
+        }
+        self.newest = came;
+        self.game.read(packet);
+        Outcome::Taken(taken)
+    }
+
+    /// How strict this source is now: its newest command in order, and what came out of order.
+    pub(super) fn strictness(&self, now: Instant) -> Strictness {
+        self.restraint(now).max(Strictness::of(self.command))
+    }
+
+    /// What its packets out of order impose.
+    pub(super) fn restraint(&self, now: Instant) -> Strictness {
+        match () {
+            () if now < self.halt_until => Strictness::Halt,
+            () if now < self.stop_until => Strictness::Stop,
+            () => Strictness::Play,
+        }
+    }
+
+    /// The time is `now`, and the ball is here.
+    pub(super) fn tick(
+        &mut self,
+        now: Instant,
+        ball: Option<Point<Field>>,
+        limits: &Limits,
+    ) -> rules::state::Ticked {
+        self.state.tick(now.0, ball, limits)
+    }
+
+    /// Why a packet is not in order, if it is not.
+    fn doubt(&self, came: Stamped, now: Instant) -> Option<Doubt> {
+        let ahead = self.clock.ahead(came.stamp, now);
+        let by = Duration(ahead.unsigned_abs());
+        if by.0 > WINDOW.0 {
+            return Some(if ahead > 0 { Doubt::Ahead(by) } else { Doubt::Behind(by) });
+        }
+        if came.stamp < self.newest.stamp {
+            return Some(Doubt::Old(Duration(self.newest.stamp - came.stamp)));
+        }
+        came.steps(self.newest).is_none().then_some(Doubt::Counter)
+    }
+
+    /// Whether this packet confirms that clock or counter have stepped.
+    fn confirmed(&mut self, came: Stamped, doubt: Doubt, now: Instant) -> bool {
+        if matches!(doubt, Doubt::Old(_)) {
+            // It was overtaken on its way: nothing has stepped.
+            return false;
+        }
+        if let Some(candidate) = &mut self.candidate
+            && candidate.clock.fits(came.stamp, now)
+        {
+            if came.stamp < candidate.newest.stamp {
+                return false;
+            }
+            if came.steps(candidate.newest).is_some() {
+                candidate.clock.follow(came.stamp, now);
+                candidate.newest = came;
+                return now.since(candidate.since).0 >= CONFIRM.0;
+            }
+        }
+        self.candidate =
+            Some(Candidate { clock: StampClock::new(came.stamp, now), newest: came, since: now });
+        false
+    }
+
+    /// Follows the candidate.
+    fn step(&mut self, came: Stamped, now: Instant, taken: &mut Taken) {
+        let Some(candidate) = self.candidate.take() else { return };
+        if !self.clock.fits(came.stamp, now) {
+            let by = candidate.clock.ahead_of(&self.clock);
+            taken.clock_stepped = Some(by);
+            self.stepped = Some((by, now));
+        }
+        self.clock = candidate.clock;
+    }
+
+    /// HALT and STOP are obeyed whatever their stamp. True: it was one.
+    fn restrain(&mut self, packet: &Referee, now: Instant) -> bool {
+        let until = now + HOLD;
+        match Strictness::of(words::command_of(packet.command).unwrap_or(Command::Halt)) {
+            Strictness::Halt => self.halt_until = self.halt_until.max(until),
+            Strictness::Stop => self.stop_until = self.stop_until.max(until),
+            Strictness::Play => return false,
+        }
+        true
+    }
+
+    fn follow_command(
+        &mut self,
+        packet: &Referee,
+        now: Instant,
+        ball: Option<Point<Field>>,
+        taken: &mut Taken,
+    ) {
+        let command = words::command_of(packet.command).unwrap_or_else(|| {
+            taken.unknown = Some(packet.command);
+            Command::Halt
+        });
+        let age = match packet.command_timestamp {
+            NO_TIME => 0,
+            given => packet.packet_timestamp.saturating_sub(given),
+        };
+        self.command = command;
+        let heard = self.state.hear(command, now.0.saturating_sub(age), ball);
+        taken.command = Some((command, heard));
+    }
+
+    fn remember(&mut self, came: Stamped, now: Instant) {
+        if self.recent.len() == REMEMBERED {
+            self.recent.pop_front();
+        }
+        self.recent.push_back((came, now));
+    }
+}

@@ -1,0 +1,102 @@
+//! `verdict`: what became of a referee's packet, with its evidence. Times: µs.
+
+use std::fmt;
+
+use protocol::Duration;
+use rules::state::{Command, Heard};
+
+use super::identity::SourceKey;
+
+/// How many packets came to what.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Packets in order, of the source that is followed.
+    pub taken: u64,
+    /// Commands among them, repeated ones too.
+    pub commands: u64,
+    /// Commands that were never received, by the counter.
+    pub missed: u64,
+    /// Packets that were overtaken by newer ones on their way.
+    pub old: u64,
+    /// Copies of packets that were received just before.
+    pub copies: u64,
+    /// Packets of a source that is not followed; their HALT and STOP are obeyed.
+    pub other_source: u64,
+    /// Packets of a source that `--referee-source` excludes.
+    pub excluded: u64,
+    /// Commands whose number means nothing to us, taken for HALT.
+    pub unknown: u64,
+    /// Packets whose stamp or counter does not fit, other than [`Counts::old`].
+    pub doubted: u64,
+    /// HALT and STOP out of order, which were obeyed: of [`Counts::old`] and [`Counts::doubted`].
+    pub restrained: u64,
+    /// Steps of the referee's clock or counter that were followed.
+    pub steps: u64,
+}
+
+/// What came of a packet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// It was followed.
+    Taken(Taken),
+    /// It is out of order.
+    Doubted {
+        /// Why.
+        doubt: Doubt,
+        /// It is HALT or STOP, and restrains for [`HOLD`](super::HOLD) all the same.
+        restrains: bool,
+    },
+    /// It was received just before.
+    Copy,
+    /// Another source sent it than the one that is followed; if it is stricter, it is obeyed.
+    OtherSource {
+        /// Which.
+        source: SourceKey,
+    },
+    /// `--referee-source` excludes its source.
+    Excluded {
+        /// Which.
+        source: SourceKey,
+    },
+}
+
+/// Why a packet is not in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Its stamp lies ahead of its arrival.
+    Ahead(Duration),
+    /// Its stamp lies behind its arrival.
+    Behind(Duration),
+    /// A newer one came before it.
+    Old(Duration),
+    /// Its counter fell, or stands though the command changed.
+    Counter,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ahead(by) => write!(f, "stamped {:.1} s ahead of their arrival", by.as_secs_f32()),
+            Self::Behind(by) => write!(f, "stamped {:.1} s behind their arrival", by.as_secs_f32()),
+            Self::Old(by) => write!(f, "{:.3} s older than the newest", by.as_secs_f32()),
+            Self::Counter => f.write_str("counted backwards"),
+        }
+    }
+}
+
+/// What was new in a packet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Taken {
+    /// A command, and what it means.
+    pub command: Option<(Command, Heard)>,
+    /// Commands that were never received, by the counter.
+    pub missed: u32,
+    /// The counter started again: a new match, or another program.
+    pub counter_restarted: bool,
+    /// The referee's clock stepped by so many µs; negative: back.
+    pub clock_stepped: Option<i64>,
+    /// This source is followed from now on; inside: the one followed before, if any.
+    pub new_source: Option<Option<SourceKey>>,
+    /// The command's number, if it means nothing to us.
+    pub unknown: Option<i32>,
+}

@@ -1,0 +1,164 @@
+//! `warning`: what an operator must know of the referee's sources, in words for terminal and page. Evidence: sources, commands
+//! and times. Times: µs.
+
+use std::fmt;
+
+use protocol::{Duration, Instant};
+use rules::Phase;
+use rules::state::Command;
+
+use super::identity::{SourceKey, SourcePin};
+use super::verdict::Doubt;
+use super::{Listener, SILENCE};
+
+/// Something that is wrong with the referee's sources now.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Warning {
+    /// Two sources give different commands.
+    Disagreement {
+        /// The source that is followed.
+        followed: SourceKey,
+        /// Its command.
+        command: Command,
+        /// The other one.
+        other: SourceKey,
+        /// Its command.
+        others: Command,
+        /// What robots obey.
+        obeyed: Phase<rules::Colour>,
+    },
+    /// Two sources agree: one controller on two networks, or two programs.
+    Several {
+        /// The source that is followed.
+        followed: SourceKey,
+        /// The other one.
+        other: SourceKey,
+    },
+    /// Packets of a source are not in order.
+    OutOfOrder {
+        /// Which.
+        source: SourceKey,
+        /// Why.
+        doubt: Doubt,
+    },
+    /// A source's clock has stepped, and was followed.
+    ClockStepped {
+        /// Which.
+        source: SourceKey,
+        /// By so many µs; negative: back.
+        by: i64,
+    },
+    /// A source is excluded by `--referee-source`.
+    Excluded {
+        /// Which.
+        source: SourceKey,
+        /// Who is obeyed instead.
+        pin: SourcePin,
+    },
+}
+
+/// A step of the clock is reported for so long.
+const STEP_REPORTED: Duration = Duration::millis(5_000);
+
+impl Listener {
+    /// What is wrong with the sources now; empty while one referee sends packets in order.
+    pub fn warnings(&self, now: Instant) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let lately = |at: Instant| now.since(at) < SILENCE;
+        let Some((followed, others)) = self.sources.split_first() else {
+            warnings.extend(self.exclusions(now));
+            return warnings;
+        };
+        for other in others.iter().filter(|other| lately(other.heard)) {
+            warnings.push(if other.command == followed.command {
+                Warning::Several { followed: followed.key.clone(), other: other.key.clone() }
+            } else {
+                Warning::Disagreement {
+                    followed: followed.key.clone(),
+                    command: followed.command,
+                    other: other.key.clone(),
+                    others: other.command,
+                    obeyed: followed.game.phase,
+                }
+            });
+        }
+        for source in &self.sources {
+            if let Some((by, at)) = source.stepped
+                && now.since(at) < STEP_REPORTED
+            {
+                warnings.push(Warning::ClockStepped { source: source.key.clone(), by });
+            }
+            // One that was overtaken on its way is what two networks bring.
+            if let Some((doubt, at)) = source.doubted
+                && !matches!(doubt, Doubt::Old(_))
+                && lately(at)
+            {
+                warnings.push(Warning::OutOfOrder { source: source.key.clone(), doubt });
+            }
+        }
+        warnings.extend(self.exclusions(now));
+        warnings
+    }
+
+    fn exclusions(&self, now: Instant) -> impl Iterator<Item = Warning> {
+        let lately = self.excluded.iter().filter(move |(_, at)| now.since(*at) < SILENCE);
+        lately.filter_map(|(source, _)| {
+            Some(Warning::Excluded { source: source.clone(), pin: self.pin.clone()? })
+        })
+    }
+}
+
+/// By what the first of two sources is pinned: its machine, or its address where both are on one.
+fn pin_for(source: &SourceKey, other: &SourceKey) -> String {
+    let (one, two) = (source.address, other.address);
+    if one.ip() == two.ip() { one.to_string() } else { one.ip().to_string() }
+}
+
+impl Warning {
+    /// What it is about, without its figures: two warnings of one matter are the same one at two times.
+    pub fn matter(&self) -> String {
+        match self {
+            Self::Disagreement { followed, other, .. } => format!("disagreement {followed} {other}"),
+            Self::Several { followed, other } => format!("several {followed} {other}"),
+            Self::OutOfOrder { source, .. } => format!("order {source}"),
+            Self::ClockStepped { source, by } => format!("clock {source} {by}"),
+            Self::Excluded { source, .. } => format!("excluded {source}"),
+        }
+    }
+
+    /// Whether robots may stand or play because of it, so that it is repeated while it lasts.
+    pub const fn is_urgent(&self) -> bool {
+        !matches!(self, Self::Several { .. })
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disagreement { followed, command, other, others, obeyed } => write!(
+                f,
+                "two referees disagree: {followed} says {command:?}, {other} says {others:?}; robots obey {obeyed:?}, the stricter. \
+                 End the wrong program, or choose one: --referee-source {}",
+                pin_for(followed, other)
+            ),
+            Self::Several { followed, other } => write!(
+                f,
+                "two referees are received and agree: {followed} is followed, {other} is the other one; where they disagree the \
+                 stricter is obeyed (--referee-source chooses one)"
+            ),
+            Self::OutOfOrder { source, doubt } => write!(
+                f,
+                "packets of {source} are {doubt}: HALT and STOP of them are obeyed, other commands are not; a clock was set, or \
+                 another program forges them"
+            ),
+            Self::ClockStepped { source, by } => write!(
+                f,
+                "the clock of {source} has stepped by {:+.1} s and is followed; is its machine set by NTP?",
+                *by as f64 * 1e-6
+            ),
+            Self::Excluded { source, pin } => {
+                write!(f, "{source} is ignored: --referee-source chooses {}", foreign::printable(&pin.to_string()))
+            }
+        }
+    }
+}

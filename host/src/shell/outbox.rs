@@ -1,0 +1,223 @@
+//! `outbox`: frames that wait for the robots' link. Only the newest snapshot waits, HALT goes before everything, and memory is
+//! bounded. Sans-IO; sizes in bytes of frames.
+//!
+//! A *snapshot* is what the host sends at once: parts of the world and a command for every robot. One that has begun to go out is
+//! finished, so that a line that is too slow for all snapshots serves every robot with fewer of them; of those behind it only
+//! the newest waits. *Side frames* (teammates' beacons that are passed on, welcomes) wait beside it, the newest of each sender
+//! and receiver; [`SIDE_PER_SNAPSHOT`] of them go between two snapshots.
+//!
+//! The first snapshot with HALT drops everything that waits, the rest of the snapshot that was going out too.
+
+use std::collections::VecDeque;
+
+use protocol::frame::{Sender, claimed_sender};
+use protocol::link::Packet;
+
+use crate::radio::To;
+
+/// Side frames between two snapshots: beacons come at 20 Hz and snapshots at up to 100 Hz, so that on a fast line none waits,
+/// and on a slow one a team's beacons do not crowd out its snapshots.
+const SIDE_PER_SNAPSHOT: usize = 2;
+/// Side frames that wait at most: the newest of 16 robots for each of 16, and a welcome for each.
+const SIDE_MAX: usize = 272;
+
+/// Frames on their way to a link.
+#[derive(Debug, Default)]
+pub struct Outbox {
+    /// The rest of the snapshot that is going out.
+    going: VecDeque<(To, Packet)>,
+    /// The newest snapshot behind it.
+    next: Option<Vec<(To, Packet)>>,
+    side: VecDeque<(To, Packet)>,
+    /// Side frames since the last snapshot went out.
+    sides: usize,
+    halting: bool,
+    /// What the link still holds is older than a HALT.
+    discard: bool,
+    counts: OutCounts,
+}
+
+/// What was put into an outbox, and what became of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OutCounts {
+    /// Snapshots put in.
+    pub snapshots: u64,
+    /// Of these, replaced by newer ones before they began to go out.
+    pub superseded: u64,
+    /// Side frames replaced by newer ones, or dropped because too many waited.
+    pub side_dropped: u64,
+    /// Frames put in.
+    pub frames: u64,
+    /// Their bytes.
+    pub bytes: u64,
+}
+
+impl Outbox {
+    /// Everything that the host sends at once. `halting`: it says HALT.
+    pub fn push(&mut self, batch: Vec<(To, Packet)>, halting: bool) {
+        if batch.is_empty() {
+            return;
+        }
+        let from_host = |packet: &Packet| claimed_sender(packet) == Some(Sender::Host);
+        self.counts.frames += batch.len() as u64;
+        self.counts.bytes += batch.iter().map(|(_, packet)| packet.len() as u64).sum::<u64>();
+        // The host speaks to all in parts of the world only.
+        let snapshot = batch.iter().any(|(to, packet)| *to == To::All && from_host(packet));
+        if !snapshot {
+            batch.into_iter().for_each(|frame| self.put_aside(frame));
+            return;
+        }
+        if halting && !self.halting {
+            self.counts.superseded += u64::from(self.next.is_some());
+            self.counts.side_dropped += self.side.len() as u64;
+            self.going.clear();
+            self.next = None;
+            self.side.clear();
+            self.sides = SIDE_PER_SNAPSHOT;
+            self.discard = true;
+        }
+        self.halting = halting;
+        let (frames, side): (Vec<_>, Vec<_>) = batch.into_iter().partition(|(_, packet)| from_host(packet));
+        side.into_iter().for_each(|frame| self.put_aside(frame));
+        self.counts.snapshots += 1;
+        self.counts.superseded += u64::from(self.next.replace(frames).is_some());
+    }
+
+    fn put_aside(&mut self, (to, packet): (To, Packet)) {
+        let sender = claimed_sender(&packet);
+        let same = |(known, old): &(To, Packet)| *known == to && claimed_sender(old) == sender;
+        if let Some(old) = self.side.iter_mut().find(|old| same(old)) {
+            // It keeps its turn.
+            old.1 = packet;
+            self.counts.side_dropped += 1;
+            return;
+        }
+        if self.side.len() == SIDE_MAX {
+            self.side.pop_front();
+            self.counts.side_dropped += 1;
+        }
+        self.side.push_back((to, packet));
+    }
+
+    /// The next frame to send.
+    pub fn take(&mut self) -> Option<(To, Packet)> {
+        if let Some(frame) = self.going.pop_front() {
+            return Some(frame);
+        }
+        if (self.next.is_none() || self.sides < SIDE_PER_SNAPSHOT)
+            && let Some(frame) = self.side.pop_front()
+        {
+            self.sides += 1;
+            return Some(frame);
+        }
+        self.going.extend(self.next.take()?);
+        self.sides = 0;
+        self.going.pop_front()
+    }
+
+    /// True once after the first snapshot with HALT came: what the link has taken and not sent is to be thrown away.
+    pub fn take_discard(&mut self) -> bool {
+        std::mem::take(&mut self.discard)
+    }
+
+    /// Frames that wait.
+    pub fn waiting(&self) -> usize {
+        self.going.len() + self.next.as_ref().map_or(0, Vec::len) + self.side.len()
+    }
+
+    /// What became of what was put in.
+    pub fn counts(&self) -> OutCounts {
+        self.counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::RobotId;
+
+    use super::*;
+
+    /// A frame with that sender's number; `mark` tells it from others.
+    fn frame(to: To, sender: u8, mark: u8) -> (To, Packet) {
+        let mut bytes = [0; 40];
+        (bytes[2], bytes[39]) = (sender, mark);
+        (to, Packet::from_slice(&bytes).unwrap())
+    }
+
+    fn robot(number: u8) -> RobotId {
+        RobotId::new(number).unwrap()
+    }
+
+    const HOST: u8 = 16;
+
+    /// Two parts of the world and a command for each of six robots.
+    fn snapshot(mark: u8) -> Vec<(To, Packet)> {
+        let parts = [frame(To::All, HOST, mark), frame(To::All, HOST, mark)];
+        let commands = (0..6).map(|number| frame(To::One(robot(number)), HOST, mark));
+        parts.into_iter().chain(commands).collect()
+    }
+
+    fn mark(frame: &(To, Packet)) -> u8 {
+        frame.1[39]
+    }
+
+    #[test]
+    fn a_slow_consumer_gets_whole_snapshots_the_newest_each_time_and_halt_first() {
+        let mut outbox = Outbox::default();
+        let mut taken = Vec::new();
+        // Ten frames in, one out, for a hundred snapshots and beacons of six robots.
+        for number in 0..100_u8 {
+            outbox.push(snapshot(number), false);
+            outbox.push((0..6).map(|sender| frame(To::All, sender, number)).collect(), false);
+            taken.extend(outbox.take());
+            assert!(outbox.waiting() <= 8 + 8 + 6, "{}", outbox.waiting());
+        }
+        assert_eq!(taken.len(), 100);
+        // Every snapshot that began was finished, in order, and each was the newest when it began.
+        let snapshots: Vec<_> = taken.iter().filter(|(_, packet)| packet[2] == HOST).collect();
+        for frames in snapshots.chunks_exact(8) {
+            assert!(frames.iter().all(|frame| mark(frame) == mark(frames[0])));
+            let receivers: Vec<_> = frames.iter().map(|(to, _)| *to).collect();
+            assert_eq!(receivers[2..], (0..6).map(|n| To::One(robot(n))).collect::<Vec<_>>());
+        }
+        let (begun, counts) = (snapshots.len().div_ceil(8) as u64, outbox.counts());
+        assert!(begun > 8 && counts.superseded >= 100 - begun - 1, "{begun} {counts:?}");
+        assert!(taken.len() - snapshots.len() >= 16, "beacons are passed on too");
+
+        outbox.push(snapshot(200), true);
+        assert!(outbox.take_discard() && !outbox.take_discard(), "what the link holds is stale, once");
+        assert_eq!(outbox.waiting(), 8, "nothing stands before HALT");
+        let halts: Vec<_> = std::iter::from_fn(|| outbox.take()).collect();
+        assert!(halts.len() == 8 && halts.iter().all(|frame| mark(frame) == 200));
+    }
+
+    #[test]
+    fn halt_that_goes_on_is_sent_to_every_robot_too() {
+        // A HALT every time that one frame goes out: no robot starves behind the first ones.
+        let mut outbox = Outbox::default();
+        let mut served = [0; 6];
+        for number in 0..200 {
+            outbox.push(snapshot(number), true);
+            if let Some((To::One(to), _)) = outbox.take() {
+                served[to.index()] += 1;
+            }
+        }
+        assert!(served.iter().all(|times| *times >= 20), "{served:?}");
+    }
+
+    #[test]
+    fn of_side_frames_the_newest_of_each_sender_waits_and_their_number_is_bounded() {
+        let mut outbox = Outbox::default();
+        for number in 0..250 {
+            for sender in 0..16 {
+                for to in 0..16 {
+                    outbox.push(vec![frame(To::One(robot(to)), sender, number)], false);
+                }
+            }
+        }
+        assert_eq!(outbox.waiting(), 256);
+        let all: Vec<_> = std::iter::from_fn(|| outbox.take()).collect();
+        assert!(all.len() == 256 && all.iter().all(|frame| mark(frame) == 249));
+        assert_eq!(outbox.counts().side_dropped, 249 * 256);
+    }
+}

@@ -1,0 +1,181 @@
+//! Does HALT leave the host in the call that brings it, and does a trace with two referees decide the same again?
+
+use host::radio::To;
+use host::recheck::Recheck;
+use host::recording::{HostHeader, RecordingHeader};
+use host::referee::{SenderAddress, SourcePin};
+use host::trace::{Kind, Record};
+use host::{Host, HostSettings, Input};
+use protocol::frame::TeamKey;
+use protocol::host::HostMessage;
+use protocol::link::overhear_host;
+use protocol::{Instant, TeamId};
+use rules::{Colour, League, Phase};
+use ssl::Message;
+use ssl::referee::{Command as Wire, Referee, TeamInfo};
+use ssl::vision::{DetectionFrame, DetectionRobot, WrapperPacket};
+
+const MS: u64 = 1_000;
+const EPOCH: u64 = 1_795_220_000_000_000;
+
+fn settings() -> HostSettings {
+    HostSettings::new(Colour::Blue, League::DivisionB, 7)
+}
+
+fn camera_frame(number: u32, now: u64) -> Vec<u8> {
+    let robot = DetectionRobot {
+        confidence: 1.0,
+        robot_id: Some(3),
+        x: 10.0 * number as f32,
+        orientation: Some(0.0),
+        ..DetectionRobot::default()
+    };
+    let detection = DetectionFrame {
+        frame_number: number,
+        t_capture: now as f64 * 1e-6,
+        robots_blue: vec![robot],
+        ..DetectionFrame::default()
+    };
+    WrapperPacket { detection: Some(detection), ..WrapperPacket::default() }.encode_to_vec()
+}
+
+fn packet(now: u64, command: Wire, counter: u32) -> Vec<u8> {
+    let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
+    let packet = Referee {
+        packet_timestamp: EPOCH + now,
+        command: command as i32,
+        command_counter: counter,
+        command_timestamp: EPOCH + now,
+        yellow: team("yellow"),
+        blue: team("blue"),
+        source_identifier: Some("gc".into()),
+        ..Referee::default()
+    };
+    packet.encode_to_vec()
+}
+
+fn machine(number: u8) -> SenderAddress {
+    SenderAddress::new(([10, 0, 0, number], 40_000).into())
+}
+
+/// Phases of the world's parts that wait in a host.
+fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
+    let mut phases = Vec::new();
+    while let Some((_, packet)) = host.poll_packet() {
+        if let Ok(HostMessage::World(part)) = overhear_host(&packet, TeamId::of(Colour::Blue), &TeamKey::ZERO)
+        {
+            phases.push(part.phase);
+        }
+    }
+    phases
+}
+
+#[test]
+fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
+    // So long after a snapshot: the radio's rate would let the next one go after 10 ms.
+    for after in [0, 1, 5 * MS, 9 * MS, 12 * MS] {
+        for by_operator in [false, true] {
+            let mut host = Host::new(settings(), Instant(0));
+            host.handle(Instant(0), Input::Referee(&packet(0, Wire::ForceStart, 1), machine(1)));
+            for number in 0..20 {
+                let now = u64::from(number) * 16 * MS;
+                host.handle(Instant(now), Input::Vision(&camera_frame(number, now)));
+            }
+            assert_eq!(phases(&mut host).last(), Some(&Phase::Run));
+            let now = 19 * 16 * MS + after;
+            let halt = packet(now, Wire::Halt, 2);
+            let input = if by_operator { Input::Halt } else { Input::Referee(&halt, machine(1)) };
+            host.handle(Instant(now), input);
+            assert!(host.is_halting());
+            assert_eq!(
+                phases(&mut host),
+                [Phase::Halt],
+                "{after} µs after a snapshot, by operator: {by_operator}"
+            );
+        }
+    }
+}
+
+#[test]
+fn commands_in_turns_at_line_rate_plan_no_oftener_than_camera_frames_do() {
+    let mut host = Host::new(settings(), Instant(0));
+    host.handle(Instant(0), Input::Vision(&camera_frame(0, 0)));
+    let (mut sent, mut counter) = (0, 1);
+    // 10,000 packets in a second, HALT and FORCE_START in turns.
+    for now in (0..1_000 * MS).step_by(100) {
+        counter += 1;
+        let command = if counter % 2 == 0 { Wire::Halt } else { Wire::ForceStart };
+        host.handle(Instant(now), Input::Referee(&packet(now, command, counter), machine(1)));
+        sent += phases(&mut host).len();
+    }
+    assert!(sent <= 450, "{sent} snapshots in a second");
+}
+
+/// Inputs with two referees, and what a host says to them.
+fn recorded(settings: HostSettings) -> Vec<Record> {
+    let mut host = Host::new(settings, Instant(0));
+    let mut records = Vec::new();
+    for step in 0..400_u32 {
+        let now = u64::from(step) * 10 * MS;
+        let (kind, from, bytes) = match step % 4 {
+            0 => (Kind::Referee, machine(1), packet(now, Wire::ForceStart, 1)),
+            // From the second second on another machine says HALT with the same identifier, for a second.
+            1 if (100..200).contains(&step) => (Kind::Referee, machine(2), packet(now, Wire::Halt, 1)),
+            _ => (Kind::Vision, SenderAddress::INTERNAL, camera_frame(step, now)),
+        };
+        let input = if kind == Kind::Referee { Input::Referee(&bytes, from) } else { Input::Vision(&bytes) };
+        host.handle(Instant(now), input);
+        records.push(Record { at: Instant(now), host: 0, kind, from, bytes });
+        while let Some((to, packet)) = host.poll_packet() {
+            let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
+            let bytes = [&[to], &packet[..]].concat();
+            records.push(Record {
+                at: Instant(now),
+                host: 0,
+                kind: Kind::Sent,
+                from: SenderAddress::INTERNAL,
+                bytes,
+            });
+        }
+    }
+    records
+}
+
+fn same_again(settings: &HostSettings, records: &[Record]) -> bool {
+    let header = RecordingHeader {
+        version: String::new(),
+        commit: String::new(),
+        seed: None,
+        league: League::DivisionB.name().to_owned(),
+        zero_unix_us: None,
+        hosts: vec![HostHeader::of(settings, Instant(0))],
+    };
+    let header = RecordingHeader::from_json(&header.to_json()).unwrap();
+    let mut recheck = Recheck::new(&header, TeamKey::ZERO).unwrap();
+    for record in records {
+        assert!(recheck.feed(record));
+    }
+    recheck.finish(false);
+    recheck.results().all(|(counts, difference)| counts.same > 100 && difference.is_none())
+}
+
+#[test]
+fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
+    let pinned = HostSettings { referee: Some(SourcePin::of("10.0.0.1")), ..settings() };
+    let records = [recorded(settings()), recorded(pinned.clone())];
+    let halts = |records: &[Record]| {
+        let said = records.iter().filter(|record| record.kind == Kind::Sent).filter_map(|record| {
+            overhear_host(&record.bytes[1..], TeamId::of(Colour::Blue), &TeamKey::ZERO).ok()
+        });
+        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))
+            .count()
+    };
+    assert!(halts(&records[0]) > 50 && halts(&records[1]) == 0);
+    assert!(same_again(&settings(), &records[0]));
+    assert!(same_again(&pinned, &records[1]));
+    // The decisions depend on the sender and on the pin.
+    assert!(!same_again(&settings(), &records[1]));
+    let mut nameless = records[0].clone();
+    nameless.iter_mut().for_each(|record| record.from = SenderAddress::INTERNAL);
+    assert!(!same_again(&settings(), &nameless));
+}
