@@ -4,9 +4,9 @@
 //! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;
 //! [`Recorder`] keeps a match.
 
+pub mod epoch;
 mod error;
 mod hub;
-pub mod epoch;
 pub mod key;
 mod recorder;
 mod serial;

@@ -119,9 +119,8 @@ impl InternalReferee {
     /// How many robots of a team count: those outside its goal substitution area.
     pub(super) fn on_field(&self, robots: &[RobotSeen], team: Colour) -> u32 {
         let own = self.own_end(team);
-        let counts = |robot: &&RobotSeen| {
-            robot.who.colour == team && self.field.counts(own, robot.pose.position)
-        };
+        let counts =
+            |robot: &&RobotSeen| robot.who.colour == team && self.field.counts(own, robot.pose.position);
         robots.iter().filter(counts).count() as u32
     }
 

@@ -177,7 +177,9 @@ pub(super) fn address(text: &str) -> Result<String, String> {
         Some((host, port)) if !host.is_empty() && port.parse::<u16>().is_ok() => text.to_owned(),
         None if !text.is_empty() => format!("{text}:{port}"),
         _ => {
-            return Err(format!("expected the game controller's HOST or HOST:PORT, such as 127.0.0.1:{port}"));
+            return Err(format!(
+                "expected the game controller's HOST or HOST:PORT, such as 127.0.0.1:{port}"
+            ));
         }
     };
     Ok(whole)

@@ -94,9 +94,8 @@ fn judge(scene: &Scene<'_>, touches: &Touches, crossing: Crossing) -> Event {
 fn shot(scene: &Scene<'_>, touches: &Touches, scorer: Colour) -> Shot {
     let (last, game) = (touches.last(), scene.game);
     let own = game.own_end(scorer);
-    let counts = |robot: &&RobotSeen| {
-        robot.who.colour == scorer && game.field.counts(own, robot.pose.position)
-    };
+    let counts =
+        |robot: &&RobotSeen| robot.who.colour == scorer && game.field.counts(own, robot.pose.position);
     Shot {
         kicker: last.map(|touch| touch.who),
         from: last.map_or(scene.ball.position, |touch| touch.ball),
