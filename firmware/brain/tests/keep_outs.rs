@@ -335,14 +335,8 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
 /// How near a robot on its way across comes to the first 0.9 m of the ball's way, when a teammate is about to kick it.
 fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
     let (from, to) = (Point::new(0.5, -1.5), Point::new(0.5, 1.5));
-    let mut player = Player::new(
-        League::DivisionB,
-        GoalEnd::Negative,
-        phase,
-        duty,
-        from,
-        Drive::bold(to, Angle::ZERO),
-    );
+    let mut player =
+        Player::new(League::DivisionB, GoalEnd::Negative, phase, duty, from, Drive::bold(to, Angle::ZERO));
     player.sees(Point::new(0.0, 0.0), Point::new(3.0, 0.0));
     let pose = Pose { position: Point::new(-0.2, 0.0), heading: Angle::ZERO };
     let kicker = Other { side: Side::Ours, id: RobotId::ZERO, pose, velocity: Vector::default() };
