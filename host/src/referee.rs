@@ -249,9 +249,9 @@ impl Listener {
         let others_strictest = others.iter().map(imposes).max();
         let mut strictest = followed.restraint(now).max(others_strictest.unwrap_or(Strictness::Play));
         let contradicted = own == Strictness::Play
-            && others.iter().any(|other| {
-                Strictness::of(other.command) == own && other.command != followed.command
-            });
+            && others
+                .iter()
+                .any(|other| Strictness::of(other.command) == own && other.command != followed.command);
         if contradicted {
             let since = *self.undecided.get_or_insert(now);
             if now.since(since).0 >= WINDOW.0 {

@@ -51,15 +51,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 7] = [
-        Self::Vision,
-        Self::Referee,
-        Self::Robot,
-        Self::Timeout,
-        Self::Sent,
-        Self::Lost,
-        Self::Halt,
-    ];
+    const ALL: [Self; 7] =
+        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()
@@ -263,7 +256,9 @@ impl<R: Read> Reader<R> {
 /// Takes the sender from the beginning of a referee's record.
 fn take_sender(bytes: &mut Vec<u8>) -> Result<SenderAddress, End> {
     let Some((sender, packet)) = bytes.split_first_chunk() else {
-        return Err(End::Broken { what: format!("a referee's record of {} bytes has no sender", bytes.len()) });
+        return Err(End::Broken {
+            what: format!("a referee's record of {} bytes has no sender", bytes.len()),
+        });
     };
     let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());
     *bytes = packet;

@@ -62,7 +62,8 @@ fn machine(number: u8) -> SenderAddress {
 fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
     let mut phases = Vec::new();
     while let Some((_, packet)) = host.poll_packet() {
-        if let Ok(HostMessage::World(part)) = overhear_host(&packet, TeamId::of(Colour::Blue), &TeamKey::ZERO) {
+        if let Ok(HostMessage::World(part)) = overhear_host(&packet, TeamId::of(Colour::Blue), &TeamKey::ZERO)
+        {
             phases.push(part.phase);
         }
     }
@@ -86,7 +87,11 @@ fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
             let input = if by_operator { Input::Halt } else { Input::Referee(&halt, machine(1)) };
             host.handle(Instant(now), input);
             assert!(host.is_halting());
-            assert_eq!(phases(&mut host), [Phase::Halt], "{after} µs after a snapshot, by operator: {by_operator}");
+            assert_eq!(
+                phases(&mut host),
+                [Phase::Halt],
+                "{after} µs after a snapshot, by operator: {by_operator}"
+            );
         }
     }
 }
@@ -124,7 +129,13 @@ fn recorded(settings: HostSettings) -> Vec<Record> {
         while let Some((to, packet)) = host.poll_packet() {
             let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
             let bytes = [&[to], &packet[..]].concat();
-            records.push(Record { at: Instant(now), host: 0, kind: Kind::Sent, from: SenderAddress::INTERNAL, bytes });
+            records.push(Record {
+                at: Instant(now),
+                host: 0,
+                kind: Kind::Sent,
+                from: SenderAddress::INTERNAL,
+                bytes,
+            });
         }
     }
     records
@@ -156,7 +167,8 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
         let said = records.iter().filter(|record| record.kind == Kind::Sent).filter_map(|record| {
             overhear_host(&record.bytes[1..], TeamId::of(Colour::Blue), &TeamKey::ZERO).ok()
         });
-        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt)).count()
+        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))
+            .count()
     };
     assert!(halts(&records[0]) > 50 && halts(&records[1]) == 0);
     assert!(same_again(&settings(), &records[0]));

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use geometry::Point;
 use host::geometry::VisionGeometry;
-use host::referee::{Listener, SenderAddress};
 use host::referee::team_port::TeamPort;
+use host::referee::{Listener, SenderAddress};
 use protocol::Instant;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -411,7 +411,11 @@ mod tests {
             for (place, reader) in [0, 4, 15].map(robot).into_iter().enumerate() {
                 let own = covered + 3 * place..covered + 3 * place + 3;
                 let concerns = bit / 8 < covered || own.contains(&(bit / 8));
-                assert_eq!(sent.is_genuine(&out[..n], keys.of(reader), reader), !concerns, "bit {bit}, {reader}");
+                assert_eq!(
+                    sent.is_genuine(&out[..n], keys.of(reader), reader),
+                    !concerns,
+                    "bit {bit}, {reader}"
+                );
             }
             out[bit / 8] ^= 1 << (bit % 8);
         }
@@ -435,7 +439,11 @@ mod tests {
         assert_eq!(Frame::parse(&[9; 19], TEAM), Err(Refusal::Version(9)));
         let mut bytes = [0; 19];
         bytes[0] = 1;
-        assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Version(1)), "the version before keys were derived");
+        assert_eq!(
+            Frame::parse(&bytes, TEAM),
+            Err(Refusal::Version(1)),
+            "the version before keys were derived"
+        );
         bytes[0] = VERSION;
         assert_eq!(Frame::parse(&bytes, TEAM), Err(Refusal::Team(TeamId(0))));
         (bytes[1], bytes[2]) = (3, 18);

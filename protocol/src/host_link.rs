@@ -176,12 +176,7 @@ impl HostLink {
     }
 
     /// Beacons and greetings, under the key that all robots hold.
-    fn open_shared(
-        &mut self,
-        packet: &[u8],
-        frame: &Frame<'_>,
-        robot: RobotId,
-    ) -> Result<Opened, Refusal> {
+    fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });
         }

@@ -75,7 +75,12 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
         settings: args.settings.choose()?.settings,
         ..BrainConfig::hosted(args.id, TeamId::of(args.team), args.league)
     };
-    let options = Options { brain, keys: key.of_robot(args.id), host: args.host, simulator: simulator(&args.simulator, args.team)? };
+    let options = Options {
+        brain,
+        keys: key.of_robot(args.id),
+        host: args.host,
+        simulator: simulator(&args.simulator, args.team)?,
+    };
     play(&options, base, &end).map_err(|error| Failure::Robot(error.to_string()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -181,7 +181,8 @@ fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
         orientation: Some(0.0),
         ..DetectionRobot::default()
     };
-    let ball = |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
+    let ball =
+        |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
     let frame = DetectionFrame {
         frame_number: number,
         t_capture: unix_us() as f64 * 1e-6,
@@ -329,7 +330,8 @@ fn finding_2_two_referees_that_disagree_are_reported_with_both_addresses() {
     let genuine = Controller::start("gc\u{1b}[31m", "127.0.0.1:0", field.referee, Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let other = Controller::start("other", "127.0.0.2:0", field.referee, Wire::Halt);
-    let line = field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
+    let line =
+        field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
     assert!(!line.contains('\u{1b}'), "{line:?}");
     wait_for(&frames, true, Instant::now());
     drop(other);

@@ -210,7 +210,9 @@ impl Radio {
                 if self.robots[robot.index()].wants_welcome(now, STRANGER_EVERY) {
                     self.welcome(now, robot);
                 }
-                return Err(Refusal::Stranger { epoch: self.link.welcome(robot).map_or(0, |known| known.life) });
+                return Err(Refusal::Stranger {
+                    epoch: self.link.welcome(robot).map_or(0, |known| known.life),
+                });
             }
         };
         let frame = frame?;

@@ -64,7 +64,11 @@ impl From<SocketAddr> for SenderAddress {
 
 impl fmt::Display for SenderAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if *self == Self::INTERNAL { f.write_str("this program") } else { SocketAddr::new(self.ip, self.port).fmt(f) }
+        if *self == Self::INTERNAL {
+            f.write_str("this program")
+        } else {
+            SocketAddr::new(self.ip, self.port).fmt(f)
+        }
     }
 }
 
@@ -156,7 +160,10 @@ mod tests {
 
     #[test]
     fn a_pin_is_a_machine_an_address_or_an_identifier() {
-        let source = |identifier: &str, from| SourceKey { identifier: Some(identifier.into()), address: address(from) };
+        let source = |identifier: &str, from| SourceKey {
+            identifier: Some(identifier.into()),
+            address: address(from),
+        };
         let pin = SourcePin::of;
         let genuine = source("gc", "10.0.0.1:50000");
         for text in ["10.0.0.1", "10.0.0.1:50000", "gc"] {

@@ -5,9 +5,9 @@
 //! [`Recorder`] keeps a match.
 
 mod background;
+pub mod epoch;
 mod error;
 mod hub;
-pub mod epoch;
 pub mod key;
 mod outbox;
 mod recorder;

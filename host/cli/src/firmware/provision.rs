@@ -67,12 +67,21 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
     if let Some(warning) = &key.warning {
         eprintln!("onetwo: {warning}");
     }
-    let who = Provision { robot, team: TeamId(args.team), league: args.league.league(), keys: key.key.of_robot(robot) };
+    let who = Provision {
+        robot,
+        team: TeamId(args.team),
+        league: args.league.league(),
+        keys: key.key.of_robot(robot),
+    };
     let bytes: [u8; PAGE_LEN] = page(&who);
     // The robot's own reading of it: a key of zeros is refused here already.
     read(&bytes, false).map_err(failed)?;
     write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
-    say(&format!("{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n", args.out.display(), args.team))
+    say(&format!(
+        "{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n",
+        args.out.display(),
+        args.team
+    ))
 }
 
 /// A file that its owner alone can read, for it holds a key.

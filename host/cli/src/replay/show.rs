@@ -8,8 +8,8 @@ use std::sync::atomic::Ordering;
 
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
-use host::trace::{Kind, Reader};
 use host::referee::SenderAddress;
+use host::trace::{Kind, Reader};
 use host::{Host, HostSettings, Input};
 use page::{Happening, Kind as Told, Page, Powers};
 use protocol::Instant;

@@ -227,9 +227,9 @@ impl Report<'_> {
 pub(super) fn damage_of(end: Option<&End>) -> Option<String> {
     match end? {
         End::Cut => Some("cut within a record; all before it was read".to_owned()),
-        End::Lost => {
-            Some("the recorder could not keep up (is the disk slow or full?); all before that was read".to_owned())
-        }
+        End::Lost => Some(
+            "the recorder could not keep up (is the disk slow or full?); all before that was read".to_owned(),
+        ),
         End::Broken { what } => Some(format!("{what}; all before it was read")),
         End::Whole => None,
     }
