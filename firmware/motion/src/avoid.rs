@@ -149,7 +149,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
         return escape(course, &mut scene, goal);
     }
     scene.keep_apart(from, goal, false);
-    let route = Route::find(&scene, from, velocity, goal, &limits, false);
+    let route = Route::find(&scene, from, velocity, goal, &limits, course.effort >= EFFORT_LONG);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (Verdict::Direct, goal),
@@ -257,6 +257,8 @@ pub const OBSTACLES_MAX: usize = 40;
 pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
+/// Who may spend so much looks at as many pieces of a way as who leaves a region: around a goal and into its mouth takes them.
+const EFFORT_LONG: u32 = EFFORT_MAX / 2;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.
