@@ -158,11 +158,7 @@ fn er_force_wants_whole_specifications() {
         vel_absolute_max: Some(3.0),
         vel_angular_max: Some(20.0),
     };
-    let custom = ssl::simulation::RobotSpecErForce {
-        shoot_radius: Some(0.067),
-        dribbler_width: Some(0.07),
-        ..Default::default()
-    };
+    let custom = ssl::simulation::RobotSpecErForce { shoot_radius: Some(0.067), dribbler_width: Some(0.07) };
     let custom = Any {
         type_url: Some("type.googleapis.com/sslsim.RobotSpecErForce".into()),
         value: Some(custom.encode_to_vec()),
