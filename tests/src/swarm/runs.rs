@@ -41,11 +41,7 @@ pub fn watch_matches(runs: Runs, look: impl Fn(u64, &(Plan, Outcome)) + Sync) ->
     each(runs, play, look).into_iter().map(|(_, ended)| ended).collect()
 }
 
-fn each<T: Send>(
-    runs: Runs,
-    play: impl Fn(u64) -> T + Sync,
-    look: impl Fn(u64, &T) + Sync,
-) -> Vec<(u64, T)> {
+fn each<T: Send>(runs: Runs, play: impl Fn(u64) -> T + Sync, look: impl Fn(u64, &T) + Sync) -> Vec<(u64, T)> {
     let next = AtomicU64::new(0);
     let done = AtomicU64::new(0);
     let all = Mutex::new(Vec::new());

@@ -108,8 +108,11 @@ impl InternalReferee {
         }
         self.people.called = false;
         for team in COLOURS {
-            let mut left: Vec<RobotSeen> =
-                robots.iter().copied().filter(|robot| robot.who.colour == team && self.counts(robot)).collect();
+            let mut left: Vec<RobotSeen> = robots
+                .iter()
+                .copied()
+                .filter(|robot| robot.who.colour == team && self.counts(robot))
+                .collect();
             while left.len() as u32 > self.allowed_now(team) {
                 let places = left.iter().map(|robot| (robot.who, robot.pose.position));
                 let Some(who) = self.whom_to_take(team, places) else { break };

@@ -139,7 +139,11 @@ impl InternalReferee {
     }
 
     /// The last offender; else the robot farthest from the ball. The keeper only where there is no other.
-    pub(super) fn whom_to_take(&self, team: Colour, ours: impl Iterator<Item = (Who, Point<Field>)>) -> Option<Who> {
+    pub(super) fn whom_to_take(
+        &self,
+        team: Colour,
+        ours: impl Iterator<Item = (Who, Point<Field>)>,
+    ) -> Option<Who> {
         let account = self.accounts.of(team);
         let worth = |(who, place): &(Who, Point<Field>)| {
             let keeper = who.id == account.keeper;

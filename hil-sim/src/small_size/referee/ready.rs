@@ -120,7 +120,9 @@ impl fmt::Display for Reason {
                 write!(f, "the ball has to be put down by hand, {distance:.2} m away")
             }
             Self::OtherHalf { inside } => write!(f, "{inside:.2} m inside its own half"),
-            Self::CentreCircle { distance } => write!(f, "in the centre circle, {distance:.2} m from its centre"),
+            Self::CentreCircle { distance } => {
+                write!(f, "in the centre circle, {distance:.2} m from its centre")
+            }
             Self::NoKeeper => f.write_str("no keeper on the field"),
             Self::KeeperOffLine { from_line, across } => {
                 write!(f, "keeper {from_line:.2} m off its line, {across:.2} m from the middle")

@@ -79,7 +79,12 @@ pub struct RefereeSettings {
 impl RefereeSettings {
     /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off, cards.
     pub fn new(league: League) -> Self {
-        let team = |name: &str| TeamSettings { name: name.into(), keeper: KEEPER, can_place_ball: true, drives: true };
+        let team = |name: &str| TeamSettings {
+            name: name.into(),
+            keeper: KEEPER,
+            can_place_ball: true,
+            drives: true,
+        };
         Self {
             league,
             clock: MatchClock::Playing { half: Duration::millis(300_000) },

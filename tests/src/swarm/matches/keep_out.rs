@@ -28,10 +28,7 @@ pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
         // Offenses, ball placement interference: "for more than 2 seconds".
         (Why::Stadium, _) => Grace::AtATime(limits::GRACE),
         // Preparations are for taking one's place: the controller's time for them.
-        (
-            Why::OtherHalf | Why::CentreCircle | Why::BallDistance,
-            Phase::PrepareKickoff(_),
-        )
+        (Why::OtherHalf | Why::CentreCircle | Why::BallDistance, Phase::PrepareKickoff(_))
         | (Why::BehindBall | Why::KeeperLine, Phase::PreparePenalty(_)) => {
             Grace::AfterChange(limits::PREPARE_TIME)
         }
@@ -164,8 +161,7 @@ impl KeepOuts {
         for one in within {
             let phase = moment.phase.seen_by(one.who.colour);
             let Some(grace) = grace(one.why, phase) else { continue };
-            let entry =
-                self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
+            let entry = self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
             if one.why == Why::BallDistance && moment.ball_speed > BALL_QUICK {
                 entry.0 = moment.time;
             }

@@ -161,7 +161,8 @@ impl Watch {
         let time = game.time() as f32;
         let ball = world.ball.position;
         let accounts = referee.accounts();
-        let keepers = [Colour::Yellow, Colour::Blue].map(|team| Who { colour: team, id: accounts.of(team).keeper });
+        let keepers =
+            [Colour::Yellow, Colour::Blue].map(|team| Who { colour: team, id: accounts.of(team).keeper });
         let jumped = self.ball.distance(ball) > CARRIED;
         if referee.phase() != self.phase {
             (self.phase, self.phase_since, self.ball_then) = (referee.phase(), time, ball);
@@ -178,7 +179,8 @@ impl Watch {
             return;
         }
         let present = || world.robots().iter().filter(|robot| robot.present);
-        let robots: Vec<(Who, Point<Field>)> = present().map(|robot| (robot.who, robot.pose.position)).collect();
+        let robots: Vec<(Who, Point<Field>)> =
+            present().map(|robot| (robot.who, robot.pose.position)).collect();
         // A robot that people carried is where they put it.
         let carried = robots.iter().any(|(who, at)| {
             self.places.insert(*who, *at).is_some_and(|before| before.distance(*at) > CARRIED)
@@ -241,7 +243,10 @@ impl Watch {
         let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id)?;
         let flip = Flip::defending(own[who.colour as usize]);
         let ours = |phase: Phase<Side>| {
-            matches!(phase, Phase::Kickoff(Side::Ours) | Phase::Penalty(Side::Ours) | Phase::FreeKick(Side::Ours))
+            matches!(
+                phase,
+                Phase::Kickoff(Side::Ours) | Phase::Penalty(Side::Ours) | Phase::FreeKick(Side::Ours)
+            )
         };
         let phase = self.phase.seen_by(who.colour);
         let to_ball = at.distance(self.ball);

@@ -47,8 +47,14 @@ impl RemoteMatch {
     /// Nothing heard yet. Not for the four-legged league.
     pub fn new(league: League) -> Result<Self, NoRules> {
         let limits = league.limits().ok_or(NoRules(league))?;
-        let account =
-            || Account::new(&TeamSettings { name: String::new(), keeper: KEEPER, can_place_ball: true, drives: true });
+        let account = || {
+            Account::new(&TeamSettings {
+                name: String::new(),
+                keeper: KEEPER,
+                can_place_ball: true,
+                drives: true,
+            })
+        };
         Ok(Self {
             field: league.field(),
             limits,

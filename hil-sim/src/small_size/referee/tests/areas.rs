@@ -163,7 +163,10 @@ fn every_third_foul_is_a_yellow_card_and_the_offender_goes_off() {
     stage.run(9.0);
     assert_eq!((stage.phase(), stage.orders.len()), (Phase::Stop, 0));
     stage.until(Phase::Halt, 2.0);
-    assert!(matches!(stage.only(Kind::Blocked).what, What::Blocked { reason: Reason::TooManyRobots { allowed: 5, on_field: 6 } }));
+    assert!(matches!(
+        stage.only(Kind::Blocked).what,
+        What::Blocked { reason: Reason::TooManyRobots { allowed: 5, on_field: 6 } }
+    ));
     stage.until(Phase::Stop, 3.1);
     assert_eq!(stage.orders, [WorldOrder::RemoveRobot(blue(2))]);
     stage.until(Phase::Run, 5.0);

@@ -70,9 +70,14 @@ fn a_stop_in_which_a_robot_stays_at_the_ball_does_not_end_and_after_ten_seconds_
     assert_eq!(stage.phase(), Phase::Stop);
     let blocked = *stage.referee.blocked().unwrap();
     assert_eq!(blocked.obstacle.who(), Some(yellow(1)));
-    assert!(matches!(blocked.obstacle.reason, Reason::NearBall { distance } if (distance - 0.41).abs() < 1e-4));
+    assert!(
+        matches!(blocked.obstacle.reason, Reason::NearBall { distance } if (distance - 0.41).abs() < 1e-4)
+    );
     assert!((59.8..60.0).contains(&blocked.lasted.as_secs_f32()), "{:?}", blocked.lasted);
-    assert_eq!(stage.referee.packet().status_message.as_deref(), Some("blocked: yellow 1: 0.41 m from the ball"));
+    assert_eq!(
+        stage.referee.packet().status_message.as_deref(),
+        Some("blocked: yellow 1: 0.41 m from the ball")
+    );
     assert_eq!(stage.only(Kind::Blocked).robot, Some(id(1)));
     // 0.55 m from centre to centre is enough for the controller, 0.53 m is not.
     stage.put(yellow(1), at(-0.53, 0.0));

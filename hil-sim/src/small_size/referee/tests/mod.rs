@@ -206,9 +206,12 @@ impl Stage {
             self.referee.obstacles(&self.robots).iter().filter_map(Obstacle::who).collect();
         for who in waits_for {
             let side = self.referee.own_end(who.colour).sign() as f32;
-            let lane = 0.35 * f32::from(who.id.number()) - 2.6 + if who.colour == Colour::Blue { 0.17 } else { 0.0 };
+            let lane =
+                0.35 * f32::from(who.id.number()) - 2.6 + if who.colour == Colour::Blue { 0.17 } else { 0.0 };
             let place = match self.phase() {
-                Phase::PreparePenalty(team) if team != who.colour && self.referee.accounts().is_keeper(who) => {
+                Phase::PreparePenalty(team)
+                    if team != who.colour && self.referee.accounts().is_keeper(who) =>
+                {
                     at(side * 4.5, 0.0)
                 }
                 Phase::PreparePenalty(team) => {
@@ -218,7 +221,8 @@ impl Stage {
                 // Beside the ball's lane, in the own half.
                 _ => at(side * 2.0, if lane * self.place_of_ball().y() > 0.0 { -lane } else { lane }),
             };
-            let place = if place.distance(self.place_of_ball()) < 0.7 { at(side * 1.0, place.y()) } else { place };
+            let place =
+                if place.distance(self.place_of_ball()) < 0.7 { at(side * 1.0, place.y()) } else { place };
             self.robot(who).pose.position = place;
         }
     }
@@ -232,7 +236,9 @@ impl Stage {
         match order {
             WorldOrder::PutBall(place) => self.ball = Some(BallSeen::at(place)),
             WorldOrder::RemoveRobot(who) => self.take(who),
-            WorldOrder::ReturnRobot(who, pose) | WorldOrder::CarryRobot(who, pose) => self.put(who, pose.position),
+            WorldOrder::ReturnRobot(who, pose) | WorldOrder::CarryRobot(who, pose) => {
+                self.put(who, pose.position)
+            }
         }
     }
 

@@ -187,7 +187,12 @@ fn a_wild_world_ends_in_time_and_never_leaves_the_state_graph() {
         while !stage.referee.is_over() {
             disturb(&mut stage, &mut chance);
             stage.step();
-            assert!(stage.seconds() < 3_000.0, "seed {seed}: {:?} {:?}", stage.phase(), stage.referee.blocked());
+            assert!(
+                stage.seconds() < 3_000.0,
+                "seed {seed}: {:?} {:?}",
+                stage.phase(),
+                stage.referee.blocked()
+            );
         }
         assert!(stage.referee.events().len() > 20, "{}", stage.referee.events().len());
     }
