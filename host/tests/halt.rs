@@ -219,6 +219,8 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
     // The decisions depend on the sender and on the pin.
     assert!(!same_again(&settings(), &records[1]));
     let mut nameless = records[0].clone();
-    nameless.iter_mut().for_each(|record| record.from = SenderAddress::INTERNAL);
+    for record in &mut nameless {
+        record.from = SenderAddress::INTERNAL;
+    }
     assert!(!same_again(&settings(), &nameless));
 }
