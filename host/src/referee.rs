@@ -37,7 +37,7 @@ use ssl::referee::Referee;
 use source::{Outcome, Source, Strictness};
 
 pub use game::{Game, TeamAccount};
-pub use identity::{SenderAddress, SourceKey, SourcePin, printable};
+pub use identity::{SenderAddress, SourceKey, SourcePin};
 pub use source::{CONFIRM, HOLD};
 pub use stamps::WINDOW;
 pub use verdict::{Counts, Doubt, Taken, Verdict};

@@ -398,7 +398,8 @@ mod tests {
                     ball: Some(WireBall { at: WirePoint { x: -1, y: -1 }, height: 9999, vx: -1, vy: -1 }),
                     robots: core::iter::repeat_n(robot, robots_max).collect(),
                 };
-                let bytes = HEADER_LEN + AUDIENCE_LEN + len(&HostMessage::World(part)) + SHORT_TAG_LEN * addressees;
+                let bytes =
+                    HEADER_LEN + AUDIENCE_LEN + len(&HostMessage::World(part)) + SHORT_TAG_LEN * addressees;
                 assert!(bytes <= FRAME_LEN_MAX, "{bytes} B to {addressees}");
                 assert!(bytes + WIRE_ROBOT_LEN > FRAME_LEN_MAX || robots_max == PART_ROBOTS_MAX);
                 assert!(PARTS_MAX * robots_max >= WORLD_ROBOTS_MAX, "{addressees}");

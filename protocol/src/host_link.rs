@@ -76,7 +76,6 @@ impl HostLink {
         // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         let to = match message {
-            HostMessage::World(_) if self.audience.is_empty() => return Packet::new(),
             HostMessage::World(_) => None,
             HostMessage::Command(command) => Some(command.to),
             HostMessage::Welcome(welcome) => Some(welcome.to),
@@ -176,12 +175,7 @@ impl HostLink {
     }
 
     /// Beacons and greetings, under the key that all robots hold.
-    fn open_shared(
-        &mut self,
-        packet: &[u8],
-        frame: &Frame<'_>,
-        robot: RobotId,
-    ) -> Result<Opened, Refusal> {
+    fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });
         }

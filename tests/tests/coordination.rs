@@ -236,12 +236,16 @@ fn step(team: &Team, simulation: &mut Simulation<'_>, watcher: &mut Watcher) {
         }
     }
     for heard in &tick.heard {
-        if let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&heard.packet, TEAM, &TeamKey::ZERO.of_team()) {
+        if let Ok((from, TeamMessage::Beacon(beacon))) =
+            overhear(&heard.packet, TEAM, &TeamKey::ZERO.of_team())
+        {
             watcher.see(now, &Seen::Heard(heard.to, from, beacon));
         }
     }
     for sent in &tick.sent {
-        if let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team()) {
+        if let Ok((from, TeamMessage::Beacon(beacon))) =
+            overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
+        {
             watcher.see(now, &Seen::Sent(from, beacon));
         }
     }
@@ -255,7 +259,8 @@ fn coordinator_at(team: &Team, tick: u32) -> Option<RobotId> {
     for _ in 0..tick {
         let seen = simulation.step().expect("native computers do not fail");
         for sent in &seen.sent {
-            if let Ok((_, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
+            if let Ok((_, TeamMessage::Beacon(beacon))) =
+                overhear(&sent.packet, TEAM, &TeamKey::ZERO.of_team())
                 && let Some(cycle) = beacon.cycle
                 && newest.is_none_or(|(id, _)| cycle.id > id)
             {

@@ -230,9 +230,14 @@ fn frames_that_come_ever_later_stop_a_driving_robot_within_200_ms_of_age() {
             let age = game.now - sent;
             oldest = oldest.max(age);
             // From 200 ms on it brakes at 5 m/s²; a step may pass before.
-            let braked = (age.saturating_sub(200 + 2 * TICK_MS)) as f32 * 1e-3 / (stretch as f32 - 1.0) * stretch as f32;
+            let braked = (age.saturating_sub(200 + 2 * TICK_MS)) as f32 * 1e-3 / (stretch as f32 - 1.0)
+                * stretch as f32;
             let most = (driving - 5.0 * braked).max(0.0);
-            assert!(game.body.speed <= most + 1e-3 || age < 200, "{} m/s at an age of {age} ms", game.body.speed);
+            assert!(
+                game.body.speed <= most + 1e-3 || age < 200,
+                "{} m/s at an age of {age} ms",
+                game.body.speed
+            );
         }
         assert!(oldest > 1_000 && game.body.speed == 0.0, "stretched by {stretch}");
     }
@@ -267,13 +272,24 @@ fn sixty_milliseconds_each_way_a_third_lost_and_clocks_that_drift_apart_do_not_s
             stood += u32::from(game.body.speed == 0.0);
         }
         let share = f64::from(stood) / f64::from(steps);
-        println!("drift {drift_ppm} ppm, {latency:?} ms, 30 % lost: stands in {:.2} % of the steps", 100.0 * share);
+        println!(
+            "drift {drift_ppm} ppm, {latency:?} ms, 30 % lost: stands in {:.2} % of the steps",
+            100.0 * share
+        );
         assert!(share < 0.02, "drift {drift_ppm} ppm: stands in {share} of the steps");
         let stale = game.body.refused(Refusal::Stale);
         assert_eq!(stale, 0, "drift {drift_ppm} ppm");
         // And the age is still bounded: frames 250 ms late are none.
         let late = offer(&mut game.radio, game.now);
-        (0..100).for_each(|_| drop(game.body.step({ game.now += TICK_MS; game.now }, &[])));
+        (0..100).for_each(|_| {
+            drop(game.body.step(
+                {
+                    game.now += TICK_MS;
+                    game.now
+                },
+                &[],
+            ))
+        });
         game.body.step(game.now, &late);
         assert!(game.body.refused(Refusal::Stale) > 0);
     }
@@ -289,7 +305,8 @@ fn a_host_with_an_earlier_epoch_is_told_within_two_seconds_which_robot_refuses_i
     let mut told = None;
     for _ in 0..300 {
         game.step(true);
-        told = told.or_else(|| game.radio.warnings(ms(game.now)).next().map(|warning| (game.now - start, warning)));
+        told = told
+            .or_else(|| game.radio.warnings(ms(game.now)).next().map(|warning| (game.now - start, warning)));
     }
     let (after, warning) = told.expect("told");
     assert_eq!(warning, RadioWarning::LaterHost(id(), 70));
@@ -317,7 +334,8 @@ fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
     let mut game = Match::new(Body::new(5), (3, 3), 0.0);
     game.drive();
     let genuine = offer(&mut game.radio, game.now + TICK_MS);
-    let stolen: Vec<RobotKeys> = RobotId::all().filter(|other| *other != id()).map(|n| KEY.of_robot(n)).collect();
+    let stolen: Vec<RobotKeys> =
+        RobotId::all().filter(|other| *other != id()).map(|n| KEY.of_robot(n)).collect();
     // The host dies; the thief sends what it heard with newer counters under every key it may have.
     let mut forged = 0;
     let driving = game.body.speed;

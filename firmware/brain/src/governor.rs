@@ -330,7 +330,8 @@ pub const SILENCE: Duration = Duration::millis(100);
 /// which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60 ms each way is the most that is planned for, and leaves
 /// 80 ms without a frame.
 pub const LATENCY_MAX: Duration = Duration::millis(100);
-const _: () = assert!(SILENCE.0 + LATENCY_MAX.0 == protocol::host_clock::AGE_MAX.0, "200 ms of age are silence");
+const _: () =
+    assert!(SILENCE.0 + LATENCY_MAX.0 == protocol::host_clock::AGE_MAX.0, "200 ms of age are silence");
 /// Heard again for so long without a gap, it may move again (DESIGN §6).
 const ARM_AFTER: Duration = Duration::millis(500);
 /// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.

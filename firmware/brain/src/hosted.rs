@@ -66,7 +66,10 @@ impl Hosted {
                     return None;
                 }
                 self.phase = Some(command.phase);
-                self.command = Some((self.command.as_ref().map_or(heard, |(last, _)| heard.max(*last)), command.clone()));
+                self.command = Some((
+                    self.command.as_ref().map_or(heard, |(last, _)| heard.max(*last)),
+                    command.clone(),
+                ));
             }
             HostMessage::Welcome(_) => {}
         }

@@ -21,6 +21,7 @@ use virtual_robot::{Options, parent_gone, run as play};
 use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output::note;
 
 /// Who it is and whom it speaks with.
 #[derive(Debug, Args)]
@@ -75,7 +76,12 @@ pub(crate) fn run(args: &VirtualRobotArgs) -> Result<ExitCode, Failure> {
         settings: args.settings.choose()?.settings,
         ..BrainConfig::hosted(args.id, TeamId::of(args.team), args.league)
     };
-    let options = Options { brain, keys: key.of_robot(args.id), host: args.host, simulator: simulator(&args.simulator, args.team)? };
+    let options = Options {
+        brain,
+        keys: key.of_robot(args.id),
+        host: args.host,
+        simulator: simulator(&args.simulator, args.team)?,
+    };
     play(&options, base, &end).map_err(|error| Failure::Robot(error.to_string()))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -91,7 +97,7 @@ fn key_of_file(file: Option<&std::path::Path>) -> Result<TeamKey, Failure> {
     let Some(file) = file else { return Ok(TeamKey::ZERO) };
     let read = key::read(file).map_err(|error| Failure::Robot(error.to_string()))?;
     if let Some(warning) = read.warning {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     Ok(read.key)
 }

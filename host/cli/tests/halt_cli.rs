@@ -14,8 +14,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use protocol::frame::TeamKey;
 use protocol::host::{HostMessage, Telemetry};
-use protocol::link::{Heard, Link, Packet};
-use protocol::serial::{Lines, line};
+use protocol::link::{Link, Packet, overhear_host};
+use protocol::serial::{self, Lines};
 use protocol::team::TeamMessage;
 use protocol::{RobotId, TeamId};
 use rules::{Colour, Phase};
@@ -25,7 +25,7 @@ use ssl::referee::{Command as Wire, Referee, TeamInfo};
 use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
-const PATIENCE: Duration = Duration::from_mins(1);
+const PATIENCE: Duration = Duration::from_secs(60);
 /// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
 /// Resident memory may grow by so much under a flood, bytes; 465 MB before.
@@ -211,63 +211,70 @@ fn camera(to: SocketAddr, end: &Arc<AtomicBool>) {
     });
 }
 
-/// Robot 3, as far as the radio goes: it keeps the host's company, so that the host speaks.
-struct Robot {
-    link: Link,
+/// The radio ends of six robots: they answer the host's welcomes, so that it leads them.
+struct Robots {
+    links: Vec<Link>,
     began: Instant,
-    spoke: Option<Instant>,
+    reported: Option<Instant>,
 }
 
-impl Robot {
+impl Robots {
+    const TEAM: TeamId = TeamId::of(Colour::Blue);
+
     fn new() -> Self {
-        let id = RobotId::new(3).expect("a robot");
-        let link = Link::new(TeamId::of(Colour::Blue), id, TeamKey(KEY).of_robot(id), 1);
-        Self { link, began: Instant::now(), spoke: None }
+        let link = |robot| Link::new(Self::TEAM, robot, TeamKey(KEY).of_robot(robot), 1);
+        Self { links: RobotId::all().take(6).map(link).collect(), began: Instant::now(), reported: None }
     }
 
     fn now(&self) -> protocol::Instant {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// Whether the host's frame says HALT, where it says anything of the phase.
-    fn hear(&mut self, frame: &[u8]) -> Option<bool> {
-        match self.link.open(self.now(), frame) {
-            Ok(Heard::Host(HostMessage::World(part), _)) => Some(part.phase == Phase::Halt),
-            Ok(Heard::Host(HostMessage::Command(command), _)) => Some(command.phase == Phase::Halt),
-            _ => None,
+    /// Takes a frame of the host: whether it says HALT, where it says anything of the phase.
+    fn receive(&mut self, frame: &[u8]) -> Option<bool> {
+        let now = self.now();
+        for link in &mut self.links {
+            let _ = link.open(now, frame);
+        }
+        let read =
+            |robot: RobotId| overhear_host(frame, Self::TEAM, &TeamKey(KEY).of_robot(robot), robot).ok();
+        match RobotId::all().take(6).find_map(read)? {
+            HostMessage::World(part) => Some(part.phase == Phase::Halt),
+            HostMessage::Command(command) => Some(command.phase == Phase::Halt),
+            HostMessage::Welcome(_) => None,
         }
     }
 
-    /// Its telemetry, 20 times a second.
-    fn says(&mut self) -> Option<Packet> {
-        if self.spoke.is_some_and(|at| at.elapsed() < Duration::from_millis(50)) {
-            return None;
+    /// Telemetry of all robots, ten times a second.
+    fn poll(&mut self) -> Vec<Packet> {
+        if self.reported.is_some_and(|reported| reported.elapsed() < Duration::from_millis(100)) {
+            return Vec::new();
         }
-        self.spoke = Some(Instant::now());
-        let mut telemetry = Telemetry::default();
-        self.link.tell(self.now(), &mut telemetry);
-        Some(self.link.seal(&TeamMessage::Telemetry(telemetry)))
+        self.reported = Some(Instant::now());
+        let now = self.now();
+        let tell = |link: &mut Link| {
+            let mut telemetry = Telemetry::default();
+            link.tell(now, &mut telemetry);
+            link.seal(&TeamMessage::Telemetry(telemetry))
+        };
+        self.links.iter_mut().map(tell).collect()
     }
 }
 
 /// What the base station receives: whether the newest frame says HALT, and when.
 fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     let socket = socket("127.0.0.1:0");
-    socket.set_read_timeout(Some(Duration::from_millis(20))).expect("a time-out");
     let (send, frames) = channel();
     let address = socket.local_addr().expect("an address");
     thread::spawn(move || {
-        let (mut bytes, mut robot, mut host) = ([0; 256], Robot::new(), None);
-        loop {
-            if let Ok((length, from)) = socket.recv_from(&mut bytes) {
-                host = Some(from);
-                if let Some(halt) = robot.hear(&bytes[..length])
-                    && send.send((Instant::now(), halt)).is_err()
-                {
-                    return;
-                }
+        let (mut bytes, mut robots) = ([0; 256], Robots::new());
+        while let Ok((length, host)) = socket.recv_from(&mut bytes) {
+            if let Some(halt) = robots.receive(&bytes[..length])
+                && send.send((Instant::now(), halt)).is_err()
+            {
+                return;
             }
-            if let Some((host, packet)) = host.and_then(|host| Some((host, robot.says()?))) {
+            for packet in robots.poll() {
                 let _ = socket.send_to(&packet, host);
             }
         }
@@ -399,8 +406,8 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     const RATE: f64 = 11_520.0;
     /// Bytes that may come before HALT: 0.2 s of the line; 22,000 before.
     const STALE_MAX: u64 = 2_304;
-    let (station, other_end) = SerialPort::pair().expect("a pseudo terminal");
-    let device = std::fs::read_link(format!("/proc/self/fd/{}", other_end.as_raw_fd())).expect("its name");
+    let (station, line) = SerialPort::pair().expect("a pseudo terminal");
+    let device = std::fs::read_link(format!("/proc/self/fd/{}", line.as_raw_fd())).expect("its name");
     let mut field = Field::start(&format!("serial:{}:115200", device.display()), &[]);
     let end = Arc::new(AtomicBool::new(false));
     let read = Arc::new(AtomicU64::new(0));
@@ -408,11 +415,11 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
-        let (mut lines, began, mut taken) = (Lines::new(), Instant::now(), 0_u64);
-        let mut robot = Robot::new();
+        let (mut lines, mut robots) = (Lines::new(), Robots::new());
+        let (began, mut taken) = (Instant::now(), 0_u64);
         while !stop.load(Ordering::Relaxed) {
-            if let Some(packet) = robot.says() {
-                let _ = station.write_all(&line(&packet));
+            for packet in robots.poll() {
+                let _ = station.write_all(&serial::line(&packet));
             }
             let may = (began.elapsed().as_secs_f64() * RATE) as u64;
             let mut bytes = [0; 64];
@@ -426,7 +433,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
             taken = if got == 0 { may } else { taken + got as u64 };
             count.fetch_add(got as u64, Ordering::Relaxed);
             for byte in &bytes[..got] {
-                if let Some(halt) = lines.push(*byte).and_then(|frame| robot.hear(&frame)) {
+                if let Some(halt) = lines.push(*byte).and_then(|frame| robots.receive(&frame)) {
                     let _ = send.send((count.load(Ordering::Relaxed), halt));
                 }
             }

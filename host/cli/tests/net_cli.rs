@@ -4,7 +4,7 @@
 mod running;
 
 use std::net::{SocketAddr, UdpSocket};
-use std::thread;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use running::{PATIENCE, Running};
@@ -113,8 +113,16 @@ fn the_internal_referee_speaks_and_the_simulator_ends_in_order() {
 #[test]
 fn control_says_what_it_waits_for_and_goes_on_when_it_comes() {
     let (vision, referee) = (free(), free());
-    let arguments =
-        ["control", "--robots", "udp://127.0.0.1:9", "--insecure-zero-key", "--tracker", "127.0.0.1:9", "--duration", "60"];
+    let arguments = [
+        "control",
+        "--robots",
+        "udp://127.0.0.1:9",
+        "--insecure-zero-key",
+        "--tracker",
+        "127.0.0.1:9",
+        "--duration",
+        "60",
+    ];
     let mut control =
         Running::start(&[&arguments[..], &["--vision", &vision, "--referee", &referee]].concat());
     let mut waits: Vec<String> = Vec::new();

@@ -35,7 +35,8 @@ pub(super) fn parts(
         .chain(world.theirs(us).map(|robot| wire_robot(Side::Theirs, robot)))
         .take(PARTS_ROBOTS_MAX)
         .collect();
-    let parts = robots.len().div_ceil(WorldPart::robots_max(addressees, situation.placement.is_some())).max(1);
+    let parts =
+        robots.len().div_ceil(WorldPart::robots_max(addressees, situation.placement.is_some())).max(1);
     let per_part = robots.len().div_ceil(parts);
     let ball = world.ball.as_ref().map(wire_ball);
     let part = |part: usize| WorldPart {

@@ -200,7 +200,10 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
         }
         assert!(fresh.quality(id(2)).is_none());
         // 600 ms of recordings, a welcome in 20 ms at most.
-        assert!((1..=31).contains(&welcomes) && commands > 50, "{welcomes} welcomes, {commands} commands to robot 3");
+        assert!(
+            (1..=31).contains(&welcomes) && commands > 50,
+            "{welcomes} welcomes, {commands} commands to robot 3"
+        );
     }
 }
 

@@ -47,8 +47,7 @@ pub enum Why {
 }
 
 impl Why {
-    const ALL: [Self; 6] =
-        [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Stranger, Self::Stale];
+    const ALL: [Self; 6] = [Self::Version, Self::Team, Self::Epoch, Self::Tag, Self::Stranger, Self::Stale];
 
     fn kind(self) -> usize {
         match self {
@@ -72,14 +71,23 @@ impl fmt::Display for RadioWarning {
             ),
             Self::Refuses(robot, why) => {
                 let (what, remedy) = match why {
-                    Why::Version => ("of another protocol version", "flash robots and host with the same release"),
+                    Why::Version => {
+                        ("of another protocol version", "flash robots and host with the same release")
+                    }
                     Why::Team => ("of another team's number", "give each team its own channel"),
                     Why::Epoch => ("of an earlier host", "end the other host"),
-                    Why::Tag => {
-                        ("with a wrong tag", "another host with another key, or an attacker, sends on this channel")
-                    }
-                    Why::Stranger => ("of a sender it does not know", "another host or robot of this team number, or recordings, are on this channel"),
-                    Why::Stale => ("that are over 200 ms old", "the radio is too slow or overloaded, or frames are withheld"),
+                    Why::Tag => (
+                        "with a wrong tag",
+                        "another host with another key, or an attacker, sends on this channel",
+                    ),
+                    Why::Stranger => (
+                        "of a sender it does not know",
+                        "another host or robot of this team number, or recordings, are on this channel",
+                    ),
+                    Why::Stale => (
+                        "that are over 200 ms old",
+                        "the radio is too slow or overloaded, or frames are withheld",
+                    ),
                 };
                 write!(f, "robot {robot} refuses frames {what}: {remedy}")
             }
@@ -94,7 +102,10 @@ impl fmt::Display for RadioWarning {
                 team.0
             ),
             Self::OtherVersion(version) => {
-                write!(f, "frames of protocol version {version} come in: flash robots and host with the same release")
+                write!(
+                    f,
+                    "frames of protocol version {version} come in: flash robots and host with the same release"
+                )
             }
         }
     }
@@ -184,10 +195,7 @@ impl Refusals {
                 rising.goes_on(now) && (*why != Why::Epoch || later.is_none())
             });
             let forged = known.forged.goes_on(now).then_some(RadioWarning::WrongKey(robot));
-            later
-                .into_iter()
-                .chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why)))
-                .chain(forged)
+            later.into_iter().chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why))).chain(forged)
         };
         let (team, version) = (self.team, self.version);
         let team = team.0.goes_on(now).then_some(RadioWarning::OtherTeam(TeamId(team.1)));
@@ -219,7 +227,10 @@ mod tests {
         let warnings: Vec<_> = refusals.warnings(ms(10), 70).collect();
         assert_eq!(warnings, [RadioWarning::LaterHost(id(), 71)]);
         let words = warnings[0].to_string();
-        assert!(words.starts_with("robot 3 refuses this host: a host with a later epoch (71) led it before;"), "{words}");
+        assert!(
+            words.starts_with("robot 3 refuses this host: a host with a later epoch (71) led it before;"),
+            "{words}"
+        );
         assert!(words.ends_with("restart the robot or set this computer's clock"), "{words}");
         assert_eq!(refusals.warnings(ms(10), 72).count(), 0, "that one is earlier: it will be taken over");
         assert_eq!(refusals.warnings(ms(2_010), 70).count(), 0, "it is silent");
@@ -233,7 +244,10 @@ mod tests {
             for n in 0..20_u64 {
                 counts[why.kind()] += 1;
                 refusals.tell(ms(100 * n), id(), &told(counts, 70));
-                if refusals.warnings(ms(100 * n), 70).any(|warning| warning == RadioWarning::Refuses(id(), why)) {
+                if refusals
+                    .warnings(ms(100 * n), 70)
+                    .any(|warning| warning == RadioWarning::Refuses(id(), why))
+                {
                     reported = reported.or(Some(100 * n));
                 }
             }

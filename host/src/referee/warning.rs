@@ -160,7 +160,7 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "{source} is ignored: --referee-source chooses {}",
-                    super::printable(&pin.to_string())
+                    foreign::printable(&pin.to_string())
                 )
             }
         }

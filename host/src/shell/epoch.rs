@@ -64,7 +64,9 @@ fn take(directory: &Path, calendar: u32) -> io::Result<u32> {
     let last = read(&path)?;
     let epoch = match last {
         Some(last) => calendar.max(last.checked_add(1).ok_or_else(|| {
-            io::Error::other("the last epoch is the largest there is: delete the file and restart every robot")
+            io::Error::other(
+                "the last epoch is the largest there is: delete the file and restart every robot",
+            )
         })?),
         None => calendar.max(1),
     };
@@ -87,7 +89,10 @@ fn read(path: &Path) -> io::Result<Option<u32>> {
     }
     let mut text = String::new();
     file.take(FILE_LEN_MAX).read_to_string(&mut text)?;
-    text.trim().parse().map(Some).map_err(|_| io::Error::other("it holds no epoch; delete it and restart every robot"))
+    text.trim()
+        .parse()
+        .map(Some)
+        .map_err(|_| io::Error::other("it holds no epoch; delete it and restart every robot"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use std::io;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use protocol::frame::FRAME_LEN_MAX;
 use protocol::link::Packet;
@@ -16,8 +16,6 @@ use crate::radio::{Relay, To};
 pub struct UdpLink {
     socket: UdpSocket,
     to: SocketAddr,
-    /// When something was last sent.
-    sent: Instant,
 }
 
 impl UdpLink {
@@ -29,29 +27,16 @@ impl UdpLink {
         let socket = bind(to)?;
         // A robots' network may be a broadcast address; where it is not, this does nothing.
         let _ = socket.set_broadcast(true);
-        let link = Self { socket, to, sent: Instant::now() };
-        link.announce()?;
-        Ok(link)
-    }
-
-    /// An empty datagram: no frame, but from it a base station knows where the host is. A host says nothing before it knows a
-    /// robot, and no robot could reach it otherwise.
-    fn announce(&self) -> Result<(), LinkError> {
-        send(&self.socket, self.to, &[])
+        Ok(Self { socket, to })
     }
 }
 
 impl Link for UdpLink {
     fn send(&mut self, _to: To, packet: &[u8]) -> Result<(), LinkError> {
-        self.sent = Instant::now();
         send(&self.socket, self.to, packet)
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<Packet>, LinkError> {
-        if self.sent.elapsed() >= ANNOUNCE_EVERY {
-            self.sent = Instant::now();
-            self.announce()?;
-        }
         receive(&self.socket, wait).map(|came| came.map(|(packet, _)| packet))
     }
 
@@ -108,8 +93,6 @@ fn passes(kind: io::ErrorKind) -> bool {
     matches!(kind, ConnectionRefused | ConnectionReset | Interrupted | TimedOut | WouldBlock)
 }
 
-/// A host that has nothing to send announces itself this often.
-const ANNOUNCE_EVERY: Duration = Duration::from_millis(500);
 /// The shortest wait that a socket can be told.
 const WAIT_MIN: Duration = Duration::from_micros(1);
 
@@ -123,8 +106,6 @@ mod tests {
     fn frames_go_out_and_come_back() {
         let station = UdpSocket::bind("127.0.0.1:0").unwrap();
         let mut link = UdpLink::open(&station.local_addr().unwrap().to_string()).unwrap();
-        let (announced, _) = receive(&station, SECOND).unwrap().unwrap();
-        assert!(announced.is_empty(), "the station knows the host before it knows a robot");
         link.send(To::All, &[1; 30]).unwrap();
         let (frame, from) = receive(&station, SECOND).unwrap().unwrap();
         assert_eq!(frame[..], [1; 30]);

@@ -79,7 +79,10 @@ pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
 pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     let ahead = if ours { 1.0 } else { -1.0 };
     let mark = Point::new(ahead * (view.field.length * 0.5 - view.field.penalty_mark), 0.0);
-    let lies = view.ball.map(|ball| ball.position).filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
+    let lies = view
+        .ball
+        .map(|ball| ball.position)
+        .filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
     view.placement.or(lies).unwrap_or(mark)
 }
 
@@ -212,7 +215,9 @@ mod tests {
 
     #[test]
     fn behind_a_goal_a_ball_is_out_of_reach_where_no_body_fits() {
-        let reach = |league: League, x, y| is_out_of_reach(&View::still(league.field(), Point::new(0.0, 0.0), [], []), Point::new(x, y));
+        let reach = |league: League, x, y| {
+            is_out_of_reach(&View::still(league.field(), Point::new(0.0, 0.0), [], []), Point::new(x, y))
+        };
         assert!(reach(League::DivisionB, 4.75, 0.3) && reach(League::DivisionB, -4.75, -0.3));
         assert!(!reach(League::DivisionB, 4.6, 0.3), "in the goal");
         assert!(!reach(League::DivisionB, 4.75, 0.7), "beside it");

@@ -83,7 +83,10 @@ fn a_fresh_host_believes_no_recording() {
     let mut fresh = HostLink::new(TEAM, KEY, 71);
     for packet in recorded.iter().chain(&recorded) {
         let opened = fresh.open(ms(5), packet);
-        assert!(matches!(opened, Ok(Opened::Stranger(..)) | Err(Refusal::Stranger { epoch: 9 })), "{opened:?}");
+        assert!(
+            matches!(opened, Ok(Opened::Stranger(..)) | Err(Refusal::Stranger { epoch: 9 })),
+            "{opened:?}"
+        );
     }
     assert_eq!(fresh.life(id(2)), None);
     // The robot itself is welcomed, and believed.

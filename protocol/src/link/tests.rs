@@ -3,9 +3,9 @@
 extern crate std;
 
 use super::*;
-use crate::host::{Command, Directive, Duty, WorldPart};
 use crate::frame::{Audience, TeamKey};
 use crate::host::Welcome;
+use crate::host::{Command, Directive, Duty, WorldPart};
 use crate::host_link::{HostLink, Opened};
 use crate::team::{Beacon, Progress, Role, Status};
 use rules::Phase;
@@ -135,7 +135,8 @@ fn a_host_is_a_stranger_until_it_welcomes_this_life_of_this_robot() {
 #[test]
 fn after_a_boot_a_recording_of_the_host_moves_nobody() {
     let (mut before, mut host) = acquainted();
-    let recorded = [host.seal(NOW, &welcome(2, 9)), host.seal(NOW, &stand(2)), host.seal(NOW, &world(0, 0, 1))];
+    let recorded =
+        [host.seal(NOW, &welcome(2, 9)), host.seal(NOW, &stand(2)), host.seal(NOW, &world(0, 0, 1))];
     for packet in &recorded {
         assert!(before.open(NOW, packet).is_ok());
     }
@@ -176,7 +177,11 @@ fn telemetry_of(battery: u16) -> TeamMessage {
 fn a_part_that_cannot_be_is_no_message() {
     let (mut a, mut host) = acquainted();
     for (part, parts) in [(0, 0), (2, 2), (3, 2), (0, PARTS_MAX as u8 + 1), (255, 255)] {
-        assert_eq!(a.open(NOW, &host.seal(NOW, &world(1, part, parts))), Err(Refusal::Payload), "{part} of {parts}");
+        assert_eq!(
+            a.open(NOW, &host.seal(NOW, &world(1, part, parts))),
+            Err(Refusal::Payload),
+            "{part} of {parts}"
+        );
     }
     let mut payload = [0; 64];
     let len = postcard::to_slice(&stand(2), &mut payload).unwrap().len();
@@ -250,14 +255,17 @@ fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
 #[test]
 fn a_frame_that_was_withheld_is_stale_after_200_ms_and_moves_nothing() {
     let (mut a, mut host) = acquainted();
-    let withheld: std::vec::Vec<Packet> = (0..50).map(|n| host.seal(NOW + Duration::millis(10 * n), &stand(2))).collect();
+    let withheld: std::vec::Vec<Packet> =
+        (0..50).map(|n| host.seal(NOW + Duration::millis(10 * n), &stand(2))).collect();
     // Delivered one after the other, each 10 ms after the last: the first one 250 ms late.
     for (n, packet) in (0..).zip(&withheld) {
         assert_eq!(a.open(NOW + Duration::millis(250 + 10 * n), packet), Err(Refusal::Stale), "{n}");
     }
     let now = NOW + Duration::millis(800);
     let fresh = host.seal(now, &stand(2));
-    assert!(matches!(a.open(now + Duration::millis(150), &fresh), Ok(Heard::Host(_, age)) if age.0 > 149_000));
+    assert!(
+        matches!(a.open(now + Duration::millis(150), &fresh), Ok(Heard::Host(_, age)) if age.0 > 149_000)
+    );
 }
 
 #[test]

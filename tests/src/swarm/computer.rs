@@ -52,7 +52,12 @@ impl<'a> Backend<'a> for Barracks<'a> {
         let clock = Clock::drawn(plan, id, config.epoch);
         let madness = plan.madness.iter().filter(|(robot, ..)| *robot == id);
         Ok(Box::new(Computer {
-            station: Station::with_keys(clock.at(Instant(0)), config, self.base, plan.key.of_robot(config.robot)),
+            station: Station::with_keys(
+                clock.at(Instant(0)),
+                config,
+                self.base,
+                plan.key.of_robot(config.robot),
+            ),
             id,
             clock,
             tick_ms: plan.squad.tick_ms(),

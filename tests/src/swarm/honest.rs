@@ -114,8 +114,7 @@ impl Honest {
             return Some(Believed::Mate(RobotId::new(packet[2])?, message));
         }
         let message: HostMessage = postcard::from_bytes(payload).ok()?;
-        let welcomes =
-            |welcome: &Welcome| (welcome.to, welcome.life) == (self.me, self.life);
+        let welcomes = |welcome: &Welcome| (welcome.to, welcome.life) == (self.me, self.life);
         if !known && !matches!(&message, HostMessage::Welcome(welcome) if welcomes(welcome)) {
             return None;
         }

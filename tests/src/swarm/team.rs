@@ -73,7 +73,9 @@ impl TeamWatch {
 
     /// A robot said this.
     pub(super) fn said(&mut self, ms: u32, plan: &Plan, packet: &Packet) {
-        let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key.of_team()) else { return };
+        let Ok((from, TeamMessage::Beacon(beacon))) = overhear(packet, TEAM, &plan.key.of_team()) else {
+            return;
+        };
         if let Some(cycle) = &beacon.cycle {
             let players = cycle.play().map_or(&[][..], |play| &play.robots[..]);
             let ghost = players.iter().chain([&cycle.coordinator]).find(|id| !self.ids.contains(id));

@@ -9,11 +9,13 @@ use host::shell::{epoch, key};
 use protocol::frame::TeamKey;
 
 use crate::Failure;
+use crate::output::note;
 
 /// The team's key: the file's, or zeros where that is allowed.
 pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
     let failed = |words: String| Failure::Network(words);
-    let read = config.key_file.as_deref().map(key::read).transpose().map_err(|error| failed(error.to_string()))?;
+    let read =
+        config.key_file.as_deref().map(key::read).transpose().map_err(|error| failed(error.to_string()))?;
     let key = read.as_ref().map_or(TeamKey::ZERO, |read| read.key);
     let link = match &config.robots {
         RobotLink::Simulator(_) => None,
@@ -31,7 +33,7 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
         )));
     }
     if let Some(warning) = read.and_then(|read| read.warning) {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     Ok(key)
 }
@@ -45,7 +47,7 @@ pub(super) fn this_epoch(config: &TeamConfig) -> u32 {
     }
     let epoch = epoch::next(epoch::state_directory().as_deref(), calendar);
     if let Some(warning) = epoch.warning {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     epoch.epoch
 }
@@ -56,7 +58,11 @@ mod tests {
     use host::config::TeamSettings;
 
     fn key_for(robots: &str, key: Option<&str>, insecure: bool) -> Result<TeamKey, String> {
-        let path = std::env::temp_dir().join(format!("onetwo-identity-{}-{}", std::process::id(), key.unwrap_or("none")));
+        let path = std::env::temp_dir().join(format!(
+            "onetwo-identity-{}-{}",
+            std::process::id(),
+            key.unwrap_or("none")
+        ));
         if let Some(key) = key {
             std::fs::write(&path, key).unwrap();
         }
@@ -77,7 +83,10 @@ mod tests {
         for robots in ["udp://127.0.0.1:9", "serial:/dev/ttyACM0"] {
             for key in [None, Some(&*zeros)] {
                 let words = key_for(robots, key, false).unwrap_err();
-                assert!(words.contains("openssl rand -hex 16") && words.contains("--insecure-zero-key"), "{words}");
+                assert!(
+                    words.contains("openssl rand -hex 16") && words.contains("--insecure-zero-key"),
+                    "{words}"
+                );
                 assert!(key_for(robots, key, true) == Ok(TeamKey::ZERO));
             }
             assert!(key_for(robots, Some(&own), false).is_ok());

@@ -54,6 +54,9 @@ mod tests {
             said.extend(alarms.look(now, &radio).into_iter().map(|words| (n, words)));
         }
         assert_eq!(said.iter().map(|(n, _)| *n).collect::<Vec<_>>(), [0, 100, 200]);
-        assert!(said[0].1.contains("robot 3 refuses this host") && said[0].1.contains("set this computer's clock"));
+        assert!(
+            said[0].1.contains("robot 3 refuses this host")
+                && said[0].1.contains("set this computer's clock")
+        );
     }
 }

@@ -12,7 +12,7 @@ use rules::League;
 
 use super::{at, failed};
 use crate::Failure;
-use crate::output::say;
+use crate::output::{note, say};
 
 /// Who the robot shall be.
 #[derive(Debug, Args)]
@@ -65,14 +65,23 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
         RobotId::new(args.robot).ok_or_else(|| failed(format!("robot {} is none of 0–15", args.robot)))?;
     let key = host::shell::key::read(&args.key_file).map_err(failed)?;
     if let Some(warning) = &key.warning {
-        eprintln!("onetwo: {warning}");
+        note!("onetwo: {warning}");
     }
-    let who = Provision { robot, team: TeamId(args.team), league: args.league.league(), keys: key.key.of_robot(robot) };
+    let who = Provision {
+        robot,
+        team: TeamId(args.team),
+        league: args.league.league(),
+        keys: key.key.of_robot(robot),
+    };
     let bytes: [u8; PAGE_LEN] = page(&who);
     // The robot's own reading of it: a key of zeros is refused here already.
     read(&bytes, false).map_err(failed)?;
     write_for_owner(&args.out, &bytes).map_err(|error| at(&args.out, error))?;
-    say(&format!("{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n", args.out.display(), args.team))
+    say(&format!(
+        "{}: robot {robot} of team {}; it holds this robot's keys, not the team's\n",
+        args.out.display(),
+        args.team
+    ))
 }
 
 /// A file that its owner alone can read, for it holds a key.

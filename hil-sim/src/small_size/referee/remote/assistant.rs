@@ -265,6 +265,10 @@ impl fmt::Display for Deed {
                 let at = pose.position;
                 write!(f, "puts {} in at ({:.2}, {:.2}) m", name(who), at.x(), at.y())?;
             }
+            WorldOrder::CarryRobot(who, pose) => {
+                let at = pose.position;
+                write!(f, "carries {} to ({:.2}, {:.2}) m", name(who), at.x(), at.y())?;
+            }
         }
         write!(f, ": {}", self.why)
     }
