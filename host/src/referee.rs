@@ -156,13 +156,12 @@ impl Listener {
         }
         let before = self.source().cloned();
         let known = self.sources.iter_mut().find(|source| source.key == key);
-        let mut outcome = match known {
-            Some(source) => source.hear(packet, now, ball),
-            None => {
-                let (source, taken) = Source::new(key.clone(), packet, now, ball);
-                self.admit(source, now);
-                Outcome::Taken(taken)
-            }
+        let mut outcome = if let Some(source) = known {
+            source.hear(packet, now, ball)
+        } else {
+            let (source, taken) = Source::new(key.clone(), packet, now, ball);
+            self.admit(source, now);
+            Outcome::Taken(taken)
         };
         self.count(&outcome);
         self.settle(now);
