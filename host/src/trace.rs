@@ -393,7 +393,7 @@ mod tests {
                         End::Whole
                     } else {
                         let last = [Instant(10), Instant(20)].into_iter().take(whole).last();
-                        End::Cut { at: begins[whole], last }
+                        End::Cut { at: begins[whole] as u64, last }
                     };
                     assert_eq!(reader.end(), Some(&expected), "{cut}");
                 }
