@@ -1,6 +1,7 @@
 //! Are the built-in libraries sound, and what do their tables look like? `cases/<league>/` → one blob each.
 //!
 //! A faulty library fails the build with its findings; doubts are shown as warnings of the build.
+#![forbid(unsafe_code)]
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -8,6 +8,7 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no bytes of a table, no problem and no setting can panic. It
 //! knows nothing of files (`case-tools` does) and of radio. Runs on robots and on the host alike.
+#![forbid(unsafe_code)]
 #![no_std]
 
 pub mod action;

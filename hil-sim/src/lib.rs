@@ -9,6 +9,7 @@
 //! same bits: no clock, one stream of chance per subsystem, fixed order of every loop, `geometry::math` only.
 //!
 //! **Invariants.** It never links `host`; robots learn of the truth through [`sensors`] alone; no I/O but the back end's.
+#![forbid(unsafe_code)]
 
 mod air;
 mod fault;

@@ -24,6 +24,7 @@ use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
+use foreign::excerpt;
 use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
@@ -150,10 +151,24 @@ fn error(key: &str, words: impl Into<String>) -> ConfigError {
     ConfigError { key: key.to_owned(), words: words.into() }
 }
 
+/// What is wrong in a file of settings, and where; of a long line its begin.
+fn place_of(text: &str, broken: &toml::de::Error) -> String {
+    let what = excerpt(broken.message(), MESSAGE_LEN);
+    let before = broken.span().and_then(|span| text.get(..span.start));
+    let Some(number) = before.map(|before| before.matches('\n').count()) else { return what };
+    let line = text.lines().nth(number).unwrap_or_default();
+    format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_LEN))
+}
+
+/// As much of an error in a file of settings as is shown, characters.
+const MESSAGE_LEN: usize = 300;
+/// As much of its line.
+const LINE_LEN: usize = 80;
+
 impl TeamSettings {
     /// Reads `team.toml`.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
-        toml::from_str(text).map_err(|broken| error("team.toml", broken.to_string()))
+        toml::from_str(text).map_err(|broken| error("team.toml", place_of(text, &broken)))
     }
 
     /// These settings where they say something, else those.
@@ -307,6 +322,16 @@ mod tests {
         for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
             assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
         }
+    }
+
+    #[test]
+    fn a_broken_line_is_told_with_its_place_and_without_its_length() {
+        let refused = |text: &str| TeamSettings::from_toml(text).unwrap_err().words;
+        let words = refused(&format!("colour = \"blue\"\nname = {}\n", "x".repeat(1_000_000)));
+        assert!(words.starts_with("line 2: "), "{words}");
+        assert!(words.len() < 600, "{} bytes", words.len());
+        let words = refused("name = \"a\"\nkeeper = \u{1b}[2J\u{1b}]0;pwn\u{7}");
+        assert!(words.contains("line 2") && !words.contains(char::is_control), "{words:?}");
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //!
 //! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl` only. Same input,
 //! same decisions.
+#![forbid(unsafe_code)]
 
 pub mod config;
 pub mod geometry;

@@ -155,6 +155,12 @@ impl Recheck {
         }
     }
 
+    /// Whether a host said packets that the record has not, after its last input and nowhere before: the record of a match that was
+    /// cut there.
+    pub fn is_unfinished(&self) -> bool {
+        self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
+    }
+
     /// Host by host, in the header's order: what it was fed, and where it parts from the record.
     pub fn results(&self) -> impl Iterator<Item = (Counts, Option<&Difference>)> {
         self.hosts.iter().map(|checked| (checked.counts, checked.difference.as_ref()))

@@ -37,7 +37,7 @@ use ssl::referee::Referee;
 use source::{Outcome, Source, Strictness};
 
 pub use game::{Game, TeamAccount};
-pub use identity::{SenderAddress, SourceKey, SourcePin, printable};
+pub use identity::{SenderAddress, SourceKey, SourcePin};
 pub use source::{CONFIRM, HOLD};
 pub use stamps::WINDOW;
 pub use verdict::{Counts, Doubt, Taken, Verdict};
@@ -156,13 +156,12 @@ impl Listener {
         }
         let before = self.source().cloned();
         let known = self.sources.iter_mut().find(|source| source.key == key);
-        let mut outcome = match known {
-            Some(source) => source.hear(packet, now, ball),
-            None => {
-                let (source, taken) = Source::new(key.clone(), packet, now, ball);
-                self.admit(source, now);
-                Outcome::Taken(taken)
-            }
+        let mut outcome = if let Some(source) = known {
+            source.hear(packet, now, ball)
+        } else {
+            let (source, taken) = Source::new(key.clone(), packet, now, ball);
+            self.admit(source, now);
+            Outcome::Taken(taken)
         };
         self.count(&outcome);
         self.settle(now);

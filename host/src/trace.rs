@@ -10,7 +10,8 @@
 //! recorder could not keep up from then on.
 //!
 //! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
-//! before the cut and says that it was cut. Compression is the file's business, not this format's.
+//! before the cut and says that it was cut, and where. Compression is the file's business, not this format's: where it ends before
+//! its own end mark (gzip's checksum) the trace is cut, even if the last record is whole.
 
 use std::fmt;
 use std::io::{self, Read, Write};
@@ -110,6 +111,11 @@ impl<W: Write> Writer<W> {
         bytes.iter().try_for_each(|part| self.out.write_all(part))
     }
 
+    /// Writes what is buffered: a reader of what is then in the file finds every record so far.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
     /// Gives back what is written to.
     pub fn into_inner(self) -> W {
         self.out
@@ -127,6 +133,10 @@ pub struct Reader<R: Read> {
     version: u32,
     header: String,
     end: Option<End>,
+    /// Where the next record begins.
+    at: u64,
+    /// When the last one was.
+    last: Option<Instant>,
 }
 
 /// How a trace ended.
@@ -134,15 +144,56 @@ pub struct Reader<R: Read> {
 pub enum End {
     /// After a whole record.
     Whole,
-    /// Within a record.
-    Cut,
     /// Where the recorder could not keep up.
-    Lost,
-    /// A record that cannot be one.
+    Lost {
+        /// When.
+        at: Instant,
+    },
+    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or the file was not
+    /// copied whole.
+    Cut {
+        /// Where the first record that is missing begins, bytes of the uncompressed trace.
+        at: u64,
+        /// When the last whole record was.
+        last: Option<Instant>,
+    },
+    /// At a record that cannot be one, or that cannot be read.
     Broken {
+        /// Where it begins, bytes of the uncompressed trace.
+        at: u64,
         /// What is wrong with it.
         what: String,
     },
+}
+
+impl End {
+    /// Did the trace end as it should?
+    pub const fn is_whole(&self) -> bool {
+        matches!(self, Self::Whole)
+    }
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("whole"),
+            Self::Cut { at, last: Some(last) } => {
+                let seconds = last.0 as f64 * 1e-6;
+                write!(f, "cut at byte {at}, after the record at {seconds:.6} s; all before it was read")
+            }
+            Self::Cut { at, last: None } => write!(f, "cut at byte {at}, before its first record"),
+            Self::Lost { at } => {
+                let seconds = at.0 as f64 * 1e-6;
+                write!(
+                    f,
+                    "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read"
+                )
+            }
+            Self::Broken { at, what } => {
+                write!(f, "damaged at byte {at}: {what}; all before it was read")
+            }
+        }
+    }
 }
 
 /// Why a file is no trace.
@@ -208,7 +259,8 @@ impl<R: Read> Reader<R> {
         let mut header = vec![0; length];
         from.read_exact(&mut header)?;
         let header = String::from_utf8(header).map_err(|_| TraceError::Header)?;
-        Ok(Self { from, version, header, end: None })
+        let at = (MAGIC.len() + 2 * word.len() + header.len()) as u64;
+        Ok(Self { from, version, header, end: None, at, last: None })
     }
 
     /// What was said at its beginning: JSON.
@@ -222,31 +274,37 @@ impl<R: Read> Reader<R> {
     }
 
     fn read(&mut self) -> Result<Record, End> {
+        let (begin, last) = (self.at, self.last);
+        let cut = || End::Cut { at: begin, last };
+        let broken = |what: String| End::Broken { at: begin, what };
+        // A compressed stream that stops in its middle is a cut file; anything else is damage.
+        let failed = |error: io::Error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => cut(),
+            _ => broken(error.to_string()),
+        };
         let mut head = [0; 14];
-        let got = fill(&mut self.from, &mut head);
-        if got == 0 {
-            return Err(End::Whole);
-        }
-        if got < head.len() {
-            return Err(End::Cut);
+        match fill(&mut self.from, &mut head).map_err(failed)? {
+            0 => return Err(End::Whole),
+            got if got < head.len() => return Err(cut()),
+            _ => {}
         }
         let [t0, t1, t2, t3, t4, t5, t6, t7, host, kind, l0, l1, l2, l3] = head;
         let length = u32::from_le_bytes([l0, l1, l2, l3]) as usize;
-        let kind = Kind::from_byte(kind)
-            .ok_or_else(|| End::Broken { what: format!("no record is of kind {kind}") })?;
+        let kind = Kind::from_byte(kind).ok_or_else(|| broken(format!("no record is of kind {kind}")))?;
         if length > RECORD_LEN_MAX {
-            return Err(End::Broken {
-                what: format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written"),
-            });
+            return Err(broken(format!("a record of {length} bytes; at most {RECORD_LEN_MAX} are written")));
         }
         let mut bytes = vec![0; length];
-        if fill(&mut self.from, &mut bytes) < length {
-            return Err(End::Cut);
+        if fill(&mut self.from, &mut bytes).map_err(failed)? < length {
+            return Err(cut());
         }
         let at = Instant(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
+        self.at += (head.len() + length) as u64;
+        self.last = Some(at);
         let from = match kind {
-            Kind::Lost => return Err(End::Lost),
-            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)?,
+            Kind::Lost => return Err(End::Lost { at }),
+            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
+                .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };
         Ok(Record { at, host, kind, from, bytes })
@@ -254,28 +312,25 @@ impl<R: Read> Reader<R> {
 }
 
 /// Takes the sender from the beginning of a referee's record.
-fn take_sender(bytes: &mut Vec<u8>) -> Result<SenderAddress, End> {
-    let Some((sender, packet)) = bytes.split_first_chunk() else {
-        return Err(End::Broken {
-            what: format!("a referee's record of {} bytes has no sender", bytes.len()),
-        });
-    };
+fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
+    let (sender, packet) = bytes.split_first_chunk()?;
     let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());
     *bytes = packet;
-    Ok(sender)
+    Some(sender)
 }
 
-/// As much of `into` as there is; a read that fails (a damaged compressed file, too) ends it.
-fn fill(from: &mut impl Read, into: &mut [u8]) -> usize {
+/// As much of `into` as there is.
+fn fill(from: &mut impl Read, into: &mut [u8]) -> io::Result<usize> {
     let mut done = 0;
     while done < into.len() {
         match from.read(&mut into[done..]) {
-            Ok(n) if n > 0 => done += n,
+            Ok(0) => break,
+            Ok(n) => done += n,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            _ => break,
+            Err(error) => return Err(error),
         }
     }
-    done
+    Ok(done)
 }
 
 impl<R: Read> Iterator for Reader<R> {
@@ -333,10 +388,59 @@ mod tests {
                     let got = reader.by_ref().count();
                     let whole = [30 + 17, 30 + 17 + 14].iter().filter(|end| **end <= cut).count();
                     assert_eq!(got, whole, "{cut}");
-                    let clean = [30, 47, 61].contains(&cut);
-                    assert_eq!(reader.end() == Some(&End::Whole), clean, "{cut}");
+                    let begins = [30, 47, 61];
+                    let expected = if begins.contains(&cut) {
+                        End::Whole
+                    } else {
+                        let last = [Instant(10), Instant(20)].into_iter().take(whole).last();
+                        End::Cut { at: begins[whole], last }
+                    };
+                    assert_eq!(reader.end(), Some(&expected), "{cut}");
                 }
             }
+        }
+    }
+
+    /// As a recording lies on the disk, with what is flushed after each record.
+    fn zipped() -> (Vec<u8>, Vec<usize>) {
+        let zip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        let mut writer = Writer::new(zip, r#"{"seed":7}"#).unwrap();
+        let mut flushed = Vec::new();
+        for number in 0..20_u8 {
+            writer.write(Instant(u64::from(number)), 0, Kind::Vision, &[&[number; 90]]).unwrap();
+            writer.flush().unwrap();
+            flushed.push(writer.out.get_ref().len());
+        }
+        (writer.into_inner().finish().unwrap(), flushed)
+    }
+
+    #[test]
+    fn a_gzipped_trace_cut_at_any_byte_is_cut_even_between_two_records() {
+        let (bytes, flushed) = zipped();
+        for cut in 0..bytes.len() {
+            let zip = flate2::bufread::MultiGzDecoder::new(&bytes[..cut]);
+            let Ok(mut reader) = Reader::new(zip) else { continue };
+            let got = reader.by_ref().count();
+            let whole = flushed.iter().filter(|at| **at <= cut).count();
+            assert!(got >= whole, "{cut}: {got} of {whole} records that were flushed");
+            let last = got.checked_sub(1).map(|last| Instant(last as u64));
+            assert_eq!(reader.end(), Some(&End::Cut { at: 30 + 104 * got as u64, last }), "{cut}");
+        }
+        let mut reader = Reader::new(flate2::bufread::MultiGzDecoder::new(&bytes[..])).unwrap();
+        assert_eq!((reader.by_ref().count(), reader.end()), (20, Some(&End::Whole)));
+    }
+
+    #[test]
+    fn a_gzipped_trace_with_a_damaged_byte_is_never_whole() {
+        let (bytes, _) = zipped();
+        // Byte 4 to 9 are gzip's time, flags and system: no part of the trace.
+        for at in 10..bytes.len() {
+            let mut bytes = bytes.clone();
+            bytes[at] ^= 0x55;
+            let zip = flate2::bufread::MultiGzDecoder::new(&bytes[..]);
+            let Ok(mut reader) = Reader::new(zip) else { continue };
+            assert!(reader.by_ref().count() <= 20);
+            assert!(!reader.end().unwrap().is_whole(), "{at}");
         }
     }
 
@@ -349,7 +453,7 @@ mod tests {
         bytes[30 + 9] = 77;
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.by_ref().count(), 0);
-        assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("77")));
+        assert!(matches!(reader.end(), Some(End::Broken { at: 30, what }) if what.contains("77")));
     }
 
     #[test]
@@ -369,7 +473,7 @@ mod tests {
         let bytes = writer.into_inner();
         let mut reader = Reader::new(&bytes[..]).unwrap();
         assert_eq!(reader.next(), None);
-        assert!(matches!(reader.end(), Some(End::Broken { what }) if what.contains("no sender")));
+        assert!(matches!(reader.end(), Some(End::Broken { what, .. }) if what.contains("no sender")));
     }
 
     #[test]
@@ -379,7 +483,7 @@ mod tests {
         writer.write(Instant(2), 0, Kind::Lost, &[]).unwrap();
         let bytes = writer.into_inner();
         let mut reader = Reader::new(&bytes[..]).unwrap();
-        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&End::Lost)));
+        assert_eq!((reader.by_ref().count(), reader.end()), (1, Some(&End::Lost { at: Instant(2) })));
     }
 
     #[test]

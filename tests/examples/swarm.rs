@@ -1,18 +1,72 @@
-//! Does a team stay safe whatever goes wrong? `cargo xtask swarm --seeds 10000 [--first N] [--jobs J]`
+//! `swarm`: plays many runs drawn from seeds and holds them to what is promised.
+//! `cargo xtask swarm [--plan faults|referee] --seeds 10000 [--first N] [--jobs J]`
 //!
-//! Prints what the runs came to; a run that breaks a promise is told with the line that repeats it, and the exit code is 1.
+//! `faults`: a team with faults of radio, clocks and sensors. `referee`: matches of 60 s with cards, keeper changes, restarts and
+//! halts. Prints what the runs came to; a run that breaks a promise is told with the line that repeats it, and the exit code is 1.
 
 use std::io::IsTerminal as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use match_tests::swarm::{Runs, watch, words};
+use match_tests::swarm::matches::{self, Sum};
+use match_tests::swarm::{Runs, watch, watch_matches, words};
 
 fn main() -> ExitCode {
-    let Some(runs) = arguments(std::env::args().skip(1)) else {
-        eprintln!("usage: cargo xtask swarm [--seeds N] [--first N] [--jobs J]");
+    let Some((plan, runs)) = arguments(std::env::args().skip(1)) else {
+        eprintln!("usage: cargo xtask swarm [--plan faults|referee] [--seeds N] [--first N] [--jobs J]");
         return ExitCode::from(2);
     };
+    match plan {
+        Which::Faults => faults(runs),
+        Which::Referee => referee(runs),
+    }
+}
+
+/// Which plan draws the runs.
+#[derive(Clone, Copy)]
+enum Which {
+    Faults,
+    Referee,
+}
+
+/// Matches under the referee's plan; each that broke a promise is told at once.
+fn referee(runs: Runs) -> ExitCode {
+    let begin = Instant::now();
+    let ended = watch_matches(runs, |done, (plan, outcome)| {
+        if !outcome.found.is_empty() {
+            println!("{}", matches::words(plan, outcome));
+        }
+        if done.is_multiple_of(10) {
+            eprintln!("{done} of {} matches", runs.seeds);
+        }
+    });
+    let mut sum = Sum::default();
+    for (_, outcome) in &ended {
+        sum.add(outcome);
+    }
+    let broken = ended.iter().filter(|(_, outcome)| !outcome.found.is_empty()).count();
+    for (kind, matches) in &sum.kinds {
+        println!("{matches:5} matches: {kind}");
+    }
+    let Runs { first, seeds, .. } = runs;
+    let kept = ended.len() - broken;
+    println!("seeds {first} to {}: {broken} broke a promise, {kept} kept all", first + seeds - 1);
+    let matches::Outcome { running_s, blocked_s, acts, taken_off, begun, .. } = &sum.all;
+    println!(
+        "{running_s:.0} s in play, {blocked_s:.0} s blocked; {acts} acts of people; {} penalties, {} kick-offs, {} free kicks, {} \
+         placements and {} that failed; {taken_off} robots taken off by hand; {:.0} s",
+        begun[0],
+        begun[1],
+        begun[2],
+        begun[3],
+        begun[4],
+        begin.elapsed().as_secs_f64()
+    );
+    if broken == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Runs of a team under faults.
+fn faults(runs: Runs) -> ExitCode {
     let (begin, shown) = (Instant::now(), std::io::stderr().is_terminal());
     let (tally, broken) = watch(runs, |done| {
         if shown && done.is_multiple_of(50) {
@@ -47,19 +101,22 @@ fn main() -> ExitCode {
     if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn arguments(mut words: impl Iterator<Item = String>) -> Option<Runs> {
+fn arguments(mut words: impl Iterator<Item = String>) -> Option<(Which, Runs)> {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let mut runs = Runs { first: 0, seeds: 100, jobs };
+    let (mut plan, mut runs) = (Which::Faults, Runs { first: 0, seeds: 100, jobs });
     while let Some(word) = words.next() {
-        let value: u64 = words.next()?.parse().ok()?;
+        let value = words.next()?;
+        let number = || value.parse::<u64>().ok();
         match word.as_str() {
-            "--seeds" if value > 0 => runs.seeds = value,
-            "--first" => runs.first = value,
-            "--jobs" if value > 0 => runs.jobs = value as usize,
+            "--plan" if value == "faults" => plan = Which::Faults,
+            "--plan" if value == "referee" => plan = Which::Referee,
+            "--seeds" => runs.seeds = number().filter(|seeds| *seeds > 0)?,
+            "--first" | "--from" => runs.first = number()?,
+            "--jobs" => runs.jobs = number().filter(|jobs| *jobs > 0)? as usize,
             _ => return None,
         }
     }
-    Some(runs)
+    Some((plan, runs))
 }
 
 /// Of many that fail the first are told.

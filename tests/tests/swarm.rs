@@ -1,6 +1,7 @@
-//! Does a team stay safe under faults drawn at random, and play again when they are over? A hundred runs; `cargo xtask swarm
-//! --seeds 10000` plays more.
+//! `swarm`: samples of the runs that `cargo xtask swarm` plays by the thousand. A hundred runs of a team under faults drawn at random,
+//! and two short matches under the referee's plan.
 
+use match_tests::swarm::matches::{self, Plan};
 use match_tests::swarm::{Runs, run, watch, words};
 
 const SEEDS: u64 = 100;
@@ -21,4 +22,19 @@ fn a_seed_gives_the_same_run_on_any_number_of_threads() {
     let play = |jobs| watch(Runs { first: 40, seeds: 6, jobs }, |_| {}).0;
     assert_eq!(play(1), play(3));
     assert_eq!(run(41), run(41));
+}
+
+/// So long a match of this sample is, ms: kick-off, and some four acts of people.
+const SHORT: u32 = 25_000;
+
+#[test]
+fn short_matches_with_cards_restarts_and_halts_keep_every_promise() {
+    // One of each division.
+    for seed in [0, 1] {
+        let plan = Plan::drawn(seed, SHORT);
+        let outcome = matches::play(&plan);
+        assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
+        // The match was no empty one.
+        assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
+    }
 }

@@ -131,6 +131,30 @@ fn robots_crates_do_no_io() {
 }
 
 #[test]
+fn a_crate_without_unsafe_forbids_it() {
+    let mut findings = Vec::new();
+    for Manifest { folder, .. } in members() {
+        let own = [folder.clone()];
+        let sources: Vec<_> = rust_sources().into_iter().filter(|source| source.is_under(&own)).collect();
+        let roots = ["lib.rs", "main.rs"].map(|name| format!("{folder}/src/{name}"));
+        let is_root = |source: &&Source| roots.contains(&source.path);
+        let uses = |source: &Source| {
+            source.code().any(|(_, line)| line.contains("unsafe ") || line.contains("unsafe("))
+        };
+        if sources.iter().any(uses) {
+            continue;
+        }
+        let forbids = |source: &Source| source.text.contains("forbid(unsafe_code)");
+        for root in sources.iter().filter(is_root).filter(|root| !forbids(root)) {
+            findings.push(
+                root.at(1, "no `#![forbid(unsafe_code)]`", "add it: the crate has no `unsafe`").to_string(),
+            );
+        }
+    }
+    assert!(findings.is_empty(), "\n{}", findings.join("\n"));
+}
+
+#[test]
 fn dependencies_point_one_way() {
     let crates: BTreeMap<String, Manifest> = members().into_iter().map(|m| (m.name.clone(), m)).collect();
     let mut findings = upward(&crates);
@@ -274,13 +298,14 @@ const PURE: [&str; 10] = [
 ];
 
 /// DESIGN §1; a crate depends on earlier ones only.
-const LOWEST_FIRST: [&str; 29] = [
+const LOWEST_FIRST: [&str; 30] = [
     "geometry",
     "rules",
     "protocol",
     "motion",
     "motion-bench",
     "radio-bench",
+    "foreign",
     "ssl",
     "casebase",
     "drawing",

@@ -85,8 +85,9 @@ const fn handed_on(
 static CHORES: [Chore; 18] = [
     handed_on(
         "swarm",
-        "[--seeds N] [--first N] [--jobs J]",
-        "play N runs (100 if not told) with faults drawn from their seeds, and hold them to what is promised",
+        "[--plan faults|referee] [--seeds N] [--first N] [--jobs J]",
+        "play N runs (100 if not said) drawn from their seeds, and hold them to what is promised: a team with faults of radio,\n\
+        \x20                clocks and sensors, or matches of 60 s with cards, keeper changes, penalties, halts and restarts",
         |context, words| bench::start_example(context, "swarm", words),
     ),
     handed_on(

@@ -2,11 +2,13 @@
 //!
 //! It installs what is missing or says what to install, runs every step whatever failed before, and tells all
 //! failures last, each with the command that repeats it.
+#![forbid(unsafe_code)]
 
 mod bench;
 mod chores;
 mod context;
 mod cost;
+mod deny;
 mod determinism;
 mod emulate;
 mod evaluation;

@@ -7,7 +7,7 @@
 use firmware_build::Install;
 
 use crate::context::{Context, Failure, run};
-use crate::{determinism, emulate, images, page, readme};
+use crate::{deny, determinism, emulate, images, page, readme};
 
 /// One thing that is checked.
 #[derive(Debug)]
@@ -19,9 +19,10 @@ pub(crate) struct Step {
     pub(crate) run: fn(&Context) -> Result<(), Failure>,
 }
 
-pub(crate) const STEPS: [Step; 12] = [
+pub(crate) const STEPS: [Step; 13] = [
     Step { name: "fmt", what: "sources are formatted as rustfmt.toml says", run: fmt },
     Step { name: "clippy", what: "the linter has no warning, on the PC", run: clippy },
+    Step { name: "deny", what: deny::WHAT, run: deny::check },
     Step {
         name: "test",
         what: "unit, integration and doc tests pass on the PC, tidy and README among them",

@@ -3,6 +3,7 @@
 //!
 //! Cases and coverage (`case-tools`), trials (`arena`) and the evaluation's plots and maps (`report`) are drawn with it. Places
 //! are told with y up, as on the field and in a chart; [`Svg::finish`] says how large the unit is on a screen.
+#![forbid(unsafe_code)]
 
 mod field;
 mod svg;

@@ -4,6 +4,7 @@
 //! are for people, and only programs that ask for them carry them.
 //!
 //! **Invariants.** No I/O, no allocation, no decode step: a table is read where it lies.
+#![forbid(unsafe_code)]
 #![no_std]
 
 use casebase::CaseBase;

@@ -31,7 +31,7 @@ macro_rules! codes {
 codes! {
     UNREADABLE "unreadable" Error "A file or folder cannot be read, or a file is not UTF-8. Make it a readable text file."
     SYNTAX "syntax" Error "The file is not TOML (a repeated key, too). Mend the syntax at the line."
-    MISPLACED "misplaced" Error "A .toml file lies elsewhere than at <region>/<name>.toml. Move it into its region's folder."
+    MISPLACED "misplaced" Error "A .toml file lies elsewhere than at <region>/<name>.toml, or its name has control characters. Move it into its region's folder, or rename it."
     NO_LEAGUE "no-league" Error "The folder has no league.toml. Add one, or name one league's folder."
     UNKNOWN_KEY "unknown-key" Error "A key or an action that nobody reads. Take one of those the finding lists."
     MISSING_KEY "missing-key" Error "A key that must be there is missing. Add it."

@@ -118,6 +118,11 @@ impl Found {
                     self.enter(&path, &format!("{prefix}{name}/"), depth + 1);
                 }
             } else if let Some(stem) = name.strip_suffix(".toml") {
+                if foreign::printable(&name) != name {
+                    let message = "a file's name has characters that cannot be shown";
+                    self.error(code::MISPLACED, path, message, "rename it: letters, digits and dashes");
+                    continue;
+                }
                 let is_league = depth == 0 && stem == LEAGUE;
                 if is_league || depth == 1 {
                     self.read(path, format!("{prefix}{stem}"), is_league);
@@ -131,7 +136,7 @@ impl Found {
     }
 
     fn read(&mut self, path: PathBuf, name: String, is_league: bool) {
-        match fs::read_to_string(&path) {
+        match foreign::read_text(&path, CASE_FILE_LEN_MAX) {
             Ok(text) => self.cases.push(SourceFile { path, name, text }),
             Err(error) => {
                 self.league_unreadable |= is_league;
@@ -149,5 +154,7 @@ impl Found {
 
 /// The league's own file, without `.toml`.
 const LEAGUE: &str = "league";
+/// Longest file of a library that is read, bytes: the longest case of ours has 3 kB.
+pub const CASE_FILE_LEN_MAX: u64 = 1 << 20;
 /// How deep misplaced files are looked for; also what ends a circle of links.
 const DEPTH_MAX: usize = 8;

@@ -3,6 +3,11 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use foreign::{excerpt, printable};
+
+/// As much of what is wrong as is shown, characters: it may repeat what stands in the file.
+const MESSAGE_LEN: usize = 1000;
+
 /// Something to mend in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
@@ -41,7 +46,10 @@ impl fmt::Display for Severity {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { code, severity, file, line, message, mend } = self;
-        write!(f, "{}:{line}: {severity}[{code}]: {message}; {mend}", file.display())
+        let file = file.to_string_lossy();
+        // Files are named and filled by others: a finding stays one line, and shows what it is about.
+        let (file, message, mend) = (printable(&file), excerpt(message, MESSAGE_LEN), printable(mend));
+        write!(f, "{file}:{line}: {severity}[{code}]: {message}; {mend}")
     }
 }
 
@@ -62,5 +70,20 @@ mod tests {
         };
         let text = "lib/center/a.toml:3: error[bad-scope]: a scope radius is 0; give mm above 0";
         assert_eq!(finding.to_string(), text);
+    }
+
+    #[test]
+    fn a_finding_in_a_file_of_a_hostile_name_stays_one_line_without_control_characters() {
+        let finding = Finding {
+            code: code::BAD_SCOPE,
+            severity: Severity::Warning,
+            file: PathBuf::from("lib/center/\u{1b}[2Ja\n.toml"),
+            line: 1,
+            message: "no robot `\u{1b}]0;x\u{7}`".into(),
+            mend: "name one".into(),
+        };
+        let text = finding.to_string();
+        assert!(!text.contains(char::is_control), "{text:?}");
+        assert!(text.starts_with("lib/center/\\u001b[2Ja\\n.toml:1: warning"), "{text}");
     }
 }

@@ -4,6 +4,7 @@
 //! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend (DESIGN §4.1).
 //!
 //! **Invariant.** What is stored was computed by the crate that will read it, `casebase`.
+#![forbid(unsafe_code)]
 
 mod authored;
 mod check;
@@ -30,7 +31,7 @@ mod warnings;
 pub use codes::{CODES, CodeEntry, code, entry};
 pub use counterfactual::{Counterfactual, Entity, Move, Obstacle, counterfactual};
 pub use encode::Table;
-pub use files::{Files, SourceFile};
+pub use files::{CASE_FILE_LEN_MAX, Files, SourceFile};
 pub use finding::{Finding, Severity};
 pub use league::League;
 pub use library::{Library, Place, Reduction, build, build_reduced, load, load_telling};

@@ -11,6 +11,7 @@
 //!
 //! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
 //! done that takes time is told on stderr.
+#![forbid(unsafe_code)]
 
 mod debian;
 mod image;

@@ -74,8 +74,8 @@ pub struct Course<'o, F> {
     pub within: Option<Shape<F>>,
     /// Until it asks again, s, at most 1.
     pub step: f32,
-    /// Most that is spent on looking for a free goal and a way: a unit for one straight piece and one obstacle, about forty
-    /// instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
+    /// Most that is spent on looking for a way, and a quarter of what is for a way out: a unit for one straight piece and one
+    /// obstacle, about forty instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
     pub effort: u32,
 }
 
@@ -165,6 +165,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point
     let Course { from, velocity, limits, .. } = *course;
     let exit = scene.exit(from);
     scene.keep_apart(from, exit, true);
+    scene.spend_to_leave();
     let route = Route::find(scene, from, velocity, exit, &limits, true);
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),

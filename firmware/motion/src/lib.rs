@@ -22,6 +22,7 @@
 //!
 //! **Invariants.** No I/O, no clock, no allocation, SI units. Every input is answered; what is not a number rests. The
 //! simulator's physics are written apart from these models, so that a wrong model shows as missed passes instead of hiding.
+#![forbid(unsafe_code)]
 #![no_std]
 
 pub mod avoid;

@@ -13,6 +13,7 @@
 //! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
 //!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
+#![forbid(unsafe_code)]
 
 mod backups;
 mod cycles;

@@ -8,6 +8,7 @@
 //! ```
 //! Numbers come from `arena::evaluation` and are shown, never changed: what a table prints is rounded for the reader, and
 //! every interval and p stands beside its number.
+#![forbid(unsafe_code)]
 
 mod ablation;
 mod columns;

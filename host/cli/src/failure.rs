@@ -8,7 +8,10 @@ use std::process::ExitCode;
 use arena::evaluation::EvaluationError;
 use case_tools::{Finding, Severity};
 use casebase::SettingError;
+use foreign::printable;
 use hil_sim::SimulationError;
+
+use crate::output::{note, shown};
 
 /// One variant per thing the person can do something about.
 #[derive(Debug)]
@@ -125,7 +128,7 @@ impl Failure {
         if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
             return ExitCode::SUCCESS;
         }
-        eprintln!("error: {self}");
+        note!("error: {self}");
         ExitCode::FAILURE
     }
 }
@@ -142,11 +145,11 @@ impl fmt::Display for Failure {
             Self::NoFolder(folder) => write!(
                 f,
                 "no library at {}: no such folder; --library takes one league's folder, the one that holds league.toml",
-                folder.display()
+                shown(folder)
             ),
             Self::FaultyLibrary { folder, findings } => {
                 let errors = findings.iter().filter(|finding| finding.severity == Severity::Error);
-                writeln!(f, "the library at {} is refused:", folder.display())?;
+                writeln!(f, "the library at {} is refused:", shown(folder))?;
                 for finding in errors {
                     writeln!(f, "  {finding}")?;
                 }
@@ -186,9 +189,9 @@ impl fmt::Display for Failure {
             Self::Trial(error) => write!(f, "{error}"),
             Self::Firmware(words) | Self::Game(words) => f.write_str(words),
             Self::Recording(words) => write!(f, "cannot keep the recording: {words}"),
-            Self::Markdown { file, error } => write!(f, "{}: {error}", file.display()),
+            Self::Markdown { file, error } => write!(f, "{}: {error}", shown(file)),
             Self::Picture { file, words } => {
-                write!(f, "cannot write the picture {}: {words}", file.display())
+                write!(f, "cannot write the picture {}: {words}", shown(file))
             }
             Self::UnknownName { asked, league } => write!(
                 f,
@@ -206,9 +209,11 @@ impl fmt::Display for Failure {
             ),
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::Recorded { file, words } => {
-                let file = file.display().to_string();
+                let file = shown(file);
+                // What is wrong may be told in the file's own words.
+                let words = printable(words);
                 // Some of what is said names the file already.
-                if words.starts_with(&file) { f.write_str(words) } else { write!(f, "{file}: {words}") }
+                if words.starts_with(&file) { f.write_str(&words) } else { write!(f, "{file}: {words}") }
             }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),
             Self::Output(error) => write!(f, "cannot write stdout: {error}"),

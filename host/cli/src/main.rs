@@ -3,6 +3,7 @@
 //!
 //! One file per verb. A verb takes its arguments and returns an [`ExitCode`] or a [`Failure`] that says in words what
 //! went wrong and how to mend it; data goes to stdout, words to stderr. Runs on a PC.
+#![forbid(unsafe_code)]
 
 mod args;
 mod cases;

@@ -1,11 +1,86 @@
-//! How is something said on stdout? Whole or not at all; whoever closed it has read enough.
+//! `output`: everything that is printed, on stdout and stderr. Characters that a terminal would obey are escaped on the way, whoever
+//! chose them: a referee's program, a log file, a file's name.
+//!
+//! Line ends and tabs pass, because they are the program's own; a foreign value that is put into a line goes through
+//! [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a test sees to it).
 
-use std::io::{self, Write};
+use std::fmt::Arguments;
+use std::io::{self, BufWriter, StdoutLock, Write};
+use std::path::Path;
+
+use foreign::{Printable, printable};
 
 use crate::Failure;
 
-/// Says it on stdout.
+/// Stdout for many lines; it has to be flushed.
+pub(crate) fn lines() -> BufWriter<Printable<StdoutLock<'static>>> {
+    BufWriter::new(Printable::new(io::stdout().lock()))
+}
+
+/// Says it on stdout, whole or not at all; a reader that closed it has read enough.
 pub(crate) fn say(words: &str) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = Printable::new(io::stdout().lock());
     out.write_all(words.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)
+}
+
+/// Says a line on stderr. Where stderr is closed there is nobody to tell.
+pub(crate) fn say_aside(words: Arguments<'_>) {
+    let mut out = Printable::new(io::stderr().lock());
+    let _ = writeln!(out, "{words}");
+}
+
+/// Says a line on stderr, as `eprintln!` would.
+macro_rules! note {
+    ($($words:tt)*) => { $crate::output::say_aside(format_args!($($words)*)) };
+}
+pub(crate) use note;
+
+/// A file's name as it can stand in a line.
+pub(crate) fn shown(file: &Path) -> String {
+    printable(&file.to_string_lossy()).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use super::*;
+
+    #[test]
+    fn a_file_s_name_stays_within_its_line() {
+        let name = shown(Path::new("a\u{1b}]0;pwn\u{7}\n0.00 s  GOAL"));
+        assert_eq!(name, "a\\u001b]0;pwn\\u0007\\n0.00 s  GOAL");
+    }
+
+    fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
+        for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.is_dir() {
+                sources(&entry, into);
+            } else if entry.extension().is_some_and(|extension| extension == "rs") {
+                into.push(entry);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_else_prints() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        let mut files = Vec::new();
+        sources(&root, &mut files);
+        assert!(files.len() > 50, "{}", root.display());
+        let prints = ["println!(", "print!(", "io::stdout()", " stdout()", "io::stderr()", "&mut stdout()"];
+        for file in files.iter().filter(|file| !file.ends_with("output.rs")) {
+            for (number, line) in (1..).zip(fs::read_to_string(file).unwrap().lines()) {
+                let found =
+                    prints.iter().find(|print| line.contains(*print) && !line.contains("is_terminal"));
+                assert_eq!(
+                    found,
+                    None,
+                    "{}:{number}: use `note!`, `say` or `lines` of output.rs",
+                    file.display()
+                );
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
 use arena::game::{self, Crowd, Game, GameConfig, GameReport, GameStory, Watcher};
 use casebase::CaseBase;
@@ -20,9 +21,12 @@ use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{AnewWatcher, CaseOracle, End, PageArgs, Theatre, shelf_of};
+use crate::output::{self, note};
+use crate::stop::{signal, stopped_by_hand};
 
 /// What decides a match.
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct PlayArgs {
     /// Without the page: a match is told on the terminal, as fast as the machine plays it.
     #[arg(long)]
@@ -68,6 +72,10 @@ pub(crate) struct PlayArgs {
     settings: SettingsArgs,
 }
 
+const EXIT_CODES: &str = "\
+Exit codes: 0 played to its end; 1 it could not be played or recorded; 2 wrong usage. With --headless a first Ctrl-C (or SIGTERM) ends
+the match in order: recordings are closed, the summary is printed, and the exit code is 130 (or 143). A second one ends it at once.";
+
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "expected seconds, such as 600".to_owned())?;
     if (0.0..=36_000.0).contains(&seconds) { Ok(seconds) } else { Err("0 to 36000 seconds".to_owned()) }
@@ -110,25 +118,34 @@ pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     if !args.headless && !args.json {
         return on_page(args, config, shelf.as_ref(), Watched { teller, recording });
     }
+    let stopped = stopped_by_hand();
     let report = {
         let mut crowd = Crowd(vec![&mut teller]);
         if let Some(recording) = &mut recording {
             crowd.0.push(recording);
         }
-        game::play(&config, &mut backend, &mut crowd).map_err(|error| Failure::Game(error.to_string()))?
+        game::play_until(&config, &mut backend, &mut crowd, || stopped.load(Ordering::Relaxed))
+            .map_err(|error| Failure::Game(error.to_string()))?
     };
     if let Some(recording) = recording {
         recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
     }
     teller.end();
-    let mut out = io::stdout().lock();
+    let mut out = output::lines();
     if args.json {
         let json = serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))?;
         writeln!(out, "{json}").map_err(Failure::Output)?;
     } else {
         tell(&mut out, args, &report).map_err(Failure::Output)?;
     }
-    Ok(ExitCode::SUCCESS)
+    out.flush().map_err(Failure::Output)?;
+    let Some((signal, code)) = signal() else { return Ok(ExitCode::SUCCESS) };
+    note!(
+        "ended by {signal} after {:.2} s of {} s; what was played is above",
+        report.duration_s,
+        args.duration
+    );
+    Ok(code)
 }
 
 /// At the clock's pace, with the page; it stays open when the match is over.
@@ -142,7 +159,7 @@ fn on_page(
     let oracle = CaseOracle::new(shelf_of(args.league, args.folder.library.as_deref())?, settings);
     let title = format!("{}, seed {}", args.league.name(), args.seed);
     let page = args.page.open(title, false, Powers::Simulation, oracle)?;
-    eprintln!("playing  {}; Ctrl-C ends it", args.league.name());
+    note!("playing  {}; Ctrl-C ends it", args.league.name());
     let mut theatre = Theatre::new(config, shelf, page, args.speed, args.record.is_some());
     loop {
         let (report, over) = match theatre.play(&mut watched)? {
@@ -152,11 +169,12 @@ fn on_page(
         if let Some(recording) = watched.recording.take() {
             recording.finish().map_err(|error| Failure::Recording(error.to_string()))?;
         }
-        tell(&mut io::stdout().lock(), args, &report).map_err(Failure::Output)?;
+        let mut out = output::lines();
+        tell(&mut out, args, &report).and_then(|()| out.flush()).map_err(Failure::Output)?;
         if !over {
             return Ok(ExitCode::SUCCESS);
         }
-        eprintln!("the match is over; the page stays until Ctrl-C");
+        note!("the match is over; the page stays until Ctrl-C");
         let Some(seed) = theatre.linger() else { return Ok(ExitCode::SUCCESS) };
         theatre.anew(seed);
         watched.anew();
@@ -201,7 +219,7 @@ impl Watcher for Watched {
 pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>, Failure> {
     let shelf = shelf_of(league, folder.library.as_deref())?;
     if shelf.is_none() {
-        eprintln!("no cases come with {}: robots that are left free play reactively", league.name());
+        note!("no cases come with {}: robots that are left free play reactively", league.name());
     }
     Ok(shelf)
 }
@@ -210,7 +228,7 @@ pub(crate) fn cases(folder: &FolderArgs, league: League) -> Result<Option<Shelf>
 fn hint_at_foreign_cases(config: &GameConfig, base: &CaseBase<'_>) {
     let foreign = host::cases_of(config.league).hash() != base.hash();
     if foreign && config.teams.iter().any(|team| team.tactics.bridge) {
-        eprintln!(
+        note!(
             "the bridge refines passes of cases that come with the league: those of --library are played as they are"
         );
     }
@@ -240,6 +258,10 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
             "{name}: {} shots, {} chances, {} passes, {:.0} s of possession; {fouls}",
             metrics.shots, metrics.chances, metrics.passes, metrics.possession_s
         )?;
+    }
+    for block in &report.blocked {
+        let phase = format!("blocked for {:.1} s from {:.1} s", block.lasted_s, block.from_s);
+        writeln!(out, "{phase}: {}", block.words)?;
     }
     let mut words =
         if args.duration == 600.0 { String::new() } else { format!(" --duration {}", args.duration) };
@@ -284,11 +306,12 @@ impl Watcher for Teller {
         self.bar.set_position(game.time() as u64);
         if let Some(story) = &mut self.story {
             story.tick(game);
-            let mut out = io::stdout().lock();
+            let mut out = output::lines();
             for line in story.take_lines() {
                 // A reader who has had enough ends the program with the report's own write.
                 let _ = writeln!(out, "{line}");
             }
+            let _ = out.flush();
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1; DESIGN §8).
 
 use std::fs;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -16,6 +16,7 @@ use page::Powers;
 use crate::Failure;
 use crate::library::Shelf;
 use crate::live::{CaseOracle, Legged, PageArgs, stay};
+use crate::output;
 use crate::setup::{SetupArgs, opponents, profile, scenario};
 
 /// What decides a trial.
@@ -89,10 +90,11 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
         fs::write(file, arena::picture(&recording))
             .map_err(|error| Failure::Picture { file: file.to_owned(), words: error.to_string() })?;
     }
-    let mut out = io::stdout().lock();
+    let mut out = output::lines();
     if args.json {
         let json = serde_json::to_string(&report).map_err(|error| Failure::Output(error.into()))?;
-        return writeln!(out, "{json}").map(|()| ExitCode::SUCCESS).map_err(Failure::Output);
+        writeln!(out, "{json}").and_then(|()| out.flush()).map_err(Failure::Output)?;
+        return Ok(ExitCode::SUCCESS);
     }
     for line in story.take_lines() {
         writeln!(out, "{line}").map_err(Failure::Output)?;
@@ -100,8 +102,9 @@ pub(crate) fn run(args: &TrialArgs) -> Result<ExitCode, Failure> {
     writeln!(out, "trace {}, to see it again: {}", report.trace_hash, args.again(&report))
         .map_err(Failure::Output)?;
     if let Some(file) = svg {
-        writeln!(out, "picture: {}", file.display()).map_err(Failure::Output)?;
+        writeln!(out, "picture: {}", output::shown(file)).map_err(Failure::Output)?;
     }
+    out.flush().map_err(Failure::Output)?;
     drop(out);
     if let Some(legged) = legged {
         stay(legged.into_page(), "the trial is over");

@@ -21,6 +21,7 @@ use virtual_robot::{Options, parent_gone, run as play};
 use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output::note;
 
 /// Who it is and whom it speaks with.
 #[derive(Debug, Args)]
@@ -96,7 +97,7 @@ fn key_of_file(file: Option<&std::path::Path>) -> Result<TeamKey, Failure> {
     let Some(file) = file else { return Ok(TeamKey::ZERO) };
     let read = key::read(file).map_err(|error| Failure::Robot(error.to_string()))?;
     if let Some(warning) = read.warning {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     Ok(read.key)
 }

@@ -20,7 +20,11 @@ struct Viewer(WebSocket<MaybeTlsStream<TcpStream>>);
 
 impl Viewer {
     fn of(program: &Program) -> Self {
-        let (socket, _) = tungstenite::connect(format!("ws://{}/socket", program.address())).unwrap();
+        Self::with(program, "")
+    }
+
+    fn with(program: &Program, query: &str) -> Self {
+        let (socket, _) = tungstenite::connect(format!("ws://{}/socket{query}", program.address())).unwrap();
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).unwrap();
         }
@@ -81,6 +85,40 @@ fn a_match_is_shown_stopped_and_begun_anew() {
     assert!(refused["refused"].as_str().unwrap().contains("no request"), "{refused}");
 }
 
+#[test]
+fn what_is_asked_of_a_robot_that_is_not_there_is_refused_with_a_reason() {
+    let play = played();
+    let mut viewer = Viewer::of(&play);
+    viewer.until(|scene| robots(scene) == 12);
+    for asked in [
+        r#"{"ask":"robot","team":"blue","id":15,"at":[0,0]}"#,
+        r#"{"ask":"power","team":"yellow","id":15,"on":false}"#,
+    ] {
+        viewer.ask(asked);
+        let refused = viewer.until(|word| word.get("refused").is_some());
+        assert!(refused["refused"].as_str().unwrap().contains("has no robot 15"), "{asked}: {refused}");
+    }
+    viewer.ask("{\"ask\":\"referee\",\"command\":\"FLY\\u001b[2J\"}");
+    let refused = viewer.until(|word| word.get("refused").is_some());
+    let words = refused["refused"].as_str().unwrap();
+    assert!(words.contains("makes no sense now") && !words.contains(char::is_control), "{words:?}");
+}
+
+#[test]
+fn a_page_on_the_network_is_looked_at_by_all_and_asked_by_those_with_its_token() {
+    let words = "play --duration 600 --seed 5 --listen 0.0.0.0:0";
+    let play = Program::start(&words.split(' ').collect::<Vec<_>>());
+    let token = play.token().expect("a token is printed with the address").to_owned();
+    let mut stranger = Viewer::of(&play);
+    stranger.until(|scene| robots(scene) == 12);
+    stranger.ask(r#"{"ask":"pause","on":true}"#);
+    let refused = stranger.until(|word| word.get("refused").is_some());
+    assert!(refused["refused"].as_str().unwrap().contains("?token="), "{refused}");
+    let mut own = Viewer::with(&play, &format!("?token={token}"));
+    own.ask(r#"{"ask":"pause","on":true}"#);
+    own.until(|scene| scene["paused"] == true);
+}
+
 /// Distance of a shape of the layer of truth from a place, m.
 fn off(shape: &Value, at: [f64; 2]) -> f64 {
     let place = |i: usize| shape["at"][i].as_f64().unwrap();
@@ -94,6 +132,8 @@ fn a_case_is_played_from_its_own_situation() {
     // Its own side is known once the referee has spoken.
     viewer.until(|scene| robots(scene) == 12 && scene["t"].as_f64().unwrap() > 2.0);
     viewer.ask(r#"{"ask":"situation","name":"nowhere/nothing"}"#);
+    let refused = viewer.until(|word| word.get("refused").is_some());
+    assert!(refused["refused"].as_str().unwrap().contains("nowhere/nothing"), "{refused}");
     viewer.ask(r#"{"ask":"pause","on":true}"#);
     viewer.until(|scene| scene["paused"] == true);
     // Of its file: three robots that build up from the back.

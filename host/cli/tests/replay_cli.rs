@@ -117,7 +117,7 @@ fn cut_and_foreign_files_are_told_with_their_place() {
     let bytes = fs::read(recording("grsim_divB_22s_indexed.log")).expect("the recording");
     let cut = scratch("cut.log");
     fs::write(&cut, &bytes[..100_001]).expect("a file");
-    let report = json(&[&cut.display().to_string()], 0);
+    let report = json(&[&cut.display().to_string()], 1);
     assert!(report["damage"].as_str().is_some_and(|words| words.contains("byte")), "{}", report["damage"]);
     assert!(report["messages"].as_object().is_some_and(|kinds| !kinds.is_empty()));
     let foreign = scratch("foreign.log");
@@ -200,8 +200,12 @@ fn one_bit_that_was_turned_in_a_packet_is_found() {
 #[test]
 fn a_trace_cut_in_a_record_is_checked_up_to_there() {
     let file = trace("cut.trace", |bytes, _| bytes.truncate(bytes.len() / 2));
-    let report = json(&[&file], 0);
-    assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut")), "{}", report["damage"]);
+    let report = json(&[&file], 1);
+    assert!(
+        report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")),
+        "{}",
+        report["damage"]
+    );
     assert_eq!(report["same_decisions"], true);
     let begin = trace("begin.trace", |bytes, _| bytes.truncate(20));
     assert!(refused(&[&begin]).contains("header"));

@@ -11,12 +11,15 @@
 //!   └──────── Request ◄── WebSocket ◄── viewers of this very page only (Origin and Host are checked)
 //! ```
 //! **Invariants.** It knows no host, no simulator and no strategy: what it draws beyond ball, robots and lines are named layers of
-//! plain shapes. A viewer that is slow, gone or many costs the match nothing. SI units, field frame.
+//! plain shapes. A viewer that is slow, gone or many costs the match nothing; connections are counted and timed ([`Limits`]). Looking
+//! is free to all that reach the page; asking takes its [`Token`], where it has one. SI units, field frame.
+#![forbid(unsafe_code)]
 
 mod archive;
 mod files;
 mod guard;
 mod happening;
+mod limits;
 mod page;
 mod problem;
 mod request;
@@ -24,9 +27,11 @@ mod scene;
 mod server;
 mod shape;
 mod sketch;
+mod token;
 
 pub use archive::Sample;
 pub use happening::{Happening, Kind};
+pub use limits::Limits;
 pub use page::{Oracle, Page, PageError, Settings};
 pub use problem::{Freeze, problem, skeleton};
 pub use request::{Powers, Refused, Request, Team};
@@ -35,6 +40,7 @@ pub use scene::{
 };
 pub use shape::{Heat, Layer, Shape, Tone};
 pub use sketch::Sketch;
+pub use token::{NoToken, Token};
 
 /// To a thousandth: what travels needs no more than millimetres, and JSON is shorter for it.
 pub fn milli(x: f32) -> f32 {

@@ -1,5 +1,6 @@
 //! How does a match get its page? [`Page::open`] takes the port; from then on the match shows and tells, and never waits.
 
+use std::cell::RefCell;
 use std::fmt;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -12,9 +13,11 @@ use tokio::sync::watch;
 
 use crate::archive::Archive;
 use crate::happening::Happening;
+use crate::limits::Limits;
 use crate::request::{Powers, Request};
-use crate::server::{self, Shared};
+use crate::server::{self, Ask, Refusals, Shared};
 use crate::sketch::Sketch;
+use crate::token::Token;
 
 /// More requests than this wait for the match: viewers are told that it is busy.
 const REQUESTS_MAX: usize = 256;
@@ -30,6 +33,10 @@ pub struct Settings {
     pub recorded: bool,
     /// What viewers may ask for.
     pub powers: Powers,
+    /// What a viewer has to bring to ask for anything; none: every viewer may ask.
+    pub token: Option<Token>,
+    /// How much of it others can hold.
+    pub limits: Limits,
 }
 
 /// Answers viewers' questions, beside the match and never in its way.
@@ -77,7 +84,9 @@ impl std::error::Error for PageError {}
 pub struct Page {
     address: SocketAddr,
     archive: Archive,
-    requests: Receiver<Request>,
+    requests: Receiver<Ask>,
+    /// To the viewer whose request was taken last.
+    asker: RefCell<Option<Refusals>>,
     viewers: Arc<AtomicUsize>,
     told: u64,
     left_out: u64,
@@ -110,7 +119,16 @@ impl Page {
             viewers: viewers.clone(),
         };
         server::serve(listener, shared, ended).map_err(failed)?;
-        Ok(Self { address, archive, requests, viewers, told: 0, left_out: 0, _ends: ends })
+        Ok(Self {
+            address,
+            archive,
+            requests,
+            asker: RefCell::default(),
+            viewers,
+            told: 0,
+            left_out: 0,
+            _ends: ends,
+        })
     }
 
     /// Where it is served.
@@ -150,7 +168,17 @@ impl Page {
 
     /// The next thing that a viewer asks for.
     pub fn next_request(&self) -> Option<Request> {
-        self.requests.try_recv().ok()
+        let Ask { request, asker } = self.requests.try_recv().ok()?;
+        self.asker.replace(Some(asker));
+        Some(request)
+    }
+
+    /// Tells the viewer whose request was taken last why it is not done.
+    pub fn refuse(&self, words: impl Into<String>) {
+        if let Some(asker) = &*self.asker.borrow() {
+            // A viewer that is gone, or that asks faster than it reads, is told nothing.
+            let _ = asker.try_send(words.into());
+        }
     }
 
     /// How many look on now.

@@ -1,11 +1,12 @@
 //! How do viewers get the page, its scenes and its answers? HTTP and WebSocket on one thread of its own.
 //!
 //! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it says so with a dot. So a slow viewer
-//! sees fewer scenes, none of them old, and one that is gone holds nothing up.
+//! sees fewer scenes, none of them old, and one that is gone holds nothing up. Connections are served within
+//! [`Limits`](crate::Limits): so many at once, and none for longer than it may take.
 
 use std::io;
 use std::net::TcpListener;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -19,12 +20,16 @@ use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 use serde::Deserialize;
 use serde_json::json;
-use tokio::sync::{oneshot, watch};
-use tokio::time::timeout;
+use tokio::sync::{Semaphore, mpsc, oneshot, watch};
+use tokio::time::{sleep, timeout};
 
 use crate::archive::{Kept, look};
+use crate::limits::{Limits, Seat};
 use crate::page::{Oracle, Settings};
 use crate::problem::{Freeze, problem, skeleton};
 use crate::request::{Request, Team};
@@ -34,8 +39,10 @@ use crate::{files, guard};
 const UNTAKEN_MAX: u32 = 2;
 /// A viewer that takes nothing for so long is gone.
 const GONE: Duration = Duration::from_secs(30);
-/// More look on at once: the next is turned away. A team and its guests.
-const VIEWERS_MAX: usize = 64;
+/// Refusals that wait for a viewer that does not read; more are dropped.
+const REFUSALS_MAX: usize = 16;
+/// Where no connection can be taken (no descriptor is left), the next attempt is after that time.
+const ACCEPT_AGAIN: Duration = Duration::from_millis(50);
 /// The longest word of a viewer, bytes: a request, a problem.
 const WORD_MAX: usize = 16 * 1024;
 /// Happenings in one answer.
@@ -48,8 +55,24 @@ pub(crate) struct Shared {
     pub(crate) oracle: Arc<dyn Oracle>,
     pub(crate) news: watch::Receiver<Utf8Bytes>,
     pub(crate) kept: Arc<Mutex<Kept>>,
-    pub(crate) asks: SyncSender<Request>,
+    pub(crate) asks: SyncSender<Ask>,
     pub(crate) viewers: Arc<AtomicUsize>,
+}
+
+/// Why something that was asked for is not done, to the viewer that asked.
+pub(crate) type Refusals = mpsc::Sender<String>;
+
+/// What a viewer asked for, and how it is told that it is not done.
+pub(crate) struct Ask {
+    pub(crate) request: Request,
+    pub(crate) asker: Refusals,
+}
+
+impl Shared {
+    /// May a viewer that brought that token ask for anything?
+    fn may_ask(&self, brought: Option<&str>) -> bool {
+        self.settings.token.as_ref().is_none_or(|token| brought.is_some_and(|brought| token.is(brought)))
+    }
 }
 
 /// Serves on a thread of its own until `ended` says so or is dropped.
@@ -59,6 +82,7 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
         runtime.block_on(async move {
             let Ok(listener) = tokio::net::TcpListener::from_std(listener) else { return };
             let shared = Arc::new(shared);
+            let limits = shared.settings.limits;
             let routes = Router::new()
                 .route("/socket", get(socket))
                 .route("/api/state", get(state))
@@ -72,7 +96,7 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
                 .layer(from_fn_with_state(shared.clone(), guarded))
                 .with_state(shared);
             tokio::select! {
-                _ = axum::serve(listener, routes) => {}
+                () = accept(listener, routes, limits) => {}
                 _ = ended => {}
             }
         });
@@ -80,12 +104,38 @@ pub(crate) fn serve(listener: TcpListener, shared: Shared, ended: oneshot::Recei
     Ok(())
 }
 
+/// Serves connection by connection, no more at once than the limits say.
+async fn accept(listener: tokio::net::TcpListener, routes: Router, limits: Limits) {
+    let places = Arc::new(Semaphore::new(limits.connections));
+    loop {
+        // Nothing closes the semaphore.
+        let Ok(place) = places.clone().acquire_owned().await else { return };
+        let Ok((stream, _)) = listener.accept().await else {
+            sleep(ACCEPT_AGAIN).await;
+            continue;
+        };
+        // Scenes are small and wanted at once.
+        let _ = stream.set_nodelay(true);
+        let service = TowerToHyperService::new(routes.clone());
+        let mut builder = http1::Builder::new();
+        builder.timer(TokioTimer::new()).header_read_timeout(limits.header).half_close(false);
+        let connection = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
+        tokio::spawn(async move {
+            // A viewer's socket leaves its connection with the answer to its request: its time is its own (`GONE`).
+            let _ = timeout(limits.connection, connection).await;
+            drop(place);
+        });
+    }
+}
+
 /// Turns foreign pages away, and tells browsers what this page may do.
 async fn guarded(State(shared): State<Arc<Shared>>, request: HttpRequest, next: Next) -> Response {
     if let Err(foreign) = guard::check(request.headers(), shared.port) {
         return (StatusCode::FORBIDDEN, foreign.words()).into_response();
     }
-    let mut response = next.run(request).await;
+    let Ok(mut response) = timeout(shared.settings.limits.request, next.run(request)).await else {
+        return (StatusCode::REQUEST_TIMEOUT, "it took too long").into_response();
+    };
     for (name, value) in HEADERS {
         response.headers_mut().insert(HeaderName::from_static(name), HeaderValue::from_static(value));
     }
@@ -113,13 +163,14 @@ async fn file(request: HttpRequest) -> Response {
     }
 }
 
-async fn state(State(shared): State<Arc<Shared>>) -> Response {
+async fn state(State(shared): State<Arc<Shared>>, Query(Brought { token }): Query<Brought>) -> Response {
     let (span, life) = look(&shared.kept, |kept| (kept.span, kept.life));
     let settings = &shared.settings;
     let state = json!({
         "title": settings.title,
         "recorded": settings.recorded,
         "powers": settings.powers,
+        "may_ask": shared.may_ask(token.as_deref()),
         "situations": shared.oracle.situations(),
         "span": span,
         "life": life,
@@ -189,22 +240,34 @@ async fn freeze(State(shared): State<Arc<Shared>>, body: Bytes) -> Response {
     }
 }
 
-async fn socket(State(shared): State<Arc<Shared>>, upgrade: WebSocketUpgrade) -> Response {
-    if shared.viewers.load(Ordering::Relaxed) >= VIEWERS_MAX {
+/// The token that a viewer's address has.
+#[derive(Deserialize)]
+struct Brought {
+    token: Option<String>,
+}
+
+async fn socket(
+    State(shared): State<Arc<Shared>>,
+    Query(Brought { token }): Query<Brought>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    // Taken before the answer: of those that come at once none can pass while the others are not counted yet.
+    let Some(seat) = Seat::take(&shared.viewers, shared.settings.limits.viewers) else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many look on").into_response();
-    }
+    };
+    let may_ask = shared.may_ask(token.as_deref());
     let upgrade = upgrade.max_message_size(WORD_MAX).max_frame_size(WORD_MAX);
     upgrade.on_upgrade(move |socket| async move {
-        shared.viewers.fetch_add(1, Ordering::Relaxed);
-        look_on(socket, &shared).await;
-        shared.viewers.fetch_sub(1, Ordering::Relaxed);
+        look_on(socket, &shared, may_ask).await;
+        drop(seat);
     })
 }
 
 /// One viewer, until it goes.
-async fn look_on(mut socket: WebSocket, shared: &Shared) {
+async fn look_on(mut socket: WebSocket, shared: &Shared, may_ask: bool) {
     let mut news = shared.news.clone();
     news.mark_changed();
+    let (asker, mut refusals) = mpsc::channel(REFUSALS_MAX);
     let mut untaken = 0;
     loop {
         let sends = untaken < UNTAKEN_MAX;
@@ -217,14 +280,16 @@ async fn look_on(mut socket: WebSocket, shared: &Shared) {
                 if !sent(&mut socket, scene).await { return; }
                 untaken += 1;
             }
+            Some(words) = refusals.recv() => {
+                if !refused(&mut socket, words).await { return; }
+            }
             word = timeout(GONE, socket.recv()) => match word {
                 Ok(Some(Ok(Message::Text(word)))) if word.as_str() == "." => untaken = untaken.saturating_sub(1),
                 // A viewer of something that stands still says that it is there.
                 Ok(Some(Ok(Message::Text(word)))) if word.is_empty() => {}
                 Ok(Some(Ok(Message::Text(word)))) => {
-                    if let Err(words) = ask(shared, &word)
-                        && !sent(&mut socket, json!({ "refused": words }).to_string().into()).await
-                    {
+                    let asked = if may_ask { ask(shared, &asker, &word) } else { Err(NO_TOKEN.to_owned()) };
+                    if let Err(words) = asked && !refused(&mut socket, words).await {
                         return;
                     }
                 }
@@ -235,9 +300,20 @@ async fn look_on(mut socket: WebSocket, shared: &Shared) {
     }
 }
 
-fn ask(shared: &Shared, word: &str) -> Result<(), String> {
+/// What a viewer without the token is told.
+const NO_TOKEN: &str = "this page is open to the network: to ask for anything, open it by the address with ?token= that the program \
+                        printed when it started";
+
+fn ask(shared: &Shared, asker: &Refusals, word: &str) -> Result<(), String> {
     let request = Request::read(word, shared.settings.powers).map_err(|refused| refused.to_string())?;
-    shared.asks.try_send(request).map_err(|_| "the match is busy: ask again".to_owned())
+    shared
+        .asks
+        .try_send(Ask { request, asker: asker.clone() })
+        .map_err(|_| "the match is busy: ask again".to_owned())
+}
+
+async fn refused(socket: &mut WebSocket, words: String) -> bool {
+    sent(socket, json!({ "refused": words }).to_string().into()).await
 }
 
 async fn sent(socket: &mut WebSocket, text: Utf8Bytes) -> bool {

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use page::{Happening, Kind, Layer, Oracle, Page, PageError, Powers, Request, Scene, Settings, Sketch, Team};
+use page::{
+    Happening, Kind, Layer, Limits, Oracle, Page, PageError, Powers, Request, Scene, Settings, Sketch, Team,
+};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
@@ -26,10 +28,14 @@ impl Oracle for Echo {
     }
 }
 
-fn open(powers: Powers) -> Page {
+fn settings(powers: Powers) -> Settings {
     let listen = SocketAddr::from(([127, 0, 0, 1], 0));
-    let settings = Settings { listen, title: "a test".to_owned(), recorded: false, powers };
-    Page::open(settings, Arc::new(Echo)).unwrap()
+    let (token, limits) = (None, Limits::default());
+    Settings { listen, title: "a test".to_owned(), recorded: false, powers, token, limits }
+}
+
+fn open(powers: Powers) -> Page {
+    Page::open(settings(powers), Arc::new(Echo)).unwrap()
 }
 
 fn scene(t: f64) -> Scene {
@@ -261,8 +267,7 @@ fn a_problem_is_explained_and_a_moment_frozen() {
 #[test]
 fn a_taken_port_is_told_with_what_to_do() {
     let page = open(Powers::None);
-    let settings =
-        Settings { listen: page.address(), title: String::new(), recorded: false, powers: Powers::None };
+    let settings = Settings { listen: page.address(), ..settings(Powers::None) };
     let Err(error) = Page::open(settings, Arc::new(Echo)) else { panic!("the port is taken") };
     assert!(matches!(error, PageError::Taken(_)));
     assert!(error.to_string().contains("such as 127.0.0.1:"), "{error}");

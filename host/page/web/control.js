@@ -14,8 +14,11 @@ const COMMANDS = [
 export function showControl() {
   const tab = byId("tab-control");
   if (tab.hidden || !store.scene) return;
-  fill(tab, `${store.state.powers} ${store.state.life}`, () => ({ simulation, halt, none })[store.state.powers]());
-  if (store.state.powers !== "simulation") return;
+  const { powers, life, may_ask: mayAsk } = store.state;
+  // A recording takes nothing from anybody: there the token makes no difference.
+  const shown = mayAsk === false && powers !== "none" ? "locked" : powers;
+  fill(tab, `${shown} ${life}`, () => ({ simulation, halt, none, locked })[shown]());
+  if (shown !== "simulation") return;
   say(byId("pause"), store.latest?.paused ? "Go on" : "Stand still");
   const speed = byId("speed-now");
   if (speed && store.latest) say(speed, `${store.latest.speed} ×`);
@@ -26,6 +29,8 @@ export function showControl() {
 }
 
 const none = () => el("p", { class: "muted" }, "A recording cannot be changed. Everything else works as in a match: layers, explanations, plots, and files of a moment.");
+
+const locked = () => el("p", { class: "muted" }, "You look on. To ask for anything, open the page by the address with ?token= that the program printed when it started.");
 
 const halt = () => [
   el("p", {}, "On a real field the page can do one thing: our robots stand, whatever the referee says, until the program ends."),

@@ -8,6 +8,10 @@ const SILENT = 3000;
 /** Tries again after so long, ms; twice as long each time up to the last. */
 const AGAIN = [300, 600, 1200, 2500];
 
+/** What lets this viewer ask for something, from the page's own address; null where none is needed, or none was given. */
+const TOKEN = new URLSearchParams(location.search).get("token");
+const withToken = (path) => (TOKEN === null ? path : `${path}?token=${encodeURIComponent(TOKEN)}`);
+
 let socket = null;
 let tries = 0;
 let heard = 0;
@@ -35,7 +39,7 @@ export async function post(path, body) {
 }
 
 async function refresh() {
-  const state = await getJson("/api/state");
+  const state = await getJson(withToken("/api/state"));
   const anew = state.life !== store.state.life;
   store.state = state;
   if (anew) {
@@ -80,7 +84,7 @@ function take(text) {
 }
 
 function connect() {
-  socket = new WebSocket(`ws://${location.host}/socket`);
+  socket = new WebSocket(`ws://${location.host}${withToken("/socket")}`);
   socket.onopen = () => {
     tries = 0;
     heard = performance.now();

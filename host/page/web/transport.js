@@ -4,6 +4,13 @@ import { byId, clock, el, fill, say } from "./dom.js";
 import { ask, getJson, post } from "./link.js";
 import { changed, on, recall, remember, store } from "./store.js";
 
+/** This moment's address for others: they look on, and do not ask in our place. */
+function shared() {
+  const url = new URL(location.href);
+  url.searchParams.delete("token");
+  return url.href;
+}
+
 /** Seconds that were fetched, by number: a list of scenes each, or a promise of one. */
 const seconds = new Map();
 const SECONDS_MAX = 120;
@@ -207,10 +214,10 @@ export function startTransport() {
   press("link", async () => {
     address();
     try {
-      await navigator.clipboard.writeText(location.href);
+      await navigator.clipboard.writeText(shared());
       changed("told", "the address of this moment is copied");
     } catch {
-      changed("told", location.href);
+      changed("told", shared());
     }
   });
   byId("pace").addEventListener("change", (event) => (time.pace = Number(event.target.value)));

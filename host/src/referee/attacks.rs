@@ -147,10 +147,10 @@ fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_w
             followed.is_some_and(|after| after <= WINDOW.0),
             "step {step}: followed after {followed:?} µs"
         );
-        let told = listener.warnings(Instant(2 * S));
+        let warned = listener.warnings(Instant(2 * S));
         let far = step.unsigned_abs() > WINDOW.0;
         let stepped = |warning: &Warning| matches!(warning, Warning::ClockStepped { by, .. } if (by - step).abs() < 1_000);
-        assert_eq!(told.iter().any(stepped), far, "{step}: {told:?}");
+        assert_eq!(warned.iter().any(stepped), far, "{step}: {warned:?}");
         assert_eq!(listener.counts().steps, u64::from(far));
     }
 }
@@ -172,9 +172,9 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
         },
     );
     assert_eq!(free, 0);
-    let told = first.warnings(Instant(18_500 * MS));
-    let [Warning::Disagreement { .. }] = &told[..] else { panic!("{told:?}") };
-    let words = told[0].to_string();
+    let warned = first.warnings(Instant(18_500 * MS));
+    let [Warning::Disagreement { .. }] = &warned[..] else { panic!("{warned:?}") };
+    let words = warned[0].to_string();
     assert!(words.contains("10.0.0.1:40000") && words.contains("10.0.0.66:40000"), "{words}");
     assert!(words.contains("--referee-source"), "{words}");
     // The same where it comes second.
@@ -342,9 +342,9 @@ fn a_pinned_referee_is_obeyed_alone_and_the_other_is_reported() {
         let verdict = listener.hear(&packet, evil.address, Instant(S), None);
         assert!(matches!(verdict, Verdict::Excluded { .. }), "{verdict:?}");
         assert_eq!((listener.game().phase, listener.counts().excluded), (Phase::Run, 1));
-        let told = listener.warnings(Instant(S));
-        assert!(matches!(&told[..], [Warning::Excluded { .. }]), "{told:?}");
-        assert!(told[0].to_string().contains(pin), "{}", told[0]);
+        let warned = listener.warnings(Instant(S));
+        assert!(matches!(&warned[..], [Warning::Excluded { .. }]), "{warned:?}");
+        assert!(warned[0].to_string().contains(pin), "{}", warned[0]);
     }
     // A controller that was restarted on the pinned machine is taken: another port, another identifier.
     let mut listener = listener(Some("10.0.0.1"));

@@ -84,16 +84,12 @@ pub struct SourceKey {
 impl fmt::Display for SourceKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.identifier {
-            Some(identifier) => write!(f, "\"{}\" at {}", printable(identifier), self.address),
+            Some(identifier) => {
+                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address)
+            }
             None => write!(f, "a referee without identifier at {}", self.address),
         }
     }
-}
-
-/// Foreign text for a terminal: control and invisible characters are escaped, quotes too, and the length is bounded.
-pub fn printable(text: &str) -> String {
-    let shown = text.chars().take(SHOWN_MAX).flat_map(char::escape_debug).collect::<String>();
-    if text.chars().nth(SHOWN_MAX).is_some() { shown + "…" } else { shown }
 }
 
 /// The one referee that the operator wants obeyed (`--referee-source`).

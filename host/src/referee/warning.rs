@@ -109,7 +109,7 @@ impl Listener {
 }
 
 /// By what the first of two sources is pinned: its machine, or its address where both are on one.
-fn told_apart(source: &SourceKey, other: &SourceKey) -> String {
+fn pin_for(source: &SourceKey, other: &SourceKey) -> String {
     let (one, two) = (source.address, other.address);
     if one.ip() == two.ip() { one.to_string() } else { one.ip().to_string() }
 }
@@ -139,7 +139,7 @@ impl fmt::Display for Warning {
                 f,
                 "two referees disagree: {followed} says {command:?}, {other} says {others:?}; robots obey {obeyed:?}, the stricter. \
                  End the wrong program, or choose one: --referee-source {}",
-                told_apart(followed, other)
+                pin_for(followed, other)
             ),
             Self::Several { followed, other } => write!(
                 f,
@@ -160,7 +160,7 @@ impl fmt::Display for Warning {
                 write!(
                     f,
                     "{source} is ignored: --referee-source chooses {}",
-                    super::printable(&pin.to_string())
+                    foreign::printable(&pin.to_string())
                 )
             }
         }

@@ -1,10 +1,12 @@
 //! Which key does the team have? A file with 32 hexadecimal digits, which nobody else should be able to read.
 
 use std::fmt;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use protocol::frame::TeamKey;
+
+/// Longest key file that is read, bytes: 32 digits, and room for blanks and line ends around them.
+const KEY_FILE_LEN_MAX: u64 = 4096;
 
 /// A key that was read, and what is to be said about its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,14 +43,14 @@ impl fmt::Display for KeyError {
                 write!(
                     f,
                     "the key file {} cannot be read: {error}; `openssl rand -hex 16` makes a key",
-                    path.display()
+                    shown(path)
                 )
             }
             Self::Malformed { path, what } => write!(
                 f,
                 "the key file {} holds {what}; it must hold 32 hexadecimal digits and nothing else, as `openssl rand -hex 16` \
                  makes them",
-                path.display()
+                shown(path)
             ),
         }
     }
@@ -56,15 +58,20 @@ impl fmt::Display for KeyError {
 
 impl std::error::Error for KeyError {}
 
+/// A path as it can be shown.
+fn shown(path: &Path) -> String {
+    foreign::printable(&path.to_string_lossy()).into_owned()
+}
+
 /// Reads a key file.
 pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
     let unreadable = |error| KeyError::Unreadable { path: path.to_owned(), error };
-    let bytes = fs::read(path).map_err(unreadable)?;
+    let bytes = foreign::read(path, KEY_FILE_LEN_MAX).map_err(unreadable)?;
     let malformed = |what| KeyError::Malformed { path: path.to_owned(), what };
     let text = str::from_utf8(&bytes).map_err(|_| malformed("bytes that are no text".to_owned()))?;
     let key = parse(text).map_err(malformed)?;
     let warning = if key == TeamKey::ZERO {
-        Some(format!("the key in {} is all zeros, which everybody knows", path.display()))
+        Some(format!("the key in {} is all zeros, which everybody knows", shown(path)))
     } else {
         readable_by_others(path)
     };
@@ -94,8 +101,8 @@ pub fn format(key: &TeamKey) -> String {
 #[cfg(unix)]
 fn readable_by_others(path: &Path) -> Option<String> {
     use std::os::unix::fs::PermissionsExt as _;
-    let mode = fs::metadata(path).ok()?.permissions().mode();
-    (mode & 0o077 != 0).then(|| format!("others may read the key file {}; `chmod 600` it", path.display()))
+    let mode = std::fs::metadata(path).ok()?.permissions().mode();
+    (mode & 0o077 != 0).then(|| format!("others may read the key file {}; `chmod 600` it", shown(path)))
 }
 
 #[cfg(not(unix))]
@@ -105,6 +112,8 @@ fn readable_by_others(_path: &Path) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -122,6 +131,18 @@ mod tests {
         assert_eq!(parse("0001secret"), Err("something that is no hexadecimal digit at place 5".into()));
         let missing = read(Path::new("no-such.key")).unwrap_err().to_string();
         assert!(missing.contains("no-such.key") && missing.contains("openssl"), "{missing}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_and_a_file_too_long_are_no_key_and_end_at_once() {
+        let zeros = read(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(zeros.contains("a device, not a regular file"), "{zeros}");
+        let path = std::env::temp_dir().join(format!("onetwo-long-key-test-{}", std::process::id()));
+        fs::write(&path, "0".repeat(5000)).unwrap();
+        let long = read(&path).unwrap_err().to_string();
+        assert!(long.contains("longer than 4096 bytes"), "{long}");
+        fs::remove_file(&path).unwrap();
     }
 
     #[cfg(unix)]

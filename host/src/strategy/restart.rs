@@ -111,9 +111,10 @@ pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
 /// `at`, moved out of the circle that nobody may be in around the ball, and out of the way of a ball being placed.
 pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     let Some(ball) = view.ball else { return at };
-    // Nobody rolls the ball to a penalty's mark: people put it there.
-    let rolls = !matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
-    let target = view.placement.filter(|_| rolls).unwrap_or(ball.position);
+    // In the stop before a penalty nobody rolls the ball to its mark: people put it there.
+    let penalty = matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
+    let by_hand = view.phase == Phase::Stop && penalty;
+    let target = view.placement.filter(|_| !by_hand).unwrap_or(ball.position);
     let spine = Segment::new(ball.position, target);
     let closest = spine.closest_to(at);
     let away = at - closest;

@@ -2,6 +2,7 @@
 //!
 //! A target panics where a reader does, where something without the key is believed, or where a message changes on its way out and
 //! in again.
+#![forbid(unsafe_code)]
 
 use std::fmt::Debug;
 

@@ -39,6 +39,7 @@
 //!
 //! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
 //! and each field says its own. The README has the traps of the league's programs and which test holds each.
+#![forbid(unsafe_code)]
 
 pub mod common;
 pub mod controller;

@@ -11,6 +11,7 @@ pub mod computer;
 pub mod guard;
 pub mod honest;
 mod legged;
+pub mod matches;
 pub mod plan;
 mod runs;
 mod script;
@@ -22,7 +23,7 @@ use std::fmt;
 use plan::{Plan, Squad};
 use protocol::RobotId;
 
-pub use runs::{Runs, watch, words};
+pub use runs::{Runs, watch, watch_matches, words};
 
 /// What came of a run in which every promise was kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

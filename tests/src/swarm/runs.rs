@@ -3,8 +3,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::plan::Plan;
-use super::{Found, Tally, run};
+use super::matches::{self, LENGTH, Outcome, Plan};
+use super::{Found, Tally, plan, run};
 
 /// Which runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,9 +20,31 @@ pub struct Runs {
 /// Plays them all; what came of those that kept every promise, and those that broke one, by seed. `look` is told how many
 /// are done.
 pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>) {
+    let mut tally = Tally::default();
+    let mut broken = Vec::new();
+    for (seed, ended) in each(runs, run, |done, _| look(done)) {
+        match ended {
+            Ok(one) => tally = tally.with(one),
+            Err(found) => broken.push((seed, found)),
+        }
+    }
+    (tally, broken)
+}
+
+/// Plays all matches, ordered by seed; `look` is told how many are done, and what came of the last one.
+pub fn watch_matches(runs: Runs, look: impl Fn(u64, &(Plan, Outcome)) + Sync) -> Vec<(Plan, Outcome)> {
+    let play = |seed| {
+        let plan = Plan::drawn(seed, LENGTH);
+        let outcome = matches::play(&plan);
+        (plan, outcome)
+    };
+    each(runs, play, look).into_iter().map(|(_, ended)| ended).collect()
+}
+
+fn each<T: Send>(runs: Runs, play: impl Fn(u64) -> T + Sync, look: impl Fn(u64, &T) + Sync) -> Vec<(u64, T)> {
     let next = AtomicU64::new(0);
     let done = AtomicU64::new(0);
-    let sums = Mutex::new((Tally::default(), Vec::new()));
+    let all = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..runs.jobs.max(1) {
             scope.spawn(|| {
@@ -32,25 +54,21 @@ pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>
                         return;
                     }
                     let seed = runs.first + number;
-                    let ended = run(seed);
-                    let Ok(mut sums) = sums.lock() else { return };
-                    match ended {
-                        Ok(tally) => sums.0 = sums.0.with(tally),
-                        Err(found) => sums.1.push((seed, found)),
-                    }
-                    drop(sums);
-                    look(done.fetch_add(1, Ordering::Relaxed) + 1);
+                    let ended = play(seed);
+                    look(done.fetch_add(1, Ordering::Relaxed) + 1, &ended);
+                    let Ok(mut all) = all.lock() else { return };
+                    all.push((seed, ended));
                 }
             });
         }
     });
-    let (tally, mut broken) = sums.into_inner().unwrap_or_default();
-    broken.sort_unstable_by_key(|(seed, _)| *seed);
-    (tally, broken)
+    let mut all = all.into_inner().unwrap_or_default();
+    all.sort_unstable_by_key(|(seed, _)| *seed);
+    all
 }
 
 /// The lines that tell of a broken promise, the last of which repeats it.
 pub fn words(seed: u64, found: &Found) -> String {
-    let plan = Plan::drawn(seed);
+    let plan = plan::Plan::drawn(seed);
     format!("seed {seed}: {found}\n  {plan}\n  repeat: cargo xtask swarm --first {seed} --seeds 1")
 }

@@ -2,6 +2,7 @@
 //!
 //! Tasks are drawn from a seed, so nothing travels to the board; back come counts, and a hash of what was found. Runs in
 //! the bench's image (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`, which drives both. SI units.
+#![forbid(unsafe_code)]
 #![no_std]
 
 use core::fmt;

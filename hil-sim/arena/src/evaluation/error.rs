@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use foreign::printable;
 use hil_sim::SimulationError;
 
 use crate::game::GameError;
@@ -86,22 +87,28 @@ impl From<csv::Error> for EvaluationError {
     }
 }
 
+/// A file's name as it can be shown.
+fn shown(file: &Path) -> String {
+    printable(&file.to_string_lossy()).into_owned()
+}
+
 impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File { file, error } => write!(f, "{}: {error}", file.display()),
+            Self::File { file, error } => write!(f, "{}: {error}", shown(file)),
             Self::Row { file, line, what } => {
-                write!(f, "{}:{line}: {what}; take the line out, or begin in an empty folder", file.display())
+                let what = printable(what);
+                write!(f, "{}:{line}: {what}; take the line out, or begin in an empty folder", shown(file))
             }
             Self::Another { file, differences } => write!(
                 f,
                 "{}: holds trials of another evaluation (other {}); name an empty folder, begin anew with \
                  --fresh, or give the options it was begun with",
-                file.display(),
+                shown(file),
                 differences.join(", ")
             ),
             Self::InUse(file) => {
-                write!(f, "{}: another process writes to it; wait for it, or stop it", file.display())
+                write!(f, "{}: another process writes to it; wait for it, or stop it", shown(file))
             }
             Self::Nothing => f.write_str("no trials there; name the folders that shards were written to"),
             Self::Unlike { trial } => write!(

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use hil_sim::Parameters;
@@ -118,9 +118,12 @@ pub struct Kept<R: Entry = TrialRow> {
 
 /// Reads a file of trials; `None` where it was torn before its first trial.
 pub fn read<R: Entry>(path: &Path) -> Result<Option<Kept<R>>, EvaluationError> {
-    let bytes = std::fs::read(path).map_err(EvaluationError::file(path))?;
+    let bytes = foreign::read(path, LEDGER_LEN_MAX).map_err(EvaluationError::file(path))?;
     parse(path, &bytes)
 }
+
+/// Longest file that is read, bytes: a million trials have 300 MB.
+const LEDGER_LEN_MAX: u64 = 1 << 30;
 
 fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, EvaluationError> {
     let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
@@ -130,8 +133,12 @@ fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, Evaluat
     let json = head.strip_prefix(R::MARK.as_bytes()).ok_or_else(|| fault(1, format!("no `{}`", R::MARK)))?;
     let identity: R::Identity = serde_json::from_slice(json).map_err(|error| fault(1, error.to_string()))?;
     let mut reader = csv::Reader::from_reader(&bytes[head.len()..whole]);
+    let columns = reader.headers().map_err(|error| fault(2, error.to_string()))?.clone();
     let rows = (3..).zip(reader.deserialize()).map(|(line, row)| {
         let row: R = row.map_err(|error| fault(line, error.to_string()))?;
+        if let Some(what) = not_finite(&columns, &row) {
+            return Err(fault(line, what));
+        }
         if row.is_planned(&identity) {
             Ok(row)
         } else {
@@ -140,6 +147,18 @@ fn parse<R: Entry>(path: &Path, bytes: &[u8]) -> Result<Option<Kept<R>>, Evaluat
     });
     let rows = rows.collect::<Result<_, _>>()?;
     Ok(Some(Kept { file: path.to_owned(), identity, rows, whole }))
+}
+
+/// Which column of a row holds a number that is none, or an endless one. No trial has such a measure, and one alone spoils every
+/// mean it enters.
+fn not_finite<R: Entry>(columns: &csv::StringRecord, row: &R) -> Option<String> {
+    // Written again, such a number has one spelling, however it was spelt in the file: `nan`, `+inf`, `1e999`.
+    let line = to_line(row).ok()?;
+    let mut again = csv::ReaderBuilder::new().has_headers(false).from_reader(&line[..]);
+    let cells = again.records().next()?.ok()?;
+    let at = cells.iter().position(|cell| matches!(cell, "NaN" | "inf" | "-inf"))?;
+    let column = columns.get(at).unwrap_or("a column");
+    Some(format!("{column} is {}, not a finite number", cells.get(at).unwrap_or_default()))
 }
 
 /// A file of trials that grows.
@@ -158,7 +177,7 @@ impl Ledger {
         identity: &R::Identity,
     ) -> Result<(Self, Vec<R>), EvaluationError> {
         let failed = EvaluationError::file(path);
-        let mut file = OpenOptions::new()
+        let file = OpenOptions::new()
             .read(true)
             .write(true)
             .create(true)
@@ -169,8 +188,7 @@ impl Ledger {
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(EvaluationError::InUse(path.to_owned()));
         }
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(EvaluationError::file(path))?;
+        let bytes = foreign::read_from(&file, LEDGER_LEN_MAX).map_err(EvaluationError::file(path))?;
         let kept = parse::<R>(path, &bytes)?;
         let mut ledger = Self { file, path: path.to_owned(), headed: kept.is_some() };
         let Some(kept) = kept else {
@@ -261,6 +279,39 @@ pub(super) mod tests {
         let mut heavier = identity();
         heavier.parameters.ball.deceleration += 0.01;
         assert_eq!(own.differences(&heavier), ["parameters of the world"]);
+    }
+
+    #[test]
+    fn a_number_that_is_none_is_refused_with_file_line_and_column() {
+        let identity = Identity { plan: Plan::paper(1).with_trials(2), ..identity() };
+        let planned = identity.plan.get(0).unwrap();
+        let row = TrialRow {
+            profile: planned.cell.profile,
+            configuration: planned.cell.configuration,
+            scenario: planned.cell.scenario,
+            approach: planned.cell.approach,
+            seed: planned.seed,
+            time_s: 10.125,
+            // A hash that reads as a number beyond all numbers is a hash all the same.
+            trace_hash: "1234567890e99999".to_owned(),
+            ..super::super::row::tests::row()
+        };
+        let csv = String::from_utf8(to_csv(&[row]).unwrap()).unwrap();
+        let file = |csv: &str| format!("{}{csv}", text(&identity));
+        let kept = parse::<TrialRow>(Path::new("x.csv"), file(&csv).as_bytes()).unwrap().unwrap();
+        assert_eq!(kept.rows.len(), 1);
+        for wrong in ["NaN", "nan", "inf", "-inf", "infinity", "1e999"] {
+            let words = refused(&file(&csv.replace("10.125", wrong)));
+            assert!(words.starts_with("x.csv:3: time_s is "), "{wrong}: {words}");
+            assert!(words.contains("not a finite number"), "{wrong}: {words}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_no_ledger() {
+        let words = read::<TrialRow>(Path::new("/dev/zero")).unwrap_err().to_string();
+        assert!(words.contains("a device, not a regular file"), "{words}");
     }
 
     #[test]

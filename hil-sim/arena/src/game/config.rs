@@ -79,6 +79,8 @@ impl GameConfig {
             setup.plays = if setup.colour == Colour::Blue { blue } else { yellow };
             // A team that stands cannot place a ball, and the referee does not wait for it to.
             self.referee.team_mut(setup.colour).can_place_ball &= setup.plays != Team::Idle;
+            // People carry its robots where they block the match.
+            self.referee.team_mut(setup.colour).drives &= setup.plays != Team::Idle;
         }
         self
     }

@@ -4,7 +4,9 @@
 use geometry::{Field, Point, Pose, Vector};
 use hil_sim::Backend;
 use hil_sim::small_size::Ball;
-use protocol::Who;
+use hil_sim::small_size::referee::{Card, Restart};
+use protocol::{Duration, RobotId, Who};
+use rules::Colour;
 use rules::state::Command;
 
 use super::{Game, GameConfig, GameError};
@@ -31,6 +33,12 @@ impl<'a> Game<'a> {
         self.world.put_ball(ball);
     }
 
+    /// The ball is there at once, at rest or rolling; robots in its way are moved aside.
+    pub fn put_ball(&mut self, ball: Ball) {
+        self.world.put_ball(ball);
+        self.world.make_room_for_ball();
+    }
+
     /// Pulls a robot there; where the match stands still it is put. Nothing where no such robot plays.
     pub fn move_robot(&mut self, who: Who, to: Point<Field>, stands: bool) {
         let Some(robot) = self.world.robot(who).filter(|robot| robot.present) else { return };
@@ -50,6 +58,32 @@ impl<'a> Game<'a> {
     /// The referee is told to say that; false where it makes no sense now.
     pub fn command(&mut self, command: Command) -> bool {
         self.referee.command_by_hand(command)
+    }
+
+    /// The game is stopped and goes on with that, the ball at the valid place nearest to `place` where there is a choice. False where
+    /// it makes no sense now.
+    pub fn restart(&mut self, next: Restart, place: Point<Field>) -> bool {
+        self.referee.restart_by_hand(next, place)
+    }
+
+    /// A HALT or STOP by hand ends.
+    pub fn go_on(&mut self) {
+        self.referee.go_on_by_hand();
+    }
+
+    /// That team is shown a card.
+    pub fn card(&mut self, team: Colour, card: Card) {
+        self.referee.card_by_hand(team, card);
+    }
+
+    /// That team changes its keeper; false while the rules do not let it.
+    pub fn change_keeper(&mut self, team: Colour, keeper: RobotId) -> bool {
+        self.referee.set_keeper(team, keeper)
+    }
+
+    /// That team wants a timeout of this length at the next stop; false where it has none left.
+    pub fn request_timeout(&mut self, team: Colour, length: Duration) -> bool {
+        self.referee.request_timeout(team, length)
     }
 
     /// Each team's air loses this share of packets from now on.

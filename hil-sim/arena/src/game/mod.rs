@@ -18,7 +18,7 @@ mod story;
 
 pub use config::{GameConfig, TeamSetup};
 pub use recording::header;
-pub use report::{GameReport, PerTeam, TeamReport};
+pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
 pub use story::{GameStory, sentence};
 
 use hil_sim::small_size::camera::Cameras;
@@ -220,9 +220,19 @@ pub fn play(
     backend: &mut dyn Backend<'_>,
     watcher: &mut dyn Watcher,
 ) -> Result<GameReport, GameError> {
+    play_until(config, backend, watcher, || false)
+}
+
+/// The same, but ends at the first tick at which `stop` says so; the report is of what was played.
+pub fn play_until(
+    config: &GameConfig,
+    backend: &mut dyn Backend<'_>,
+    watcher: &mut dyn Watcher,
+    stop: impl Fn() -> bool,
+) -> Result<GameReport, GameError> {
     let mut game = Game::new(config, backend)?;
     let ticks = (config.duration_s * 1e6 / TICK_US as f64) as u32;
-    while game.tick < ticks && !game.is_over() {
+    while game.tick < ticks && !game.is_over() && !stop() {
         game.step(watcher)?;
     }
     Ok(GameReport::of(config, &game))

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use hil_sim::small_size::referee::Metrics;
+use hil_sim::small_size::referee::{Blocked, Metrics};
 use host::strategy::Team;
 use host::strategy::tally::PlayTally;
 use rules::Colour;
@@ -21,6 +21,8 @@ pub struct GameReport {
     pub ball_in_play: f32,
     /// Offences by kind.
     pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
+    /// Times at which the match stood for longer than the referee's patience.
+    pub blocked: Vec<BlockedReport>,
     /// Who decided each side's open play.
     pub teams: PerTeam<Team>,
     /// What else was counted.
@@ -33,6 +35,37 @@ pub struct GameReport {
     pub trace_hash: String,
     /// The longest step of a brain, guest instructions; 0 where they cannot be counted.
     pub worst_step_instructions: u32,
+}
+
+/// The match stood.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BlockedReport {
+    /// From this simulated second.
+    pub from_s: f32,
+    /// For so long.
+    pub lasted_s: f32,
+    /// Whose doing it was, at last; none for the ball's place.
+    pub team: Option<&'static str>,
+    /// Which robot's.
+    pub robot: Option<u8>,
+    /// Why, as a name for programs.
+    pub reason: &'static str,
+    /// Why, with its numbers.
+    pub words: String,
+}
+
+impl BlockedReport {
+    fn of(block: &Blocked) -> Self {
+        let obstacle = &block.obstacle;
+        Self {
+            from_s: block.since.as_secs_f32(),
+            lasted_s: block.lasted.as_secs_f32(),
+            team: obstacle.team.map(Colour::word),
+            robot: obstacle.robot.map(protocol::RobotId::number),
+            reason: obstacle.reason.word(),
+            words: obstacle.to_string(),
+        }
+    }
 }
 
 /// Something of both teams.
@@ -101,6 +134,7 @@ impl GameReport {
             fouls: PerTeam::of(|team| {
                 metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
             }),
+            blocked: metrics.blocks.iter().map(BlockedReport::of).collect(),
             teams: PerTeam::of(|team| config.plays(team)),
             metrics: PerTeam::of(|team| TeamReport::of(metrics, team, *game.host(team).tally())),
             league: config.league.name(),

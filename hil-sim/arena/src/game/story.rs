@@ -1,6 +1,6 @@
 //! How is a match told? A line for each thing that the referee notes, and for each restart. Seconds, field frame, m.
 
-use hil_sim::small_size::referee::Event;
+use hil_sim::small_size::referee::{Event, What};
 use rules::{Colour, Phase};
 
 use super::{Game, Watcher};
@@ -54,7 +54,10 @@ pub fn sentence(event: &Event) -> String {
         (Some(team), None) => format!("{}: ", team.word()),
         (None, _) => String::new(),
     };
-    let what = event.what.kind().word().replace('_', " ");
+    let what = match &event.what {
+        What::Blocked { reason } => format!("the match is blocked, {reason},"),
+        what => what.kind().word().replace('_', " "),
+    };
     let (x, y) = (event.place.x(), event.place.y());
     format!("{who}{what} at ({x:.2}, {y:.2})")
 }

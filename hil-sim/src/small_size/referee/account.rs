@@ -80,12 +80,12 @@ impl Account {
         self.can_place_ball && !self.placement_barred
     }
 
-    /// A yellow card; false where it must be a red one.
-    pub(super) fn show_yellow(&mut self, now: Instant) -> bool {
+    /// A yellow card for that playing time; false where it must be a red one.
+    pub(super) fn show_yellow(&mut self, now: Instant, playing_us: i64) -> bool {
         if self.yellow_cards.len() as u32 >= limits::YELLOW_CARDS_MAX {
             return false;
         }
-        self.yellow_cards.push(micros(limits::YELLOW_CARD_TIME));
+        self.yellow_cards.push(playing_us);
         self.yellow_cards_given += 1;
         self.carded = Some(now);
         true

@@ -6,6 +6,8 @@ use geometry::{Field, Point};
 use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 
+use super::ready::Reason;
+
 /// Something the referee noticed or decided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
@@ -264,6 +266,11 @@ kinds! {
         /// m/s.
         speed: f32,
     } = "bot_moved_in_halt",
+    /// The match has stood for longer than the referee's patience (ours: the league's game controller waits in silence).
+    Blocked {
+        /// What keeps it.
+        reason: Reason,
+    } = "blocked",
     /// A robot within 0.5 m of the ball in stop after 2 s (ours: the rules leave it to the human referee).
     TooCloseInStop {
         /// From the ball, m.

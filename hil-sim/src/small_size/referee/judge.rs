@@ -122,7 +122,7 @@ impl InternalReferee {
     fn show_card(&mut self, team: Option<Colour>) {
         let Some(team) = team else { return };
         let now = self.now;
-        if !self.accounts.of_mut(team).show_yellow(now) {
+        if !self.accounts.of_mut(team).show_yellow(now, micros(limits::YELLOW_CARD_TIME)) {
             self.judge(&self.event(Some(team), What::MultipleCards));
         }
     }

@@ -74,7 +74,7 @@ impl WorldOrder {
                 world.make_room_for_ball();
             }
             Self::RemoveRobot(who) => world.remove(who),
-            Self::ReturnRobot(who, pose) => {
+            Self::ReturnRobot(who, pose) | Self::CarryRobot(who, pose) => {
                 world.put(who, pose).tipped = false;
             }
         }

@@ -11,6 +11,7 @@ use geometry::{Field, Point};
 use rules::Colour;
 
 use super::InternalReferee;
+use super::blocked::Blocked;
 use super::event::{Event, Kind, What};
 use super::observation::BallSeen;
 use super::scene::is_running;
@@ -69,6 +70,10 @@ pub struct Metrics {
     pub blue: TeamMetrics,
     /// Offences by kind, sanctioned or not.
     pub offences: FoulCounts,
+    /// Times at which the match stood for longer than the referee's patience, oldest first.
+    pub blocks: Vec<Blocked>,
+    /// Robots that people took off the field.
+    pub taken_off: u32,
     last: Option<Leg>,
 }
 
@@ -85,6 +90,11 @@ impl Metrics {
     /// Share of the match in which the ball was in play.
     pub fn ball_in_play(&self) -> f32 {
         if self.match_s > 0.0 { self.in_play_s / self.match_s } else { 0.0 }
+    }
+
+    /// Seconds in which the match was blocked, from when something kept it from going on.
+    pub fn blocked_s(&self) -> f32 {
+        self.blocks.iter().map(|block| block.lasted.as_secs_f32()).sum()
     }
 
     /// One team's part.

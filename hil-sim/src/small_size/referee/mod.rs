@@ -10,11 +10,14 @@
 //!                                                           │
 //! clock, stages ─► flow: halt, stop, placement, restarts ◄──┘ ─► commands ─► rules::GameState ─► packets
 //! ```
-//! A match goes on whatever the teams do: every phase has a longest time (30 s of placement, then the other team, then a
-//! person; 10 s of patience in stop and preparation; 5 or 10 s for kicks; 10 s for penalties), and robots that break the
-//! rules again and again are taken off by cards.
+//! The game goes on under the conditions of the league's game controller ([`Reason`]) and under no others: while a robot or the
+//! ball is where it must not be the match stands, and says so ([`InternalReferee::blocked`]). Placement, kicks and penalties have
+//! their longest times (30 s, then the other team, then a person; 5 or 10 s; 10 s). What people do is little and said by
+//! [`WorldOrder`]: they put the ball where the rules leave it to a person, or where nothing but the ball blocks the match, and
+//! take out robots in a substitution area or in a halt for it.
 
 mod account;
+mod blocked;
 mod desk;
 mod event;
 mod flow;
@@ -23,6 +26,7 @@ mod look;
 mod metrics;
 mod observation;
 mod people;
+mod ready;
 pub mod remote;
 mod scene;
 mod settings;
@@ -42,10 +46,13 @@ use rules::state::{Command, GameState, Heard, Stage};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 
 pub use account::{Account, Accounts};
+pub use blocked::Blocked;
+pub use desk::Card;
 pub use event::{Event, Invalid, Kind, PenaltyEnd, Restart, Shot, What};
 pub use metrics::{FoulCounts, Metrics, TeamMetrics};
 pub use observation::{BallSeen, CrashSeen, Observation, RobotSeen};
 pub use people::WorldOrder;
+pub use ready::{Obstacle, Reason};
 pub use settings::{MatchClock, RefereeSettings, TeamSettings};
 
 use crate::rng::Stream;
@@ -109,6 +116,7 @@ pub struct InternalReferee {
     ball_at_command: Point<Field>,
     /// Since when nothing speaks against going on.
     ready_since: Option<Instant>,
+    waiting: blocked::Waiting,
     packets: VecDeque<ssl::referee::Referee>,
     next_packet: Instant,
     off_graph: u32,
@@ -151,6 +159,7 @@ impl InternalReferee {
             ball_seen_at: Instant(0),
             ball_at_command: Point::default(),
             ready_since: None,
+            waiting: blocked::Waiting::default(),
             packets: VecDeque::new(),
             next_packet: Instant(0),
             off_graph: 0,
@@ -196,7 +205,8 @@ impl InternalReferee {
         for event in &events {
             self.judge(event);
         }
-        self.keep_numbers(&robots);
+        self.keep_numbers(&robots, passed);
+        self.help(&robots);
         self.go_on(&robots);
         self.state.tick(self.now.0, Some(self.ball.position), &self.limits);
         self.send_when_due();
@@ -315,6 +325,7 @@ impl InternalReferee {
         self.ball_at_command = self.ball.position;
         self.action_left = self.time_for(command);
         self.ready_since = None;
+        self.wait_ends();
         self.people.command_given();
         self.watch.command_given();
         let starts = matches!(command, Command::NormalStart | Command::ForceStart | Command::FreeKick(_));

@@ -29,6 +29,8 @@ pub struct TeamSettings {
     pub keeper: RobotId,
     /// Can it place the ball? (Division B may do without, division A must not.)
     pub can_place_ball: bool,
+    /// Do its robots drive? Where not, people carry those that block the match, and all of them at half-time.
+    pub drives: bool,
 }
 
 /// How the internal referee runs a match.
@@ -63,8 +65,8 @@ pub struct RefereeSettings {
     /// Time a person needs to put the ball down, and robots get to prepare before a restart: 2 s, the game
     /// controller's "preparation time before resume".
     pub person_delay: Duration,
-    /// How long teams that do not make room are waited for before the game goes on all the same: 10 s, as long as the
-    /// game controller gives after a halt.
+    /// How long something may keep the game from going on before the match is said to be blocked: 10 s, as long as the game
+    /// controller gives after a halt. The game waits for longer, as the game controller does.
     pub patience: Duration,
     /// How long a halt lasts once it is given: 3 s, so that a robot still moving after the rules' grace of 2 s is seen.
     pub halt: Duration,
@@ -77,7 +79,12 @@ pub struct RefereeSettings {
 impl RefereeSettings {
     /// A match of that league by the rules: 2 × 300 s of playing time, blue defends +x, yellow kicks off, cards.
     pub fn new(league: League) -> Self {
-        let team = |name: &str| TeamSettings { name: name.into(), keeper: KEEPER, can_place_ball: true };
+        let team = |name: &str| TeamSettings {
+            name: name.into(),
+            keeper: KEEPER,
+            can_place_ball: true,
+            drives: true,
+        };
         Self {
             league,
             clock: MatchClock::Playing { half: Duration::millis(300_000) },

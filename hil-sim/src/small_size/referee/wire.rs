@@ -47,7 +47,7 @@ impl InternalReferee {
             game_event_proposals: Vec::new(),
             source_identifier: Some("onetwo internal referee".into()),
             match_type: Some(wire::MatchType::Friendly as i32),
-            status_message: None,
+            status_message: self.blocked().map(|blocked| format!("blocked: {}", blocked.obstacle)),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Is a library sound? Every error and warning as `file:line: error[CODE]: message; mend`, then one line of summary a
 //! league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on errors, and with `--strict` on warnings.
 
-use std::io::{self, BufWriter, Write, stdout};
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::args::FolderArgs;
+use crate::output;
 
 use super::answer::write_line;
 use super::counted;
@@ -70,14 +71,15 @@ fn explain(code: &str, output: &mut impl Write) -> io::Result<()> {
 
 pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     if let Some(code) = &args.explain {
-        explain(code, &mut stdout().lock()).map_err(Failure::Output)?;
+        let mut output = output::lines();
+        explain(code, &mut output).and_then(|()| output.flush()).map_err(Failure::Output)?;
         return Ok(ExitCode::SUCCESS);
     }
     let reports = match &args.folder.library {
         Some(folder) => vec![Report::of(folder, args)?],
         None => LEAGUES.iter().map(|league| Report::built_in(league, args)).collect::<Result<_, _>>()?,
     };
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     let written = if args.json {
         let rows: Vec<_> = reports.iter().flat_map(Report::rows).collect();
         write_line(&mut output, &rows)

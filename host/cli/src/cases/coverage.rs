@@ -2,7 +2,7 @@
 //! (the goal attacked is on the right), shares by area, region and class, and the worst holes as problems.
 
 use std::fmt::Write as _;
-use std::io::{self, BufWriter, Write, stdout};
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent, problem_line, region};
 use crate::Failure;
+use crate::output;
 use crate::picture;
 
 /// What `cases coverage` may be told.
@@ -56,7 +57,7 @@ pub(super) fn run(args: &CoverageArgs) -> Result<ExitCode, Failure> {
         let text = if is_table { csv(&tally, cells) } else { drawn(&trial, &tally, cells, args.map) };
         picture::write(file, &text)?;
     }
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     let written = match (args.gaps, args.json) {
         (Some(count), _) => write_gaps(&mut output, &trial, &tally, count),
         (None, true) => writeln!(output, "{}", as_json(&trial, &tally, cells)),

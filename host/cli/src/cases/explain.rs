@@ -3,7 +3,7 @@
 //! rank (DESIGN §4.3, §8). Lengths in mm; robots of a case, legs and opponents are counted from 1.
 
 use std::collections::HashMap;
-use std::io::{self, BufWriter, Write, stdin, stdout};
+use std::io::{self, Write, stdin};
 use std::process::ExitCode;
 
 use casebase::{Case, CaseBase, Match, Problem, Verdict, rank_order};
@@ -19,6 +19,7 @@ use super::whatif::WhatIf;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output;
 
 /// What `cases explain` may be told.
 #[derive(Debug, Args)]
@@ -52,7 +53,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         Ok([diff::find(&shelf, base.len(), &pair[0])?, diff::find(&shelf, base.len(), &pair[1])?])
     });
     let pair = pair.transpose()?;
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     for_each_problem(stdin().lock(), &mut output, |output, number, problem| match problem {
         Ok(problem) => {
             if let Some(pair) = pair {

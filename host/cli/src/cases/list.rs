@@ -1,6 +1,6 @@
 //! Which cases are stored, and what is each for? The table, or one JSON list of all of them (DESIGN §8).
 
-use std::io::{self, BufWriter, Write, stdout};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::Failure;
 use crate::args::FolderArgs;
 use crate::library::Shelf;
+use crate::output;
 
 /// What `cases list` may be told.
 #[derive(Debug, Args)]
@@ -23,7 +24,7 @@ pub(crate) struct ListArgs {
 pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
     let shelves = Shelf::all(args.folder.library.as_deref())?;
     let rows: Vec<Row<'_>> = shelves.iter().flat_map(rows).collect();
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     let written = if args.json { write_json(&mut output, &rows) } else { write_table(&mut output, &rows) };
     written.and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)

@@ -1,12 +1,12 @@
 //! What would a case for this situation look like, to begin with? One problem in, a case file out, to author from. It
 //! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on stderr.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read, Write, stdin, stdout};
+use std::fs::OpenOptions;
+use std::io::{self, Read, Write, stdin};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use case_tools::{Files, SkeletonError, SourceFile, skeleton};
+use case_tools::{CASE_FILE_LEN_MAX, Files, SkeletonError, SourceFile, skeleton};
 use casebase::Problem;
 use clap::Args;
 
@@ -14,6 +14,7 @@ use super::lines::LINE_MAX;
 use super::problem;
 use crate::Failure;
 use crate::args::LibraryArgs;
+use crate::output::{note, say, shown};
 
 /// What `cases new` may be told.
 #[derive(Debug, Args)]
@@ -46,16 +47,16 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
     })?;
     match &args.out {
         Some(file) => write(file, args.force, &draft.text)?,
-        None => stdout().lock().write_all(draft.text.as_bytes()).map_err(Failure::Output)?,
+        None => say(&draft.text)?,
     }
     for note in &draft.notes {
-        eprintln!("note: {note}");
+        note!("note: {note}");
     }
     for finding in &draft.findings {
-        eprintln!("note: line {}: {}; {}", finding.line, finding.message, finding.mend);
+        note!("note: line {}: {}; {}", finding.line, finding.message, finding.mend);
     }
     if !draft.retrieved {
-        eprintln!(
+        note!(
             "note: the draft is not retrieved from its own problem; the changes above make it another situation"
         );
     }
@@ -66,9 +67,9 @@ pub(super) fn run(args: &NewArgs) -> Result<ExitCode, Failure> {
 fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
     if let Some(folder) = &args.folder.library {
         let path = folder.join("league.toml");
-        let text = fs::read_to_string(&path).map_err(|error| {
+        let text = foreign::read_text(&path, CASE_FILE_LEN_MAX).map_err(|error| {
             let mend = "--library takes one league's folder, the one that holds league.toml";
-            Failure::Draft(format!("cannot read {}: {error}; {mend}", path.display()))
+            Failure::Draft(format!("cannot read {}: {error}; {mend}", shown(&path)))
         })?;
         return Ok(SourceFile { path, name: "league".to_owned(), text });
     }
@@ -79,16 +80,16 @@ fn rules(args: &LibraryArgs) -> Result<SourceFile, Failure> {
 
 /// The one problem of a file.
 fn read(from: &Path) -> Result<Problem, Failure> {
-    let mut bytes = Vec::new();
-    let most = LINE_MAX as u64 + 1;
+    let most = LINE_MAX as u64;
     let (name, read) = if from == Path::new("-") {
-        ("stdin".to_owned(), stdin().lock().take(most).read_to_end(&mut bytes))
+        let mut bytes = Vec::new();
+        let read = stdin().lock().take(most + 1).read_to_end(&mut bytes);
+        ("stdin".to_owned(), read.map(|_| bytes))
     } else {
-        let file = File::open(from);
-        (from.display().to_string(), file.and_then(|file| file.take(most).read_to_end(&mut bytes)))
+        (shown(from), foreign::read(from, most))
     };
     let fail = |words: &dyn std::fmt::Display| Failure::Draft(format!("{name}: {words}"));
-    read.map_err(|error| fail(&error))?;
+    let bytes = read.map_err(|error| fail(&error))?;
     if bytes.len() > LINE_MAX {
         return Err(fail(&format!("more than {LINE_MAX} bytes; give one problem")));
     }
@@ -122,6 +123,6 @@ fn write(file: &Path, force: bool, text: &str) -> Result<(), Failure> {
             io::ErrorKind::NotFound => "make its folder first",
             _ => "choose another --out",
         };
-        Failure::Draft(format!("cannot write {}: {error}; {mend}", file.display()))
+        Failure::Draft(format!("cannot write {}: {error}; {mend}", shown(file)))
     })
 }

@@ -4,7 +4,7 @@
 //! the same answer for any number of jobs. `--story` tells single attempts instead, for whoever mends a case.
 
 use std::fmt::Write as _;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::process::ExitCode;
 
 use arena::{CaseNames, Opposition, Rehearsal, Score, Story};
@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output::{self, say};
 use crate::setup::refuse_other_fields;
 
 /// What `cases play` may be told.
@@ -77,7 +78,7 @@ pub(super) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     } else {
         arena::markdown(&scores)
     };
-    io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)?;
+    say(&words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -132,7 +133,7 @@ fn tell(
     cases: &[Case<'_>],
     oppositions: &[Opposition],
 ) -> Result<ExitCode, Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = output::lines();
     for case in cases {
         for (kind, number) in
             oppositions.iter().flat_map(|kind| (0..rehearsal.trials).map(move |n| (*kind, n)))
@@ -146,7 +147,7 @@ fn tell(
             }
             let end = attempt.end.map_or("not played", arena::CycleEnd::word);
             let _ = writeln!(text, "{end}, the ball {:.2} m nearer to the goal line\n", attempt.progress);
-            out.write_all(text.as_bytes()).map_err(Failure::Output)?;
+            out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(Failure::Output)?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -7,6 +7,7 @@
 use std::fmt;
 
 use casebase::{GoalEnd, PROBLEM_OPPONENTS_MAX, PROBLEM_TEAMMATES_MAX, PointMm, Problem};
+use foreign::excerpt;
 use protocol::RobotId;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
@@ -33,6 +34,9 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     })
 }
 
+/// As much of a place as is shown, characters: a key of the line may be as long as the line.
+const PLACE_LEN: usize = 60;
+
 /// Why a line holds no problem.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Malformed {
@@ -44,7 +48,7 @@ pub(crate) struct Malformed {
 
 impl Malformed {
     pub(crate) fn at(place: &str, reason: impl Into<String>) -> Self {
-        Self { place: Some(place.to_owned()), reason: reason.into() }
+        Self { place: Some(excerpt(place, PLACE_LEN)), reason: reason.into() }
     }
 
     pub(crate) fn line(reason: impl Into<String>) -> Self {

@@ -1,18 +1,20 @@
 //! What does a case look like, and a problem over it? An SVG or PNG, alone or all on one page (DESIGN §4.3).
 
-use std::io::{self, Read, Write, stdin, stdout};
-use std::path::PathBuf;
+use std::io::{Read, stdin};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use case_tools::draw::{CasePicture, Overlay, Theme, case_picture, sheet};
 use casebase::{Match, Problem, Symmetry, Verdict, rank_order};
 use clap::{Args, ValueEnum};
 
+use super::lines::LINE_MAX;
 use super::show::{find, unknown};
 use super::{counted, problem};
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output::{say, shown};
 use crate::picture;
 
 /// What `cases render` may be told.
@@ -70,7 +72,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
             .map_err(|words| Failure::Picture { file: file.clone(), words })?;
         picture::write(file, &svg)?;
     } else {
-        stdout().lock().write_all(svg.as_bytes()).map_err(Failure::Output)?;
+        say(&svg)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -155,12 +157,16 @@ fn read(argument: &str) -> Result<Problem, Failure> {
         argument.to_owned()
     } else if argument == "-" {
         let mut text = String::new();
-        stdin().lock().read_to_string(&mut text).map_err(Failure::Input)?;
+        stdin().lock().take(LINE_MAX as u64 + 1).read_to_string(&mut text).map_err(Failure::Input)?;
         text
     } else {
-        std::fs::read_to_string(argument)
-            .map_err(|error: io::Error| Failure::Problem(format!("cannot read {argument}: {error}")))?
+        let file = Path::new(argument);
+        foreign::read_text(file, LINE_MAX as u64)
+            .map_err(|error| Failure::Problem(format!("cannot read {}: {error}", shown(file))))?
     };
+    if text.len() > LINE_MAX {
+        return Err(Failure::Problem(format!("--problem: more than {LINE_MAX} bytes; give one problem")));
+    }
     problem::parse(text.trim()).map_err(|error| Failure::Problem(format!("--problem: {error}")))
 }
 

@@ -1,6 +1,6 @@
 //! Which case fits each of these situations? Problems in on stdin, answers out on stdout, one a line (DESIGN §8).
 
-use std::io::{BufWriter, stdin, stdout};
+use std::io::stdin;
 use std::process::ExitCode;
 
 use clap::Args;
@@ -10,6 +10,7 @@ use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output;
 
 /// What `cases retrieve` may be told.
 #[derive(Debug, Args)]
@@ -24,7 +25,7 @@ pub(super) fn run(args: &RetrieveArgs) -> Result<ExitCode, Failure> {
     let chosen = args.settings.choose()?;
     let shelf = Shelf::open(&args.library)?;
     let base = shelf.base();
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     for_each_problem(stdin().lock(), &mut output, |output, _, problem| match problem {
         Ok(problem) => {
             let retrieval = casebase::retrieve(&base, &problem, &chosen.settings);

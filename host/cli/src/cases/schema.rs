@@ -1,6 +1,7 @@
 //! What may stand in a case file, or in `league.toml`? A JSON schema (draft 2020-12) from the names and ranges the reader
 //! knows, for editors. It says what a file may look like; what a plan must be is for `cases check`.
 
+use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::process::ExitCode;
 
@@ -13,6 +14,7 @@ use serde_json::{Map, Value, json};
 
 use super::answer::write_line;
 use crate::Failure;
+use crate::output;
 
 /// What `cases schema` may be told.
 #[derive(Debug, Args)]
@@ -26,7 +28,8 @@ pub(super) fn run(args: &SchemaArgs) -> Result<ExitCode, Failure> {
     let mut schema = if args.league_file { league() } else { case() };
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
     schema["title"] = if args.league_file { "league.toml of onetwo" } else { "A case of onetwo" }.into();
-    write_line(&mut std::io::stdout().lock(), &schema).map_err(Failure::Output)?;
+    let mut output = output::lines();
+    write_line(&mut output, &schema).and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,7 +1,7 @@
 //! What does a stored case say: the situation, what each robot does, and the ball's path? (paper §2; DESIGN §4.1–§4.3)
 //! Text for people; mm and degrees, the case's own coordinates.
 
-use std::io::{self, BufWriter, Write, stdout};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use casebase::{Action, Case, CaseBase, GoalEnd, KickAim, KickId, Leg, LegKind, PointMm, TurnTarget};
@@ -11,6 +11,7 @@ use protocol::CaseId;
 use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::library::Shelf;
+use crate::output;
 
 /// What `cases show` may be told.
 #[derive(Debug, Args)]
@@ -25,7 +26,7 @@ pub(crate) struct ShowArgs {
 pub(super) fn run(args: &ShowArgs) -> Result<ExitCode, Failure> {
     let shelf = Shelf::open(&args.library)?;
     let case = find(&shelf, &args.case).ok_or_else(|| unknown(&shelf, &args.case))?;
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     let written = write_case(&mut output, &shelf, &case);
     written.and_then(|()| output.flush()).map_err(Failure::Output)?;
     Ok(ExitCode::SUCCESS)

@@ -2,7 +2,7 @@
 //! `case_tools::competence`) Suggestions come with their evidence and are never carried out.
 
 use std::collections::BTreeMap;
-use std::io::{self, BufWriter, Write, stdout};
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use case_tools::competence::{Role, Shared, groups, roles, shared, thin_out};
@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::survey::{SurveyArgs, Trial, class, percent};
 use crate::Failure;
+use crate::output;
 
 /// What `cases stats` may be told.
 #[derive(Debug, Args)]
@@ -41,7 +42,7 @@ pub(super) fn run(args: &StatsArgs) -> Result<ExitCode, Failure> {
     let (tally, _) = trial.count()?;
     let pairs = shared(&tally);
     let report = Report { roles: roles(&tally, &pairs), trial: &trial, names, tally: &tally, pairs };
-    let mut output = BufWriter::new(stdout().lock());
+    let mut output = output::lines();
     let written = match (only, args.json) {
         (Some(case), true) => writeln!(output, "{}", report.case_json(case)),
         (Some(case), false) => report.write_case(&mut output, case),

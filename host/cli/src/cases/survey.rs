@@ -1,8 +1,6 @@
 //! Which problems is a library tried with, and how is the work shared? What `cases coverage` and `cases stats` have in
 //! common: drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on how many there are.
 
-use std::collections::VecDeque;
-use std::fs::File;
 use std::io::sink;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +15,7 @@ use super::lines::for_each_problem;
 use crate::Failure;
 use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
+use crate::output::shown;
 
 /// What both verbs may be told.
 #[derive(Debug, Args)]
@@ -174,20 +173,28 @@ pub(crate) fn class(shelf: &Shelf, authored: usize) -> (&'static str, usize) {
 }
 
 fn recorded(file: &Path) -> Result<Vec<Problem>, Failure> {
-    let fail = |words: String| Failure::Survey(format!("--from {}: {words}", file.display()));
-    let input = File::open(file).map_err(|error| fail(error.to_string()))?;
+    let fail = |words: String| Failure::Survey(format!("--from {}: {words}", shown(file)));
+    let input = foreign::open(file).map_err(|error| fail(error.to_string()))?;
     let mut problems = Vec::new();
-    let mut faults = VecDeque::new();
+    let (mut first_fault, mut faults) = (None, 0_u64);
     for_each_problem(input, &mut sink(), |_, _, problem| {
         match problem {
-            Ok(problem) => problems.push(problem),
-            Err(error) => faults.push_back(error),
+            Ok(problem) if problems.len() < RECORDED_MAX => problems.push(problem),
+            Ok(_) => {
+                faults += 1;
+                first_fault
+                    .get_or_insert_with(|| format!("more than {RECORDED_MAX} problems; split the file"));
+            }
+            Err(error) => {
+                faults += 1;
+                first_fault.get_or_insert(error);
+            }
         }
         Ok(())
     })?;
-    match faults.pop_front() {
-        Some(first) if faults.is_empty() => Err(fail(first)),
-        Some(first) => Err(fail(format!("{first}; and {} more lines", faults.len()))),
+    match first_fault {
+        Some(first) if faults == 1 => Err(fail(first)),
+        Some(first) => Err(fail(format!("{first}; and {} more lines", faults - 1))),
         None if problems.is_empty() => {
             Err(fail("no problem in it; one line each, as `cases retrieve` takes them".to_owned()))
         }
@@ -213,6 +220,8 @@ fn goal(word: &str) -> Result<GoalEnd, String> {
     GoalEnd::from_word(word).ok_or_else(|| "expected yellow (the goal at -x) or cyan".to_owned())
 }
 
+/// Problems that are read from one file: 2 GB of memory.
+const RECORDED_MAX: usize = 5_000_000;
 /// Problems that are counted in one go: some tens of milliseconds.
 const BLOCK: u64 = 2048;
 /// Drawn on a terminal's stderr only.

@@ -110,18 +110,15 @@ impl Alarms {
         self.now = alarms.iter().map(|alarm| alarm.words.clone()).collect();
         let mut lines = Vec::new();
         for Alarm { matter, words, repeats } in alarms {
-            match self.printed.iter_mut().find(|(known, ..)| *known == matter) {
-                Some((_, seen, last)) => {
-                    *seen = now;
-                    if repeats && now.since(*last) >= AGAIN {
-                        *last = now;
-                        lines.push(words);
-                    }
-                }
-                None => {
-                    self.printed.push((matter, now, now));
+            if let Some((_, seen, last)) = self.printed.iter_mut().find(|(known, ..)| *known == matter) {
+                *seen = now;
+                if repeats && now.since(*last) >= AGAIN {
+                    *last = now;
                     lines.push(words);
                 }
+            } else {
+                self.printed.push((matter, now, now));
+                lines.push(words);
             }
         }
         lines

@@ -7,6 +7,7 @@ use page::{Happening, Kind, Page, Powers, Request};
 
 use crate::library::Shelf;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, tick};
+use crate::output::note;
 
 /// A page and what fills it.
 pub(super) struct Board {
@@ -30,7 +31,7 @@ impl Board {
             let page = args.open(title, false, Powers::Halt, CaseOracle::new(shelf, settings))?;
             Ok::<_, crate::Failure>(Self { page, composer, shown: None, took: Duration::ZERO })
         };
-        open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()
+        open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }
 
     pub(super) fn vision(&mut self, bytes: &[u8]) {

@@ -37,6 +37,7 @@ use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// Looks at what is missing, and at Ctrl-C, at least this often.
@@ -74,7 +75,7 @@ pub(super) fn run(
             .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
     });
     let recorder = recorder.transpose()?;
-    eprintln!(
+    note!(
         "controlling {}, {}, {}; Ctrl-C halts the robots and ends it",
         config.name,
         config.colour.word(),
@@ -147,11 +148,14 @@ pub(super) fn run(
     }
     terminal.close();
     desk.end_recording(recorder);
-    desk.words.drain(..).for_each(|words| eprintln!("{words}"));
+    desk.words.drain(..).for_each(|words| note!("{words}"));
     let Desk { counts, recording, .. } = desk;
-    eprintln!(
+    note!(
         "robots halted; ended after {} vision and {} referee packets, {} frames from robots and {} to them",
-        counts.vision, counts.referee, counts.robots, counts.sent
+        counts.vision,
+        counts.referee,
+        counts.robots,
+        counts.sent
     );
     recording.map_err(|error| Failure::Recording(format!("it is not whole: {error}")))?;
     Ok(ExitCode::SUCCESS)

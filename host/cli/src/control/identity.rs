@@ -9,6 +9,7 @@ use host::shell::{epoch, key};
 use protocol::frame::TeamKey;
 
 use crate::Failure;
+use crate::output::note;
 
 /// The team's key: the file's, or zeros where that is allowed.
 pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
@@ -32,7 +33,7 @@ pub(super) fn team_key(config: &TeamConfig) -> Result<TeamKey, Failure> {
         )));
     }
     if let Some(warning) = read.and_then(|read| read.warning) {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     Ok(key)
 }
@@ -46,7 +47,7 @@ pub(super) fn this_epoch(config: &TeamConfig) -> u32 {
     }
     let epoch = epoch::next(epoch::state_directory().as_deref(), calendar);
     if let Some(warning) = epoch.warning {
-        eprintln!("warning: {warning}");
+        note!("warning: {warning}");
     }
     epoch.epoch
 }

@@ -30,6 +30,7 @@ use crate::Failure;
 use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::live::{PageArgs, shelf_of};
+use crate::output::shown;
 use crate::simulate::seconds;
 
 /// Who we are, and where we hear and speak. What is not told here is as the file has it, and else as the league has it.
@@ -146,13 +147,16 @@ impl Cases {
     }
 }
 
+/// Longest file of settings that is read, bytes: one with every setting has 1 kB.
+const CONFIG_LEN_MAX: u64 = 1 << 20;
+
 /// Flags over the file over what is usual.
 fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
     let file = match &args.config {
         None => TeamSettings::default(),
         Some(path) => {
-            let said = |words: String| Failure::Network(format!("{}: {words}", path.display()));
-            let text = std::fs::read_to_string(path).map_err(|error| said(error.to_string()))?;
+            let said = |words: String| Failure::Network(format!("{}: {words}", shown(path)));
+            let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
             TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))?
         }
     };

@@ -8,6 +8,7 @@ use std::sync::mpsc::Receiver;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use foreign::excerpt;
 use host::referee::team_port::{Event, Request, TeamPort};
 use protocol::RobotId;
 use rules::Colour;
@@ -91,15 +92,21 @@ fn exchange(stream: &mut TcpStream, port: &mut TeamPort, now: protocol::Instant)
     }
 }
 
+/// As much of a reason as is shown, characters.
+const REASON_LEN: usize = 200;
+
 fn words(event: &Event, address: SocketAddr) -> Option<String> {
     Some(match event {
         Event::Registered { .. } => format!("game controller  at {address} knows us now"),
         Event::RegistrationRefused { reason } => format!(
-            "game controller  at {address} will not have us: {reason}; is our --name the one it shows, and our --colour?"
+            "game controller  at {address} will not have us: {}; is our --name the one it shows, and our --colour?",
+            excerpt(reason, REASON_LEN)
         ),
         Event::Granted(Request::Ping) => return None,
         Event::Granted(request) => format!("game controller  granted: {request:?}"),
-        Event::Refused { request, reason } => format!("game controller  refused {request:?}: {reason}"),
+        Event::Refused { request, reason } => {
+            format!("game controller  refused {request:?}: {}", excerpt(reason, REASON_LEN))
+        }
         Event::GivenUp(trouble) => format!("waiting for the game controller at {address}: {trouble}"),
     })
 }

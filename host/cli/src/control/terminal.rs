@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 
+use crate::output::note;
+
 /// Lines that wait for the terminal.
 const LINES_MAX: usize = 256;
 /// A terminal that does not take the last lines in this time is not waited for.
@@ -63,7 +65,7 @@ fn print(waiting: &Receiver<Print>) {
     let bar = ProgressBar::new_spinner();
     for print in waiting {
         match print {
-            Print::Line(words) => bar.suspend(|| eprintln!("{words}")),
+            Print::Line(words) => bar.suspend(|| note!("{words}")),
             Print::Status(words) => {
                 bar.set_message(words);
                 bar.tick();

@@ -17,6 +17,7 @@ use super::{merge as shards, work};
 use crate::Failure;
 use crate::args::{FolderArgs, LibraryArgs, VERSION};
 use crate::library::Shelf;
+use crate::output::{note, say, shown};
 use crate::{picture, setup};
 
 /// What a report has.
@@ -77,7 +78,7 @@ pub(super) fn run(args: &AgainArgs) -> Result<ExitCode, Failure> {
     if let Some(file) = &args.markdown {
         made.write_markdown(&results, file)?;
     }
-    println!("{}", args.folder.join(PAGE).display());
+    say(&format!("{}\n", shown(&args.folder.join(PAGE))))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -134,6 +135,9 @@ impl Made {
     }
 }
 
+/// Longest Markdown file that is read, bytes.
+const MARKDOWN_LEN_MAX: u64 = 1 << 24;
+
 /// Figures between the markers of that chore and name in a file, and those of the pictures that they show beside it.
 pub(super) fn insert(
     file: &Path,
@@ -143,7 +147,7 @@ pub(super) fn insert(
 ) -> Result<(), Failure> {
     let failed = |error: std::io::Error| unwritten(file, &error);
     let beside = format!("{}/", file.file_stem().unwrap_or_default().to_string_lossy());
-    let text = fs::read_to_string(file).map_err(failed)?;
+    let text = foreign::read_text(file, MARKDOWN_LEN_MAX).map_err(failed)?;
     let figures = figures(&beside);
     let text = report::between_markers(&text, chore, name, &figures)
         .map_err(|error| Failure::Markdown { file: file.to_owned(), error })?;
@@ -170,7 +174,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
     let shelf = match Shelf::open_reduced(&library(&identity.library), setup::reduction(&setup)) {
         Ok(shelf) => shelf,
         Err(failure) => {
-            eprintln!("no maps, as the cases of these trials are not here: {failure}");
+            note!("no maps, as the cases of these trials are not here: {failure}");
             return Ok(Vec::new());
         }
     };
@@ -180,7 +184,7 @@ fn maps(identity: &Identity, trials: u32) -> Result<Vec<Map>, Failure> {
         return Map::of(&evaluation, trials).map_err(Failure::Trial);
     }
     let (what, program) = (differences.join(", "), &identity.program);
-    eprintln!("no maps: {program} played these trials, this is {VERSION}; what differs: {what}");
+    note!("no maps: {program} played these trials, this is {VERSION}; what differs: {what}");
     Ok(Vec::new())
 }
 

@@ -1,6 +1,5 @@
 //! How is a long evaluation played? On so many threads, with a bar on a terminal; Ctrl-C keeps what is over.
 
-use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -17,6 +16,7 @@ use super::report::{self, ReportArgs};
 use crate::Failure;
 use crate::args::VERSION;
 use crate::library::Shelf;
+use crate::output;
 use crate::setup::SetupArgs;
 use crate::stop::stopped_by_hand;
 
@@ -162,7 +162,7 @@ pub(super) fn finish(results: &Results, folder: &Path) -> Result<(), Failure> {
 
 /// Says it on stdout.
 pub(super) fn say(words: &str) -> Result<(), Failure> {
-    io::stdout().lock().write_all(words.as_bytes()).map_err(Failure::Output)
+    output::say(words)
 }
 
 /// A shard on the command line.

@@ -12,6 +12,7 @@ use firmware_build::Program;
 
 use super::{build, failed};
 use crate::Failure;
+use crate::output::note;
 
 /// What goes where.
 #[derive(Debug, Args)]
@@ -46,7 +47,7 @@ pub(super) fn run(args: &FlashArgs) -> Result<(), Failure> {
     };
     for words in downloads(args, &image) {
         let line = format!("{PROGRAM} {}", words.join(" "));
-        eprintln!("onetwo: {line}");
+        note!("onetwo: {line}");
         match Command::new(PROGRAM).args(&words).status() {
             Ok(status) if status.success() => {}
             Ok(status) => {

@@ -13,7 +13,6 @@ mod run;
 mod size;
 
 use std::fmt::{Display, Write as _};
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -113,8 +112,11 @@ fn build(program: Program) -> Result<PathBuf, Failure> {
     build_program(&workspace_root(), program).map_err(failed)
 }
 
+/// Longest image that is read, bytes: ours have 8 MB with what debuggers want.
+const IMAGE_LEN_MAX: u64 = 1 << 28;
+
 fn sizes_of(path: &Path) -> Result<Sizes, Failure> {
-    let bytes = fs::read(path).map_err(|error| at(path, error))?;
+    let bytes = foreign::read(path, IMAGE_LEN_MAX).map_err(|error| at(path, error))?;
     let image = Image::parse(&bytes).map_err(|error| at(path, error))?;
     Ok(Sizes::of(&image))
 }

@@ -12,7 +12,7 @@ use rules::League;
 
 use super::{at, failed};
 use crate::Failure;
-use crate::output::say;
+use crate::output::{note, say};
 
 /// Who the robot shall be.
 #[derive(Debug, Args)]
@@ -65,7 +65,7 @@ pub(super) fn run(args: &ProvisionArgs) -> Result<(), Failure> {
         RobotId::new(args.robot).ok_or_else(|| failed(format!("robot {} is none of 0–15", args.robot)))?;
     let key = host::shell::key::read(&args.key_file).map_err(failed)?;
     if let Some(warning) = &key.warning {
-        eprintln!("onetwo: {warning}");
+        note!("onetwo: {warning}");
     }
     let who = Provision {
         robot,

@@ -1,7 +1,6 @@
 //! How is a robot run here without hardware? The image that runs by its own clock, in QEMU's emulated board, its radio on a serial
 //! line.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -35,9 +34,12 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     if status.success() { Ok(()) } else { Err(failed(format!("QEMU ended with {status}"))) }
 }
 
+/// Longest file of a key page that is read, bytes: a sector of flash is the most that it could be.
+const PAGE_FILE_LEN_MAX: u64 = 1 << 17;
+
 /// Whether a robot could read the page.
 fn check(file: &Path) -> Result<(), Failure> {
-    let bytes = fs::read(file).map_err(|error| at(file, error))?;
+    let bytes = foreign::read(file, PAGE_FILE_LEN_MAX).map_err(|error| at(file, error))?;
     read(&bytes, false).map(|_| ()).map_err(|error| at(file, error))
 }
 
@@ -74,9 +76,9 @@ mod tests {
     #[test]
     fn a_page_that_no_robot_could_read_is_refused_before_anything_starts() {
         let file = std::env::temp_dir().join(format!("onetwo-no-page-{}", std::process::id()));
-        fs::write(&file, [0xff; 64]).expect("a temporary file");
+        std::fs::write(&file, [0xff; 64]).expect("a temporary file");
         let said = check(&file).map_err(|error| error.to_string());
-        fs::remove_file(&file).expect("our own file");
+        std::fs::remove_file(&file).expect("our own file");
         assert!(said.is_err_and(|words| words.contains("firmware provision")));
     }
 }

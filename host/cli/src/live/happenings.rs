@@ -31,11 +31,19 @@ impl News {
                 happening::Kind::Goal => Kind::Goal,
                 happening::Kind::GameEvent if own => continue,
                 happening::Kind::GameEvent => foul_or_event(&found.name),
+                happening::Kind::Card => Kind::Foul,
+                happening::Kind::MaxBots
+                | happening::Kind::TeamName
+                | happening::Kind::DesignatedPosition => Kind::Event,
             };
             // A number is for the record, not for the eye.
             let words = match found.kind {
                 happening::Kind::Goal => format!("goal, {}", found.words),
                 happening::Kind::GameEvent if !found.words.is_empty() => format!("{name} ({})", found.words),
+                happening::Kind::Card
+                | happening::Kind::MaxBots
+                | happening::Kind::TeamName
+                | happening::Kind::DesignatedPosition => format!("{name}, {}", found.words),
                 _ => name,
             };
             let team = whose(&words);

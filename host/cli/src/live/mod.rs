@@ -29,12 +29,13 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use page::{Page, Powers, Team};
+use page::{Limits, Page, Powers, Team, Token};
 use rules::{Colour, League};
 
 use crate::Failure;
 use crate::args::{FolderArgs, LibraryArgs};
 use crate::library::Shelf;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 pub(crate) use composer::{Composer, Moment};
@@ -75,12 +76,22 @@ impl PageArgs {
         powers: Powers,
         oracle: CaseOracle,
     ) -> Result<Page, Failure> {
-        let settings = page::Settings { listen: self.listen, title, recorded, powers };
-        let page = Page::open(settings, Arc::new(oracle))
-            .map_err(|error| Failure::Network(format!("{error} ({})", self.flag)))?;
-        eprintln!("page     http://{}", page.address());
-        if !self.listen.ip().is_loopback() {
-            eprintln!("page     whoever reaches this machine can look on and ask what the page can ask");
+        let failed = |error: &dyn std::fmt::Display| Failure::Network(format!("{error} ({})", self.flag));
+        let open = !self.listen.ip().to_canonical().is_loopback();
+        let token = open.then(Token::random).transpose().map_err(|error| failed(&error))?;
+        let limits = Limits::default();
+        let settings =
+            page::Settings { listen: self.listen, title, recorded, powers, token: token.clone(), limits };
+        let page = Page::open(settings, Arc::new(oracle)).map_err(|error| failed(&error))?;
+        let at = page.address();
+        match token {
+            None => note!("page     http://{at}"),
+            Some(token) => {
+                note!("page     http://{at}/?token={}", token.as_str());
+                note!(
+                    "page     all that reach this machine can look on at http://{at}; to ask for anything takes the address with the token"
+                );
+            }
         }
         Ok(page)
     }
@@ -88,7 +99,7 @@ impl PageArgs {
 
 /// Everything is shown: the page stays to be looked at, until somebody ends the program.
 pub(crate) fn stay(page: Page, words: &str) {
-    eprintln!("{words}; the page stays until Ctrl-C");
+    note!("{words}; the page stays until Ctrl-C");
     while !stopped_by_hand().load(Ordering::Relaxed) {
         thread::sleep(Duration::from_millis(50));
     }

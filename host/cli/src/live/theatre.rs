@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use arena::game::{Crowd, Game, GameConfig, GameReport, TICK_US, Watcher};
 use casebase::CaseBase;
+use foreign::excerpt;
 use geometry::Point;
 use hil_sim::NativeBackend;
 use page::{Happening, Kind, Page, Request};
@@ -29,6 +30,8 @@ use crate::stop::stopped_by_hand;
 const BEHIND_MAX_S: f64 = 0.25;
 /// However fast it goes, who looks back sees a scene so often, simulated s.
 const SCENE_EVERY_MAX_S: f64 = 0.2;
+/// As much of a name that a viewer sent as is said back, characters.
+const NAME_LEN: usize = 60;
 /// What stands still looks for requests so often.
 const IDLE: Duration = Duration::from_millis(10);
 
@@ -188,10 +191,12 @@ impl<'s> Theatre<'s> {
         backend: &mut NativeBackend<'b>,
     ) -> Result<(), arena::game::GameError> {
         let t = game.time();
-        let mut note = |words: String| {
-            self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+        let (mut noted, mut refused) = (None, None);
+        let playing = |team: page::Team, id: u8| {
+            let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
+            who.filter(|who| game.world().robot(*who).is_some_and(|robot| robot.present))
+                .ok_or_else(|| format!("{} has no robot {id} on the field", colour(team).word()))
         };
-        let who = |team, id| RobotId::new(id).map(|id| Who { colour: colour(team), id });
         match request {
             Request::Pause { on } => {
                 (hands.paused, hands.steps) = (*on, 0);
@@ -203,31 +208,37 @@ impl<'s> Theatre<'s> {
                 hands.clock = (Instant::now(), t);
             }
             Request::Restart { .. } if self.recorded => {
-                note("a match that is recorded cannot begin anew".into());
+                refused = Some("a match that is recorded cannot begin anew".into());
             }
             Request::Restart { seed } => hands.anew = Some(seed.unwrap_or(self.config.seed)),
             Request::Situation { name } => {
                 if !situate(game, self.shelf, name) {
-                    note(format!("no situation of the name {name} can be set up now"));
+                    refused = Some(format!(
+                        "no situation of the name {} can be set up now",
+                        excerpt(name, NAME_LEN)
+                    ));
                 }
             }
             Request::Ball { at } => game.move_ball(Point::new(at[0], at[1]), hands.paused),
-            Request::Robot { team, id, at } => {
-                if let Some(who) = who(*team, *id) {
-                    game.move_robot(who, Point::new(at[0], at[1]), hands.paused);
+            Request::Robot { team, id, at } => match playing(*team, *id) {
+                Ok(who) => game.move_robot(who, Point::new(at[0], at[1]), hands.paused),
+                Err(words) => refused = Some(words),
+            },
+            Request::Power { team, id, on } => match playing(*team, *id) {
+                Ok(who) => {
+                    let name = format!("{} {}", who.colour.word(), who.id.number());
+                    if game.power(who, *on, backend)? {
+                        let what = if *on { "boots, by hand" } else { "crashes, by hand" };
+                        noted = Some(format!("{name} {what}"));
+                    } else {
+                        refused = Some(format!("{name} is {} already", if *on { "on" } else { "off" }));
+                    }
                 }
-            }
-            Request::Power { team, id, on } => {
-                if let Some(who) = who(*team, *id)
-                    && game.power(who, *on, backend)?
-                {
-                    let what = if *on { "boots, by hand" } else { "crashes, by hand" };
-                    note(format!("{} {} {what}", who.colour.word(), who.id.number()));
-                }
-            }
+                Err(words) => refused = Some(words),
+            },
             Request::Loss { share } => {
                 game.lose(*share);
-                note(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
+                noted = Some(format!("the radio loses {:.0} % of all packets, by hand", share * 100.0));
             }
             Request::Halt {} => {
                 game.command(Command::Halt);
@@ -235,9 +246,16 @@ impl<'s> Theatre<'s> {
             Request::Referee { command } => {
                 let done = command_of(command).is_some_and(|command| game.command(command));
                 if !done {
-                    note(format!("{} makes no sense now", command.to_lowercase().replace('_', " ")));
+                    let name = command.to_lowercase().replace('_', " ");
+                    refused = Some(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
                 }
             }
+        }
+        if let Some(words) = noted {
+            self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
+        }
+        if let Some(words) = refused {
+            self.page.refuse(words);
         }
         Ok(())
     }

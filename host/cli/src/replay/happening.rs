@@ -1,11 +1,13 @@
-//! What happened in a recorded match, by the referee's packets? Commands, stages, goals and game events, each once.
+//! What happened in a recorded match, by the referee's packets? Commands, stages, goals, game events, cards, and what else changed:
+//! names, robots allowed, places for the ball; each once.
 
 use std::collections::BTreeSet;
 
+use foreign::excerpt;
 use serde::Serialize;
 use ssl::Message;
 use ssl::event::GameEventType;
-use ssl::referee::{Command, Referee, Stage};
+use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
 /// Something the referee said for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,7 +31,18 @@ pub(crate) enum Kind {
     Stage,
     Goal,
     GameEvent,
+    /// A yellow or red card was given.
+    Card,
+    /// As many robots as a team may have, where that changed.
+    MaxBots,
+    /// A team's name, where it changed.
+    TeamName,
+    /// The ball is to be placed somewhere else.
+    DesignatedPosition,
 }
+
+/// Game events that are told; a referee that has more is no referee.
+const EVENTS_MAX: usize = 65_536;
 
 /// Finds what is new in each packet of the referee.
 #[derive(Debug, Default)]
@@ -38,13 +51,37 @@ pub(crate) struct Finder {
     events: BTreeSet<Vec<u8>>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Last {
     command: i32,
     counter: u32,
     stage: i32,
+    /// Where the ball is to be placed, mm, where a command asks for that.
+    place: Option<[i32; 2]>,
     /// Yellow's and blue's.
-    score: [u32; 2],
+    teams: [Account; 2],
+}
+
+/// What is told of a team when it changes.
+#[derive(Clone, Debug)]
+struct Account {
+    score: u32,
+    yellow_cards: u32,
+    red_cards: u32,
+    max_bots: Option<u32>,
+    name: String,
+}
+
+impl Account {
+    fn of(team: &TeamInfo) -> Self {
+        Self {
+            score: team.score,
+            yellow_cards: team.yellow_cards,
+            red_cards: team.red_cards,
+            max_bots: team.max_allowed_bots,
+            name: team.name.clone(),
+        }
+    }
 }
 
 impl Finder {
@@ -54,37 +91,89 @@ impl Finder {
             command: packet.command,
             counter: packet.command_counter,
             stage: packet.stage,
-            score: [packet.yellow.score, packet.blue.score],
+            place: place(packet),
+            teams: [Account::of(&packet.yellow), Account::of(&packet.blue)],
         };
-        let before = self.last.replace(now);
+        let before = self.last.replace(now.clone());
         let mut tell = |kind, name, words| into.push(Happening { at_s, kind, name, words });
-        if before.is_none_or(|before| before.stage != now.stage) {
+        if before.as_ref().is_none_or(|before| before.stage != now.stage) {
             tell(Kind::Stage, number_name(packet.stage, Stage::try_from(packet.stage).ok()), String::new());
         }
-        if before.is_none_or(|before| (before.command, before.counter) != (now.command, now.counter)) {
+        let same = |before: &Last| (before.command, before.counter) == (now.command, now.counter);
+        let commanded = !before.as_ref().is_some_and(same);
+        if commanded {
             let name = number_name(packet.command, Command::try_from(packet.command).ok());
-            let again = before.is_some_and(|before| before.command == now.command);
+            let again = before.as_ref().is_some_and(|before| before.command == now.command);
             let again = if again { ", once more" } else { "" };
-            tell(Kind::Command, name, format!("number {}{again}", now.counter));
+            let at = now.place.map(|place| format!(", the ball to {}", in_metres(place))).unwrap_or_default();
+            tell(Kind::Command, name, format!("number {}{again}{at}", now.counter));
+        } else if let Some(place) = now.place
+            && before.as_ref().is_some_and(|before| before.place != now.place)
+        {
+            tell(
+                Kind::DesignatedPosition,
+                "DESIGNATED_POSITION".to_owned(),
+                format!("the ball to {}", in_metres(place)),
+            );
         }
         for event in &packet.game_events {
             let identity = event.id.clone().map_or_else(|| event.encode_to_vec(), String::into_bytes);
-            if self.events.insert(identity) {
+            if self.events.len() < EVENTS_MAX && self.events.insert(identity) {
                 let kind = event.r#type.unwrap_or_default();
                 let name = number_name(kind, GameEventType::try_from(kind).ok());
                 tell(Kind::GameEvent, name, event.origin.join(", "));
             }
         }
-        if let Some(before) = before {
-            for (team, name) in ["yellow", "blue"].iter().enumerate() {
-                if now.score[team] > before.score[team] {
-                    let [yellow, blue] = now.score;
-                    tell(Kind::Goal, "GOAL".to_owned(), format!("{name}, blue {blue} : {yellow} yellow"));
-                }
+        let Some(before) = before else { return };
+        let [yellow, blue] = [now.teams[0].score, now.teams[1].score];
+        for (colour, (before, now)) in ["yellow", "blue"].iter().zip(before.teams.iter().zip(&now.teams)) {
+            if now.score > before.score {
+                tell(Kind::Goal, "GOAL".to_owned(), format!("{colour}, blue {blue} : {yellow} yellow"));
+            }
+            if now.yellow_cards > before.yellow_cards {
+                tell(Kind::Card, "YELLOW_CARD".to_owned(), format!("{colour}, {} in all", now.yellow_cards));
+            }
+            if now.red_cards > before.red_cards {
+                tell(Kind::Card, "RED_CARD".to_owned(), format!("{colour}, {} in all", now.red_cards));
+            }
+            if let Some(max_bots) = now.max_bots.filter(|_| now.max_bots != before.max_bots) {
+                tell(Kind::MaxBots, "MAX_BOTS".to_owned(), format!("{colour}, {max_bots}"));
+            }
+            if now.name != before.name {
+                tell(Kind::TeamName, "TEAM_NAME".to_owned(), format!("{colour}, {}", now.name));
             }
         }
     }
 }
+
+/// Where the ball is to be placed, mm, where the command is such that the place counts (README of `ssl`, trap 3).
+fn place(packet: &Referee) -> Option<[i32; 2]> {
+    let placing = matches!(
+        Command::try_from(packet.command),
+        Ok(Command::BallPlacementBlue | Command::BallPlacementYellow)
+    );
+    let at = packet.designated_position.filter(|_| placing)?;
+    Some([at.x.round() as i32, at.y.round() as i32])
+}
+
+fn in_metres([x, y]: [i32; 2]) -> String {
+    format!("({:.2}, {:.2}) m", f64::from(x) * 1e-3, f64::from(y) * 1e-3)
+}
+
+impl Happening {
+    /// A line for people; whatever the referee's program named is within it.
+    pub(super) fn tell(&self) -> String {
+        let words = if self.words.is_empty() {
+            String::new()
+        } else {
+            format!(" ({})", excerpt(&self.words, WORDS_LEN))
+        };
+        format!("{:>9.2} s  {}{words}", self.at_s, self.name)
+    }
+}
+
+/// As much of a happening's words as is shown, characters.
+const WORDS_LEN: usize = 200;
 
 /// A name as the league writes it; the number where nothing is known by it.
 fn number_name(number: i32, known: Option<impl std::fmt::Debug>) -> String {
@@ -111,6 +200,8 @@ pub(crate) fn is_meant(happening: &Happening, word: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use ssl::referee::Point;
+
     use super::*;
 
     fn packet(command: Command, counter: u32, blue: u32) -> Referee {
@@ -139,6 +230,39 @@ mod tests {
                 (1.0, "PREPARE_KICKOFF_BLUE", "number 2"),
                 (2.0, "PREPARE_KICKOFF_BLUE", "number 3, once more"),
                 (2.0, "GOAL", "blue, blue 1 : 0 yellow"),
+            ]
+        );
+    }
+
+    #[test]
+    fn cards_names_robots_allowed_and_places_are_told_when_they_change() {
+        let (mut finder, mut found) = (Finder::default(), Vec::new());
+        let mut placing = packet(Command::BallPlacementBlue, 5, 0);
+        placing.designated_position = Some(Point { x: 1200.0, y: -450.0 });
+        finder.read(&placing, 0.0, &mut found);
+        let mut moved = placing.clone();
+        moved.designated_position = Some(Point { x: f32::NAN, y: 1e30 });
+        moved.blue.yellow_cards = 1;
+        moved.yellow.red_cards = 2;
+        moved.blue.max_allowed_bots = Some(5);
+        moved.yellow.name = "\u{1b}[31mRED\nGOAL".to_owned();
+        finder.read(&moved, 1.0, &mut found);
+        finder.read(&moved, 2.0, &mut found);
+        let mut stop = packet(Command::Stop, 6, 0);
+        (stop.blue, stop.yellow) = (moved.blue.clone(), moved.yellow.clone());
+        stop.designated_position = moved.designated_position;
+        finder.read(&stop, 3.0, &mut found);
+        let told: Vec<_> = found.iter().skip(1).map(Happening::tell).collect();
+        assert_eq!(
+            told,
+            [
+                "     0.00 s  BALL_PLACEMENT_BLUE (number 5, the ball to (1.20, -0.45) m)",
+                "     1.00 s  DESIGNATED_POSITION (the ball to (0.00, 2147483.65) m)",
+                "     1.00 s  RED_CARD (yellow, 2 in all)",
+                "     1.00 s  TEAM_NAME (yellow, \\u001b[31mRED\\nGOAL)",
+                "     1.00 s  YELLOW_CARD (blue, 1 in all)",
+                "     1.00 s  MAX_BOTS (blue, 5)",
+                "     3.00 s  STOP (number 6)",
             ]
         );
     }

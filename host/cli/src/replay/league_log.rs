@@ -1,7 +1,6 @@
 //! A league log file: one pass that counts, tracks, listens, and stops at a moment if one is asked for.
 //!
-//! The clock is the recorder's, from the file's first message on; where it steps back (half a millisecond is usual) ours
-//! stands still.
+//! The clock is counted from the recorder's, from the file's first message on ([`LogClock`]): where that is set, ours goes on.
 
 use std::process::ExitCode;
 
@@ -13,6 +12,7 @@ use protocol::Instant;
 use rules::Colour;
 use ssl::log::{MessageKind, Packet, Record};
 
+use super::clock::LogClock;
 use super::happening::{Finder, is_meant};
 use super::moment::{Moment, Score};
 use super::report::{self, Gap, Report};
@@ -53,11 +53,12 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     }
     let report = pass.finish(damage, back_steps);
     say(&if args.json { json(&report)? } else { report.tell() })?;
-    if report.messages.is_empty() {
-        let words = report.damage.unwrap_or_else(|| "holds no message".to_owned());
-        return Err(Failure::Recorded { file: args.file.clone(), words });
+    let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
+    match report.damage.or(nothing) {
+        // What could be read is told above; whoever takes it for the whole is warned by the exit code.
+        Some(words) => Err(Failure::Recorded { file: args.file.clone(), words }),
+        None => Ok(ExitCode::SUCCESS),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
@@ -68,6 +69,7 @@ struct Pass<'a> {
     args: &'a ReplayArgs,
     report: Report,
     began_ns: Option<i64>,
+    clock: LogClock,
     now: Instant,
     tracker: Tracker,
     listener: Listener,
@@ -98,6 +100,7 @@ impl<'a> Pass<'a> {
             args,
             report,
             began_ns: None,
+            clock: LogClock::default(),
             now: Instant(0),
             tracker: Tracker::default(),
             listener: Listener::new(limits, None, Instant(0)),
@@ -109,9 +112,8 @@ impl<'a> Pass<'a> {
 
     /// The next message; a moment, if this is the one.
     fn read(&mut self, number: u64, record: &Record) -> Option<Moment> {
-        let began = *self.began_ns.get_or_insert(record.timestamp_ns);
-        let micros = u64::try_from(record.timestamp_ns.saturating_sub(began) / 1000).unwrap_or(0);
-        let later = Instant(micros).max(self.now);
+        self.began_ns.get_or_insert(record.timestamp_ns);
+        let later = self.clock.read(record.timestamp_ns);
         // The moment between two messages is before the second.
         if let Some(at) = self.args.at
             && later.0 as f64 * 1e-6 > at
@@ -136,6 +138,7 @@ impl<'a> Pass<'a> {
         };
         match packet {
             Some(Packet::Vision(packet)) => {
+                self.report.sheet.vision(&packet);
                 if let Some(image) = &packet.detection {
                     self.image(image.camera_id, at_s);
                 }
@@ -151,6 +154,7 @@ impl<'a> Pass<'a> {
                 self.listener.hear(&packet, SenderAddress::INTERNAL, self.now, ball);
                 let before = self.report.happenings.len();
                 self.finder.read(&packet, at_s, &mut self.report.happenings);
+                self.report.sheet.referee(&packet);
                 self.report.score = Score { blue: packet.blue.score, yellow: packet.yellow.score };
                 self.feed(Input::Referee(&record.payload, SenderAddress::INTERNAL));
                 return self.asked_for(before);
@@ -207,10 +211,8 @@ impl<'a> Pass<'a> {
             MessageKind::Refbox2013 => REFEREE_GAP_S,
             _ => f64::INFINITY,
         };
-        let (last, first) = (known.last_s, known.first_s.replace(known.first_s.unwrap_or(at_s)));
-        known.last_s = at_s;
-        if first.is_some() && at_s - last > longest {
-            self.report.gap(Gap { at_s: last, of: name, for_s: at_s - last });
+        if let Some(for_s) = known.rate.came(at_s).filter(|for_s| *for_s > longest) {
+            self.report.gap(Gap { at_s: at_s - for_s, of: name, for_s });
         }
     }
 
@@ -219,8 +221,7 @@ impl<'a> Pass<'a> {
         if self.report.cameras.len() < CAMERAS_MAX || self.report.cameras.contains_key(&camera) {
             let camera = self.report.cameras.entry(camera).or_default();
             camera.images += 1;
-            camera.first_s.get_or_insert(at_s);
-            camera.last_s = at_s;
+            camera.rate.came(at_s);
         }
     }
 
@@ -261,15 +262,13 @@ impl<'a> Pass<'a> {
         self.report.began_unix_s = self.began_ns.unwrap_or(0) as f64 * 1e-9;
         self.report.damage = damage;
         self.report.back_steps = back_steps;
-        let rate = |n: u64, first: Option<f64>, last: f64| match first {
-            Some(first) if last > first => (n - 1) as f64 / (last - first),
-            _ => 0.0,
-        };
+        self.report.clock_steps = self.clock.steps;
+        self.report.clock_steps_more = self.clock.steps_more;
         for kind in self.report.messages.values_mut() {
-            kind.rate_hz = rate(kind.messages, kind.first_s, kind.last_s);
+            kind.rate_hz = kind.rate.hz();
         }
         for camera in self.report.cameras.values_mut() {
-            camera.rate_hz = rate(camera.images, camera.first_s, camera.last_s);
+            camera.rate_hz = camera.rate.hz();
         }
         self.report.host =
             self.team.map(|team| report::Host { packets_hash: format!("{:016x}", team.hash), ..team.told });

@@ -2,15 +2,16 @@
 //!
 //! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
 
+mod clock;
 mod decided;
 pub(crate) mod happening;
 mod league_log;
 mod moment;
 mod report;
+mod sheet;
 mod show;
 mod trace;
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -26,6 +27,7 @@ use crate::live::PageArgs;
 
 /// Which file, and what of it.
 #[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct ReplayArgs {
     /// A log file of the league (.log, .log.gz) or a trace of ours (.trace), gzipped or not.
     file: PathBuf,
@@ -62,6 +64,10 @@ pub(crate) struct ReplayArgs {
     key_file: Option<PathBuf>,
 }
 
+const EXIT_CODES: &str = "\
+Exit codes: 0 the file is whole, and the hosts of a trace decide as recorded; 1 the file is cut or damaged (what could be read is told,
+and where it ends on stderr), hosts decide otherwise, or what was asked for is not in it; 2 wrong usage.";
+
 /// `onetwo replay`.
 pub(crate) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.watch {
@@ -83,11 +89,17 @@ const TRACE: &[u8] = b"ONETWO_TRACE";
 
 /// A file's bytes, gunzipped where they are gzipped.
 fn open(file: &Path) -> Result<Box<dyn Read>, Failure> {
+    Ok(if is_gzipped(file)? { Box::new(MultiGzDecoder::new(bytes(file)?)) } else { Box::new(bytes(file)?) })
+}
+
+fn bytes(file: &Path) -> Result<BufReader<std::fs::File>, Failure> {
+    foreign::open(file).map(BufReader::new).map_err(|error| failed(file, &error))
+}
+
+/// Whether a file is gzipped: then it has an end mark, without which it is cut.
+fn is_gzipped(file: &Path) -> Result<bool, Failure> {
     let mut begin = [0; 2];
-    let opened = || File::open(file).map_err(|error| failed(file, &error));
-    let gzipped = opened()?.read_exact(&mut begin).is_ok() && begin == [0x1f, 0x8b];
-    let bytes = BufReader::new(opened()?);
-    Ok(if gzipped { Box::new(MultiGzDecoder::new(bytes)) } else { Box::new(bytes) })
+    Ok(bytes(file)?.read_exact(&mut begin).is_ok() && begin == [0x1f, 0x8b])
 }
 
 fn begins(file: &Path) -> Result<Vec<u8>, Failure> {

@@ -2,11 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use foreign::printable;
 use host::{referee, tracking};
 use serde::Serialize;
 
+use super::clock::{ClockStep, Rate};
 use super::happening::Happening;
 use super::moment::Score;
+use super::sheet::Sheet;
 
 /// A league log file in numbers.
 #[derive(Debug, Default, Serialize)]
@@ -26,6 +29,13 @@ pub(super) struct Report {
     pub(super) damage: Option<String>,
     /// Messages that are earlier than the one before.
     pub(super) back_steps: u64,
+    /// Where the recorder's clock was set, or nothing at all was recorded.
+    pub(super) clock_steps: Vec<ClockStep>,
+    /// Steps beyond those that are listed.
+    pub(super) clock_steps_more: u64,
+    /// Field and teams, as they were at last.
+    #[serde(flatten)]
+    pub(super) sheet: Sheet,
     pub(super) cameras: BTreeMap<u32, Camera>,
     pub(super) robots: Robots,
     /// The fastest ball that the tracker believed, m/s.
@@ -47,11 +57,10 @@ pub(super) struct OfKind {
     pub(super) messages: u64,
     pub(super) bytes: u64,
     pub(super) undecodable: u64,
+    /// While it came: pauses of more than 2 s and steps of the recorder's clock are left out.
     pub(super) rate_hz: f64,
     #[serde(skip)]
-    pub(super) first_s: Option<f64>,
-    #[serde(skip)]
-    pub(super) last_s: f64,
+    pub(super) rate: Rate,
 }
 
 /// One camera's images.
@@ -60,9 +69,7 @@ pub(super) struct Camera {
     pub(super) images: u64,
     pub(super) rate_hz: f64,
     #[serde(skip)]
-    pub(super) first_s: Option<f64>,
-    #[serde(skip)]
-    pub(super) last_s: f64,
+    pub(super) rate: Rate,
 }
 
 /// Shell numbers that the tracker believed.
@@ -148,7 +155,7 @@ impl Report {
 
     /// For people.
     pub(super) fn tell(&self) -> String {
-        let mut lines = vec![format!("{}: a league log file of {:.1} s", self.file, self.span_s)];
+        let mut lines = vec![format!("{}: a league log file of {:.1} s", printable(&self.file), self.span_s)];
         for (name, messages) in &self.messages {
             let bad = if messages.undecodable > 0 {
                 format!(", {} undecodable", messages.undecodable)
@@ -163,6 +170,18 @@ impl Report {
         if self.back_steps > 0 {
             lines.push(format!("  {} messages are earlier than the one before them", self.back_steps));
         }
+        for step in &self.clock_steps {
+            let ClockStep { at_s, by_s } = step;
+            lines.push(if *by_s < 0.0 {
+                format!("  the recorder's clock was set back by {:.3} s at {at_s:.2} s", -by_s)
+            } else {
+                format!("  nothing at all for {by_s:.3} s from {at_s:.2} s on: a pause, or the recorder's clock was set forward")
+            });
+        }
+        if self.clock_steps_more > 0 {
+            lines.push(format!("  and {} such steps more", self.clock_steps_more));
+        }
+        lines.extend(self.sheet.tell());
         for (id, camera) in &self.cameras {
             lines.push(format!("camera {id}: {} images, {:.1} a second", camera.images, camera.rate_hz));
         }
@@ -203,13 +222,9 @@ impl Report {
         }
         let Score { blue, yellow } = self.score;
         lines.push(format!("score: blue {blue} : {yellow} yellow"));
-        for happening in &self.happenings {
-            let words =
-                if happening.words.is_empty() { String::new() } else { format!(" ({})", happening.words) };
-            lines.push(format!("{:>9.2} s  {}{words}", happening.at_s, happening.name));
-        }
+        lines.extend(self.happenings.iter().map(Happening::tell));
         if let Some(damage) = &self.damage {
-            lines.push(format!("the file is damaged: {damage}"));
+            lines.push(format!("the file is damaged: {}", printable(damage)));
         }
         lines.join("\n") + "\n"
     }

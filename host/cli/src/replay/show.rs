@@ -6,6 +6,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
+use foreign::printable;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
 use host::referee::SenderAddress;
@@ -16,9 +17,11 @@ use protocol::Instant;
 use rules::{Colour, League};
 use ssl::log::MessageKind;
 
+use super::clock::LogClock;
 use super::{ReplayArgs, TRACE, begins, failed, open, trace};
 use crate::Failure;
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, shelf_of, stay};
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// Shows the file until Ctrl-C.
@@ -31,6 +34,8 @@ struct Projector {
     page: Page,
     composer: Composer,
     due: f64,
+    /// The file is cut or damaged.
+    broken: bool,
 }
 
 impl Projector {
@@ -40,7 +45,7 @@ impl Projector {
         let name = args.file.file_name().map(|name| name.to_string_lossy().into_owned());
         let oracle = CaseOracle::new(shelf, casebase::Settings::default());
         let page = page.open(name.unwrap_or_default(), true, Powers::None, oracle)?;
-        Ok(Self { page, composer, due: f64::NEG_INFINITY })
+        Ok(Self { page, composer, due: f64::NEG_INFINITY, broken: false })
     }
 
     /// The moment after a message, if the last one shown is long enough ago.
@@ -62,7 +67,8 @@ impl Projector {
     fn breaks_off(&mut self, now: Instant, damage: &str, eyes: &Host, hosts: &[&Host]) {
         let t = now.0 as f64 * 1e-6;
         let words = format!("the file breaks off: {damage}");
-        eprintln!("{words}");
+        note!("{}", printable(&words));
+        self.broken = true;
         self.page.tell(Happening { t, kind: Told::Fault, team: None, words, at: None, problem: None });
         self.due = f64::NEG_INFINITY;
         self.look(now, eyes, hosts);
@@ -71,7 +77,7 @@ impl Projector {
     /// All is read: it stays to be looked at.
     fn stay(self, words: &str) -> ExitCode {
         stay(self.page, words);
-        ExitCode::SUCCESS
+        if self.broken { ExitCode::FAILURE } else { ExitCode::SUCCESS }
     }
 }
 
@@ -126,14 +132,13 @@ fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
     let mut host = Host::new(settings, Instant(0));
     let mut projector = Projector::new(args, page, args.league)?;
     let stopped = stopped_by_hand();
-    let (mut began, mut now) = (None, Instant(0));
+    let (mut clock, mut began, mut now) = (LogClock::default(), false, Instant(0));
     for record in reader.by_ref() {
         if stopped.load(Ordering::Relaxed) {
             return Ok(ExitCode::SUCCESS);
         }
-        let first = *began.get_or_insert(record.timestamp_ns);
-        let micros = u64::try_from(record.timestamp_ns.saturating_sub(first) / 1000).unwrap_or(0);
-        now = now.max(Instant(micros));
+        began = true;
+        now = clock.read(record.timestamp_ns);
         match record.kind {
             MessageKind::Vision2014 => {
                 projector.composer.vision(&record.payload);
@@ -149,7 +154,7 @@ fn show_log(args: &ReplayArgs, page: &PageArgs) -> Result<ExitCode, Failure> {
         let hosts = [&host];
         projector.look(now, &host, if args.team.is_some() { &hosts } else { &[] });
     }
-    if began.is_none() {
+    if !began {
         return Err(failed(&args.file, &"holds no message"));
     }
     if let Some(end) = reader.end().filter(|end| !end.is_whole()) {

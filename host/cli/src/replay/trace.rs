@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
+use foreign::{excerpt, printable};
 use host::Host;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
@@ -14,12 +16,14 @@ use protocol::frame::TeamKey;
 use serde::Serialize;
 use ssl::Message;
 use ssl::referee::Referee;
+use ssl::vision::WrapperPacket;
 
 use super::happening::{Finder, Happening, is_meant};
 use super::moment::Moment;
-use super::{ReplayArgs, failed, open};
+use super::sheet::Sheet;
+use super::{ReplayArgs, failed, is_gzipped, open};
 use crate::Failure;
-use crate::output::say;
+use crate::output::{note, say};
 
 #[derive(Debug, Serialize)]
 struct Report<'a> {
@@ -31,6 +35,9 @@ struct Report<'a> {
     records: BTreeMap<&'static str, u64>,
     /// Records of hosts that the header does not tell of.
     strays: u64,
+    /// Field and teams, as they were at last.
+    #[serde(flatten)]
+    sheet: Sheet,
     #[serde(skip_serializing_if = "Option::is_none")]
     damage: Option<String>,
     happenings: &'a [Happening],
@@ -53,7 +60,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let header = RecordingHeader::from_json(reader.header()).map_err(|error| failed(file, &error))?;
     let key = key(args, &header)?;
     let mut recheck = Recheck::new(&header, key).map_err(|error| failed(file, &error))?;
-    let (mut finder, mut happenings) = (Finder::default(), Vec::new());
+    let (mut finder, mut happenings, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
     // Every host hears the same referee; the one that is looked at tells of the match.
@@ -74,9 +81,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         (*first, *last) = ((*first).min(record.at), (*last).max(record.at));
         *records.entry(word(record.kind)).or_insert(0) += 1;
         strays += u64::from(!recheck.feed(&record));
+        if record.kind == Kind::Vision
+            && usize::from(record.host) == shown
+            && let Ok(packet) = WrapperPacket::decode(&record.bytes[..])
+        {
+            sheet.vision(&packet);
+        }
         if record.kind == Kind::Referee && usize::from(record.host) == shown {
             let before = happenings.len();
             if let Ok(packet) = Referee::decode(&record.bytes[..]) {
+                sheet.referee(&packet);
                 finder.read(&packet, record.at.0 as f64 * 1e-6, &mut happenings);
             }
             let asked = |h: &&Happening| args.event.as_deref().is_some_and(|word| is_meant(h, word));
@@ -92,14 +106,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         }
     }
     bar.finish_and_clear();
-    let damage = damage_of(reader.end());
+    let damage = damage_of(reader.end()).or(unfinished(file, &recheck)?);
     if args.at.is_some() || args.event.is_some() {
         let (_, last) = span.unwrap_or_default();
         let asked = args.event.as_ref().map_or_else(
             || format!("{} s is after its end", args.at.unwrap_or_default()),
             |word| format!("{met} `{word}` in it, not {}", args.nth),
         );
-        return Err(failed(file, &format!("{asked}; it ends at {:.3} s", last.0 as f64 * 1e-6)));
+        let damage = damage.map(|damage| format!("; the file is damaged: {damage}")).unwrap_or_default();
+        return Err(failed(file, &format!("{asked}; it ends at {:.3} s{damage}", last.0 as f64 * 1e-6)));
     }
     recheck.finish(damage.is_some());
     let hosts: Vec<Outcome> = (header.hosts.iter().zip(recheck.results()))
@@ -118,6 +133,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         span_s: (first.0 as f64 * 1e-6, last.0 as f64 * 1e-6),
         records,
         strays,
+        sheet,
         damage,
         happenings: &happenings,
         same_decisions: hosts.iter().all(|host| host.difference.is_none()) && strays == 0,
@@ -129,7 +145,21 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         report.tell()
     };
     say(&words)?;
-    Ok(if report.same_decisions { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    match report.damage {
+        // What could be read is told above.
+        Some(words) => Err(failed(file, &words)),
+        None if report.same_decisions => Ok(ExitCode::SUCCESS),
+        None => Ok(ExitCode::FAILURE),
+    }
+}
+
+/// A trace that is not compressed has no end mark. Where packets to robots are missing after its last input it was cut there: the
+/// hosts' decisions are all before.
+fn unfinished(file: &Path, recheck: &Recheck) -> Result<Option<String>, Failure> {
+    let cut = !is_gzipped(file)? && recheck.is_unfinished();
+    Ok(cut.then(|| {
+        "cut after its last input: the packets that followed are missing; all before was read".to_owned()
+    }))
 }
 
 /// Every host of the recording as it is now.
@@ -161,7 +191,7 @@ pub(super) fn key(args: &ReplayArgs, header: &RecordingHeader) -> Result<TeamKey
         Some(file) => {
             let read = host::shell::key::read(file).map_err(|error| failed(file, &error))?;
             if let Some(warning) = read.warning {
-                eprintln!("warning: {warning}");
+                note!("warning: {warning}");
             }
             Ok(read.key)
         }
@@ -190,24 +220,24 @@ impl Report<'_> {
     fn tell(&self) -> String {
         let (first, last) = self.span_s;
         let header = self.header;
-        let mut out = format!("{}: a trace from {first:.3} to {last:.3} s, {}", self.file, header.league);
+        let file = printable(&self.file);
+        let mut out = format!("{file}: a trace from {first:.3} to {last:.3} s, {}", header.league);
         if let Some(seed) = header.seed {
             let _ = write!(out, ", seed {seed}");
         }
-        let _ = writeln!(out, ", by onetwo {} (commit {})", header.version, header.commit);
+        let (version, commit) = (excerpt(&header.version, VERSION_LEN), excerpt(&header.commit, VERSION_LEN));
+        let _ = writeln!(out, ", by onetwo {version} (commit {commit})");
         for (name, n) in &self.records {
             let _ = writeln!(out, "  {n:>8} {name}");
         }
-        for happening in self.happenings {
-            let words =
-                if happening.words.is_empty() { String::new() } else { format!(" ({})", happening.words) };
-            let _ = writeln!(out, "{:>9.2} s  {}{words}", happening.at_s, happening.name);
+        for line in self.sheet.tell().into_iter().chain(self.happenings.iter().map(Happening::tell)) {
+            let _ = writeln!(out, "{line}");
         }
         if self.strays > 0 {
             let _ = writeln!(out, "{} records are of hosts that its header does not tell of", self.strays);
         }
         if let Some(damage) = &self.damage {
-            let _ = writeln!(out, "the file is damaged: {damage}");
+            let _ = writeln!(out, "the file is damaged: {}", printable(damage));
         }
         for host in &self.hosts {
             let _ = match &host.difference {
@@ -223,14 +253,10 @@ impl Report<'_> {
     }
 }
 
+/// As much of the recording program's version and commit as is shown, characters.
+const VERSION_LEN: usize = 60;
+
 /// What is wrong with a trace that ends so.
 pub(super) fn damage_of(end: Option<&End>) -> Option<String> {
-    match end? {
-        End::Cut => Some("cut within a record; all before it was read".to_owned()),
-        End::Lost => Some(
-            "the recorder could not keep up (is the disk slow or full?); all before that was read".to_owned(),
-        ),
-        End::Broken { what } => Some(format!("{what}; all before it was read")),
-        End::Whole => None,
-    }
+    end.filter(|end| !end.is_whole()).map(ToString::to_string)
 }

@@ -2,16 +2,21 @@
 
 use std::time::{Duration, Instant};
 
+use foreign::excerpt;
 use geometry::Point;
 use hil_sim::small_size::referee::InternalReferee;
 use hil_sim::small_size::server::Server;
 use host::referee::SenderAddress;
 use host::{Host, HostSettings, Input};
-use page::{Happening, Kind, Page, Powers, Request};
+use page::{Page, Powers, Request};
 use protocol::{RobotId, Who};
 use rules::{Colour, League};
 
 use crate::live::{CaseOracle, Composer, Moment, PageArgs, SCENE_EVERY_S, colour, command_of, shelf_of};
+use crate::output::note;
+
+/// As much of a name that a viewer sent as is said back, characters.
+const NAME_LEN: usize = 60;
 
 /// What viewers ask of the hall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -55,7 +60,7 @@ impl Board {
                 t: 0.0,
             })
         };
-        open().map_err(|failure| eprintln!("page     there is none: {failure}")).ok()
+        open().map_err(|failure| note!("page     there is none: {failure}")).ok()
     }
 
     pub(super) fn vision(&mut self, bytes: &[u8], running: Duration) {
@@ -97,9 +102,14 @@ impl Board {
                 }
                 Request::Ball { at } => server.world_mut().drag_ball(Point::new(at[0], at[1])),
                 Request::Robot { team, id, at } => {
-                    if let Some(id) = RobotId::new(id) {
-                        let who = Who { colour: colour(team), id };
-                        server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None);
+                    let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
+                    let there = |who: &Who| server.world().robot(*who).is_some_and(|robot| robot.present);
+                    match who.filter(there) {
+                        Some(who) => server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None),
+                        None => {
+                            let team = colour(team).word();
+                            self.page.refuse(format!("{team} has no robot {id} on the field"));
+                        }
                     }
                 }
                 Request::Referee { command } => {
@@ -107,16 +117,15 @@ impl Board {
                         .zip(referee.as_deref_mut())
                         .is_some_and(|(command, referee)| referee.command_by_hand(command));
                     if !done {
-                        self.note(format!("{} makes no sense now", command.to_lowercase().replace('_', " ")));
+                        let name = command.to_lowercase().replace('_', " ");
+                        self.page.refuse(format!("{} makes no sense now", excerpt(&name, NAME_LEN)));
                     }
                 }
                 Request::Halt {}
                 | Request::Situation { .. }
                 | Request::Power { .. }
                 | Request::Loss { .. } => {
-                    self.note(
-                        "that can be asked of `onetwo play`; here others command the robots".to_owned(),
-                    );
+                    self.page.refuse("that can be asked of `onetwo play`; here others command the robots");
                 }
             }
         }
@@ -143,10 +152,5 @@ impl Board {
             self.page.show(sketch);
         }
         wish
-    }
-
-    fn note(&mut self, words: String) {
-        let t = self.t;
-        self.page.tell(Happening { t, kind: Kind::Fault, team: None, words, at: None, problem: None });
     }
 }

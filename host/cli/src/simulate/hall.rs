@@ -26,6 +26,7 @@ use super::{SimulateArgs, Whistle};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
+use crate::output::note;
 use crate::stop::stopped_by_hand;
 
 /// The referee looks this often, simulated ms: what its detectors are tuned with.
@@ -52,14 +53,14 @@ pub(super) fn run(
     let mut vision = Mouth::new(args.vision, args.interface.as_deref());
     let mut whistle = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
-    eprintln!(
+    note!(
         "simulating {}, {} v {} robots, seed {}; Ctrl-C ends it",
         args.league.name(),
         settings.robots,
         settings.robots,
         args.seed
     );
-    eprintln!("control  {}", ports.words());
+    note!("control  {}", ports.words());
     let mut sync = match args.sync.map(|blue| (blue, SyncPorts::open(blue))) {
         None => None,
         Some((_, Ok(sync))) => Some(sync),
@@ -69,11 +70,11 @@ pub(super) fn run(
             )));
         }
     };
-    sync.iter().for_each(|sync| eprintln!("{}", sync.line()));
-    eprintln!("vision   to {}", vision.to());
-    whistle.lines().iter().for_each(|line| eprintln!("{line}"));
+    sync.iter().for_each(|sync| note!("{}", sync.line()));
+    note!("vision   to {}", vision.to());
+    whistle.lines().iter().for_each(|line| note!("{line}"));
     if let Some(tracked) = &tracker {
-        eprintln!("tracker  to {}", tracked.mouth.to());
+        note!("tracker  to {}", tracked.mouth.to());
     }
     let page = PageArgs::at(args.page, "--page");
     let mut board =
@@ -144,13 +145,13 @@ pub(super) fn run(
             bar.tick();
         }
         for words in words.drain(..) {
-            bar.suspend(|| eprintln!("{words}"));
+            bar.suspend(|| note!("{words}"));
         }
         thread::sleep(BEAT.saturating_sub(began.elapsed().saturating_sub(running)));
     }
     bar.finish_and_clear();
     let counts = server.counts();
-    eprintln!(
+    note!(
         "ended after {:.1} simulated s: {} vision packets out, {} control and {} robot messages in, {} undecodable, {} refusals told, {} ms left out",
         server.world().time(),
         vision.sent,

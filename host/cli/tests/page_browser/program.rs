@@ -10,6 +10,7 @@ use std::time::Duration;
 pub(crate) struct Program {
     child: Child,
     address: String,
+    token: Option<String>,
     lines: Receiver<String>,
 }
 
@@ -34,6 +35,10 @@ impl Program {
                 _ => panic!("no page: {told:?}"),
             }
         };
+        let (address, token) = match address.split_once("/?token=") {
+            Some((address, token)) => (address.to_owned(), Some(token.to_owned())),
+            None => (address, None),
+        };
         // A full pipe would hold it up.
         let (send, later) = channel();
         thread::spawn(move || {
@@ -41,11 +46,17 @@ impl Program {
                 let _ = send.send(line);
             }
         });
-        Self { child, address, lines: later }
+        Self { child, address, token, lines: later }
     }
 
     pub(crate) fn address(&self) -> &str {
         &self.address
+    }
+
+    /// What its page asks of those that ask for something.
+    #[allow(dead_code, reason = "one of the two tests that share this file asks without a browser")]
+    pub(crate) fn token(&self) -> Option<&str> {
+        self.token.as_deref()
     }
 
     /// Waits for a line with these words on stderr.

@@ -3,6 +3,7 @@
 //!
 //! A dozen of the protocol's commands are enough here. The crates that speak all of it (chromiumoxide, headless_chrome) generate some
 //! hundred thousand lines of types: a minute and more of every clean build, for the same dozen.
+#![forbid(unsafe_code)]
 
 mod browser;
 mod tab;

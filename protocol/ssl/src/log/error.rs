@@ -35,7 +35,9 @@ pub enum LogError {
 impl fmt::Display for LogError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Open { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Open { path, error } => {
+                write!(f, "{}: {error}", foreign::printable(&path.to_string_lossy()))
+            }
             Self::Read(error) => write!(f, "not readable: {error}; copy the file anew"),
             Self::Short { bytes } => {
                 write!(f, "ends within its header, after {bytes} of 16 bytes; copy the file anew")

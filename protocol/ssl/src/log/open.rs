@@ -74,7 +74,7 @@ const NOT_ITS_OWN: &str = "its offsets lead to no messages";
 
 fn source(path: &Path) -> Result<Source, LogError> {
     let opened = |error| LogError::Open { path: path.to_owned(), error };
-    let mut file = BufReader::new(File::open(path).map_err(opened)?);
+    let mut file = BufReader::new(foreign::open(path).map_err(opened)?);
     let mut magic = [0; 2];
     let bytes = fill(&mut file, &mut magic).map_err(|(_, error)| opened(error))?;
     file.rewind().map_err(opened)?;

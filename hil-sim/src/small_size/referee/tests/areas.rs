@@ -159,13 +159,69 @@ fn every_third_foul_is_a_yellow_card_and_the_offender_goes_off() {
     stage.run(0.2);
     stage.only(Kind::TooManyRobots);
     assert_eq!(stage.referee.next(), Some(Restart::ForceStart));
+    // It may leave by itself; where it does not the game is halted for people, who take it off once robots stand.
+    stage.run(9.0);
+    assert_eq!((stage.phase(), stage.orders.len()), (Phase::Stop, 0));
+    stage.until(Phase::Halt, 2.0);
+    assert!(matches!(
+        stage.only(Kind::Blocked).what,
+        What::Blocked { reason: Reason::TooManyRobots { allowed: 5, on_field: 6 } }
+    ));
+    stage.until(Phase::Stop, 3.1);
     assert_eq!(stage.orders, [WorldOrder::RemoveRobot(blue(2))]);
+    stage.until(Phase::Run, 5.0);
+}
+
+/// Blue has six robots on the field and one yellow card; the game is stopped.
+fn one_too_many() -> Stage {
+    let mut stage = in_play();
+    stage.referee.accounts.blue.show_yellow(Instant(0), 120_000_000);
+    for number in 3..6 {
+        stage.put(blue(number), at(2.5, -2.5 + 0.5 * f32::from(number)));
+    }
+    stage.move_ball(at(0.0, 1.0));
+    stage.touch(blue(1));
+    stage.kick(0.0, 6.0);
+    stage.until(Phase::Stop, 1.0);
+    stage.kick(0.0, 0.0);
+    stage.move_ball(at(0.0, 2.5));
+    stage
+}
+
+#[test]
+fn a_robot_in_its_goal_substitution_area_is_not_counted_one_before_it_is() {
+    // Division A: the wall at 6.6 m, the area 0.3 m, the robot's centre at most 0.21 m before the wall.
+    for (x, counted) in [(6.38, true), (6.40, false), (-6.40, true)] {
+        let mut stage = stage_with(RefereeSettings::new(League::DivisionA));
+        stage.until(Phase::Stop, 4.0);
+        for number in 3..11 {
+            stage.put(blue(number), at(3.0, 0.4 * f32::from(number)));
+        }
+        stage.referee.accounts.blue.show_yellow(Instant(0), 120_000_000);
+        stage.put(blue(10), at(x, 1.5));
+        stage.run(5.0);
+        let goes_on = stage.phase() != Phase::Stop;
+        assert_eq!((goes_on, stage.orders.len()), (!counted, 0), "{x}");
+    }
+}
+
+#[test]
+fn a_robot_in_the_margin_at_the_halfway_line_is_taken_off_at_once_unless_the_ball_is_near() {
+    let mut stage = one_too_many();
+    stage.put(blue(5), at(0.2, 3.15));
+    stage.move_ball(at(0.0, 2.8));
+    stage.run(1.0);
+    assert_eq!(stage.orders, []);
+    stage.put(blue(5), at(0.2, -3.15));
+    stage.step();
+    assert_eq!(stage.orders, [WorldOrder::RemoveRobot(blue(5))]);
+    stage.until(Phase::FreeKick(Colour::Yellow), 3.0);
 }
 
 #[test]
 fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop() {
     let mut stage = in_play();
-    stage.referee.accounts.blue.show_yellow(Instant(0));
+    stage.referee.accounts.blue.show_yellow(Instant(0), 120_000_000);
     for number in 3..6 {
         stage.put(blue(number), at(2.5, -2.5 + 0.5 * f32::from(number)));
     }
@@ -174,7 +230,7 @@ fn a_yellow_card_lasts_120_s_of_playing_time_and_the_robot_comes_back_in_a_stop(
     stage.until(Phase::Stop, 1.0);
     stage.kick(0.0, 0.0);
     stage.move_ball(stage.referee.placement().unwrap());
-    stage.until(Phase::FreeKick(Colour::Yellow), 10.0);
+    stage.until(Phase::FreeKick(Colour::Yellow), 30.0);
     let Some(WorldOrder::RemoveRobot(taken)) = stage.orders.last().copied() else { panic!() };
     stage.orders.clear();
     let played = |stage: &Stage| stage.referee.metrics().running_s;

@@ -62,11 +62,32 @@ fn who_stays_within_half_a_metre_of_the_ball_in_stop_is_counted_but_not_punished
 }
 
 #[test]
-fn a_stop_that_nobody_makes_room_in_lasts_ten_seconds() {
+fn a_stop_in_which_a_robot_stays_at_the_ball_does_not_end_and_after_ten_seconds_says_why() {
     let mut stage = stopped();
-    let began = stage.seconds();
-    stage.until(Phase::PrepareKickoff(Colour::Yellow), 12.0);
-    assert!((stage.seconds() - began - 10.0).abs() < 0.05, "{}", stage.seconds() - began);
+    stage.run(9.9);
+    assert_eq!((stage.phase(), stage.reason()), (Phase::Stop, None));
+    stage.run(50.0);
+    assert_eq!(stage.phase(), Phase::Stop);
+    let blocked = *stage.referee.blocked().unwrap();
+    assert_eq!(blocked.obstacle.who(), Some(yellow(1)));
+    assert!(
+        matches!(blocked.obstacle.reason, Reason::NearBall { distance } if (distance - 0.41).abs() < 1e-4)
+    );
+    assert!((59.8..60.0).contains(&blocked.lasted.as_secs_f32()), "{:?}", blocked.lasted);
+    assert_eq!(
+        stage.referee.packet().status_message.as_deref(),
+        Some("blocked: yellow 1: 0.41 m from the ball")
+    );
+    assert_eq!(stage.only(Kind::Blocked).robot, Some(id(1)));
+    // 0.55 m from centre to centre is enough for the controller, 0.53 m is not.
+    stage.put(yellow(1), at(-0.53, 0.0));
+    stage.run(5.0);
+    assert_eq!(stage.phase(), Phase::Stop);
+    stage.put(yellow(1), at(-0.55, 0.0));
+    stage.until(Phase::PrepareKickoff(Colour::Yellow), 2.1);
+    assert_eq!(stage.referee.blocked(), None);
+    let metrics = stage.referee.metrics();
+    assert_eq!((metrics.blocks.len(), metrics.blocked_s() > 60.0), (1, true));
 }
 
 #[test]

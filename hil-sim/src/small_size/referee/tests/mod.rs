@@ -32,6 +32,8 @@ struct Stage {
     step: Duration,
     /// Does somebody carry out what people are asked to do?
     obeyed: bool,
+    /// Robots that the referee waits for go where they have to be, at once.
+    obedient: bool,
     orders: Vec<WorldOrder>,
     /// A game state that knows the packets alone.
     heard: GameState,
@@ -72,6 +74,7 @@ fn stage_with(settings: RefereeSettings) -> Stage {
         now: Instant(0),
         step: STEP,
         obeyed: true,
+        obedient: false,
         orders: Vec::new(),
         heard: GameState::new(),
         counter: None,
@@ -157,6 +160,9 @@ impl Stage {
     }
 
     fn step(&mut self) {
+        if self.obedient {
+            self.make_way();
+        }
         self.now += self.step;
         if let Some(ball) = &mut self.ball {
             ball.position += ball.velocity * self.step.as_secs_f32();
@@ -188,11 +194,51 @@ impl Stage {
         );
     }
 
+    /// Every robot that the referee waits for goes to a lawful place of its own.
+    fn make_way(&mut self) {
+        if let Some(Obstacle { team: Some(team), reason: Reason::NoKeeper, .. }) =
+            self.referee.blocked().map(|blocked| blocked.obstacle)
+        {
+            let keeper = Who { colour: team, id: self.referee.accounts().of(team).keeper };
+            self.put(keeper, at(self.referee.own_end(team).sign() as f32 * 4.5, 0.0));
+        }
+        let waits_for: Vec<Who> =
+            self.referee.obstacles(&self.robots).iter().filter_map(Obstacle::who).collect();
+        for who in waits_for {
+            let side = self.referee.own_end(who.colour).sign() as f32;
+            let lane =
+                0.35 * f32::from(who.id.number()) - 2.6 + if who.colour == Colour::Blue { 0.17 } else { 0.0 };
+            let place = match self.phase() {
+                Phase::PreparePenalty(team)
+                    if team != who.colour && self.referee.accounts().is_keeper(who) =>
+                {
+                    at(side * 4.5, 0.0)
+                }
+                Phase::PreparePenalty(team) => {
+                    let back = self.referee.own_end(team).sign() as f32;
+                    at(self.place_of_ball().x() + back * 1.5, lane)
+                }
+                // Beside the ball's lane, in the own half.
+                _ => at(side * 2.0, if lane * self.place_of_ball().y() > 0.0 { -lane } else { lane }),
+            };
+            let place =
+                if place.distance(self.place_of_ball()) < 0.7 { at(side * 1.0, place.y()) } else { place };
+            self.robot(who).pose.position = place;
+        }
+    }
+
+    /// What keeps the match from going on, where it has been said.
+    fn reason(&self) -> Option<Reason> {
+        self.referee.blocked().map(|blocked| blocked.obstacle.reason)
+    }
+
     fn obey(&mut self, order: WorldOrder) {
         match order {
             WorldOrder::PutBall(place) => self.ball = Some(BallSeen::at(place)),
             WorldOrder::RemoveRobot(who) => self.take(who),
-            WorldOrder::ReturnRobot(who, pose) => self.put(who, pose.position),
+            WorldOrder::ReturnRobot(who, pose) | WorldOrder::CarryRobot(who, pose) => {
+                self.put(who, pose.position)
+            }
         }
     }
 

@@ -2,6 +2,19 @@
 
 use super::*;
 
+/// The penalty is prepared and everything right.
+fn penalty_prepared() -> Stage {
+    let mut stage = in_play();
+    assert!(stage.referee.restart_by_hand(Restart::Penalty(Colour::Yellow), at(0.0, 0.0)));
+    for (who, place) in [(blue(0), at(4.5, 0.0)), (blue(1), at(-3.0, 1.0)), (blue(2), at(-3.0, -1.0))] {
+        stage.put(who, place);
+    }
+    stage.put(yellow(1), at(-3.0, 0.0));
+    stage.put(yellow(2), at(-3.0, -2.0));
+    stage.until(Phase::PreparePenalty(Colour::Yellow), 10.0);
+    stage
+}
+
 /// NORMAL_START was given; shooter is yellow's robot 1, keeper blue's robot 0.
 fn penalty() -> Stage {
     let mut stage = in_play();
@@ -13,8 +26,9 @@ fn penalty() -> Stage {
     stage.put(blue(1), at(-3.0, 1.0));
     stage.put(blue(2), at(-3.0, -1.0));
     stage.put(yellow(2), at(-3.0, -2.0));
-    stage.put(yellow(1), at(-1.7, 0.0));
+    stage.put(yellow(1), at(-3.0, 0.0));
     stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
+    stage.put(yellow(1), at(-1.7, 0.0));
     stage.until(Phase::Penalty(Colour::Yellow), 3.0);
     assert_eq!(stage.place_of_ball(), at(-1.5, 0.0));
     stage
@@ -31,15 +45,43 @@ fn failed(stage: &Stage) -> PenaltyEnd {
 }
 
 #[test]
-fn the_penalty_begins_when_keeper_and_others_stand_right_or_after_ten_seconds() {
+fn the_penalty_begins_when_keeper_and_others_stand_right_and_no_sooner() {
     let mut stage = in_play();
     stage.move_ball(at(4.0, 0.0));
     stage.put(blue(1), at(3.9, 0.0));
     stage.touch(blue(1));
+    stage.put(blue(1), at(3.0, 1.0));
     stage.until(Phase::PreparePenalty(Colour::Yellow), 20.0);
-    let began = stage.seconds();
-    stage.until(Phase::Penalty(Colour::Yellow), 11.0);
-    assert!((stage.seconds() - began - 10.0).abs() < 0.03);
+    // One after the other; the ball lies at (−1.5, 0), the goal line is at 4.5.
+    stage.put(blue(0), at(4.40, 0.0));
+    let waits_for = |stage: &mut Stage, who: Who, word: &str| {
+        stage.run(30.0);
+        assert_eq!(stage.phase(), Phase::PreparePenalty(Colour::Yellow));
+        let obstacle = stage.referee.blocked().unwrap().obstacle;
+        assert_eq!((obstacle.who(), obstacle.reason.word()), (Some(who), word));
+    };
+    stage.put(blue(2), at(-3.0, -1.0));
+    stage.put(yellow(2), at(-3.0, -2.0));
+    stage.put(yellow(1), at(-1.7, 0.0));
+    stage.put(blue(1), at(-2.4, 1.0));
+    waits_for(&mut stage, blue(0), "keeper_off_line");
+    stage.put(blue(0), at(4.42, 0.0));
+    waits_for(&mut stage, blue(1), "robot_not_behind_ball");
+    stage.put(blue(1), at(-2.6, 1.0));
+    stage.put(yellow(2), at(-2.4, -2.0));
+    // The nearest to the ball is the kicker.
+    waits_for(&mut stage, yellow(2), "robot_not_behind_ball");
+    stage.put(yellow(2), at(-2.6, -2.0));
+    stage.until(Phase::Penalty(Colour::Yellow), 2.1);
+    assert_eq!(stage.orders.len(), 1, "nothing but the ball was put: {:?}", stage.orders);
+}
+
+#[test]
+fn a_team_without_its_keeper_keeps_the_penalty_waiting() {
+    let mut stage = penalty_prepared();
+    stage.take(blue(0));
+    stage.run(15.0);
+    assert_eq!(stage.reason(), Some(Reason::NoKeeper));
 }
 
 #[test]
@@ -139,6 +181,7 @@ fn a_half_lasts_until_its_last_penalty_is_over() {
 fn in_a_shoot_out_the_teams_take_turns_and_five_each_decide() {
     use rules::state::Stage as Part;
     let mut stage = stage();
+    stage.obedient = true;
     stage.step();
     stage.referee.stage = Part::ShootOutBreak;
     stage.referee.stage_left = 0;

@@ -14,22 +14,50 @@ fn a_match_begins_with_halt_stop_and_the_first_teams_kick_off() {
 }
 
 #[test]
-fn a_kick_off_begins_no_earlier_than_robots_are_in_their_halves_and_no_later_than_ten_seconds() {
+fn a_kick_off_begins_when_all_robots_are_in_their_halves_and_no_sooner() {
     let mut stage = stage();
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
-    stage.put(blue(1), at(-1.0, 2.0));
-    stage.run(9.9);
-    assert_eq!(stage.phase(), Phase::PrepareKickoff(Colour::Yellow));
-    stage.until(Phase::Kickoff(Colour::Yellow), 0.2);
+    // The controller wants all of the robot in its half, the kicker too: 0.09 m.
+    for (who, outside, inside) in
+        [(blue(1), at(0.08, 2.0), at(0.095, 2.0)), (yellow(1), at(0.2, 0.0), at(-0.1, 0.2))]
+    {
+        stage.put(who, outside);
+        stage.run(60.0);
+        assert_eq!(stage.phase(), Phase::PrepareKickoff(Colour::Yellow));
+        assert_eq!(stage.referee.blocked().unwrap().obstacle.who(), Some(who));
+        assert!(matches!(stage.reason(), Some(Reason::OtherHalf { .. })));
+        stage.put(who, inside);
+        stage.step();
+    }
+    assert_eq!(stage.count(Kind::Blocked), 2);
+    stage.until(Phase::Kickoff(Colour::Yellow), 2.1);
+}
+
+#[test]
+fn a_kick_off_waits_for_a_ball_in_the_centre_circle() {
+    let mut stage = stage();
+    stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
+    stage.move_ball(at(0.0, 0.6));
+    stage.run(5.0);
+    stage.move_ball(at(0.0, 0.4));
+    stage.until(Phase::Kickoff(Colour::Yellow), 2.1);
+    // One that does not come back is put there again, after a stop.
+    let mut stage = super::stage();
+    stage.until(Phase::PrepareKickoff(Colour::Yellow), 10.0);
+    stage.move_ball(at(0.0, 0.6));
+    stage.until(Phase::Stop, 10.1);
+    assert!(matches!(stage.only(Kind::Blocked).what, What::Blocked { reason: Reason::BallOffPlace { .. } }));
+    stage.until(Phase::Kickoff(Colour::Yellow), 8.0);
+    assert_eq!(stage.orders, [WorldOrder::PutBall(at(0.0, 0.0))]);
 }
 
 #[test]
 fn one_kicker_may_be_in_the_centre_circle_a_second_robot_not() {
     let mut stage = stage();
-    stage.put(yellow(1), at(0.2, 0.0));
     stage.until(Phase::PrepareKickoff(Colour::Yellow), 16.0);
-    stage.put(yellow(2), at(-0.3, 0.0));
-    stage.run(5.0);
+    stage.put(yellow(1), at(-0.2, 0.0));
+    stage.put(yellow(2), at(-0.3, 0.4));
+    stage.run(25.0);
     assert_eq!(stage.phase(), Phase::PrepareKickoff(Colour::Yellow));
     stage.put(yellow(2), at(-2.0, -2.0));
     stage.until(Phase::Kickoff(Colour::Yellow), 2.1);
@@ -148,6 +176,7 @@ fn a_drawn_knockout_match_goes_on_to_overtime_and_a_shoot_out() {
     use rules::state::Stage as Part;
     let clock = MatchClock::Playing { half: Duration::millis(10_000) };
     let mut stage = stage_with(RefereeSettings { clock, knockout: true, ..settings() });
+    stage.obedient = true;
     let mut parts = vec![Part::FirstHalfPre];
     while !stage.referee.is_over() {
         stage.step();

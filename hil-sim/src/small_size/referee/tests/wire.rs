@@ -131,7 +131,7 @@ fn in_preparation_the_next_command_is_normal_start() {
 }
 
 #[test]
-fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_two() {
+fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_three() {
     let shot = Shot {
         kicker: Some(yellow(3)),
         from: at(1.0, 0.0),
@@ -189,6 +189,7 @@ fn every_event_is_told_by_the_leagues_type_with_its_evidence_but_our_own_two() {
         (What::MultipleFouls { caused_by: Vec::new() }, 34),
         (What::MultipleCards, 32),
         (What::MovedInHalt { speed }, 0),
+        (What::Blocked { reason: Reason::BallOut }, 0),
         (What::TooCloseInStop { distance }, 0),
     ];
     // The numbers are the reference's table of event types; 0 where the league has none.

@@ -68,6 +68,8 @@ fn a_kick_off_into_the_open_goal_counts_and_is_no_double_touch() {
     assert_eq!(game.referee.accounts().yellow.score, 1);
     let kinds: Vec<Kind> = game.referee.events().iter().map(|event| event.what.kind()).collect();
     assert_eq!(kinds, [Kind::PossibleGoal, Kind::Goal]);
+    // The kicker stands where the ball has to lie.
+    game.world.put(yellow(1), Pose { position: at(-1.5, 0.0), heading: Angle::ZERO });
     game.until(Phase::PrepareKickoff(Colour::Blue), 20.0, Order::default());
     assert_eq!(game.world.ball.position, at(0.0, 0.0));
 }

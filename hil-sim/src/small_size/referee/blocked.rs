@@ -1,0 +1,186 @@
+//! `blocked`: says that the match stands, since when and why, and what people at the field do about it. s, field frame.
+//!
+//! The game controller waits for ever. What people may do under the rules is little: stop a preparation whose ball is gone and put the
+//! ball down by hand, and in a halt take out robots that a team has too many, or carry those of a team whose robots do not drive.
+
+use geometry::{GoalEnd, Point, Pose};
+use protocol::{Duration, Instant, Who};
+use rules::restart::kickoff_places;
+use rules::state::Command;
+use rules::{Colour, Phase, limits};
+
+use super::InternalReferee;
+use super::event::{Event, Restart, What};
+use super::observation::RobotSeen;
+use super::people::WorldOrder;
+use super::ready::{Obstacle, Reason};
+use super::scene::COLOURS;
+
+/// The match stood although time enough had passed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// Since when something keeps it from going on.
+    pub since: Instant,
+    /// How long it has stood, or stood in all.
+    pub lasted: Duration,
+    /// In which phase.
+    pub phase: Phase<Colour>,
+    /// What keeps it, or kept it last.
+    pub obstacle: Obstacle,
+}
+
+/// What is known of a wait.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Waiting {
+    /// Since when there is an obstacle.
+    since: Option<Instant>,
+    /// It has lasted too long, and was said.
+    said: bool,
+}
+
+impl InternalReferee {
+    /// What has kept the match from going on for longer than `patience`, if anything does now.
+    pub fn blocked(&self) -> Option<&Blocked> {
+        self.metrics.blocks.last().filter(|_| self.waiting.said)
+    }
+
+    pub(super) fn wait_ends(&mut self) {
+        self.waiting = Waiting::default();
+    }
+
+    /// Goes on with `command` when nothing has been in the way for `preparation`; waits, however long it takes, while something
+    /// is.
+    pub(super) fn go_on_when_clear(
+        &mut self,
+        robots: &[RobotSeen],
+        obstacles: &[Obstacle],
+        preparation: Duration,
+        command: Command,
+    ) {
+        let Some(first) = obstacles.first() else {
+            self.wait_ends();
+            let since = *self.ready_since.get_or_insert(self.now);
+            if self.now.since(since) >= preparation {
+                self.give(command);
+            }
+            return;
+        };
+        self.ready_since = None;
+        let since = *self.waiting.since.get_or_insert(self.now);
+        let lasted = self.now.since(since);
+        if lasted < self.settings.patience {
+            return;
+        }
+        let blocked = Blocked { since, lasted, phase: self.phase(), obstacle: *first };
+        if let Some(last) = self.metrics.blocks.last_mut().filter(|_| self.waiting.said) {
+            *last = blocked;
+        } else {
+            self.waiting.said = true;
+            self.metrics.blocks.push(blocked);
+            let place = first.who().and_then(|who| robots.iter().find(|robot| robot.who == who));
+            let place = place.map_or(self.ball.position, |robot| robot.pose.position);
+            let Obstacle { team, robot, reason } = *first;
+            self.judge(&Event { at: self.now, by: team, robot, place, what: What::Blocked { reason } });
+        }
+        if self.phase() != Phase::Stop && first.reason.is_balls() {
+            // The game is stopped by hand, so that a person can put the ball down again.
+            self.give(Command::Stop);
+        } else if self.people_can_help(obstacles) {
+            self.people.called = true;
+            self.give(Command::Halt);
+        }
+    }
+
+    /// The referee halts the game for what robot handlers may do then.
+    fn people_can_help(&self, obstacles: &[Obstacle]) -> bool {
+        obstacles.iter().any(|obstacle| match (obstacle.reason, obstacle.team) {
+            (Reason::TooManyRobots { .. }, _) => true,
+            (_, Some(team)) => !self.settings.team(team).drives,
+            _ => false,
+        })
+    }
+
+    /// In a halt for it, once robots must stand: surplus robots are taken out, those that do not drive are carried.
+    pub(super) fn help(&mut self, robots: &[RobotSeen]) {
+        let age = self.now.since(Instant(self.state.since())).as_secs_f32();
+        if !self.people.called || self.phase() != Phase::Halt || age < limits::GRACE {
+            return;
+        }
+        self.people.called = false;
+        for team in COLOURS {
+            let mut left: Vec<RobotSeen> = robots
+                .iter()
+                .copied()
+                .filter(|robot| robot.who.colour == team && self.counts(robot))
+                .collect();
+            while left.len() as u32 > self.allowed_now(team) {
+                let places = left.iter().map(|robot| (robot.who, robot.pose.position));
+                let Some(who) = self.whom_to_take(team, places) else { break };
+                left.retain(|robot| robot.who != who);
+                self.take_off(who);
+            }
+        }
+        self.carry(robots, &self.blamed(robots));
+    }
+
+    /// Robots of teams that do not drive which are in the way of what comes next.
+    fn blamed(&self, robots: &[RobotSeen]) -> Vec<Who> {
+        let all = self.obstacles_to_come(robots);
+        let stand = |who: &Who| !self.settings.team(who.colour).drives;
+        all.iter().filter_map(Obstacle::who).filter(stand).collect()
+    }
+
+    /// Of the stop to come and of the preparation after it.
+    fn obstacles_to_come(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
+        let next = self.next.unwrap_or(Restart::ForceStart);
+        let mut all = self.obstacles_in_stop(robots, next, self.placement.unwrap_or(self.ball.position));
+        match next {
+            Restart::Kickoff(team) => all.extend(self.obstacles_at_kickoff(robots, team)),
+            Restart::Penalty(team) => all.extend(self.obstacles_at_penalty(robots, team)),
+            _ => {}
+        }
+        all
+    }
+
+    /// Between the halves robots that do not drive are carried to their own half.
+    pub(super) fn carry_over(&mut self, robots: &[RobotSeen]) {
+        let stand = robots.iter().map(|robot| robot.who);
+        let stand = stand.filter(|who| !self.settings.team(who.colour).drives).collect::<Vec<_>>();
+        self.carry(robots, &stand);
+    }
+
+    /// Carries these robots to places where they are not in the way of what comes next.
+    fn carry(&mut self, robots: &[RobotSeen], whom: &[Who]) {
+        let mut robots = robots.to_vec();
+        for who in whom {
+            let Some(index) = robots.iter().position(|robot| robot.who == *who) else { continue };
+            let own = self.own_end(who.colour);
+            let ends: [GoalEnd; 2] = [own, own.opposite()];
+            let places = ends.into_iter().flat_map(|end| kickoff_places(&self.field, end, false));
+            let fits = places.into_iter().find(|place| {
+                let mut then = robots.clone();
+                then[index].pose.position = *place;
+                let free = |other: &RobotSeen| {
+                    other.who == *who || other.pose.position.distance(*place) > CARRIED_APART
+                };
+                let is_keeper = self.accounts.is_keeper(*who);
+                let on_line = place.x().abs() > self.field.length * 0.5 - 3.0 * limits::ROBOT_RADIUS;
+                then.iter().all(free)
+                    && is_keeper == on_line
+                    && !self.obstacles_to_come(&then).iter().any(|left| left.who() == Some(*who))
+            });
+            let Some(place) = fits.or_else(|| self.keeper_place(*who)) else { continue };
+            robots[index].pose.position = place;
+            let pose = Pose { position: place, heading: place.direction_to(Point::new(0.0, 0.0)) };
+            self.people.orders.push_back(WorldOrder::CarryRobot(*who, pose));
+        }
+    }
+
+    /// On the goal line, where a penalty's keeper has to be.
+    fn keeper_place(&self, who: Who) -> Option<Point<geometry::Field>> {
+        self.accounts.is_keeper(who).then(|| self.field.goal_center(self.own_end(who.colour)))
+    }
+}
+
+/// Robots are set down at least this far apart, centre to centre, m: two diameters.
+const CARRIED_APART: f32 = 4.0 * limits::ROBOT_RADIUS;

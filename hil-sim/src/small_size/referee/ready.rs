@@ -1,0 +1,316 @@
+//! `ready`: what keeps the game from going on, by the conditions of the league's game controller. m, m/s, field frame.
+//!
+//! The conditions are those of `findIssuesForContinuation` (RoboCup-SSL/ssl-game-controller, `internal/app/engine`,
+//! `process_continue_next_command.go`), with its tolerances: the controller gives no command while one of them is not met, however
+//! long that takes. The centre circle at a kick-off is the rules' alone, which the controller leaves to the human referee.
+
+use std::fmt;
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::{RobotId, Who};
+use rules::{Colour, Phase, limits};
+
+use super::InternalReferee;
+use super::event::Restart;
+use super::observation::RobotSeen;
+
+/// Why the game cannot go on; distances in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// The team has more robots than it may outside its goal substitution area.
+    TooManyRobots {
+        /// How many it may have.
+        allowed: u32,
+        /// How many it has.
+        on_field: u32,
+    },
+    /// The robot is too near to the ball.
+    NearBall {
+        /// From its nearest side to the ball's centre.
+        distance: f32,
+    },
+    /// The ball is far from where the game goes on.
+    BallOffPlace {
+        /// From the place.
+        distance: f32,
+    },
+    /// The ball is outside the lines.
+    BallOut,
+    /// The ball is too near to a defence area.
+    BallNearArea {
+        /// From the area.
+        distance: f32,
+    },
+    /// The ball moves.
+    BallMoves {
+        /// m/s.
+        speed: f32,
+    },
+    /// The ball has to be put down by a person, who has not done it.
+    BallNotPut {
+        /// From the place.
+        distance: f32,
+    },
+    /// The robot is not entirely in its own half at a kick-off.
+    OtherHalf {
+        /// How far its centre is in its own half; negative in the other.
+        inside: f32,
+    },
+    /// The robot is in the centre circle at a kick-off and not the only one of the team that takes it.
+    CentreCircle {
+        /// From the centre.
+        distance: f32,
+    },
+    /// The penalty's keeper is not on the field.
+    NoKeeper,
+    /// The penalty's keeper is not on its line between the posts.
+    KeeperOffLine {
+        /// Its centre to the goal line.
+        from_line: f32,
+        /// Its centre to the goal's middle, along the line.
+        across: f32,
+    },
+    /// The robot is not far enough behind the ball at a penalty.
+    NotBehindBall {
+        /// How far it is behind.
+        behind: f32,
+    },
+}
+
+impl Reason {
+    /// Without its numbers.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::TooManyRobots { .. } => "too_many_robots",
+            Self::NearBall { .. } => "robot_near_ball",
+            Self::BallOffPlace { .. } => "ball_off_place",
+            Self::BallOut => "ball_out",
+            Self::BallNearArea { .. } => "ball_near_area",
+            Self::BallMoves { .. } => "ball_moves",
+            Self::BallNotPut { .. } => "ball_not_put",
+            Self::OtherHalf { .. } => "robot_in_other_half",
+            Self::CentreCircle { .. } => "robot_in_centre_circle",
+            Self::NoKeeper => "no_keeper",
+            Self::KeeperOffLine { .. } => "keeper_off_line",
+            Self::NotBehindBall { .. } => "robot_not_behind_ball",
+        }
+    }
+
+    /// Nothing is wrong but the ball's place: the human referee may put it down by hand at any time (rules: ball placement).
+    pub const fn is_balls(self) -> bool {
+        matches!(
+            self,
+            Self::BallOffPlace { .. } | Self::BallOut | Self::BallNearArea { .. } | Self::BallNotPut { .. }
+        )
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooManyRobots { allowed, on_field } => write!(f, "{on_field} robots, {allowed} allowed"),
+            Self::NearBall { distance } => write!(f, "{distance:.2} m from the ball"),
+            Self::BallOffPlace { distance } => write!(f, "the ball is {distance:.2} m from its place"),
+            Self::BallOut => f.write_str("the ball is outside the field"),
+            Self::BallNearArea { distance } => {
+                write!(f, "the ball is {distance:.2} m from a defence area")
+            }
+            Self::BallMoves { speed } => write!(f, "the ball moves at {speed:.2} m/s"),
+            Self::BallNotPut { distance } => {
+                write!(f, "the ball has to be put down by hand, {distance:.2} m away")
+            }
+            Self::OtherHalf { inside } => write!(f, "{inside:.2} m inside its own half"),
+            Self::CentreCircle { distance } => {
+                write!(f, "in the centre circle, {distance:.2} m from its centre")
+            }
+            Self::NoKeeper => f.write_str("no keeper on the field"),
+            Self::KeeperOffLine { from_line, across } => {
+                write!(f, "keeper {from_line:.2} m off its line, {across:.2} m from the middle")
+            }
+            Self::NotBehindBall { behind } => write!(f, "{behind:.2} m behind the ball"),
+        }
+    }
+}
+
+/// Something that keeps the game from going on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Whose doing it is; `None` for the ball's place.
+    pub team: Option<Colour>,
+    /// Which robot.
+    pub robot: Option<RobotId>,
+    /// Why.
+    pub reason: Reason,
+}
+
+impl Obstacle {
+    fn ball(reason: Reason) -> Self {
+        Self { team: None, robot: None, reason }
+    }
+
+    fn robot(who: Who, reason: Reason) -> Self {
+        Self { team: Some(who.colour), robot: Some(who.id), reason }
+    }
+
+    /// The robot to blame.
+    pub fn who(&self) -> Option<Who> {
+        Some(Who { colour: self.team?, id: self.robot? })
+    }
+}
+
+impl fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.team, self.robot) {
+            (Some(team), Some(robot)) => write!(f, "{} {robot}: {}", team.word(), self.reason),
+            (Some(team), None) => write!(f, "{}: {}", team.word(), self.reason),
+            _ => write!(f, "{}", self.reason),
+        }
+    }
+}
+
+impl InternalReferee {
+    /// Whether the game controller counts that robot as on the field.
+    pub(super) fn counts(&self, robot: &RobotSeen) -> bool {
+        self.field.counts(self.own_end(robot.who.colour), robot.pose.position)
+    }
+
+    /// What keeps this stop from ending with `next`; empty where nothing does.
+    pub(super) fn obstacles_in_stop(
+        &self,
+        robots: &[RobotSeen],
+        next: Restart,
+        target: Point<Field>,
+    ) -> Vec<Obstacle> {
+        let (ball, speed) = (self.ball.position, self.ball.speed());
+        let mut found = Vec::new();
+        for team in super::scene::COLOURS {
+            let (on_field, allowed) = (self.on_field(robots, team), self.allowed_now(team));
+            if on_field > allowed {
+                let reason = Reason::TooManyRobots { allowed, on_field };
+                found.push(Obstacle { team: Some(team), robot: None, reason });
+            }
+        }
+        // The team that goes on with a free kick may be at the ball already, so that it can do so after its placement.
+        let must_keep_away = |robot: &&RobotSeen| match next {
+            Restart::FreeKick(team) => robot.who.colour != team,
+            _ => true,
+        };
+        for robot in robots.iter().filter(must_keep_away) {
+            let distance = robot.pose.position.distance(ball) - limits::ROBOT_RADIUS;
+            if distance < limits::BALL_DISTANCE - DISTANCE_TOLERANCE {
+                found.push(Obstacle::robot(robot.who, Reason::NearBall { distance }));
+            }
+        }
+        let distance = ball.distance(target);
+        if distance > limits::PLACEMENT_SKIP_DISTANCE {
+            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+        }
+        let from_area = |p| {
+            let ends = [GoalEnd::Negative, GoalEnd::Positive];
+            ends.map(|end| self.field.distance_to_area(end, p)).into_iter().fold(f32::INFINITY, f32::min)
+        };
+        // On the field of 2013, which the controller does not know, marks and spots lie nearer than that.
+        let least = limits::PLACEMENT_SKIP_AREA_DISTANCE;
+        let distance = from_area(ball);
+        if distance < least && from_area(target) >= least {
+            found.push(Obstacle::ball(Reason::BallNearArea { distance }));
+        }
+        if !self.field.contains(ball) {
+            found.push(Obstacle::ball(Reason::BallOut));
+        }
+        if speed >= BALL_STEADY {
+            found.push(Obstacle::ball(Reason::BallMoves { speed }));
+        }
+        found
+    }
+
+    /// What keeps that team's kick-off from its NORMAL_START.
+    pub(super) fn obstacles_at_kickoff(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
+        let centre = Point::new(0.0, 0.0);
+        let radius = self.field.center_radius;
+        let mut found = Vec::new();
+        let distance = self.ball.position.distance(centre);
+        if distance > radius {
+            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+        }
+        let mut kickers = 0;
+        for robot in self.nearest_first(robots) {
+            let place = robot.pose.position;
+            let inside = place.x() * self.own_end(robot.who.colour).sign() as f32;
+            if inside < limits::ROBOT_RADIUS {
+                found.push(Obstacle::robot(robot.who, Reason::OtherHalf { inside }));
+                continue;
+            }
+            let distance = place.distance(centre);
+            if distance < radius + limits::ROBOT_RADIUS - DISTANCE_TOLERANCE {
+                kickers += u32::from(robot.who.colour == team);
+                if robot.who.colour != team || kickers > 1 {
+                    found.push(Obstacle::robot(robot.who, Reason::CentreCircle { distance }));
+                }
+            }
+        }
+        found
+    }
+
+    /// What keeps that team's penalty from its NORMAL_START.
+    pub(super) fn obstacles_at_penalty(&self, robots: &[RobotSeen], team: Colour) -> Vec<Obstacle> {
+        let keeper = Who { colour: team.other(), id: self.accounts.of(team.other()).keeper };
+        let goal = self.own_end(team.other());
+        let (sign, line) = (goal.sign() as f32, self.field.goal_line(goal));
+        let ball = self.ball.position;
+        let mut found = Vec::new();
+        let distance = ball.distance(self.penalty_spot(team));
+        if distance > limits::PLACEMENT_TOLERANCE {
+            found.push(Obstacle::ball(Reason::BallOffPlace { distance }));
+        }
+        match robots.iter().find(|robot| robot.who == keeper) {
+            None => found.push(Obstacle { team: Some(team.other()), robot: None, reason: Reason::NoKeeper }),
+            Some(robot) => {
+                let place = robot.pose.position;
+                let (from_line, across) = ((place.x() - line).abs(), place.y().abs());
+                if from_line > limits::ROBOT_RADIUS || across > self.field.goal_width * 0.5 {
+                    found.push(Obstacle::robot(keeper, Reason::KeeperOffLine { from_line, across }));
+                }
+            }
+        }
+        let mut shooters = 0;
+        for robot in self.nearest_first(robots) {
+            let place = robot.pose.position;
+            let behind = (ball.x() - place.x()) * sign;
+            if robot.who == keeper || behind > limits::PENALTY_BEHIND {
+                continue;
+            }
+            shooters += u32::from(robot.who.colour == team);
+            if robot.who.colour != team || shooters > 1 {
+                found.push(Obstacle::robot(robot.who, Reason::NotBehindBall { behind }));
+            }
+        }
+        found
+    }
+
+    /// The robot at the ball is the kicker; those that come after it are one too many.
+    fn nearest_first<'r>(&self, robots: &'r [RobotSeen]) -> Vec<&'r RobotSeen> {
+        let distance = |robot: &RobotSeen| robot.pose.position.distance(self.ball.position);
+        let mut robots: Vec<&RobotSeen> = robots.iter().collect();
+        robots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        robots
+    }
+
+    /// What keeps the phase from its next command; nothing in phases that do not wait.
+    pub(super) fn obstacles(&self, robots: &[RobotSeen]) -> Vec<Obstacle> {
+        match self.phase() {
+            Phase::Stop => {
+                let target = self.placement.unwrap_or(self.ball.position);
+                self.obstacles_in_stop(robots, self.next.unwrap_or(Restart::ForceStart), target)
+            }
+            Phase::PrepareKickoff(team) => self.obstacles_at_kickoff(robots, team),
+            Phase::PreparePenalty(team) => self.obstacles_at_penalty(robots, team),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// What the game controller tolerates in distances to the ball, m (`distanceThreshold`).
+const DISTANCE_TOLERANCE: f32 = 0.05;
+/// A ball slower than this lies still for the game controller, m/s (`ballSteadyThreshold`).
+const BALL_STEADY: f32 = 0.2;

@@ -1,0 +1,173 @@
+//! `clock`: the time in a league log file, and how often something comes in it, where the recorder's clock was set while it recorded.
+//! Times in s since the file's first message.
+//!
+//! The clock is counted from differences between neighbours, so that a step spoils one difference and not all that come after.
+
+use protocol::Instant;
+use serde::Serialize;
+
+/// A message this much earlier than the one before it means that the recorder's clock was set back, ns. Less is order: recorders
+/// write what came at the same time in any order, half a millisecond apart; 20 ms is more than one image's time at 60 Hz.
+const STEP_BACK_NS: i64 = 20_000_000;
+/// Nothing at all for longer than this: the recording was paused, or its clock was set forward, s. What sends in a match sends at 1 Hz
+/// or faster.
+const PAUSE_S: f64 = 2.0;
+
+/// Where the recorder's clock was set, or nothing was recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct ClockStep {
+    /// When, on the counted clock.
+    pub(super) at_s: f64,
+    /// By how much; negative: set back. Positive: set forward, or nothing was recorded for so long.
+    pub(super) by_s: f64,
+}
+
+/// Counts a log file's time.
+#[derive(Debug, Default)]
+pub(super) struct LogClock {
+    last_ns: Option<i64>,
+    /// Since the first message; falls by fractions of a millisecond where neighbours are out of order.
+    counted_ns: i64,
+    /// The greatest of it.
+    now_ns: i64,
+    pub(super) steps: Vec<ClockStep>,
+    /// Steps beyond those that are listed.
+    pub(super) steps_more: u64,
+}
+
+/// Steps that are listed; of more only the number is told.
+const STEPS_LISTED: usize = 20;
+
+impl LogClock {
+    /// The time of a message that the recorder dated so. Never falls.
+    pub(super) fn read(&mut self, timestamp_ns: i64) -> Instant {
+        let last = self.last_ns.replace(timestamp_ns).unwrap_or(timestamp_ns);
+        let difference = timestamp_ns.saturating_sub(last);
+        if difference <= -STEP_BACK_NS {
+            self.step(difference);
+            // How long it really was is not known: no longer than between any two messages.
+            self.counted_ns = self.now_ns;
+        } else {
+            if difference as f64 * 1e-9 > PAUSE_S {
+                self.step(difference);
+            }
+            self.counted_ns = self.counted_ns.saturating_add(difference);
+        }
+        self.now_ns = self.now_ns.max(self.counted_ns);
+        self.now()
+    }
+
+    /// The time of the last message.
+    pub(super) fn now(&self) -> Instant {
+        Instant(u64::try_from(self.now_ns / 1000).unwrap_or(0))
+    }
+
+    fn step(&mut self, by_ns: i64) {
+        let step = ClockStep { at_s: self.now_ns as f64 * 1e-9, by_s: by_ns as f64 * 1e-9 };
+        if self.steps.len() < STEPS_LISTED { self.steps.push(step) } else { self.steps_more += 1 }
+    }
+}
+
+/// How often something comes while it comes: pauses (and steps of the clock, which look the same) are left out.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Rate {
+    last_s: Option<f64>,
+    first_s: f64,
+    differences: u64,
+    usual: u64,
+    usual_s: f64,
+}
+
+impl Rate {
+    /// It came at that time. How long it had not.
+    pub(super) fn came(&mut self, at_s: f64) -> Option<f64> {
+        let Some(last) = self.last_s.replace(at_s) else {
+            self.first_s = at_s;
+            return None;
+        };
+        let difference = at_s - last;
+        self.differences += 1;
+        if difference <= PAUSE_S {
+            self.usual += 1;
+            self.usual_s += difference;
+        }
+        Some(difference)
+    }
+
+    /// Per second; 0 where it came but once.
+    pub(super) fn hz(&self) -> f64 {
+        let whole_s = self.last_s.unwrap_or(self.first_s) - self.first_s;
+        // What comes more seldom than every pause has no usual differences.
+        let (n, seconds) =
+            if self.usual_s > 0.0 { (self.usual, self.usual_s) } else { (self.differences, whole_s) };
+        if seconds > 0.0 { n as f64 / seconds } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 75 messages a second for 8 s; from `at` s on the recorder's clock is set by `by` s.
+    fn rate_with(at: f64, by: f64) -> (f64, f64, Vec<ClockStep>) {
+        let (mut clock, mut rate) = (LogClock::default(), Rate::default());
+        for n in 0..600 {
+            let true_s = f64::from(n) / 75.0;
+            let stamp = true_s + if true_s >= at { by } else { 0.0 };
+            let now = clock.read(1_700_000_000_000_000_000 + (stamp * 1e9) as i64);
+            rate.came(now.0 as f64 * 1e-6);
+        }
+        (rate.hz(), clock.now().0 as f64 * 1e-6, clock.steps)
+    }
+
+    #[test]
+    fn a_clock_that_steps_back_or_forward_changes_no_rate() {
+        for by in [0.0, -0.05, -1.0, -4.0, -3600.0, 4.0, 3600.0] {
+            let (hz, end, steps) = rate_with(4.0, by);
+            assert!((hz - 75.0).abs() < 0.3, "{by} s: {hz} a second");
+            let whole = 599.0 / 75.0 + if by > 0.0 { by } else { 0.0 };
+            assert!((end - whole).abs() < 0.02, "{by} s: ends after {end} s");
+            assert_eq!(steps.len(), usize::from(by != 0.0), "{by} s");
+            if let Some(step) = steps.first() {
+                assert!((step.by_s - by).abs() < 0.02 && (step.at_s - 4.0).abs() < 0.02, "{step:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn neighbours_out_of_order_are_no_step_and_the_clock_never_falls() {
+        let mut clock = LogClock::default();
+        let mut last = Instant(0);
+        for (stamp_us, now_us) in [(0, 0), (1000, 1000), (500, 1000), (900, 1000), (2000, 2000), (1600, 2000)]
+        {
+            let now = clock.read(stamp_us * 1000);
+            assert_eq!(now, Instant(now_us));
+            assert!(now >= last);
+            last = now;
+        }
+        assert!(clock.steps.is_empty());
+    }
+
+    #[test]
+    fn any_stamps_at_all_are_taken() {
+        let mut clock = LogClock::default();
+        for stamp in [i64::MAX, i64::MIN, 0, -1, i64::MAX, i64::MAX, i64::MIN] {
+            clock.read(stamp);
+        }
+        for n in 0..100 {
+            clock.read(if n % 2 == 0 { 0 } else { 5_000_000_000 });
+        }
+        assert_eq!(clock.steps.len(), STEPS_LISTED);
+        assert!(clock.steps_more > 50);
+    }
+
+    #[test]
+    fn what_comes_every_ten_seconds_has_a_rate_too() {
+        let mut rate = Rate::default();
+        assert_eq!(rate.hz(), 0.0);
+        for n in 0..7 {
+            rate.came(f64::from(n) * 10.0);
+        }
+        assert!((rate.hz() - 0.1).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,175 @@
+//! `sheet`: what a recording says of the field and of both teams, as it was at last. Lengths in m.
+
+use std::fmt::Write as _;
+
+use foreign::excerpt;
+use serde::Serialize;
+use ssl::referee::{Referee, TeamInfo};
+use ssl::vision::WrapperPacket;
+
+/// As much of a team's name as is shown, characters.
+const NAME_LEN: usize = 60;
+
+/// Field and teams.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(super) struct Sheet {
+    /// By vision; none where it never sent one.
+    pub(super) field: Option<FieldSize>,
+    /// By the referee; none where it was never received.
+    pub(super) teams: Option<Teams>,
+}
+
+/// The field's measures, as vision sends them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct FieldSize {
+    pub(super) length: f64,
+    pub(super) width: f64,
+    pub(super) goal_width: f64,
+    /// Along x, where it was sent.
+    pub(super) defence_depth: Option<f64>,
+    /// Along y.
+    pub(super) defence_width: Option<f64>,
+    /// From the touch line to the wall.
+    pub(super) boundary: f64,
+}
+
+/// Both teams.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Teams {
+    pub(super) blue: Team,
+    pub(super) yellow: Team,
+}
+
+/// A team by the referee's account.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Team {
+    pub(super) name: String,
+    pub(super) goalkeeper: u32,
+    /// Ever given.
+    pub(super) yellow_cards: u32,
+    /// Still counting down.
+    pub(super) yellow_cards_active: usize,
+    pub(super) red_cards: u32,
+    /// Robots it may have on the field; none where the referee does not say.
+    pub(super) max_bots: Option<u32>,
+}
+
+impl Sheet {
+    /// A packet of the vision.
+    pub(super) fn vision(&mut self, packet: &WrapperPacket) {
+        let Some(geometry) = &packet.geometry else { return };
+        let (field, metres) = (&geometry.field, |mm: i32| f64::from(mm) * 1e-3);
+        self.field = Some(FieldSize {
+            length: metres(field.field_length),
+            width: metres(field.field_width),
+            goal_width: metres(field.goal_width),
+            defence_depth: field.penalty_area_depth.map(metres),
+            defence_width: field.penalty_area_width.map(metres),
+            boundary: metres(field.boundary_width),
+        });
+    }
+
+    /// A packet of the referee.
+    pub(super) fn referee(&mut self, packet: &Referee) {
+        self.teams = Some(Teams { blue: Team::of(&packet.blue), yellow: Team::of(&packet.yellow) });
+    }
+
+    /// For people, a line each.
+    pub(super) fn tell(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if let Some(field) = &self.field {
+            let FieldSize { length, width, goal_width, boundary, .. } = field;
+            let mut line = format!("field: {length:.3} x {width:.3} m, goals {goal_width:.3} m");
+            if let (Some(depth), Some(width)) = (field.defence_depth, field.defence_width) {
+                let _ = write!(line, ", defence areas {depth:.3} x {width:.3} m");
+            }
+            let _ = write!(line, ", {boundary:.3} m beyond its lines");
+            lines.push(line);
+        }
+        if let Some(Teams { blue, yellow }) = &self.teams {
+            lines.push(blue.tell("blue"));
+            lines.push(yellow.tell("yellow"));
+        }
+        lines
+    }
+}
+
+impl Team {
+    fn of(info: &TeamInfo) -> Self {
+        Self {
+            name: info.name.clone(),
+            goalkeeper: info.goalkeeper,
+            yellow_cards: info.yellow_cards,
+            yellow_cards_active: info.yellow_card_times.len(),
+            red_cards: info.red_cards,
+            max_bots: info.max_allowed_bots,
+        }
+    }
+
+    fn tell(&self, colour: &str) -> String {
+        let name =
+            if self.name.is_empty() { "without a name".to_owned() } else { excerpt(&self.name, NAME_LEN) };
+        let cards = |n: u32, kind: &str| format!("{n} {kind} card{}", if n == 1 { "" } else { "s" });
+        let bots = self.max_bots.map_or_else(|| "not said".to_owned(), |n| n.to_string());
+        format!(
+            "{colour}: {name}, keeper {}, {} ({} active), {}, max bots {bots}",
+            self.goalkeeper,
+            cards(self.yellow_cards, "yellow"),
+            self.yellow_cards_active,
+            cards(self.red_cards, "red"),
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ssl::vision::{GeometryData, GeometryFieldSize};
+
+    #[test]
+    fn field_and_teams_are_told_as_they_were_at_last() {
+        let mut sheet = Sheet::default();
+        assert!(sheet.tell().is_empty());
+        let field = GeometryFieldSize {
+            field_length: 12_000,
+            field_width: 9_000,
+            goal_width: 1_800,
+            boundary_width: 300,
+            penalty_area_depth: Some(1_800),
+            penalty_area_width: Some(3_600),
+            ..GeometryFieldSize::default()
+        };
+        let geometry = Some(GeometryData { field, ..GeometryData::default() });
+        sheet.vision(&WrapperPacket { geometry, ..WrapperPacket::default() });
+        sheet.vision(&WrapperPacket::default());
+        let mut packet = Referee::default();
+        packet.blue.name = "A\u{1b}[31m\nB".to_owned();
+        packet.blue.yellow_cards = 2;
+        packet.blue.yellow_card_times = vec![60_000_000];
+        packet.blue.red_cards = 1;
+        packet.blue.max_allowed_bots = Some(9);
+        packet.blue.goalkeeper = 3;
+        sheet.referee(&packet);
+        assert_eq!(
+            sheet.tell(),
+            [
+                "field: 12.000 x 9.000 m, goals 1.800 m, defence areas 1.800 x 3.600 m, 0.300 m beyond its lines",
+                "blue: A\\u001b[31m\\nB, keeper 3, 2 yellow cards (1 active), 1 red card, max bots 9",
+                "yellow: without a name, keeper 0, 0 yellow cards (0 active), 0 red cards, max bots not said",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_field_of_any_numbers_is_told() {
+        let mut sheet = Sheet::default();
+        let field = GeometryFieldSize {
+            field_length: i32::MIN,
+            field_width: i32::MAX,
+            ..GeometryFieldSize::default()
+        };
+        let geometry = Some(GeometryData { field, ..GeometryData::default() });
+        sheet.vision(&WrapperPacket { geometry, ..WrapperPacket::default() });
+        assert!(sheet.tell()[0].starts_with("field: -2147483.648 x 2147483.647 m"));
+    }
+}

@@ -1,0 +1,78 @@
+//! `limits`: how long and how many connections a page serves, and the guards that count them.
+//!
+//! A page is reachable by whoever reaches its address. None of them may hold what the others need: descriptors, memory, or the match.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+/// How much of the page others can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// A connection that has not sent the whole head of a request by then is closed; one that is idle between two requests too.
+    pub header: Duration,
+    /// A request's body and its answer are given up after that time.
+    pub request: Duration,
+    /// A connection that is no viewer's socket is closed after that time, whatever it is doing: a reader that never reads.
+    pub connection: Duration,
+    /// Connections served at once, viewers' sockets aside. Others wait in the system's queue.
+    pub connections: usize,
+    /// Viewers at once: the next is turned away.
+    pub viewers: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            // A browser sends the head of a request in one packet.
+            header: Duration::from_secs(5),
+            // An explanation of the largest library takes less than 1 s.
+            request: Duration::from_secs(20),
+            // A second of a match is the longest answer: 100 kB.
+            connection: Duration::from_secs(60),
+            // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024 descriptors of a process.
+            connections: 128,
+            // A team and its guests.
+            viewers: 64,
+        }
+    }
+}
+
+/// A viewer's place among those that look on, from before its connection becomes a socket until that ends.
+#[derive(Debug)]
+pub(crate) struct Seat(Arc<AtomicUsize>);
+
+impl Seat {
+    /// Takes one; none where `most` are taken.
+    pub(crate) fn take(taken: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let one_more = |n: usize| (n < most).then_some(n + 1);
+        taken.fetch_update(Ordering::AcqRel, Ordering::Acquire, one_more).ok()?;
+        Some(Self(taken.clone()))
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::AcqRel);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_seats_are_taken_as_there_are_whoever_takes_them_at_once() {
+        let taken = Arc::new(AtomicUsize::new(0));
+        let seats: Vec<Seat> = std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..8)
+                .map(|_| scope.spawn(|| (0..50).filter_map(|_| Seat::take(&taken, 64)).collect::<Vec<_>>()))
+                .collect();
+            threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!((seats.len(), taken.load(Ordering::Relaxed)), (64, 64));
+        drop(seats);
+        assert_eq!(taken.load(Ordering::Relaxed), 0);
+        assert!(Seat::take(&taken, 64).is_some());
+    }
+}

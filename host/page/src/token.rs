@@ -1,0 +1,75 @@
+//! `token`: the secret that lets a viewer ask for something where others than this machine reach the page.
+
+use std::fmt;
+
+use subtle::ConstantTimeEq as _;
+
+/// 128 random bits as 32 hexadecimal digits: part of the page's address, and of no file.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Token(String);
+
+/// The system gave no random numbers.
+#[derive(Debug)]
+pub struct NoToken(getrandom::Error);
+
+impl fmt::Display for NoToken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the system gives no random numbers ({}); serve the page on 127.0.0.1, which needs no token",
+            self.0
+        )
+    }
+}
+
+impl std::error::Error for NoToken {}
+
+impl fmt::Debug for Token {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Token(secret)")
+    }
+}
+
+impl Token {
+    /// A new one from the system's random numbers.
+    pub fn random() -> Result<Self, NoToken> {
+        let mut bytes = [0; 16];
+        getrandom::fill(&mut bytes).map_err(NoToken)?;
+        Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
+    }
+
+    /// As it stands in the address.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Whether a viewer brought it. Takes the same time however many digits are right, so that none can be found alone.
+    pub(crate) fn is(&self, brought: &str) -> bool {
+        self.0.as_bytes().ct_eq(brought.as_bytes()).into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_is_itself_and_nothing_else() {
+        let token = Token::random().unwrap();
+        let text = token.as_str().to_owned();
+        assert!(text.len() == 32 && text.bytes().all(|byte| byte.is_ascii_hexdigit()), "{text}");
+        assert!(token.is(&text));
+        for wrong in
+            ["", &text[..31], &format!("{text}0"), &text.to_uppercase().replace(char::is_numeric, "f"), "é"]
+        {
+            assert!(!token.is(wrong), "{wrong}");
+        }
+        assert!(!token.is(Token::random().unwrap().as_str()));
+    }
+
+    #[test]
+    fn a_token_is_never_shown_by_accident() {
+        let token = Token::random().unwrap();
+        assert!(!format!("{token:?}").contains(token.as_str()));
+    }
+}

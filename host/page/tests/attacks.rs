@@ -1,0 +1,216 @@
+//! `attacks`: connections that hold on, viewers that all come at once, and requests without the token, over real sockets.
+//!
+//! Times are injected ([`Limits`]); what is asserted is who is answered and who is not, never how soon.
+
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::sync::{Arc, Barrier};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use page::{Limits, Oracle, Page, Powers, Request, Settings, Team, Token};
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
+
+/// Attackers of each test.
+const ATTACKERS: usize = 300;
+/// Longer than any test may take: what is limited so is not limited by it.
+const NEVER: Duration = Duration::from_secs(3600);
+/// Soon, on a machine under load.
+const SOON: Duration = Duration::from_millis(300);
+/// A test gives up.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+struct Silent;
+
+impl Oracle for Silent {
+    fn explain(&self, _problem: &str) -> Result<String, String> {
+        Err("nothing is explained".to_owned())
+    }
+}
+
+fn open(limits: Limits, token: Option<Token>) -> Page {
+    let listen = SocketAddr::from(([127, 0, 0, 1], 0));
+    let (title, powers) = ("a test".to_owned(), Powers::Simulation);
+    let settings = Settings { listen, title, recorded: false, powers, token, limits };
+    Page::open(settings, Arc::new(Silent)).unwrap()
+}
+
+fn wait_for(what: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !what() {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Connects and sends these bytes.
+fn begin(at: SocketAddr, bytes: &str) -> TcpStream {
+    let mut stream = TcpStream::connect(at).unwrap();
+    stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    stream.write_all(bytes.as_bytes()).unwrap();
+    stream
+}
+
+/// Reads until the page closes the connection.
+fn rest(mut stream: TcpStream) -> String {
+    let mut bytes = Vec::new();
+    if let Err(error) = stream.read_to_end(&mut bytes) {
+        // Reset is closed too; a time-out is not.
+        assert_eq!(error.kind(), std::io::ErrorKind::ConnectionReset, "the page keeps the connection");
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+fn get(at: SocketAddr, path: &str) -> String {
+    rest(begin(at, &format!("GET {path} HTTP/1.1\r\nHost: {at}\r\nConnection: close\r\n\r\n")))
+}
+
+fn viewer(page: &Page, query: &str) -> Result<Viewer, tungstenite::Error> {
+    let (viewer, _) = tungstenite::connect(format!("ws://{}/socket{query}", page.address()))?;
+    if let MaybeTlsStream::Plain(stream) = viewer.get_ref() {
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+    }
+    Ok(viewer)
+}
+
+fn refused(viewer: &mut Viewer) -> String {
+    let Message::Text(text) = viewer.read().unwrap() else { panic!("no text") };
+    let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    value["refused"].as_str().unwrap_or_else(|| panic!("{text}")).to_owned()
+}
+
+#[test]
+fn three_hundred_half_requests_are_closed_and_the_page_goes_on_answering() {
+    let page = open(Limits { header: SOON, ..Limits::default() }, None);
+    let at = page.address();
+    let halves =
+        ["", "G", "GET / HTTP/1.1\r\nHost: 127.0.0.1", "GET /socket HTTP/1.1\r\nUpgrade: websocket\r\n"];
+    let held: Vec<_> = (0..ATTACKERS).map(|n| begin(at, halves[n % halves.len()])).collect();
+    assert!(get(at, "/").starts_with("HTTP/1.1 200"), "a viewer is answered while they hold on");
+    for stream in held {
+        // The page may say why; it does not serve them.
+        assert!(!rest(stream).contains("200 OK"));
+    }
+}
+
+#[test]
+fn no_more_connections_are_served_at_once_than_the_limit() {
+    let page = open(Limits { header: NEVER, connection: NEVER, connections: 8, ..Limits::default() }, None);
+    let at = page.address();
+    let mut held: Vec<_> = (0..8).map(|_| begin(at, "GET / HTTP/1.1\r\n")).collect();
+    // They are answered in the order in which they came: when the last of them is being served, all are.
+    held[7].write_all(format!("Host: {at}\r\n\r\n").as_bytes()).unwrap();
+    let mut answer = [0; 12];
+    held[7].read_exact(&mut answer).unwrap();
+    assert_eq!(&answer, b"HTTP/1.1 200");
+    let mut ninth = begin(at, &format!("GET / HTTP/1.1\r\nHost: {at}\r\nConnection: close\r\n\r\n"));
+    ninth.set_read_timeout(Some(SOON)).unwrap();
+    assert!(ninth.read(&mut answer).is_err(), "the ninth waits");
+    ninth.set_read_timeout(Some(PATIENCE)).unwrap();
+    held.pop();
+    assert!(rest(ninth).starts_with("HTTP/1.1 200"), "and is served when one of the eight has gone");
+}
+
+#[test]
+fn a_body_that_never_comes_and_a_reader_that_never_reads_are_given_up() {
+    let page = open(Limits { request: SOON, ..Limits::default() }, None);
+    let at = page.address();
+    let slow =
+        begin(at, &format!("POST /api/explain HTTP/1.1\r\nHost: {at}\r\nContent-Length: 999\r\n\r\n{{"));
+    assert!(rest(slow).starts_with("HTTP/1.1 408"));
+    let page = open(Limits { header: NEVER, connection: SOON, ..Limits::default() }, None);
+    let at = page.address();
+    let asks = format!("GET /main.js HTTP/1.1\r\nHost: {at}\r\n\r\n").repeat(100);
+    // A hundred answers wait for a reader: the connection is closed all the same.
+    let deaf = begin(at, &asks);
+    thread::sleep(2 * SOON);
+    let _ = rest(deaf);
+    assert!(get(at, "/").starts_with("HTTP/1.1 200"));
+}
+
+#[test]
+fn of_three_hundred_viewers_at_once_as_many_look_on_as_there_are_places() {
+    let page = open(Limits::default(), None);
+    let places = Limits::default().viewers;
+    let (at, together) = (page.address(), Barrier::new(ATTACKERS));
+    let viewers: Vec<Viewer> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..ATTACKERS)
+            .map(|_| {
+                scope.spawn(|| {
+                    together.wait();
+                    match tungstenite::connect(format!("ws://{at}/socket")) {
+                        Ok((viewer, _)) => Some(viewer),
+                        Err(tungstenite::Error::Http(answer)) if answer.status() == 503 => None,
+                        Err(other) => panic!("{other}"),
+                    }
+                })
+            })
+            .collect();
+        threads.into_iter().filter_map(|thread| thread.join().unwrap()).collect()
+    });
+    assert_eq!((viewers.len(), page.viewers()), (places, places));
+    drop(viewers);
+    wait_for(|| page.viewers() == 0);
+    viewer(&page, "").expect("there is room again");
+}
+
+#[test]
+fn a_place_is_free_again_where_the_upgrade_never_happens() {
+    let page = open(Limits { viewers: 1, ..Limits::default() }, None);
+    let at = page.address();
+    let head = "Upgrade: websocket\r\nConnection: upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n";
+    for _ in 0..10 {
+        drop(begin(at, &format!("GET /socket HTTP/1.1\r\nHost: {at}\r\n{head}\r\n")));
+    }
+    wait_for(|| page.viewers() == 0 && viewer(&page, "").is_ok());
+}
+
+#[test]
+fn without_the_token_everybody_looks_on_and_nobody_asks() {
+    let token = Token::random().unwrap();
+    let page = open(Limits::default(), Some(token.clone()));
+    let at = page.address();
+    assert!(get(at, "/").starts_with("HTTP/1.1 200"));
+    assert!(get(at, "/api/state").contains(r#""may_ask":false"#));
+    let right = format!("?token={}", token.as_str());
+    let halt = Message::text(r#"{"ask":"halt"}"#);
+    for query in ["", "?token=", "?token=0123", "?other=1", &format!("{right}0")] {
+        let mut stranger = viewer(&page, query).expect("looking is free");
+        stranger.send(halt.clone()).unwrap();
+        let words = refused(&mut stranger);
+        assert!(words.contains("?token="), "{query}: {words}");
+        assert!(!words.contains(token.as_str()), "the token is told to nobody: {words}");
+    }
+    assert!(get(at, &format!("/api/state{right}")).contains(r#""may_ask":true"#));
+    let mut own = viewer(&page, &right).unwrap();
+    own.send(halt).unwrap();
+    let mut asked = None;
+    let begun = Instant::now();
+    while asked.is_none() && begun.elapsed() < PATIENCE {
+        asked = page.next_request();
+        thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(asked, Some(Request::Halt {}));
+    assert_eq!(page.next_request(), None, "the strangers asked nothing");
+}
+
+#[test]
+fn what_the_match_does_not_do_is_told_to_the_viewer_that_asked() {
+    let page = open(Limits::default(), None);
+    let (mut other, mut asking) = (viewer(&page, "").unwrap(), viewer(&page, "").unwrap());
+    asking.send(Message::text(r#"{"ask":"robot","team":"blue","id":15,"at":[0,0]}"#)).unwrap();
+    let mut asked = None;
+    let begun = Instant::now();
+    while asked.is_none() && begun.elapsed() < PATIENCE {
+        asked = page.next_request();
+        thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(asked, Some(Request::Robot { team: Team::Blue, id: 15, at: [0.0, 0.0] }));
+    page.refuse("blue has no robot 15 on the field");
+    assert_eq!(refused(&mut asking), "blue has no robot 15 on the field");
+    other.send(Message::text("no request")).unwrap();
+    assert!(refused(&mut other).contains("no request"), "the other one hears of its own alone");
+}

@@ -1,0 +1,120 @@
+//! `file`: files that others wrote, read up to a limit. Sizes in bytes.
+
+use std::fs::{self, File, FileType};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Opens a regular file for streaming; anything else is refused by what it is.
+///
+/// It is looked at before it is opened, because opening a pipe waits for a writer and opening a device may do something; and again
+/// afterwards, in case it was exchanged in between.
+pub fn open(path: &Path) -> io::Result<File> {
+    regular(fs::metadata(path)?.file_type())?;
+    let file = File::open(path)?;
+    regular(file.metadata()?.file_type())?;
+    Ok(file)
+}
+
+/// A regular file's bytes, at most `limit` of them; a longer file is refused.
+pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    read_from(&open(path)?, limit)
+}
+
+/// The same of a file that is open already, from where it stands.
+pub fn read_from(file: &File, limit: u64) -> io::Result<Vec<u8>> {
+    regular(file.metadata()?.file_type())?;
+    let mut bytes = Vec::new();
+    file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > limit {
+        let words = format!("the file is longer than {limit} bytes, the most that is read of such a file");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, words));
+    }
+    Ok(bytes)
+}
+
+/// A regular file's text in UTF-8, at most `limit` bytes; a longer file is refused.
+pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
+    String::from_utf8(read(path, limit)?).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        io::Error::new(ErrorKind::InvalidData, format!("the file is not UTF-8 from byte {at} on"))
+    })
+}
+
+fn regular(kind: FileType) -> io::Result<()> {
+    if kind.is_file() {
+        return Ok(());
+    }
+    let words = format!("this is a {}, not a regular file; copy what it gives into a file", name(kind));
+    Err(io::Error::new(ErrorKind::InvalidInput, words))
+}
+
+#[cfg(unix)]
+fn name(kind: FileType) -> &'static str {
+    use std::os::unix::fs::FileTypeExt as _;
+    match kind {
+        _ if kind.is_dir() => "folder",
+        _ if kind.is_fifo() => "pipe",
+        _ if kind.is_socket() => "socket",
+        _ if kind.is_char_device() || kind.is_block_device() => "device",
+        _ => "special file",
+    }
+}
+
+#[cfg(not(unix))]
+fn name(kind: FileType) -> &'static str {
+    if kind.is_dir() { "folder" } else { "special file" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    fn scratch(name: &str) -> PathBuf {
+        std::env::temp_dir().join(format!("onetwo-foreign-{}-{name}", std::process::id()))
+    }
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit_and_not_beyond() {
+        let file = scratch("limit");
+        fs::write(&file, "12345678").unwrap();
+        assert_eq!(read(&file, 8).unwrap(), b"12345678");
+        let error = read(&file, 7).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+        assert!(error.to_string().contains("7 bytes"), "{error}");
+        assert_eq!(read_text(&file, 8).unwrap(), "12345678");
+        fs::write(&file, b"ab\xff").unwrap();
+        assert!(read_text(&file, 8).unwrap_err().to_string().contains("byte 2"));
+        fs::remove_file(&file).unwrap();
+        assert_eq!(read(&file, 8).unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn a_folder_is_refused_by_name() {
+        assert!(read(&std::env::temp_dir(), 8).unwrap_err().to_string().contains("a folder"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_pipes_and_sockets_are_refused_without_being_read() {
+        for device in ["/dev/zero", "/dev/full", "/dev/null"] {
+            let error = read(Path::new(device), 8).unwrap_err();
+            assert!(error.to_string().contains("a device"), "{device}: {error}");
+        }
+        let socket = scratch("socket");
+        let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        assert!(read(&socket, 8).unwrap_err().to_string().contains("a socket"));
+        fs::remove_file(&socket).unwrap();
+        let pipe = scratch("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.is_ok_and(|status| status.success()), "mkfifo is part of every Unix");
+        // Nothing ever writes to it: reading it would never end.
+        assert!(read(&pipe, 8).unwrap_err().to_string().contains("a pipe"));
+        let link = scratch("link");
+        std::os::unix::fs::symlink("/dev/zero", &link).unwrap();
+        assert!(read(&link, 8).unwrap_err().to_string().contains("a device"));
+        for path in [pipe, link] {
+            fs::remove_file(path).unwrap();
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! `foreign`: reads files that others wrote and shows text that others chose. Sizes in bytes.
+//!
+//! - [`read`], [`read_text`] and [`open`] take regular files only: a device, pipe or socket may never end, or may never begin.
+//!   What is read into memory is read up to a limit.
+//! - [`printable`] escapes what a terminal obeys instead of showing it: control characters, and the marks that turn the direction of
+//!   writing. [`Printable`] does the same to everything that is written through it, line ends aside.
+//!
+//! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no other character.
+#![forbid(unsafe_code)]
+
+mod file;
+mod text;
+
+pub use file::{open, read, read_from, read_text};
+pub use text::{Printable, excerpt, printable};

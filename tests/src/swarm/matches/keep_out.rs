@@ -1,0 +1,181 @@
+//! `keep_out`: how long each robot is where it must not be, by the true places. ms, m, field frame.
+//!
+//! Regions are those of `rules::keep_out`. Which robot a team has chosen for its kick is not known here: one robot a team may be where
+//! only the kicker may be, and every further one breaks the rule.
+
+use std::collections::BTreeMap;
+
+use geometry::{Field, GoalEnd, Point};
+use protocol::Who;
+use rules::keep_out::{Forbidden, Situation, Why, keep_out};
+use rules::{Colour, Duty, FieldSpec, Phase, Side, limits};
+
+/// What may be before being in a region counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grace {
+    /// So many s after the last change: of phase, keeper, or the ball's place by hand.
+    AfterChange(f32),
+    /// So many s in the region at a time.
+    AtATime(f32),
+}
+
+/// The rules' grace for that region in that phase; `None` where to be there is no offence.
+pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
+    if !why.offends(phase) {
+        return None;
+    }
+    Some(match (why, phase) {
+        // Offenses, ball placement interference: "for more than 2 seconds".
+        (Why::Stadium, _) => Grace::AtATime(limits::GRACE),
+        // Preparations are for taking one's place: the controller's time for them.
+        (Why::OtherHalf | Why::CentreCircle | Why::BallDistance, Phase::PrepareKickoff(_))
+        | (Why::BehindBall | Why::KeeperLine, Phase::PreparePenalty(_)) => {
+            Grace::AfterChange(limits::PREPARE_TIME)
+        }
+        // Offenses, attacker too close to defence area; referee commands, stop: 2 s to slow down and leave.
+        (Why::OpponentArea, _) | (Why::BallDistance, Phase::Stop) => Grace::AfterChange(limits::GRACE),
+        // To be in the own area is no offence before the ball is touched: the time out of it at the speed of STOP, ours.
+        (Why::OwnArea, _) => Grace::AfterChange(LEAVE_OWN_AREA),
+        _ => Grace::AfterChange(0.0),
+    })
+}
+
+/// The way out of division A's area at 1.5 m/s, 1.8 m and the robot's radius, from rest, and as much again around teammates, s.
+const LEAVE_OWN_AREA: f32 = 4.0;
+/// What no robot may stay beyond its grace, s (the bound).
+pub const BOUND: f32 = 0.5;
+/// Robots nearer than that to a region's border are not in it, m: a camera's noise on a robot that touches the border.
+const TOLERANCE: f32 = 0.005;
+/// A ball faster than this cannot be got away from at once (referee commands, stop, note), m/s.
+const BALL_QUICK: f32 = 0.5;
+
+/// The match as the check needs it.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// s since the beginning.
+    pub time: f32,
+    /// The field.
+    pub field: &'a FieldSpec,
+    /// The phase.
+    pub phase: Phase<Colour>,
+    /// The ball.
+    pub ball: Point<Field>,
+    /// m/s.
+    pub ball_speed: f32,
+    /// Where it is to be placed.
+    pub placement: Option<Point<Field>>,
+    /// It has left its place since NORMAL_START.
+    pub in_play: bool,
+    /// The keepers.
+    pub keepers: [Who; 2],
+    /// Yellow's and blue's own goals.
+    pub own: [GoalEnd; 2],
+    /// When phase, keeper or the ball's place by hand changed last, s.
+    pub changed: f32,
+}
+
+/// A robot in a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within {
+    /// Who.
+    pub who: Who,
+    /// Which region.
+    pub why: Why,
+    /// How deep, m.
+    pub depth: f32,
+}
+
+impl Moment<'_> {
+    fn situation(&self, who: Who, duty: Duty) -> Situation<'_> {
+        Situation {
+            field: self.field,
+            own: self.own[who.colour as usize],
+            phase: self.phase.seen_by(who.colour),
+            duty,
+            ball: Some(self.ball),
+            placement: self.placement,
+            ball_in_play: self.in_play,
+        }
+    }
+
+    fn regions(&self, who: Who, duty: Duty, at: Point<Field>) -> Vec<Within> {
+        let phase = self.phase.seen_by(who.colour);
+        let depth = |region: &Forbidden| limits::ROBOT_RADIUS - region.shape.distance_to(at);
+        let regions = keep_out(&self.situation(who, duty)).forbidden;
+        let offends = |region: &&Forbidden| region.why.offends(phase) && depth(region) > TOLERANCE;
+        regions.iter().filter(offends).map(|r| Within { who, why: r.why, depth: depth(r) }).collect()
+    }
+
+    /// Every robot that is where it must not be.
+    pub fn offenders(&self, robots: &[(Who, Point<Field>)]) -> Vec<Within> {
+        let mut all = Vec::new();
+        for team in [Colour::Yellow, Colour::Blue] {
+            // The robot that may be the kicker: the nearest to the ball of those that only the kicker's duty excuses.
+            let mut excused: Option<(f32, Vec<Within>)> = None;
+            for &(who, at) in robots.iter().filter(|(who, _)| who.colour == team) {
+                let duty = if self.keepers.contains(&who) { Duty::Keeper } else { Duty::Player };
+                let found = self.regions(who, duty, at);
+                if found.is_empty() {
+                    continue;
+                }
+                if !self.regions(who, Duty::Taker, at).is_empty() {
+                    all.extend(found);
+                    continue;
+                }
+                let distance = at.distance(self.ball);
+                match &mut excused {
+                    Some((least, _)) if *least <= distance => all.extend(found),
+                    other => {
+                        let before = other.replace((distance, found));
+                        all.extend(before.into_iter().flat_map(|(_, found)| found));
+                    }
+                }
+            }
+        }
+        all
+    }
+}
+
+/// A keep-out that was broken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Broken {
+    /// Who, where and how deep at most.
+    pub within: Within,
+    /// How long beyond the grace, s.
+    pub beyond: f32,
+}
+
+/// Watches all robots.
+#[derive(Clone, Debug, Default)]
+pub struct KeepOuts {
+    /// Since when each robot is in each region, s, how deep at most, and whether it was said.
+    since: BTreeMap<(Who, u8), (f32, f32, bool)>,
+}
+
+impl KeepOuts {
+    /// A moment, 10 ms after the last one; what has just become too long.
+    pub fn look(&mut self, moment: &Moment<'_>, robots: &[(Who, Point<Field>)]) -> Vec<Broken> {
+        let within = moment.offenders(robots);
+        self.since.retain(|key, _| within.iter().any(|one| (one.who, one.why as u8) == *key));
+        let mut broken = Vec::new();
+        for one in within {
+            let phase = moment.phase.seen_by(one.who.colour);
+            let Some(grace) = grace(one.why, phase) else { continue };
+            let entry = self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
+            if one.why == Why::BallDistance && moment.ball_speed > BALL_QUICK {
+                entry.0 = moment.time;
+            }
+            entry.1 = entry.1.max(one.depth);
+            let begins = match grace {
+                Grace::AfterChange(s) => entry.0.max(moment.changed + s),
+                Grace::AtATime(s) => entry.0.max(moment.changed) + s,
+            };
+            let beyond = moment.time - begins;
+            if beyond > BOUND && !entry.2 {
+                entry.2 = true;
+                broken.push(Broken { within: Within { depth: entry.1, ..one }, beyond });
+            }
+        }
+        broken
+    }
+}

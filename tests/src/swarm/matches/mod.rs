@@ -1,0 +1,170 @@
+//! `matches`: whole matches of two teams of ours, with people who show cards, change keepers, halt, stop, restart, and carry the ball,
+//! held to what the rules and the issue promise. DESIGN §5; s, m, field frame.
+//!
+//! A seed is a match: [`plan`] draws what people do, [`run`] plays it with both hosts, all brains, cameras, radio and the simulator's
+//! own referee in one process, and checks every 10 ms from outside: [`keep_out`], [`frozen`], halts and stops, and that the match goes
+//! on. `cargo xtask swarm --plan referee --seeds 1000` plays many; one that fails prints the line that repeats it.
+
+pub mod frozen;
+pub mod keep_out;
+pub mod plan;
+mod run;
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use frozen::{Frozen, Must};
+use protocol::Who;
+use rules::{Colour, Phase};
+
+pub use plan::Plan;
+pub use run::{BLOCKED_LONGEST, play};
+
+/// Length of a match, ms.
+pub const LENGTH: u32 = 60_000;
+
+/// A broken promise.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Broken {
+    /// A robot stayed where it must not be.
+    KeepOut(keep_out::Broken),
+    /// A robot stands that has to move; with what its host wants of it.
+    Frozen(Frozen, String),
+    /// A robot moves in HALT after 2 s.
+    MovedInHalt(Who, f32),
+    /// A robot is faster than 1.5 m/s in STOP after 2 s.
+    FastInStop(Who, f32),
+    /// The match stands: what the referee says.
+    Blocked(hil_sim::small_size::referee::Obstacle),
+    /// It could not be played at all.
+    Ended(String),
+}
+
+impl Broken {
+    /// What it is, to count by.
+    pub fn kind(&self, phase: Phase<Colour>) -> String {
+        match self {
+            Self::KeepOut(broken) => format!("keep-out {:?} in {}", broken.within.why, bare(phase)),
+            Self::Frozen(frozen, _) => format!("frozen in {}", bare(phase) + must(frozen.must)),
+            Self::MovedInHalt(..) => "moved in halt".into(),
+            Self::FastInStop(..) => "fast in stop".into(),
+            Self::Blocked(obstacle) => format!("blocked in {} by {}", bare(phase), obstacle.reason.word()),
+            Self::Ended(_) => "not played".into(),
+        }
+    }
+}
+
+fn must(must: Must) -> &'static str {
+    match must {
+        Must::Leave => ", has to leave",
+        Must::MakeWay => ", the referee waits for it",
+        Must::GoTo(_) => ", has an order",
+        Must::Play(_) => ", has to play the ball",
+    }
+}
+
+/// The phase without its team.
+fn bare(phase: Phase<Colour>) -> String {
+    let words = format!("{phase:?}");
+    words.split('(').next().unwrap_or_default().to_owned()
+}
+
+/// A broken promise, when, and in which phase.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// When, ms.
+    pub ms: u32,
+    /// In which phase.
+    pub phase: Phase<Colour>,
+    /// What.
+    pub broken: Broken,
+}
+
+impl Found {
+    /// What it is, to count by.
+    pub fn kind(&self) -> String {
+        self.broken.kind(self.phase)
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} s, {:?}: ", f64::from(self.ms) / 1000.0, self.phase)?;
+        let name = |who: &Who| format!("{} {}", who.colour.word(), who.id);
+        match &self.broken {
+            Broken::KeepOut(keep_out::Broken { within, beyond }) => write!(
+                f,
+                "{} is {:.3} m within {:?}, {beyond:.2} s beyond its grace",
+                name(&within.who),
+                within.depth,
+                within.why
+            ),
+            Broken::Frozen(Frozen { who, must, at }, order) => {
+                write!(f, "{} stands at ({:.2}, {:.2}): {must:?}; {order}", name(who), at.x(), at.y())
+            }
+            Broken::MovedInHalt(who, speed) => write!(f, "{} moves at {speed:.2} m/s", name(who)),
+            Broken::FastInStop(who, speed) => write!(f, "{} goes {speed:.2} m/s", name(who)),
+            Broken::Blocked(obstacle) => write!(f, "the match stands: {obstacle}"),
+            Broken::Ended(words) => f.write_str(words),
+        }
+    }
+}
+
+/// What came of a match.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Every broken promise, oldest first.
+    pub found: Vec<Found>,
+    /// Seconds in which somebody might play the ball.
+    pub running_s: f32,
+    /// Seconds in which the match stood for longer than the referee's patience.
+    pub blocked_s: f32,
+    /// Things that people did which made sense then.
+    pub acts: u32,
+    /// Robots that people took off the field.
+    pub taken_off: u32,
+    /// Penalties, kick-offs and free kicks that began, and placements that succeeded and failed.
+    pub begun: [u32; 5],
+    /// The match's hash.
+    pub trace: String,
+}
+
+/// What came of many.
+#[derive(Clone, Debug, Default)]
+pub struct Sum {
+    /// Matches.
+    pub matches: u32,
+    /// Matches in which each kind of promise was broken.
+    pub kinds: BTreeMap<String, u32>,
+    /// All other numbers together.
+    pub all: Outcome,
+}
+
+impl Sum {
+    /// Adds a match.
+    pub fn add(&mut self, outcome: &Outcome) {
+        self.matches += 1;
+        let mut kinds: Vec<String> = outcome.found.iter().map(Found::kind).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        for kind in kinds {
+            *self.kinds.entry(kind).or_default() += 1;
+        }
+        self.all.running_s += outcome.running_s;
+        self.all.blocked_s += outcome.blocked_s;
+        self.all.acts += outcome.acts;
+        self.all.taken_off += outcome.taken_off;
+        for (all, one) in self.all.begun.iter_mut().zip(outcome.begun) {
+            *all += one;
+        }
+    }
+}
+
+/// The lines that tell of a match with broken promises, the last of which repeats it.
+pub fn words(plan: &Plan, outcome: &Outcome) -> String {
+    let mut lines = String::new();
+    for found in &outcome.found {
+        lines += &format!("seed {}: {found}\n", plan.seed);
+    }
+    format!("{lines}  {plan}\n  repeat: cargo xtask swarm --plan referee --first {} --seeds 1", plan.seed)
+}

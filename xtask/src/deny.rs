@@ -1,0 +1,87 @@
+//! `deny`: licences, sources and known faults of every dependency, by cargo-deny and the rules in `deny.toml`.
+//!
+//! cargo-deny is installed from crates.io where it is missing: 3.7 minutes of one core, once, into the target folder, which CI keeps.
+//! Known faults (RustSec's advisories) need a database from the network. Where it cannot be had the step says that they were not
+//! checked, and passes: licences and sources do not depend on it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::context::{Context, Failure, run};
+
+/// What holds when the step passes.
+pub(crate) const WHAT: &str =
+    "every dependency's licence and source is allowed, and no fault of it is known where that can be asked";
+
+/// The version that `deny.toml` is written for.
+const VERSION: &str = "0.20.2";
+
+/// Runs it.
+pub(crate) fn check(context: &Context) -> Result<(), Failure> {
+    let tool = ensure(context)?;
+    let deny = |line: &str| {
+        let mut command = Command::new(&tool);
+        command.current_dir(context.root()).args(line.split(' '));
+        command
+    };
+    run(&mut deny("--locked --all-features check licenses bans sources"))?;
+    // Asked for alone, so that a database that cannot be had is told from a fault that is found.
+    if run(&mut deny("--locked fetch db")).is_err() {
+        println!("{NOT_CHECKED}");
+        return Ok(());
+    }
+    run(&mut deny("--locked --all-features check advisories"))
+}
+
+const NOT_CHECKED: &str = "\
+xtask: ADVISORIES WERE NOT CHECKED: RustSec's database cannot be fetched (see above), so known faults of the dependencies are not
+xtask: ruled out by this run; repeat `cargo xtask test --only deny` where the network leads to it";
+
+/// cargo-deny: the one of the user, else ours, installed where it is missing.
+fn ensure(context: &Context) -> Result<PathBuf, Failure> {
+    let name = format!("cargo-deny{}", std::env::consts::EXE_SUFFIX);
+    let ours = tools(context);
+    let own = ours.join("bin").join(&name);
+    if let Some(there) = [PathBuf::from(name), own.clone()].into_iter().find(|tool| answers(tool)) {
+        return Ok(there);
+    }
+    let mut install = context.cargo("install cargo-deny --locked --version");
+    install.arg(VERSION).arg("--root").arg(&ours);
+    run(&mut install)?;
+    Ok(own)
+}
+
+/// Where tools are installed: with what is built, so that `cargo clean` removes them.
+fn tools(context: &Context) -> PathBuf {
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| context.root().join("target"), PathBuf::from);
+    context.root().join(target).join("tools")
+}
+
+fn answers(tool: &Path) -> bool {
+    let mut question = Command::new(tool);
+    question.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    question.status().is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tools_lie_within_the_target_folder() {
+        let tools = tools(&Context::new());
+        assert!(tools.is_absolute() && tools.ends_with("tools"), "{}", tools.display());
+    }
+
+    #[test]
+    fn a_tool_that_is_not_there_does_not_answer() {
+        assert!(!answers(Path::new("onetwo-has-no-such-program")));
+        assert!(answers(Path::new("cargo")));
+    }
+
+    #[test]
+    fn what_was_not_checked_is_said_plainly() {
+        assert!(NOT_CHECKED.contains("ADVISORIES WERE NOT CHECKED"));
+    }
+}
