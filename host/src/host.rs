@@ -358,7 +358,7 @@ impl Host {
             .proposing(self.proposed(now, Flip::defending(game.defending)));
         self.orders = self.coach.decide(&view);
         if !self.halted {
-            self.requests.look(&view, self.listener.game().team(us).substitution_allowed);
+            self.requests.look(&view, self.listener.game().team(us).substitutions_left);
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());

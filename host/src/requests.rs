@@ -19,16 +19,16 @@ pub(crate) struct Requests {
     keeper_gone: Option<Instant>,
     keeper_asked: Option<Instant>,
     crowded: Option<Instant>,
-    substitution: Option<Instant>,
-    intent: bool,
+    /// A substitution was asked for, for the robots that are too many now.
+    substitution: bool,
     advantage: bool,
 }
 
 impl Requests {
-    /// Looks at the field as strategy sees it; `substituting`: the referee lets us change robots right now.
-    pub(crate) fn look(&mut self, view: &View, substituting: bool) {
+    /// Looks at the field as strategy sees it; `left`: substitutions that are free in this half, if the referee says.
+    pub(crate) fn look(&mut self, view: &View, left: Option<u32>) {
         self.keeper(view);
-        self.substitution(view, substituting);
+        self.substitution(view, left);
         self.advantage(view);
     }
 
@@ -58,28 +58,26 @@ impl Requests {
     }
 
     /// A robot too many that cannot leave by itself blocks the game: after [`STUCK`] in a stop our robot handler is to take it out.
-    fn substitution(&mut self, view: &View, substituting: bool) {
+    ///
+    /// Asked once until no robot is too many any more, and only while it is free: where no person answers, every further request would
+    /// halt the game again, and after the fifth each is a foul and every third a card.
+    fn substitution(&mut self, view: &View, left: Option<u32>) {
         let ours = view.ours.iter().filter(|robot| view.counts_for_us(robot.position)).count();
         let too_many = ours + view.uncommanded > view.allowed;
         if !too_many {
-            (self.crowded, self.substitution) = (None, None);
-            if std::mem::take(&mut self.intent) {
+            self.crowded = None;
+            if std::mem::take(&mut self.substitution) {
                 self.out.push_back(Request::Substitute(false));
             }
             return;
-        }
-        if substituting {
-            // Granted: the controller takes the intent back by itself.
-            self.intent = false;
         }
         if view.phase != Phase::Stop {
             self.crowded = None;
             return;
         }
         let stuck = view.now.since(*self.crowded.get_or_insert(view.now)) >= STUCK;
-        let again = self.substitution.is_none_or(|asked| view.now.since(asked) >= SUBSTITUTE_AGAIN);
-        if stuck && again && !self.intent {
-            (self.intent, self.substitution) = (true, Some(view.now));
+        if stuck && !self.substitution && left != Some(0) {
+            self.substitution = true;
             self.out.push_back(Request::Substitute(true));
         }
     }
@@ -107,9 +105,6 @@ const GONE: Duration = Duration::millis(2000);
 const ASK_AGAIN: Duration = Duration::millis(3000);
 /// A robot on its way out needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
 const STUCK: Duration = Duration::millis(12_000);
-/// From one request for a substitution to the next, while the robot is still there: a halt, a substitution (20 s) and the
-/// controller's 10 s of preparation.
-const SUBSTITUTE_AGAIN: Duration = Duration::millis(45_000);
 
 #[cfg(test)]
 mod tests;

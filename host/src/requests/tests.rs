@@ -23,7 +23,7 @@ fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<Request>
     let mut asked = Vec::new();
     for _ in 0..(seconds * 10.0) as u32 {
         view.now = view.now + Duration::millis(100);
-        requests.look(view, false);
+        requests.look(view, Some(5));
         asked.extend(std::iter::from_fn(|| requests.poll()));
     }
     asked
@@ -63,13 +63,23 @@ fn a_substitution_is_wanted_when_a_robot_too_many_stays_on_the_field_and_not_whi
 }
 
 #[test]
-fn a_robot_too_many_that_is_still_there_after_a_substitution_is_told_of_again_but_not_at_once() {
+fn a_substitution_that_nobody_carries_out_is_asked_for_once_and_never_where_it_is_a_foul() {
     let mut view = stopped().allowing(3);
     let mut requests = Requests::default();
-    assert_eq!(asked(&mut requests, &mut view, 13.0).len(), 1);
-    requests.look(&view, true);
-    assert_eq!(asked(&mut requests, &mut view, 40.0), []);
-    assert_eq!(asked(&mut requests, &mut view, 10.0), [Request::Substitute(true)]);
+    assert_eq!(asked(&mut requests, &mut view, 13.0), [Request::Substitute(true)]);
+    for _ in 0..5 {
+        // Halted for it, and stopped again with the robot where it was.
+        view.phase = Phase::Halt;
+        assert_eq!(asked(&mut requests, &mut view, 20.0), []);
+        view.phase = Phase::Stop;
+        assert_eq!(asked(&mut requests, &mut view, 60.0), []);
+    }
+    let mut requests = Requests::default();
+    for _ in 0..600 {
+        view.now = view.now + Duration::millis(100);
+        requests.look(&view, Some(0));
+    }
+    assert_eq!(requests.poll(), None);
 }
 
 #[test]

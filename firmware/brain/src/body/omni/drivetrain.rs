@@ -105,6 +105,8 @@ impl Drivetrain {
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
+        // From behind a goal the way into its mouth is long.
+        let beyond_goal_line = from.x().abs() > 0.5 * field.length;
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.manner);
         let way = avoid::plan(&Course {
@@ -115,7 +117,7 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: EFFORT,
+            effort: if beyond_goal_line { avoid::EFFORT_LONG } else { EFFORT },
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
