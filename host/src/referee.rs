@@ -156,13 +156,12 @@ impl Listener {
         }
         let before = self.source().cloned();
         let known = self.sources.iter_mut().find(|source| source.key == key);
-        let mut outcome = match known {
-            Some(source) => source.hear(packet, now, ball),
-            None => {
-                let (source, taken) = Source::new(key.clone(), packet, now, ball);
-                self.admit(source, now);
-                Outcome::Taken(taken)
-            }
+        let mut outcome = if let Some(source) = known {
+            source.hear(packet, now, ball)
+        } else {
+            let (source, taken) = Source::new(key.clone(), packet, now, ball);
+            self.admit(source, now);
+            Outcome::Taken(taken)
         };
         self.count(&outcome);
         self.settle(now);
@@ -249,9 +248,9 @@ impl Listener {
         let others_strictest = others.iter().map(imposes).max();
         let mut strictest = followed.restraint(now).max(others_strictest.unwrap_or(Strictness::Play));
         let contradicted = own == Strictness::Play
-            && others.iter().any(|other| {
-                Strictness::of(other.command) == own && other.command != followed.command
-            });
+            && others
+                .iter()
+                .any(|other| Strictness::of(other.command) == own && other.command != followed.command);
         if contradicted {
             let since = *self.undecided.get_or_insert(now);
             if now.since(since).0 >= WINDOW.0 {

@@ -52,15 +52,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    const ALL: [Self; 7] = [
-        Self::Vision,
-        Self::Referee,
-        Self::Robot,
-        Self::Timeout,
-        Self::Sent,
-        Self::Lost,
-        Self::Halt,
-    ];
+    const ALL: [Self; 7] =
+        [Self::Vision, Self::Referee, Self::Robot, Self::Timeout, Self::Sent, Self::Lost, Self::Halt];
 
     fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.get(usize::from(byte)).copied()
@@ -191,7 +184,10 @@ impl fmt::Display for End {
             Self::Cut { at, last: None } => write!(f, "cut at byte {at}, before its first record"),
             Self::Lost { at } => {
                 let seconds = at.0 as f64 * 1e-6;
-                write!(f, "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read")
+                write!(
+                    f,
+                    "the recorder could not keep up at {seconds:.6} s (is the disk slow or full?); all before it was read"
+                )
             }
             Self::Broken { at, what } => {
                 write!(f, "damaged at byte {at}: {what}; all before it was read")
@@ -307,9 +303,8 @@ impl<R: Read> Reader<R> {
         self.last = Some(at);
         let from = match kind {
             Kind::Lost => return Err(End::Lost { at }),
-            Kind::Referee if self.version >= WITH_SENDER => {
-                take_sender(&mut bytes).ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?
-            }
+            Kind::Referee if self.version >= WITH_SENDER => take_sender(&mut bytes)
+                .ok_or_else(|| broken(format!("a referee's record of {length} bytes has no sender")))?,
             _ => SenderAddress::INTERNAL,
         };
         Ok(Record { at, host, kind, from, bytes })
@@ -398,7 +393,7 @@ mod tests {
                         End::Whole
                     } else {
                         let last = [Instant(10), Instant(20)].into_iter().take(whole).last();
-                        End::Cut { at: begins[whole], last }
+                        End::Cut { at: begins[whole] as u64, last }
                     };
                     assert_eq!(reader.end(), Some(&expected), "{cut}");
                 }

@@ -7,9 +7,10 @@ use host::referee::{SenderAddress, SourcePin};
 use host::trace::{Kind, Record};
 use host::{Host, HostSettings, Input};
 use protocol::frame::TeamKey;
-use protocol::host::HostMessage;
-use protocol::link::overhear_host;
-use protocol::{Instant, TeamId};
+use protocol::host::{HostMessage, Telemetry};
+use protocol::link::{Link, overhear_host};
+use protocol::team::TeamMessage;
+use protocol::{Instant, RobotId, TeamId};
 use rules::{Colour, League, Phase};
 use ssl::Message;
 use ssl::referee::{Command as Wire, Referee, TeamInfo};
@@ -58,11 +59,44 @@ fn machine(number: u8) -> SenderAddress {
     SenderAddress::new(([10, 0, 0, number], 40_000).into())
 }
 
+fn three() -> RobotId {
+    RobotId::new(3).unwrap()
+}
+
+/// Robot 3, as far as the radio goes: a host speaks to robots that it knows.
+fn robot() -> Link {
+    Link::new(TeamId::of(Colour::Blue), three(), TeamKey::ZERO.of_robot(three()), 1)
+}
+
+/// Its telemetry.
+fn telemetry(robot: &mut Link, now: u64) -> Vec<u8> {
+    let mut telemetry = Telemetry::default();
+    robot.tell(Instant(now), &mut telemetry);
+    robot.seal(&TeamMessage::Telemetry(telemetry)).to_vec()
+}
+
+/// The host knows the robot from `now` on, for a second.
+fn join(host: &mut Host, robot: &mut Link, now: u64) {
+    for _ in 0..2 {
+        let packet = telemetry(robot, now);
+        host.handle(Instant(now), Input::Robot(&packet));
+        while let Some((_, packet)) = host.poll_packet() {
+            let _ = robot.open(Instant(now), &packet);
+        }
+    }
+    assert!(host.radio().present(Instant(now)).any(|robot| robot == three()));
+}
+
+fn read(packet: &[u8]) -> Option<HostMessage> {
+    let keys = TeamKey::ZERO.of_robot(three());
+    overhear_host(packet, TeamId::of(Colour::Blue), &keys, three()).ok()
+}
+
 /// Phases of the world's parts that wait in a host.
 fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
     let mut phases = Vec::new();
     while let Some((_, packet)) = host.poll_packet() {
-        if let Ok(HostMessage::World(part)) = overhear_host(&packet, TeamId::of(Colour::Blue), &TeamKey::ZERO) {
+        if let Some(HostMessage::World(part)) = read(&packet) {
             phases.push(part.phase);
         }
     }
@@ -75,6 +109,7 @@ fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
     for after in [0, 1, 5 * MS, 9 * MS, 12 * MS] {
         for by_operator in [false, true] {
             let mut host = Host::new(settings(), Instant(0));
+            join(&mut host, &mut robot(), 0);
             host.handle(Instant(0), Input::Referee(&packet(0, Wire::ForceStart, 1), machine(1)));
             for number in 0..20 {
                 let now = u64::from(number) * 16 * MS;
@@ -86,7 +121,11 @@ fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
             let input = if by_operator { Input::Halt } else { Input::Referee(&halt, machine(1)) };
             host.handle(Instant(now), input);
             assert!(host.is_halting());
-            assert_eq!(phases(&mut host), [Phase::Halt], "{after} µs after a snapshot, by operator: {by_operator}");
+            assert_eq!(
+                phases(&mut host),
+                [Phase::Halt],
+                "{after} µs after a snapshot, by operator: {by_operator}"
+            );
         }
     }
 }
@@ -94,6 +133,7 @@ fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
 #[test]
 fn commands_in_turns_at_line_rate_plan_no_oftener_than_camera_frames_do() {
     let mut host = Host::new(settings(), Instant(0));
+    join(&mut host, &mut robot(), 0);
     host.handle(Instant(0), Input::Vision(&camera_frame(0, 0)));
     let (mut sent, mut counter) = (0, 1);
     // 10,000 packets in a second, HALT and FORCE_START in turns.
@@ -110,21 +150,34 @@ fn commands_in_turns_at_line_rate_plan_no_oftener_than_camera_frames_do() {
 fn recorded(settings: HostSettings) -> Vec<Record> {
     let mut host = Host::new(settings, Instant(0));
     let mut records = Vec::new();
+    let mut robot = robot();
     for step in 0..400_u32 {
         let now = u64::from(step) * 10 * MS;
         let (kind, from, bytes) = match step % 4 {
             0 => (Kind::Referee, machine(1), packet(now, Wire::ForceStart, 1)),
             // From the second second on another machine says HALT with the same identifier, for a second.
             1 if (100..200).contains(&step) => (Kind::Referee, machine(2), packet(now, Wire::Halt, 1)),
+            2 => (Kind::Robot, SenderAddress::INTERNAL, telemetry(&mut robot, now)),
             _ => (Kind::Vision, SenderAddress::INTERNAL, camera_frame(step, now)),
         };
-        let input = if kind == Kind::Referee { Input::Referee(&bytes, from) } else { Input::Vision(&bytes) };
+        let input = match kind {
+            Kind::Referee => Input::Referee(&bytes, from),
+            Kind::Robot => Input::Robot(&bytes),
+            _ => Input::Vision(&bytes),
+        };
         host.handle(Instant(now), input);
         records.push(Record { at: Instant(now), host: 0, kind, from, bytes });
         while let Some((to, packet)) = host.poll_packet() {
+            let _ = robot.open(Instant(now), &packet);
             let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
             let bytes = [&[to], &packet[..]].concat();
-            records.push(Record { at: Instant(now), host: 0, kind: Kind::Sent, from: SenderAddress::INTERNAL, bytes });
+            records.push(Record {
+                at: Instant(now),
+                host: 0,
+                kind: Kind::Sent,
+                from: SenderAddress::INTERNAL,
+                bytes,
+            });
         }
     }
     records
@@ -153,10 +206,12 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
     let pinned = HostSettings { referee: Some(SourcePin::of("10.0.0.1")), ..settings() };
     let records = [recorded(settings()), recorded(pinned.clone())];
     let halts = |records: &[Record]| {
-        let said = records.iter().filter(|record| record.kind == Kind::Sent).filter_map(|record| {
-            overhear_host(&record.bytes[1..], TeamId::of(Colour::Blue), &TeamKey::ZERO).ok()
-        });
-        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt)).count()
+        let said = records
+            .iter()
+            .filter(|record| record.kind == Kind::Sent)
+            .filter_map(|record| read(&record.bytes[1..]));
+        said.filter(|message| matches!(message, HostMessage::World(part) if part.phase == Phase::Halt))
+            .count()
     };
     assert!(halts(&records[0]) > 50 && halts(&records[1]) == 0);
     assert!(same_again(&settings(), &records[0]));
@@ -164,6 +219,8 @@ fn from_a_trace_with_two_referees_a_host_decides_the_same_again() {
     // The decisions depend on the sender and on the pin.
     assert!(!same_again(&settings(), &records[1]));
     let mut nameless = records[0].clone();
-    nameless.iter_mut().for_each(|record| record.from = SenderAddress::INTERNAL);
+    for record in &mut nameless {
+        record.from = SenderAddress::INTERNAL;
+    }
     assert!(!same_again(&settings(), &nameless));
 }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use geometry::Point;
 use host::geometry::VisionGeometry;
-use host::referee::{Listener, SenderAddress};
 use host::referee::team_port::TeamPort;
+use host::referee::{Listener, SenderAddress};
 use protocol::Instant;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -93,7 +93,7 @@ fn numbers_that_no_referee_sends_are_survived() {
         let machine = if any(0) % 4 == 0 { any(0) as u8 % 12 } else { 1 };
         let from = SenderAddress::new(([10, 0, 0, machine], 40_000).into());
         listener.hear(&odd, from, now, ball);
-        listener.warnings(now).iter().for_each(|warning| assert!(!warning.to_string().is_empty()));
+        assert!(listener.warnings(now).iter().all(|warning| !warning.to_string().is_empty()));
         listener.tick(Instant(any(0)), ball);
         listener.silence(Instant(any(0)));
         sound(&listener);

@@ -219,7 +219,10 @@ impl core::error::Error for Refusal {}
 
 /// Who a frame claims to be from, by its header alone; nothing is checked.
 pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
-    bytes.get(SENDER_AT).and_then(|number| Sender::new(*number))
+    match *bytes.get(SENDER_AT)? {
+        HOST_TO_SEVERAL => Some(Sender::Host),
+        number => Sender::new(number),
+    }
 }
 
 /// Where the sender stands: after version and team.

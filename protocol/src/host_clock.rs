@@ -75,7 +75,7 @@ impl HostClock {
     }
 
     /// The offset with the drift since it was learned.
-    const fn offset_at(&self, now: u32) -> u32 {
+    const fn offset_at(self, now: u32) -> u32 {
         self.offset.wrapping_add(now.wrapping_sub(self.learned) >> 10).wrapping_add(1)
     }
 }

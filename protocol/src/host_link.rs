@@ -76,7 +76,6 @@ impl HostLink {
         // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         let to = match message {
-            HostMessage::World(_) if self.audience.is_empty() => return Packet::new(),
             HostMessage::World(_) => None,
             HostMessage::Command(command) => Some(command.to),
             HostMessage::Welcome(welcome) => Some(welcome.to),

@@ -23,8 +23,8 @@ pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
 pub enum Heard {
     /// A teammate says this.
     Mate(RobotId, TeamMessage),
-    /// The host says this, at most so long ago.
-    Host(HostMessage, Duration),
+    /// The host says this, at most [`Link::age`] ago.
+    Host(HostMessage),
     /// It is for another receiver: not opened, whatever it says changes nothing here.
     Elsewhere,
 }
@@ -41,6 +41,8 @@ pub struct Link {
     acquaintances: Acquaintances,
     /// What is known of the clock of the host that is believed.
     clock: Option<HostClock>,
+    /// Of the host's last frame that was opened.
+    age: Duration,
     refused: [u32; Refusal::KINDS],
     /// Of these, its own messages given back.
     echoes: u32,
@@ -59,6 +61,7 @@ impl Link {
             sessions: Sessions::default(),
             acquaintances: Acquaintances::default(),
             clock: None,
+            age: Duration(0),
             refused: [0; Refusal::KINDS],
             echoes: 0,
             pictures: Pictures::default(),
@@ -99,6 +102,11 @@ impl Link {
         self.sessions.epoch(Sender::Host)
     }
 
+    /// How old the host's last frame was at most when it was opened.
+    pub fn age(&self) -> Duration {
+        self.age
+    }
+
     /// How many packets were refused, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         &self.refused
@@ -134,6 +142,7 @@ impl Link {
     }
 
     /// Whether a frame is for this robot, as it says itself; its tag has not been looked at.
+    #[inline]
     fn is_for_me(&self, frame: &Frame<'_>) -> bool {
         match (frame.sender, frame.audience) {
             (Sender::Robot(_), _) => !TeamMessage::is_for_host(frame.payload),
@@ -154,7 +163,7 @@ impl Link {
         }
         match frame.sender {
             Sender::Robot(mate) => self.open_mate(mate, &frame).map(|message| Heard::Mate(mate, message)),
-            Sender::Host => self.open_host(now, &frame).map(|(message, age)| Heard::Host(message, age)),
+            Sender::Host => self.open_host(now, &frame).map(Heard::Host),
         }
     }
 
@@ -172,7 +181,7 @@ impl Link {
         message.ok_or(Refusal::Payload)
     }
 
-    fn open_host(&mut self, now: Instant, frame: &Frame<'_>) -> Result<(HostMessage, Duration), Refusal> {
+    fn open_host(&mut self, now: Instant, frame: &Frame<'_>) -> Result<HostMessage, Refusal> {
         let message = host_message(frame.payload);
         let known = self.sessions.epoch(Sender::Host) == Some(frame.epoch);
         let mut clock = if known { self.clock } else { None };
@@ -188,7 +197,7 @@ impl Link {
         }
         let Age::Within(age) = age else { return Err(Refusal::Stale) };
         self.sessions.accept(frame);
-        self.clock = clock;
+        (self.clock, self.age) = (clock, age);
         let message = message.ok_or(Refusal::Payload)?;
         if !known {
             self.pictures.forget();
@@ -196,7 +205,7 @@ impl Link {
         if let HostMessage::World(part) = &message {
             self.pictures.handle(part);
         }
-        Ok((message, age))
+        Ok(message)
     }
 }
 

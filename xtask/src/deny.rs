@@ -4,7 +4,7 @@
 //! Known faults (RustSec's advisories) need a database from the network. Where it cannot be had the step says that they were not
 //! checked, and passes: licences and sources do not depend on it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::context::{Context, Failure, run};
@@ -42,7 +42,7 @@ fn ensure(context: &Context) -> Result<PathBuf, Failure> {
     let name = format!("cargo-deny{}", std::env::consts::EXE_SUFFIX);
     let ours = tools(context);
     let own = ours.join("bin").join(&name);
-    if let Some(there) = [PathBuf::from(name), own.clone()].into_iter().find(answers) {
+    if let Some(there) = [PathBuf::from(name), own.clone()].into_iter().find(|tool| answers(tool)) {
         return Ok(there);
     }
     let mut install = context.cargo("install cargo-deny --locked --version");
@@ -58,7 +58,7 @@ fn tools(context: &Context) -> PathBuf {
     context.root().join(target).join("tools")
 }
 
-fn answers(tool: &PathBuf) -> bool {
+fn answers(tool: &Path) -> bool {
     let mut question = Command::new(tool);
     question.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     question.status().is_ok_and(|status| status.success())
@@ -76,8 +76,8 @@ mod tests {
 
     #[test]
     fn a_tool_that_is_not_there_does_not_answer() {
-        assert!(!answers(&PathBuf::from("onetwo-has-no-such-program")));
-        assert!(answers(&PathBuf::from("cargo")));
+        assert!(!answers(Path::new("onetwo-has-no-such-program")));
+        assert!(answers(Path::new("cargo")));
     }
 
     #[test]

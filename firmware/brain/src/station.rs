@@ -48,11 +48,11 @@ impl<'a> Station<'a> {
         let led_by = self.link.host_epoch();
         match self.link.open(now, packet) {
             Ok(Heard::Mate(from, message)) => self.brain.handle_team_message(now, from, &message),
-            Ok(Heard::Host(message, age)) => {
+            Ok(Heard::Host(message)) => {
                 if self.link.host_epoch() != led_by {
                     self.brain.handle_new_host();
                 }
-                self.brain.handle_host_message(now, age, &message);
+                self.brain.handle_host_message(now, self.link.age(), &message);
             }
             Ok(Heard::Elsewhere) | Err(_) => {}
         }

@@ -331,3 +331,35 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
     };
     players.iter().filter_map(wrong).collect()
 }
+
+/// How near a robot on its way across comes to the first 0.9 m of the ball's way, when a teammate is about to kick it.
+fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
+    let (from, to) = (Point::new(0.5, -1.5), Point::new(0.5, 1.5));
+    let mut player =
+        Player::new(League::DivisionB, GoalEnd::Negative, phase, duty, from, Drive::bold(to, Angle::ZERO));
+    player.sees(Point::new(0.0, 0.0), Point::new(3.0, 0.0));
+    let pose = Pose { position: Point::new(-0.2, 0.0), heading: Angle::ZERO };
+    let kicker = Other { side: Side::Ours, id: RobotId::ZERO, pose, velocity: Vector::default() };
+    player.belief.others.push(kicker).expect("room for one");
+    let lane = geometry::Segment::new(Point::new(0.0, 0.0), Point::new(0.9, 0.0));
+    let (mut time, mut nearest) = (0.0, f32::INFINITY);
+    while time < 5.0 {
+        time += STEP;
+        player.step(time);
+        nearest = nearest.min(lane.distance_to(player.at()));
+    }
+    (nearest, player.at().distance(to))
+}
+
+#[test]
+fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
+    let touches = ROBOT_RADIUS + rules::limits::BALL_RADIUS;
+    for phase in [Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Ours)] {
+        let (nearest, left) = crossing(phase, Duty::Player);
+        assert!(nearest > touches, "{phase:?}: {nearest} m");
+        // Around it, to the other side; at a kick-off the other half is closed.
+        assert!(left < 0.01 || phase == Phase::Kickoff(Side::Ours), "{phase:?}: {left} m left");
+    }
+    // In play there is no such lane: the test can tell.
+    assert!(crossing(Phase::Run, Duty::Player).0 < touches);
+}

@@ -74,8 +74,8 @@ pub struct Course<'o, F> {
     pub within: Option<Shape<F>>,
     /// Until it asks again, s, at most 1.
     pub step: f32,
-    /// Most that is spent on looking for a free goal and a way: a unit for one straight piece and one obstacle, about forty
-    /// instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
+    /// Most that is spent on looking for a way, and a quarter of what is for a way out: a unit for one straight piece and one
+    /// obstacle, about forty instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
     pub effort: u32,
 }
 
@@ -149,7 +149,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
         return escape(course, &mut scene, goal);
     }
     scene.keep_apart(from, goal, false);
-    let route = Route::find(&scene, from, velocity, goal, &limits, false);
+    let route = Route::find(&scene, from, velocity, goal, &limits, course.effort >= EFFORT_LONG);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (Verdict::Direct, goal),
@@ -165,6 +165,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point
     let Course { from, velocity, limits, .. } = *course;
     let exit = scene.exit(from);
     scene.keep_apart(from, exit, true);
+    scene.spend_to_leave();
     let route = Route::find(scene, from, velocity, exit, &limits, true);
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
@@ -256,6 +257,8 @@ pub const OBSTACLES_MAX: usize = 40;
 pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
+/// Who may spend so much looks at as many pieces of a way as who leaves a region: around a goal and into its mouth takes them.
+const EFFORT_LONG: u32 = EFFORT_MAX / 2;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.

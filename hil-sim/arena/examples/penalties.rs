@@ -18,7 +18,8 @@ fn main() -> Result<(), String> {
     let of = |keeper| saves(league, first..first + count, keeper).map_err(|error| error.to_string());
     let told = |name: &str, count: Count| {
         let interval = wilson(count, CONFIDENCE);
-        let percent = |share: Option<f64>| share.map_or("–".into(), |share| format!("{:.1}", 100.0 * share));
+        let percent =
+            |share: Option<f64>| share.map_or("–".into(), |share| format!("{:.1}", 100.0 * share));
         let (low, high) = (interval.map(|at| at.low), interval.map(|at| at.high));
         println!(
             "{name}: {} of {} saved, {} % (95 %: {} to {})",

@@ -56,7 +56,13 @@ fn offence(game: &Game<'_>, league: League, who: Who) -> Option<Why> {
         field: &field,
         own: game.referee().own_end(who.colour),
         phase,
-        duty: if keeper { Duty::Keeper } else if taker { Duty::Taker } else { Duty::Player },
+        duty: if keeper {
+            Duty::Keeper
+        } else if taker {
+            Duty::Taker
+        } else {
+            Duty::Player
+        },
         ball: Some(game.world().ball.position),
         placement: None,
         ball_in_play: false,
@@ -100,7 +106,9 @@ fn prepare(league: League, command: Command, seed: u64) -> Vec<String> {
     let mut wrong = Vec::new();
     for (who, (_, longest)) in all.iter().zip(&stood) {
         let at = game.world().robot(*who).map(|robot| robot.pose.position);
-        let told = || format!("{} {command:?}, seed {seed}: {} {} at {at:?}", league.name(), who.colour.word(), who.id);
+        let told = || {
+            format!("{} {command:?}, seed {seed}: {} {} at {at:?}", league.name(), who.colour.word(), who.id)
+        };
         if let Some(why) = offence(&game, league, *who).filter(|_| ended) {
             wrong.push(format!("{} ends in {why:?}", told()));
         } else if *longest > STANDS {

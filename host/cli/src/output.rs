@@ -4,7 +4,7 @@
 //! Line ends and tabs pass, because they are the program's own; a foreign value that is put into a line goes through
 //! [`foreign::printable`] first, so that it cannot end the line. Nothing else in this crate prints (a test sees to it).
 
-use std::fmt::Display;
+use std::fmt::Arguments;
 use std::io::{self, BufWriter, StdoutLock, Write};
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(crate) fn say(words: &str) -> Result<(), Failure> {
 }
 
 /// Says a line on stderr. Where stderr is closed there is nobody to tell.
-pub(crate) fn say_aside(words: impl Display) {
+pub(crate) fn say_aside(words: Arguments<'_>) {
     let mut out = Printable::new(io::stderr().lock());
     let _ = writeln!(out, "{words}");
 }

@@ -12,11 +12,12 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use protocol::TeamId;
 use protocol::frame::TeamKey;
-use protocol::host::HostMessage;
-use protocol::link::overhear_host;
-use protocol::serial::Lines;
+use protocol::host::{HostMessage, Telemetry};
+use protocol::link::{Link, Packet, overhear_host};
+use protocol::serial::{self, Lines};
+use protocol::team::TeamMessage;
+use protocol::{RobotId, TeamId};
 use rules::{Colour, Phase};
 use serial2::SerialPort;
 use ssl::Message;
@@ -181,7 +182,8 @@ fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
         orientation: Some(0.0),
         ..DetectionRobot::default()
     };
-    let ball = |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
+    let ball =
+        |n: usize| DetectionBall { confidence: 0.9, x: n as f32, y: 100.0, ..DetectionBall::default() };
     let frame = DetectionFrame {
         frame_number: number,
         t_capture: unix_us() as f64 * 1e-6,
@@ -209,12 +211,53 @@ fn camera(to: SocketAddr, end: &Arc<AtomicBool>) {
     });
 }
 
-/// Whether a host's frame says HALT, where it says anything of the phase.
-fn says_halt(frame: &[u8]) -> Option<bool> {
-    match overhear_host(frame, TeamId::of(Colour::Blue), &TeamKey(KEY)).ok()? {
-        HostMessage::World(part) => Some(part.phase == Phase::Halt),
-        HostMessage::Command(command) => Some(command.phase == Phase::Halt),
-        _ => None,
+/// The radio ends of six robots: they answer the host's welcomes, so that it leads them.
+struct Robots {
+    links: Vec<Link>,
+    began: Instant,
+    reported: Option<Instant>,
+}
+
+impl Robots {
+    const TEAM: TeamId = TeamId::of(Colour::Blue);
+
+    fn new() -> Self {
+        let link = |robot| Link::new(Self::TEAM, robot, TeamKey(KEY).of_robot(robot), 1);
+        Self { links: RobotId::all().take(6).map(link).collect(), began: Instant::now(), reported: None }
+    }
+
+    fn now(&self) -> protocol::Instant {
+        protocol::Instant(self.began.elapsed().as_micros() as u64)
+    }
+
+    /// Takes a frame of the host: whether it says HALT, where it says anything of the phase.
+    fn receive(&mut self, frame: &[u8]) -> Option<bool> {
+        let now = self.now();
+        for link in &mut self.links {
+            let _ = link.open(now, frame);
+        }
+        let read =
+            |robot: RobotId| overhear_host(frame, Self::TEAM, &TeamKey(KEY).of_robot(robot), robot).ok();
+        match RobotId::all().take(6).find_map(read)? {
+            HostMessage::World(part) => Some(part.phase == Phase::Halt),
+            HostMessage::Command(command) => Some(command.phase == Phase::Halt),
+            HostMessage::Welcome(_) => None,
+        }
+    }
+
+    /// Telemetry of all robots, ten times a second.
+    fn poll(&mut self) -> Vec<Packet> {
+        if self.reported.is_some_and(|reported| reported.elapsed() < Duration::from_millis(100)) {
+            return Vec::new();
+        }
+        self.reported = Some(Instant::now());
+        let now = self.now();
+        let tell = |link: &mut Link| {
+            let mut telemetry = Telemetry::default();
+            link.tell(now, &mut telemetry);
+            link.seal(&TeamMessage::Telemetry(telemetry))
+        };
+        self.links.iter_mut().map(tell).collect()
     }
 }
 
@@ -224,12 +267,15 @@ fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     let (send, frames) = channel();
     let address = socket.local_addr().expect("an address");
     thread::spawn(move || {
-        let mut bytes = [0; 256];
-        while let Ok((length, _)) = socket.recv_from(&mut bytes) {
-            if let Some(halt) = says_halt(&bytes[..length])
+        let (mut bytes, mut robots) = ([0; 256], Robots::new());
+        while let Ok((length, host)) = socket.recv_from(&mut bytes) {
+            if let Some(halt) = robots.receive(&bytes[..length])
                 && send.send((Instant::now(), halt)).is_err()
             {
                 return;
+            }
+            for packet in robots.poll() {
+                let _ = socket.send_to(&packet, host);
             }
         }
     });
@@ -315,7 +361,7 @@ fn finding_3_halt_does_not_wait_behind_a_flood_of_camera_frames() {
 
 #[test]
 fn finding_3_datagrams_longer_than_vision_sends_are_refused() {
-    let frames = vec![camera_frame(1_000_000, 1_700)];
+    let frames = vec![camera_frame(1_000_000, 2_000)];
     assert!(frames[0].len() > 50_000, "{} bytes", frames[0].len());
     halts_under(frames, "longer than vision sends");
 }
@@ -329,7 +375,8 @@ fn finding_2_two_referees_that_disagree_are_reported_with_both_addresses() {
     let genuine = Controller::start("gc\u{1b}[31m", "127.0.0.1:0", field.referee, Wire::ForceStart);
     wait_for(&frames, false, Instant::now());
     let other = Controller::start("other", "127.0.0.2:0", field.referee, Wire::Halt);
-    let line = field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
+    let line =
+        field.says(&["two referees disagree", "127.0.0.1:", "127.0.0.2:", "--referee-source 127.0.0.1"]);
     assert!(!line.contains('\u{1b}'), "{line:?}");
     wait_for(&frames, true, Instant::now());
     drop(other);
@@ -368,8 +415,12 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
     let (send, frames) = channel();
     let (count, stop) = (read.clone(), end.clone());
     thread::spawn(move || {
-        let (mut lines, began, mut taken) = (Lines::new(), Instant::now(), 0_u64);
+        let (mut lines, mut robots) = (Lines::new(), Robots::new());
+        let (began, mut taken) = (Instant::now(), 0_u64);
         while !stop.load(Ordering::Relaxed) {
+            for packet in robots.poll() {
+                let _ = station.write_all(&serial::line(&packet));
+            }
             let may = (began.elapsed().as_secs_f64() * RATE) as u64;
             let mut bytes = [0; 64];
             let room = may.saturating_sub(taken).min(64) as usize;
@@ -382,7 +433,7 @@ fn finding_10_on_a_slow_line_halt_comes_before_what_is_stale_and_the_rate_is_rep
             taken = if got == 0 { may } else { taken + got as u64 };
             count.fetch_add(got as u64, Ordering::Relaxed);
             for byte in &bytes[..got] {
-                if let Some(halt) = lines.push(*byte).and_then(|frame| says_halt(&frame)) {
+                if let Some(halt) = lines.push(*byte).and_then(|frame| robots.receive(&frame)) {
                     let _ = send.send((count.load(Ordering::Relaxed), halt));
                 }
             }

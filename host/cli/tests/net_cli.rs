@@ -4,7 +4,7 @@
 mod running;
 
 use std::net::{SocketAddr, UdpSocket};
-use std::thread;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use running::{PATIENCE, Running};

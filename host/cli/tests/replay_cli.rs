@@ -147,7 +147,9 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     for (number, record) in (1_u64..).zip(log.take(2000)) {
         let (kind, input) = match record.kind {
             MessageKind::Vision2014 => (Kind::Vision, Input::Vision(&record.payload)),
-            MessageKind::Refbox2013 => (Kind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL)),
+            MessageKind::Refbox2013 => {
+                (Kind::Referee, Input::Referee(&record.payload, SenderAddress::INTERNAL))
+            }
             _ => continue,
         };
         let at = Instant(number * 5_000);

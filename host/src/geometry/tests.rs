@@ -128,7 +128,8 @@ fn finding_21_invented_cameras_take_no_place_of_genuine_ones() {
     let real = data.calib[0];
     let mut geometry = VisionGeometry::default();
     let camera = |camera_id| GeometryCameraCalibration { camera_id, ..real };
-    let invented = GeometryData { calib: (16..2_000).chain([u32::MAX]).map(camera).collect(), ..data.clone() };
+    let invented =
+        GeometryData { calib: (16..2_000).chain([u32::MAX]).map(camera).collect(), ..data.clone() };
     let news = geometry.hear(&invented).unwrap();
     assert_eq!((news.cameras, news.cameras_refused, geometry.cameras().len()), (0, 1_985, 0));
     let genuine = GeometryData { calib: (0..16).map(camera).collect(), ..data };

@@ -19,7 +19,7 @@ mod tally;
 mod warning;
 
 use protocol::frame::{Audience, Frame, Refusal, TeamKey};
-use protocol::host::{Command, HostMessage, Telemetry};
+use protocol::host::{Command, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
 use protocol::team::{Beacon, TeamMessage};
@@ -277,11 +277,13 @@ impl Radio {
         self.departures[usize::from(self.picture)] = Some(now);
         let audience: Audience = self.present(now).collect();
         self.link.set_audience(audience);
-        if !audience.is_empty() {
-            let there = latest.world.at(now + self.settings.way);
-            for part in picture::parts(self.picture, audience.len(), &there, &latest.situation) {
-                self.say(now, To::All, &HostMessage::World(part));
-            }
+        let there = latest.world.at(now + self.settings.way);
+        // Without robots one part goes out to an empty audience: a base station learns the host's address from it.
+        let most = if audience.is_empty() { 1 } else { PARTS_MAX };
+        for part in
+            picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most)
+        {
+            self.say(now, To::All, &HostMessage::World(part));
         }
         for command in latest.commands.iter().filter(|command| audience.has(command.to)) {
             self.say(now, To::One(command.to), &HostMessage::Command(command.clone()));

@@ -96,7 +96,7 @@ fn deliver(link: &mut Link, n: u8, now: Instant, packets: &[(To, Packet)]) -> Ve
     let meant = packets.iter().filter(|(to, _)| *to == To::All || *to == To::One(id(n)));
     meant
         .filter_map(|(_, packet)| match link.open(now, packet) {
-            Ok(RobotHeard::Host(message, _)) => Some(message),
+            Ok(RobotHeard::Host(message)) => Some(message),
             _ => None,
         })
         .collect()

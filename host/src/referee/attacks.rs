@@ -87,11 +87,16 @@ fn finding_1_a_spoofed_stamp_of_the_future_does_not_hide_a_halt() {
             let mut listener = listener(None);
             let mut forger = Program::new("gc", 1);
             forger.counter = 9;
-            let free = play(&mut listener, (8 * S, 16 * S), |_| 0, |now| {
-                let send = now == 8 * S - 10 * MS || (again && now > 8 * S && now % (100 * MS) == 5 * MS);
-                let packet = forger.packet(now, off as i64, Wire::ForceStart);
-                if send { vec![(forger.clone(), packet)] } else { vec![] }
-            });
+            let free = play(
+                &mut listener,
+                (8 * S, 16 * S),
+                |_| 0,
+                |now| {
+                    let send = now == 8 * S - 10 * MS || (again && now > 8 * S && now % (100 * MS) == 5 * MS);
+                    let packet = forger.packet(now, off as i64, Wire::ForceStart);
+                    if send { vec![(forger.clone(), packet)] } else { vec![] }
+                },
+            );
             assert_eq!(free, 0, "stamped {off} µs ahead, again: {again}: {:?}", listener.counts());
         }
     }
@@ -118,7 +123,9 @@ fn a_stamp_ahead_of_its_arrival_never_becomes_the_newest() {
 
 #[test]
 fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_window() {
-    for step in [-3_600 * S as i64, -4_000_000, -310_000, -250_000, 250_000, 310_000, 4_000_000, 3_600 * S as i64] {
+    for step in
+        [-3_600 * S as i64, -4_000_000, -310_000, -250_000, 250_000, 310_000, 4_000_000, 3_600 * S as i64]
+    {
         let mut halts = listener(None);
         let clock = |now| if now >= 9 * S { step } else { 0 };
         assert_eq!(play(&mut halts, (9 * S, 14 * S), clock, |_| vec![]), 0, "{step}");
@@ -136,7 +143,10 @@ fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_w
                 followed.get_or_insert(now - S);
             }
         }
-        assert!(followed.is_some_and(|after| after <= WINDOW.0), "step {step}: followed after {followed:?} µs");
+        assert!(
+            followed.is_some_and(|after| after <= WINDOW.0),
+            "step {step}: followed after {followed:?} µs"
+        );
         let warned = listener.warnings(Instant(2 * S));
         let far = step.unsigned_abs() > WINDOW.0;
         let stepped = |warning: &Warning| matches!(warning, Warning::ClockStepped { by, .. } if (by - step).abs() < 1_000);
@@ -152,10 +162,15 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
     // It speaks before the controller does, and goes on every 2.8 s; HALT for 17.5 s at 40 Hz.
     let mut first = listener.clone();
     first.hear(&evil.packet(0, 0, Wire::ForceStart), evil.address, Instant(0), None);
-    let free = play(&mut first, (S, S + 17_500 * MS), |_| 0, |now| {
-        let send = now % (2_800 * MS) == 0;
-        if send { vec![(evil.clone(), evil.packet(now, 0, Wire::ForceStart))] } else { vec![] }
-    });
+    let free = play(
+        &mut first,
+        (S, S + 17_500 * MS),
+        |_| 0,
+        |now| {
+            let send = now % (2_800 * MS) == 0;
+            if send { vec![(evil.clone(), evil.packet(now, 0, Wire::ForceStart))] } else { vec![] }
+        },
+    );
     assert_eq!(free, 0);
     let warned = first.warnings(Instant(18_500 * MS));
     let [Warning::Disagreement { .. }] = &warned[..] else { panic!("{warned:?}") };
@@ -163,10 +178,15 @@ fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
     assert!(words.contains("10.0.0.1:40000") && words.contains("10.0.0.66:40000"), "{words}");
     assert!(words.contains("--referee-source"), "{words}");
     // The same where it comes second.
-    let free = play(&mut listener, (S, S + 17_500 * MS), |_| 0, |now| {
-        let send = now % (2_800 * MS) == 10 * MS;
-        if send { vec![(evil.clone(), evil.packet(now, 0, Wire::ForceStart))] } else { vec![] }
-    });
+    let free = play(
+        &mut listener,
+        (S, S + 17_500 * MS),
+        |_| 0,
+        |now| {
+            let send = now % (2_800 * MS) == 10 * MS;
+            if send { vec![(evil.clone(), evil.packet(now, 0, Wire::ForceStart))] } else { vec![] }
+        },
+    );
     assert_eq!(free, 0);
 }
 
@@ -228,7 +248,14 @@ fn one_controller_on_two_networks_is_followed_without_a_stop() {
     // The same packets from two addresses, the second 30 ms later, and copies of each 60 ms later.
     let mut listener = listener(None);
     let (one, two) = (Program::new("gc", 1), Program::new("gc", 2));
-    let commands = [Wire::Halt, Wire::Stop, Wire::PrepareKickoffBlue, Wire::NormalStart, Wire::Stop, Wire::DirectFreeYellow];
+    let commands = [
+        Wire::Halt,
+        Wire::Stop,
+        Wire::PrepareKickoffBlue,
+        Wire::NormalStart,
+        Wire::Stop,
+        Wire::DirectFreeYellow,
+    ];
     let mut phases = vec![];
     let packet_of = |sent: u64| {
         let number = (sent / (3 * S)) as usize;
@@ -288,13 +315,18 @@ fn a_source_that_changes_its_mind_with_every_packet_is_two_programs_and_halts() 
     let mut listener = listener(None);
     let mut forger = Program::new("gc", 1);
     forger.counter = 9;
-    let free = play(&mut listener, (S, 5 * S), |_| 0, |now| {
-        if now <= S || now % PERIOD != 10 * MS {
-            return vec![];
-        }
-        forger.counter += 1;
-        vec![(forger.clone(), forger.packet(now, 0, Wire::ForceStart))]
-    });
+    let free = play(
+        &mut listener,
+        (S, 5 * S),
+        |_| 0,
+        |now| {
+            if now <= S || now % PERIOD != 10 * MS {
+                return vec![];
+            }
+            forger.counter += 1;
+            vec![(forger.clone(), forger.packet(now, 0, Wire::ForceStart))]
+        },
+    );
     // It is believed once, until the next genuine packet: 15 ms, and no longer.
     assert!(free <= PERIOD, "{free} µs: {:?}", listener.counts());
 }
@@ -357,18 +389,23 @@ fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_s
 fn no_flood_of_invented_sources_hides_a_halt() {
     let mut listener = listener(None);
     let mut number = 0_u32;
-    let free = play(&mut listener, (S, 3 * S), |_| 0, |now| {
-        // 20 new sources every 5 ms, all of which say FORCE_START.
-        let invented = (0..20).map(|_| {
-            number += 1;
-            let [_, a, b, c] = number.to_be_bytes();
-            let mut program = Program::new("invented", 1);
-            program.address = SenderAddress::new(([172, a, b, c], 9).into());
-            let packet = program.packet(now, 0, Wire::ForceStart);
-            (program, packet)
-        });
-        invented.collect()
-    });
+    let free = play(
+        &mut listener,
+        (S, 3 * S),
+        |_| 0,
+        |now| {
+            // 20 new sources every 5 ms, all of which say FORCE_START.
+            let invented = (0..20).map(|_| {
+                number += 1;
+                let [_, a, b, c] = number.to_be_bytes();
+                let mut program = Program::new("invented", 1);
+                program.address = SenderAddress::new(([172, a, b, c], 9).into());
+                let packet = program.packet(now, 0, Wire::ForceStart);
+                (program, packet)
+            });
+            invented.collect()
+        },
+    );
     assert_eq!(free, 0);
     assert!(listener.warnings(Instant(3 * S)).len() <= SOURCES_MAX * 2);
 }
@@ -380,7 +417,8 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
     genuine.counter = 40;
     listener.hear(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
     genuine.counter = 0;
-    let verdict = listener.hear(&genuine.packet(PERIOD, 0, Wire::Halt), genuine.address, Instant(PERIOD), None);
+    let verdict =
+        listener.hear(&genuine.packet(PERIOD, 0, Wire::Halt), genuine.address, Instant(PERIOD), None);
     assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Counter, restrains: true });
     assert_eq!(listener.game().phase, Phase::Halt, "HALT at once");
     let mut now = PERIOD;

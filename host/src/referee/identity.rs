@@ -64,7 +64,11 @@ impl From<SocketAddr> for SenderAddress {
 
 impl fmt::Display for SenderAddress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if *self == Self::INTERNAL { f.write_str("this program") } else { SocketAddr::new(self.ip, self.port).fmt(f) }
+        if *self == Self::INTERNAL {
+            f.write_str("this program")
+        } else {
+            SocketAddr::new(self.ip, self.port).fmt(f)
+        }
     }
 }
 
@@ -80,7 +84,9 @@ pub struct SourceKey {
 impl fmt::Display for SourceKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.identifier {
-            Some(identifier) => write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address),
+            Some(identifier) => {
+                write!(f, "\"{}\" at {}", foreign::excerpt(identifier, SHOWN_MAX), self.address)
+            }
             None => write!(f, "a referee without identifier at {}", self.address),
         }
     }
@@ -150,7 +156,10 @@ mod tests {
 
     #[test]
     fn a_pin_is_a_machine_an_address_or_an_identifier() {
-        let source = |identifier: &str, from| SourceKey { identifier: Some(identifier.into()), address: address(from) };
+        let source = |identifier: &str, from| SourceKey {
+            identifier: Some(identifier.into()),
+            address: address(from),
+        };
         let pin = SourcePin::of;
         let genuine = source("gc", "10.0.0.1:50000");
         for text in ["10.0.0.1", "10.0.0.1:50000", "gc"] {

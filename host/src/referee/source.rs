@@ -128,7 +128,12 @@ pub(super) enum Outcome {
 
 impl Source {
     /// By its first packet, which is in order.
-    pub(super) fn new(key: SourceKey, packet: &Referee, now: Instant, ball: Option<Point<Field>>) -> (Self, Taken) {
+    pub(super) fn new(
+        key: SourceKey,
+        packet: &Referee,
+        now: Instant,
+        ball: Option<Point<Field>>,
+    ) -> (Self, Taken) {
         let newest = Stamped::of(packet);
         let mut source = Self {
             key,
@@ -196,7 +201,12 @@ impl Source {
     }
 
     /// The time is `now`, and the ball is here.
-    pub(super) fn tick(&mut self, now: Instant, ball: Option<Point<Field>>, limits: &Limits) -> rules::state::Ticked {
+    pub(super) fn tick(
+        &mut self,
+        now: Instant,
+        ball: Option<Point<Field>>,
+        limits: &Limits,
+    ) -> rules::state::Ticked {
         self.state.tick(now.0, ball, limits)
     }
 
@@ -231,7 +241,8 @@ impl Source {
                 return now.since(candidate.since).0 >= CONFIRM.0;
             }
         }
-        self.candidate = Some(Candidate { clock: StampClock::new(came.stamp, now), newest: came, since: now });
+        self.candidate =
+            Some(Candidate { clock: StampClock::new(came.stamp, now), newest: came, since: now });
         false
     }
 
@@ -257,7 +268,13 @@ impl Source {
         true
     }
 
-    fn follow_command(&mut self, packet: &Referee, now: Instant, ball: Option<Point<Field>>, taken: &mut Taken) {
+    fn follow_command(
+        &mut self,
+        packet: &Referee,
+        now: Instant,
+        ball: Option<Point<Field>>,
+        taken: &mut Taken,
+    ) {
         let command = words::command_of(packet.command).unwrap_or_else(|| {
             taken.unknown = Some(packet.command);
             Command::Halt

@@ -102,7 +102,9 @@ impl Listener {
 
     fn exclusions(&self, now: Instant) -> impl Iterator<Item = Warning> {
         let lately = self.excluded.iter().filter(move |(_, at)| now.since(*at) < SILENCE);
-        lately.filter_map(|(source, _)| Some(Warning::Excluded { source: source.clone(), pin: self.pin.clone()? }))
+        lately.filter_map(|(source, _)| {
+            Some(Warning::Excluded { source: source.clone(), pin: self.pin.clone()? })
+        })
     }
 }
 
@@ -155,7 +157,11 @@ impl fmt::Display for Warning {
                 *by as f64 * 1e-6
             ),
             Self::Excluded { source, pin } => {
-                write!(f, "{source} is ignored: --referee-source chooses {}", foreign::printable(&pin.to_string()))
+                write!(
+                    f,
+                    "{source} is ignored: --referee-source chooses {}",
+                    foreign::printable(&pin.to_string())
+                )
             }
         }
     }

@@ -275,6 +275,6 @@ mod tests {
         // The disk is back: what waited is whole, and the trace says that it ends.
         write(recorder, &entries, &shared).unwrap();
         let (kinds, end) = read(&stem);
-        assert_eq!((kinds.len() as u64, end), (ended.0, Some(End::Lost)));
+        assert_eq!((kinds.len() as u64, end), (ended.0, Some(End::Lost { at: ended })));
     }
 }

@@ -192,7 +192,11 @@ mod tests {
         recorder.heard(now, kind, bytes);
         match kind {
             MessageKind::Vision2014 => recorder.input(now, Colour::Blue, Input::Vision(bytes)),
-            MessageKind::Refbox2013 => recorder.input(now, Colour::Blue, Input::Referee(bytes)),
+            MessageKind::Refbox2013 => recorder.input(
+                now,
+                Colour::Blue,
+                Input::Referee(bytes, crate::referee::SenderAddress::INTERNAL),
+            ),
             _ => return,
         }
         for robot in RobotId::all().take(6) {

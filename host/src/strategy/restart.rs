@@ -79,7 +79,10 @@ pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
 pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     let ahead = if ours { 1.0 } else { -1.0 };
     let mark = Point::new(ahead * (view.field.length * 0.5 - view.field.penalty_mark), 0.0);
-    let lies = view.ball.map(|ball| ball.position).filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
+    let lies = view
+        .ball
+        .map(|ball| ball.position)
+        .filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
     view.placement.or(lies).unwrap_or(mark)
 }
 
@@ -108,9 +111,10 @@ pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
 /// `at`, moved out of the circle that nobody may be in around the ball, and out of the way of a ball being placed.
 pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     let Some(ball) = view.ball else { return at };
-    // Nobody rolls the ball to a penalty's mark: people put it there.
-    let rolls = !matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
-    let target = view.placement.filter(|_| rolls).unwrap_or(ball.position);
+    // In the stop before a penalty nobody rolls the ball to its mark: people put it there.
+    let penalty = matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
+    let by_hand = view.phase == Phase::Stop && penalty;
+    let target = view.placement.filter(|_| !by_hand).unwrap_or(ball.position);
     let spine = Segment::new(ball.position, target);
     let closest = spine.closest_to(at);
     let away = at - closest;
@@ -212,7 +216,9 @@ mod tests {
 
     #[test]
     fn behind_a_goal_a_ball_is_out_of_reach_where_no_body_fits() {
-        let reach = |league: League, x, y| is_out_of_reach(&View::still(league.field(), Point::new(0.0, 0.0), [], []), Point::new(x, y));
+        let reach = |league: League, x, y| {
+            is_out_of_reach(&View::still(league.field(), Point::new(0.0, 0.0), [], []), Point::new(x, y))
+        };
         assert!(reach(League::DivisionB, 4.75, 0.3) && reach(League::DivisionB, -4.75, -0.3));
         assert!(!reach(League::DivisionB, 4.6, 0.3), "in the goal");
         assert!(!reach(League::DivisionB, 4.75, 0.7), "beside it");

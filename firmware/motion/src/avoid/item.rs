@@ -118,6 +118,11 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.effort.set(self.effort.get().saturating_sub(looked + besides));
     }
 
+    /// More may be spent: who must leave must find a way among everybody.
+    pub(super) fn spend_to_leave(&self) {
+        self.effort.set(self.effort.get().saturating_mul(TO_LEAVE));
+    }
+
     /// Whether a plan has had its share of a step.
     pub(super) fn is_spent(&self) -> bool {
         self.effort.get() == 0
@@ -352,6 +357,8 @@ impl<F: Copy> Obstacle<F> {
 pub(super) const SKIN: f32 = 0.02;
 /// What braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
+/// So many times the effort of a usual plan goes into a way out, which is looked for in few steps.
+const TO_LEAVE: u32 = 4;
 /// A share of a way that tells where it leads.
 const A_LITTLE: f32 = 0.1;
 /// The square of no circle's radius: nothing comes nearer.

@@ -52,7 +52,7 @@ impl<F: Copy> Route<F> {
         velocity: Vector<F>,
         goal: Point<F>,
         limits: &FreeLimits,
-        leaves: bool,
+        long: bool,
     ) -> Self {
         let length = from.distance(goal);
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
@@ -65,7 +65,7 @@ impl<F: Copy> Route<F> {
             velocity,
             limits,
             nodes,
-            checks: if leaves { CHECKS_TO_LEAVE } else { CHECKS_MAX },
+            checks: if long { CHECKS_LONG } else { CHECKS_MAX },
             speed,
         };
         // The first of many.
@@ -329,10 +329,10 @@ fn around<F: Copy>(
 
 /// Most turns that are tried from a corner.
 const TURNS_MAX: usize = 12;
-/// Most straight pieces that a search for a way out looks at: around a goal and into its mouth it takes more.
-const CHECKS_TO_LEAVE: u32 = 24;
+/// Most straight pieces that a long search looks at, for a way out or while there is time: around a goal and into its mouth it takes more.
+const CHECKS_LONG: u32 = 24;
 /// Most corners of a search: one a piece, and the start.
-const NODES_MAX: usize = CHECKS_TO_LEAVE as usize + 1;
+const NODES_MAX: usize = CHECKS_LONG as usize + 1;
 /// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
 /// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.

@@ -200,7 +200,12 @@ impl<'a> Game<'a> {
             let bytes = packet.encode_to_vec();
             watcher.referee(now, &bytes);
             for team in &mut self.teams {
-                team.tell(self.tick, now, host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL), watcher);
+                team.tell(
+                    self.tick,
+                    now,
+                    host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL),
+                    watcher,
+                );
             }
         }
         while let Some(order) = self.referee.poll_order() {

@@ -106,7 +106,8 @@ pub fn shoot(league: League, seed: u64, keeper: Keeper) -> Result<Outcome, GameE
     let field = league.field();
     let (spot, line) = (field.penalty_spot(own), field.goal_line(own));
     let target = Point::<Field>::new(line, shot.aim);
-    let behind = |distance: f32, face: Angle| Pose { position: spot - Vector::polar(distance, face), heading: face };
+    let behind =
+        |distance: f32, face: Angle| Pose { position: spot - Vector::polar(distance, face), heading: face };
     let straight = spot.direction_to(field.goal_center(own));
     let (mut asked, mut begun, mut left) = (false, None, None);
     while game.time() < MATCH {

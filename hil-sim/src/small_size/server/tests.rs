@@ -1,6 +1,7 @@
 //! Does the server do what the league's simulation protocol says, and answer what it cannot? Bytes in, bytes out.
 
 mod codes;
+mod legacy;
 mod manners;
 
 use ssl::common::{Any, RobotId as WireId, Team};

@@ -64,11 +64,31 @@ impl Alarms {
     fn drops(&mut self, now: Instant, dropped: Dropped) -> Vec<Alarm> {
         let before = std::mem::replace(&mut self.dropped, dropped);
         let news = [
-            ("vision packets came faster than they can be used; the oldest were dropped", dropped.vision, before.vision),
-            ("referee packets came faster than they can be used; the oldest were dropped", dropped.referee, before.referee),
-            ("frames of robots came faster than they can be used; the oldest were dropped", dropped.robots, before.robots),
-            ("datagrams on vision's port were longer than vision sends, and refused", dropped.vision_oversized, before.vision_oversized),
-            ("datagrams on the referee's port were longer than it sends, and refused", dropped.referee_oversized, before.referee_oversized),
+            (
+                "vision packets came faster than they can be used; the oldest were dropped",
+                dropped.vision,
+                before.vision,
+            ),
+            (
+                "referee packets came faster than they can be used; the oldest were dropped",
+                dropped.referee,
+                before.referee,
+            ),
+            (
+                "frames of robots came faster than they can be used; the oldest were dropped",
+                dropped.robots,
+                before.robots,
+            ),
+            (
+                "datagrams on vision's port were longer than vision sends, and refused",
+                dropped.vision_oversized,
+                before.vision_oversized,
+            ),
+            (
+                "datagrams on the referee's port were longer than it sends, and refused",
+                dropped.referee_oversized,
+                before.referee_oversized,
+            ),
         ];
         for (what, after, before) in news.into_iter().filter(|(_, after, before)| after > before) {
             match self.drops.iter_mut().find(|(known, ..)| *known == what) {
@@ -90,18 +110,15 @@ impl Alarms {
         self.now = alarms.iter().map(|alarm| alarm.words.clone()).collect();
         let mut lines = Vec::new();
         for Alarm { matter, words, repeats } in alarms {
-            match self.printed.iter_mut().find(|(known, ..)| *known == matter) {
-                Some((_, seen, last)) => {
-                    *seen = now;
-                    if repeats && now.since(*last) >= AGAIN {
-                        *last = now;
-                        lines.push(words);
-                    }
-                }
-                None => {
-                    self.printed.push((matter, now, now));
+            if let Some((_, seen, last)) = self.printed.iter_mut().find(|(known, ..)| *known == matter) {
+                *seen = now;
+                if repeats && now.since(*last) >= AGAIN {
+                    *last = now;
                     lines.push(words);
                 }
+            } else {
+                self.printed.push((matter, now, now));
+                lines.push(words);
             }
         }
         lines

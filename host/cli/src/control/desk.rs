@@ -7,9 +7,9 @@ use std::ffi::OsString;
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::TeamConfig;
@@ -26,8 +26,8 @@ use ssl::Message;
 use ssl::log::MessageKind;
 use ssl::net::Interfaces;
 
-use super::board::Board;
 use super::alarms::Alarms;
+use super::board::Board;
 use super::inbox::{Inbox, Mail};
 use super::radio_alarms::RadioAlarms;
 use super::terminal::Terminal;
@@ -370,7 +370,10 @@ impl Desk {
     fn end_recording(&mut self, recorder: Option<BackgroundRecorder>) {
         let Some(recorder) = recorder else { return };
         if recorder.dropped() > 0 {
-            self.words.push(format!("recording  {} messages were dropped: the disk was too slow", recorder.dropped()));
+            self.words.push(format!(
+                "recording  {} messages were dropped: the disk was too slow",
+                recorder.dropped()
+            ));
         }
         self.recording = recorder.finish();
         if let Err(error) = &self.recording {

@@ -220,7 +220,10 @@ mod tests {
                 assert!(held(&lanes) <= VISION_MAX * VISION_LEN_MAX);
             }
             lanes.put(Mail::Referee(vec![round as u8], from()));
-            assert!(matches!(lanes.take(), Some(Mail::Referee(bytes, _)) if bytes == [round as u8]), "{round}");
+            assert!(
+                matches!(lanes.take(), Some(Mail::Referee(bytes, _)) if bytes == [round as u8]),
+                "{round}"
+            );
             // Of vision the newest are left, in order.
             let Some(Mail::Vision(bytes)) = lanes.take() else { panic!("vision waits") };
             let number = u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);

@@ -36,7 +36,9 @@ impl Terminal {
     pub(super) fn line(&mut self, words: String) {
         let words = match self.dropped {
             0 => words,
-            dropped => format!("{words}\n{dropped} lines before this one were dropped: the terminal took none"),
+            dropped => {
+                format!("{words}\n{dropped} lines before this one were dropped: the terminal took none")
+            }
         };
         match self.prints.try_send(Print::Line(words)) {
             Ok(()) => self.dropped = 0,

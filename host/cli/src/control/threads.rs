@@ -230,11 +230,16 @@ mod tests {
     #[test]
     fn a_line_that_is_too_slow_is_reported_with_the_rate_that_it_needs() {
         let line = LineRate { device: "/dev/ttyACM0".to_owned(), baud: 115_200 };
-        let before = OutCounts { snapshots: 1_000, superseded: 400, frames: 5_000, bytes: 200_000, side_dropped: 0 };
+        let before =
+            OutCounts { snapshots: 1_000, superseded: 400, frames: 5_000, bytes: 200_000, side_dropped: 0 };
         // 100 snapshots of 290 bytes in 8 frames.
-        let counts = OutCounts { snapshots: 1_100, superseded: 460, frames: 5_800, bytes: 229_000, side_dropped: 0 };
+        let counts =
+            OutCounts { snapshots: 1_100, superseded: 460, frames: 5_800, bytes: 229_000, side_dropped: 0 };
         let words = too_slow(&line, before, counts, Duration::from_secs(1)).expect("it is too slow");
-        assert!(words.contains("needs 306000 bit/s") && words.contains("serial:/dev/ttyACM0:460800"), "{words}");
+        assert!(
+            words.contains("needs 306000 bit/s") && words.contains("serial:/dev/ttyACM0:460800"),
+            "{words}"
+        );
         let kept_up = OutCounts { superseded: 405, ..counts };
         assert_eq!(too_slow(&line, before, kept_up, Duration::from_secs(1)), None);
     }

@@ -127,13 +127,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_referee_s_name_cannot_speak_to_the_terminal() {
-        let words = heard(Some("gc\u{1b}]0;pwn\u{7}\u{1b}[31mRED\nrobots halted"));
-        assert_eq!(words, "the referee is heard: gc\\u001b]0;pwn\\u0007\\u001b[31mRED\\nrobots halted");
-        assert_eq!(heard(None), "the referee is heard: without a name");
-    }
-
-    #[test]
     fn what_is_missing_is_told_once_and_so_is_that_it_came() {
         let mut waiting = Waiting::default();
         let mut see = |missing| waiting.see(missing, |_| "waits".to_owned(), || "came".to_owned());

@@ -8,18 +8,18 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Generous: a loaded machine is no failure.
-pub const PATIENCE: Duration = Duration::from_secs(30);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A running verb; its words on stderr come line by line. Ended when dropped.
-pub struct Running {
-    pub process: Child,
+pub(crate) struct Running {
+    pub(crate) process: Child,
     lines: Receiver<(Duration, String)>,
-    heard: Vec<(Duration, String)>,
+    pub(crate) heard: Vec<(Duration, String)>,
 }
 
 impl Running {
     /// Starts the built program with these arguments.
-    pub fn start(arguments: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_onetwo"))
             .args(arguments)
             // The host's epoch is kept there, not in the home of the user that runs the tests.
@@ -41,7 +41,7 @@ impl Running {
     }
 
     /// Waits for a line with these words.
-    pub fn says(&mut self, words: &str) -> (Duration, String) {
+    pub(crate) fn says(&mut self, words: &str) -> (Duration, String) {
         let until = Instant::now() + PATIENCE;
         loop {
             let left = until.saturating_duration_since(Instant::now());
@@ -58,7 +58,7 @@ impl Running {
     }
 
     /// The control port that the simulator says it has.
-    pub fn control_port(&mut self) -> u16 {
+    pub(crate) fn control_port(&mut self) -> u16 {
         let (_, line) = self.says("control  ");
         let address = line.split_whitespace().nth(1).expect("an address").trim_end_matches(',');
         address.parse::<SocketAddr>().expect("an address").port()

@@ -340,3 +340,56 @@ fn a_pass_of_open_play_that_has_left_is_its_receivers_and_is_told_to_the_books_o
     coach.decide(&view);
     assert_eq!(coach.take_sent(), None);
 }
+
+#[test]
+fn a_placement_that_gets_nowhere_is_given_up_and_everybody_keeps_away() {
+    let mut coach = coach();
+    let mut view = view((2.0, 2.0), &OURS, &THEIRS);
+    view.phase = Phase::BallPlacement(Side::Ours);
+    view.placement = Some(Point::new(-1.0, 0.0));
+    let places = |orders: &Orders| orders.iter().any(|order| matches!(order.task, Task::PlaceBall { .. }));
+    let begun = view.now;
+    // Half a metre each five seconds is progress; none for twelve is not.
+    for second in 0..40_u64 {
+        view.now = Instant(begun.0 + second * 1_000_000);
+        let moved = 0.5 * (second.min(20) / 5) as f32;
+        let at = Point::new(2.0 - moved, 2.0);
+        view.ball = Some(Ball::at_rest(at));
+        let orders = coach.decide(&view);
+        assert_eq!(places(&orders), second <= 32, "{second} s");
+        if second > 32 {
+            let spine = geometry::Segment::new(at, Point::new(-1.0, 0.0));
+            for order in &orders {
+                if let Task::GoTo { at, .. } = order.task {
+                    assert!(spine.distance_to(at) > 0.6, "{order:?}");
+                }
+            }
+        }
+    }
+    // The next placement is tried again.
+    view.phase = Phase::Stop;
+    coach.decide(&view);
+    view.phase = Phase::BallPlacement(Side::Ours);
+    assert!(places(&coach.decide(&view)));
+}
+
+#[test]
+fn a_ball_behind_the_goal_that_no_robot_gets_at_is_given_up_at_once() {
+    let mut coach = coach();
+    let mut view = view((4.75, 0.2), &OURS, &THEIRS);
+    view.phase = Phase::BallPlacement(Side::Ours);
+    view.placement = Some(Point::new(4.3, 2.8));
+    coach.decide(&view);
+    view.now = Instant(view.now.0 + 2_500_000);
+    assert!(!coach.decide(&view).iter().any(|order| matches!(order.task, Task::PlaceBall { .. })));
+}
+
+#[test]
+fn who_is_left_without_a_ball_is_told_to_be_where_it_may_rather_than_to_stand() {
+    for phase in [Phase::Stop, Phase::PreparePenalty(Side::Theirs), Phase::PrepareKickoff(Side::Ours)] {
+        let mut view = view((0.0, 0.0), &OURS, &THEIRS);
+        (view.phase, view.ball) = (phase, None);
+        let orders = coach().decide(&view);
+        assert!(orders.iter().all(|order| order.task != Task::Stand), "{phase:?}: {orders:?}");
+    }
+}

@@ -106,7 +106,7 @@ pub struct RobotControlResponse {
     /// What was not done.
     #[prost(message, repeated, tag = "1")]
     pub errors: Vec<SimulatorError>,
-    /// What robots feel: every configured one, also those taken away (README, trap 9).
+    /// What robots feel: every one on the field, or those that were commanded, or also those taken away (README, trap 9).
     #[prost(message, repeated, tag = "2")]
     pub feedback: Vec<RobotFeedback>,
 }

@@ -115,7 +115,7 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: if belief.game.phase == Phase::Run { EFFORT } else { EFFORT_STOPPED },
+            effort: EFFORT,
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
@@ -160,9 +160,6 @@ pub const EFFORT: u32 = 115;
 fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
     !matches!(phase, Phase::Run | Phase::Halt | Phase::Timeout(_))
 }
-
-/// The same while the ball is not in play: no case is looked for then, and who must leave must find a way among everybody.
-const EFFORT_STOPPED: u32 = 4 * EFFORT;
 
 /// Standing with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {

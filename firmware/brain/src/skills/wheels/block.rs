@@ -66,11 +66,9 @@ fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Fi
         } else {
             (HOLDS, |_, _| true)
         };
-    let holder = belief
-        .others
-        .iter()
-        .filter(|other| other.side == Side::Theirs)
-        .find(|other| other.pose.position.distance(ball.position) < near && looks_at(other.pose, ball.position));
+    let holder = belief.others.iter().filter(|other| other.side == Side::Theirs).find(|other| {
+        other.pose.position.distance(ball.position) < near && looks_at(other.pose, ball.position)
+    });
     let shot = holder.and_then(|other| {
         let along = geometry::Vector::polar(FAR_BACK, other.pose.heading);
         crossing(Segment::new(ball.position, ball.position + along), stretch, 0.0)
@@ -148,13 +146,25 @@ mod tests {
         let goal_line = Segment::new(Point::new(-4.5, -0.5), Point::new(-4.5, 0.5));
         // 0.4 m behind the ball, looking over it at the goal line's y = −0.3: 6 m on, 0.3 m aside.
         let along = Point::<Field>::new(1.5, 0.0).direction_to(Point::new(-4.5, -0.3));
-        let pose = Pose { position: Point::new(1.5, 0.0) - geometry::Vector::polar(0.4, along), heading: along };
+        let pose =
+            Pose { position: Point::new(1.5, 0.0) - geometry::Vector::polar(0.4, along), heading: along };
         let id = protocol::RobotId::ZERO;
-        b.others.push(crate::belief::Other { side: Side::Theirs, id, pose, velocity: geometry::Vector::default() }).unwrap();
+        b.others
+            .push(crate::belief::Other {
+                side: Side::Theirs,
+                id,
+                pose,
+                velocity: geometry::Vector::default(),
+            })
+            .unwrap();
         b.game.phase = Phase::PreparePenalty(Side::Theirs);
         assert!(goes_to(block(&b, goal_line)).y().abs() < 1e-3, "not before it may shoot");
         b.game.phase = Phase::Penalty(Side::Theirs);
-        assert!((goes_to(block(&b, goal_line)).y() + 0.3).abs() < 0.01, "{:?}", goes_to(block(&b, goal_line)));
+        assert!(
+            (goes_to(block(&b, goal_line)).y() + 0.3).abs() < 0.01,
+            "{:?}",
+            goes_to(block(&b, goal_line))
+        );
     }
 
     #[test]

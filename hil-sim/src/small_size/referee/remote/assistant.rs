@@ -93,7 +93,7 @@ impl Assistant {
 
     fn put_ball(&mut self, game: &RemoteMatch, world: &World) -> Option<Deed> {
         let now = game.now;
-        let Some((why, target)) = self.wanted(game, world) else {
+        let Some((why, target)) = wanted(game, world) else {
             self.ball = None;
             return None;
         };
@@ -112,46 +112,6 @@ impl Assistant {
         self.put_at = Some(now);
         self.ball = None;
         Some(Deed { order: WorldOrder::PutBall(target), why })
-    }
-
-    /// Where the ball is to be put now by hand, if it is.
-    fn wanted(&self, game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
-        let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
-        let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
-        let set = match game.phase() {
-            Phase::BallPlacement(_) => {
-                let lost = still && !is_reachable(&game.field, ball);
-                return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
-            }
-            // Robots stand around it now: only a ball from which the controller does not start is touched.
-            Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
-            Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
-            _ => None,
-        };
-        if let Some((restart, tolerance)) = set {
-            let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
-            return Some((Why::SetByHand(restart), mark));
-        }
-        let stopped = matches!(game.phase(), Phase::Stop);
-        if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
-            return None;
-        }
-        // Whoever decides about a goal wants to see where the ball lies.
-        let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
-        let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
-        let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
-        let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
-        match game.next() {
-            Some(next) if next.is_set_by_hand() => {
-                (!lies(SET_BY_HAND)).then_some((Why::SetByHand(next), target))
-            }
-            _ if !stopped || placement_needless(&game.field, ball, speed, target) => None,
-            _ if game.has_event(GameEventType::PlacementSucceeded) && lies(limits::PLACEMENT_TOLERANCE) => {
-                None
-            }
-            _ if game.placing_team().is_none() => Some((Why::NoTeamPlaces, target)),
-            _ => Some((Why::NothingHappens, target)),
-        }
     }
 }
 
@@ -213,6 +173,42 @@ impl Team {
         self.off.remove(0);
         self.changed = Some(now);
         Some(Deed { order: WorldOrder::ReturnRobot(who, pose), why: Why::MayComeBack })
+    }
+}
+
+/// Where the ball is to be put now by hand, if it is.
+fn wanted(game: &RemoteMatch, world: &World) -> Option<(Why, Point<Field>)> {
+    let (ball, speed) = (world.ball.position, world.ball.velocity.norm());
+    let still = speed <= limits::BALL_STILL && world.ball.height <= 0.0;
+    let set = match game.phase() {
+        Phase::BallPlacement(_) => {
+            let lost = still && !is_reachable(&game.field, ball);
+            return lost.then(|| (Why::OutOfReach, places::within_reach(&game.field, ball)));
+        }
+        // Robots stand around it now: only a ball from which the controller does not start is touched.
+        Phase::PrepareKickoff(team) => Some((Restart::Kickoff(team), game.field.center_radius)),
+        Phase::PreparePenalty(team) => Some((Restart::Penalty(team), limits::PLACEMENT_TOLERANCE)),
+        _ => None,
+    };
+    if let Some((restart, tolerance)) = set {
+        let mark = game.mark(restart).filter(|mark| ball.distance(*mark) > tolerance)?;
+        return Some((Why::SetByHand(restart), mark));
+    }
+    let stopped = matches!(game.phase(), Phase::Stop);
+    if !stopped && game.phase() != Phase::Halt || game.stage().is_break() {
+        return None;
+    }
+    // Whoever decides about a goal wants to see where the ball lies.
+    let open = game.has_event(GameEventType::PossibleGoal) && !game.has_event(GameEventType::Goal);
+    let spot = || stopped.then(|| nearest_free_kick_spot(&game.field, &game.limits, ball));
+    let target = game.target().or_else(spot).filter(|_| !open || stopped)?;
+    let lies = |tolerance: f32| still && ball.distance(target) <= tolerance;
+    match game.next() {
+        Some(next) if next.is_set_by_hand() => (!lies(SET_BY_HAND)).then_some((Why::SetByHand(next), target)),
+        _ if !stopped || placement_needless(&game.field, ball, speed, target) => None,
+        _ if game.has_event(GameEventType::PlacementSucceeded) && lies(limits::PLACEMENT_TOLERANCE) => None,
+        _ if game.placing_team().is_none() => Some((Why::NoTeamPlaces, target)),
+        _ => Some((Why::NothingHappens, target)),
     }
 }
 

@@ -178,7 +178,8 @@ impl RemoteMatch {
     fn designated(&self) -> Option<Point<Field>> {
         let told = self.newest.as_ref()?.designated_position?;
         let place = Point::new(told.x * 0.001, told.y * 0.001);
-        place.is_finite().then_some(place)
+        // Nothing is put where no carpet is, whatever a packet says.
+        (place.is_finite() && self.field.carpet().contains(place)).then_some(place)
     }
 
     /// Robots that team may have on the field now; `None` until the controller says.

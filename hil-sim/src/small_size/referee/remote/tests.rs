@@ -202,6 +202,31 @@ fn where_the_controller_wants_the_ball_decides_and_the_mark_when_it_prepares() {
 }
 
 #[test]
+fn packets_of_nonsense_move_nothing_out_of_the_hall() {
+    let mut chance = crate::rng::Stream::new(8, "remote match");
+    let mut hall = hall();
+    hall.ball(at(-2.0, 3.1), Vector::default());
+    hall.next(Wire::ForceStart, at(0.0, 0.0));
+    hall.packet.game_events = vec![failed(Colour::Blue), failed(Colour::Yellow)];
+    for _ in 0..400 {
+        let number = [f32::NAN, f32::INFINITY, -1e30, 3e9, 0.0][chance.whole(0, 4) as usize];
+        hall.packet.designated_position = Some(packet::Point { x: number, y: -number });
+        hall.packet.command = chance.whole(0, 30) as i32 - 5;
+        hall.packet.next_command = Some(chance.whole(0, 30) as i32 - 5);
+        hall.packet.stage = chance.whole(0, 40) as i32 - 10;
+        hall.packet.command_counter = chance.whole(0, 5);
+        hall.packet.command_timestamp = u64::from(chance.whole(0, 9)) * 1_000_000_000_000;
+        hall.packet.blue.max_allowed_bots = Some([0, 6, u32::MAX][chance.whole(0, 2) as usize]);
+        hall.packet.yellow.goalkeeper = chance.whole(0, 99);
+        hall.run(0.3);
+    }
+    let inside = |p: Point<Field>| hall.game.field.carpet().contains(p);
+    assert!(inside(hall.world.ball.position), "{:?}", hall.world.ball);
+    let robots = hall.world.robots().iter().filter(|robot| robot.present);
+    assert!(robots.into_iter().all(|robot| inside(robot.pose.position)));
+}
+
+#[test]
 fn a_stop_from_which_nothing_goes_on_is_ended_by_hand_at_last() {
     let mut hall = hall();
     hall.ball(at(-2.0, 3.1), Vector::default());
