@@ -143,8 +143,10 @@ fn disturb(stage: &mut Stage, chance: &mut Stream) {
         }
         7 => stage.robots.iter_mut().for_each(|robot| robot.touches_ball = false),
         8 => {
+            // Robots that people put in again and again would hold up a match that has to be decided.
+            let most = if stage.referee.settings.knockout { 5 } else { 15 };
             let who = Who {
-                id: id(chance.whole(0, 15) as u8),
+                id: id(chance.whole(0, most) as u8),
                 ..if chance.chance(0.5) { yellow(0) } else { blue(0) }
             };
             stage.put(who, at(chance.between(-5.0, 5.0), chance.between(-3.5, 3.5)));
