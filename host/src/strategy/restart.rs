@@ -18,10 +18,13 @@ pub const OFF_BALL: f32 = 0.78;
 const TAKER_WAITS: f32 = 0.7;
 /// How far behind the ball everybody but taker and keeper is at a penalty, m: the rules' 1 m, a body and a margin.
 const BEHIND_PENALTY: f32 = 1.3;
-/// Between robots that wait at a penalty, m: two bodies, and room for a third.
-const PENALTY_APART: f32 = 0.36;
-/// Robots in a row behind a penalty: 1.8 m, what half of the smallest field holds.
-const PENALTY_ROW: usize = 5;
+/// Least distance between robots that wait at a penalty, m: two bodies, and as much between them. A third does not pass between
+/// two of them, so that they stand in one row where the field holds it.
+const PENALTY_APART_MIN: f32 = 0.36;
+/// Most robots of a team that wait at a penalty: eleven without the keeper.
+const PENALTY_ROW_MAX: usize = 10;
+/// From the touch line to the last place of a row behind a penalty, m.
+const PENALTY_INSIDE: f32 = 0.2;
 /// A ball this near the mark lies for the penalty, m: the game controller starts it within 0.15 m.
 const NEAR_MARK: f32 = 0.3;
 /// Beside a body that passes between two walls, m.
@@ -86,14 +89,16 @@ pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     view.placement.or(lies).unwrap_or(mark)
 }
 
-/// Everybody but taker and keeper at a penalty from `spot`: in rows behind it, each team on its own left, so that no two are sent to
-/// one place.
+/// Robots other than taker and keeper at a penalty from `spot`: in a row behind it, each team on its own left, so that no two are
+/// sent to one place. A second row only where the field does not hold them in one.
 pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let (row, place) = (slot / PENALTY_ROW, slot % PENALTY_ROW);
-    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART * row as f32);
-    let y = PENALTY_APART * (place as f32 + 1.0);
-    view.clamp(Point::new(x, y), 0.2)
+    let wide = view.field.width * 0.5 - PENALTY_INSIDE;
+    let in_row = ((wide / PENALTY_APART_MIN + 0.01) as usize).clamp(1, PENALTY_ROW_MAX);
+    let (row, place) = (slot / in_row, slot % in_row);
+    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
+    let y = wide / in_row as f32 * (place as f32 + 1.0);
+    view.clamp(Point::new(x, y), PENALTY_INSIDE)
 }
 
 /// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.
@@ -199,6 +204,8 @@ mod tests {
                 assert!(shooting.x() - at.x() > 1.1, "{league:?}: {at:?}");
                 assert!(view.clamp(*at, 0.1) == *at, "{league:?}: {at:?}");
                 assert!(all[..i].iter().all(|other| other.distance(*at) > 0.3), "{league:?}: {all:?}");
+                // A robot does not have to pass between two that stand already.
+                assert!((at.x() - all[0].x()).abs() < 0.01, "{league:?}: {all:?}");
             }
         }
     }
