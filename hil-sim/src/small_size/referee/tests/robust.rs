@@ -181,7 +181,7 @@ fn a_wild_world_ends_in_time_and_never_leaves_the_state_graph() {
         let mut stage = wild(seed);
         let clock = MatchClock::Simulated { total: Duration::millis(200_000) };
         let knockout = seed % 4 == 3;
-        let mut settings = RefereeSettings { clock, knockout, ..settings() };
+        let mut settings = RefereeSettings { clock, knockout, cards: !knockout, ..settings() };
         // These robots place no ball: in the long matches people do it at once.
         (settings.yellow.can_place_ball, settings.blue.can_place_ball) = (!knockout, !knockout);
         stage.referee = InternalReferee::new(settings, seed).unwrap();
