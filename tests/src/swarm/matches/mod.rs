@@ -12,6 +12,7 @@ mod run;
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::fmt::Write as _;
 
 use frozen::{Frozen, Must};
 use protocol::Who;
@@ -164,7 +165,7 @@ impl Sum {
 pub fn words(plan: &Plan, outcome: &Outcome) -> String {
     let mut lines = String::new();
     for found in &outcome.found {
-        lines += &format!("seed {}: {found}\n", plan.seed);
+        let _ = writeln!(lines, "seed {}: {found}", plan.seed);
     }
     format!("{lines}  {plan}\n  repeat: cargo xtask swarm --plan referee --first {} --seeds 1", plan.seed)
 }

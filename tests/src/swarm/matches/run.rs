@@ -1,5 +1,7 @@
 //! `run`: plays a match of a plan and looks at it every 10 ms. s, m, field frame.
 
+use std::fmt::Write as _;
+
 use arena::game::{Game, GameConfig, Nobody, TICK_US};
 use geometry::{Field, GoalEnd, Point};
 use hil_sim::NativeBackend;
@@ -333,7 +335,7 @@ fn wanted(game: &Game<'_>, own: [GoalEnd; 2], who: Who) -> String {
     let others = game.world().robots().iter().filter(|robot| robot.present && robot.who != who);
     let near = others.filter_map(|robot| Some((robot.who, robot.pose.position.distance(at(who)?))));
     if let Some((next, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) {
-        words += &format!("; {} {} is {distance:.2} m away", next.colour.word(), next.id);
+        let _ = write!(words, "; {} {} is {distance:.2} m away", next.colour.word(), next.id);
     }
     words
 }

@@ -237,7 +237,7 @@ impl Stage {
             WorldOrder::PutBall(place) => self.ball = Some(BallSeen::at(place)),
             WorldOrder::RemoveRobot(who) => self.take(who),
             WorldOrder::ReturnRobot(who, pose) | WorldOrder::CarryRobot(who, pose) => {
-                self.put(who, pose.position)
+                self.put(who, pose.position);
             }
         }
     }
