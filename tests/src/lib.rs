@@ -1,4 +1,5 @@
 //! What tests that cross crates share. Runs on the developer's machine only.
+#![forbid(unsafe_code)]
 
 pub mod bad_line;
 pub mod carpet;

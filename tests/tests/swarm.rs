@@ -35,6 +35,6 @@ fn short_matches_with_cards_restarts_and_halts_keep_every_promise() {
         let outcome = matches::play(&plan);
         assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
         // The match was no empty one.
-        assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
+        assert!(outcome.acts > 1 && outcome.begun.iter().any(|times| *times > 0), "{outcome:?}");
     }
 }

@@ -74,9 +74,11 @@ pub struct Course<'o, F> {
     pub within: Option<Shape<F>>,
     /// Until it asks again, s, at most 1.
     pub step: f32,
-    /// Most that is spent on looking for a way, and a quarter of what is for a way out: a unit for one straight piece and one
-    /// obstacle, about forty instructions of a Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
+    /// Most that is spent on looking for a way: a unit for one straight piece and one obstacle, about forty instructions of a
+    /// Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
     pub effort: u32,
+    /// The same for the route of a way out.
+    pub effort_to_leave: u32,
 }
 
 /// Which way it goes.
@@ -144,10 +146,10 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     }
     let mut scene = Scene::new(course.obstacles, within, course.effort);
     scene.look();
-    let goal = scene.nearest_free(to);
     if scene.is_inside(from) {
-        return escape(course, &mut scene, goal);
+        return escape(course, &mut scene);
     }
+    let goal = scene.nearest_free(to);
     scene.keep_apart(from, goal, false);
     let route = Route::find(&scene, from, velocity, goal, &limits, course.effort >= EFFORT_LONG);
     let (verdict, towards) = match route.via {
@@ -161,11 +163,13 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
 }
 
 /// Out of what holds the start: to a free point, around all bodies, through any region.
-fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>, goal: Point<F>) -> Way<F> {
-    let Course { from, velocity, limits, .. } = *course;
+fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
+    let Course { from, velocity, to, limits, .. } = *course;
     let exit = scene.exit(from);
+    // One search a step: a free point for a covered target is sought when the robot is out.
+    let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
-    scene.spend_to_leave();
+    scene.allow(course.effort_to_leave);
     let route = Route::find(scene, from, velocity, exit, &limits, true);
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),

@@ -14,6 +14,7 @@ use flate2::bufread::MultiGzDecoder;
 use flate2::write::GzEncoder;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
+use host::referee::SenderAddress;
 use host::trace::{End, Kind, Reader};
 use protocol::frame::TeamKey;
 use serde_json::Value;
@@ -108,7 +109,9 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let mut recheck = Recheck::new(&header, TeamKey::ZERO).unwrap();
     let mut boundaries = vec![(at, None)];
     for record in reader.by_ref() {
-        at += 14 + record.bytes.len();
+        // A referee's packet stands behind its sender's address.
+        let sender = if record.kind == Kind::Referee { SenderAddress::LEN } else { 0 };
+        at += 14 + sender + record.bytes.len();
         boundaries.push((at, Some(record.kind)));
         // A cut trace is checked up to its last record: what holds here holds for the trace that is cut here.
         recheck.feed(&record);
@@ -143,7 +146,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             let Some((at, _)) = of_kind.get(place) else { continue };
             let file = scratch("cut.trace");
             fs::write(&file, left(&whole[..*at])).unwrap();
-            let report = json(&[text(&file)], 1);
+            let report = json(&["replay", text(&file)], 1);
             assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{report}");
             assert_eq!(report["same_decisions"], true, "after {kind:?} at byte {at}: {}", report["hosts"]);
             let out = onetwo(&[text(&file)]);
@@ -169,7 +172,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
     let cut = scratch("cut.log.gz");
     for parts in [2, 3, 7] {
         fs::write(&cut, &bytes[..bytes.len() * (parts - 1) / parts]).unwrap();
-        let report = json(&[text(&cut)], 1);
+        let report = json(&["replay", text(&cut)], 1);
         assert!(
             report["damage"].as_str().is_some_and(|words| words.starts_with("cut: ")),
             "{}",
@@ -208,9 +211,9 @@ fn a_match_that_is_ended_by_a_signal_ends_in_order_and_its_recording_is_whole() 
         assert_eq!(out.status.code(), Some(code), "{why}");
         assert!(told.contains("ball in play") && told.contains("to see it again"), "the summary: {told}");
         assert!(why.contains("ended by ") && why.contains(name), "{why}");
-        let log = json(&[text(&stem.with_extension("log.gz"))], 0);
+        let log = json(&["replay", text(&stem.with_extension("log.gz"))], 0);
         assert!(log["damage"].is_null() && log["span_s"].as_f64().is_some_and(|s| s > 1.0), "{log}");
-        let trace = json(&[text(&stem.with_extension("trace")), "--at", "0.5"], 0);
+        let trace = json(&["replay", text(&stem.with_extension("trace")), "--at", "0.5"], 0);
         assert!(trace["ball"].is_object(), "{trace}");
         let trace = MultiGzDecoder::new(&fs::read(stem.with_extension("trace")).unwrap()[..]).bytes().last();
         assert!(trace.is_some_and(|byte| byte.is_ok()), "gzip's checksum is right");
@@ -222,11 +225,11 @@ fn a_match_that_is_killed_has_lost_a_second_at_most() {
     let (mut child, stem) = under_way("killed");
     child.kill().unwrap();
     child.wait().unwrap();
-    let report = json(&[text(&stem.with_extension("trace"))], 1);
+    let report = json(&["replay", text(&stem.with_extension("trace"))], 1);
     assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{report}");
     assert_eq!(report["same_decisions"], true, "{}", report["hosts"]);
     let of_trace = report["span_s"][1].as_f64().unwrap();
-    let of_log = json(&[text(&stem.with_extension("log.gz"))], 1)["span_s"].as_f64().unwrap();
+    let of_log = json(&["replay", text(&stem.with_extension("log.gz"))], 1)["span_s"].as_f64().unwrap();
     // Both are flushed at the same moments of the match; either may hold more by what its buffers gave away in between.
     assert!(of_trace > 1.0 && of_log > 1.0, "{of_trace} {of_log}");
 }

@@ -142,7 +142,10 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_on
     let mut link = robot(2);
     assert!(radio.handle_packet(ms(1), &link.seal(&beacon())).is_err(), "a beacon proves nothing");
     radio.offer(ms(2), &world(ms(2), 1, 0), situation(), &[stand(2)]);
-    assert!(fetch(&mut radio).is_empty() && radio.present(ms(2)).count() == 0);
+    // One part to an empty audience: it tells a base station where the host is, and no robot anything.
+    let announced = fetch(&mut radio);
+    assert_eq!((announced.len(), radio.present(ms(2)).count()), (1, 0));
+    assert!(deliver(&mut link, 2, ms(2), &announced).is_empty());
     join(&mut radio, &mut link, 2, ms(3));
     radio.offer(ms(15), &world(ms(15), 1, 0), situation(), &[stand(2)]);
     let heard = deliver(&mut link, 2, ms(15), &fetch(&mut radio));

@@ -129,6 +129,7 @@ impl Task {
             within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
             step: 0.01,
             effort: avoid::EFFORT_MAX,
+            effort_to_leave: 4 * avoid::EFFORT_MAX,
         };
         folded(&avoid::plan(&course).next)
     }

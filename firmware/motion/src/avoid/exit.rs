@@ -11,32 +11,44 @@ use geometry::{Point, Shape, Vector, math};
 use super::item::Scene;
 
 impl<F: Copy> Scene<'_, F> {
-    /// The point itself if it is free, else one nearby that is; the point brought inside where there is none.
+    /// The point itself if it is free, else one nearby that is; the point brought inside where there is none. For a target, in
+    /// every step: few candidates, then the first free point on rings around it.
     pub(super) fn nearest_free(&self, point: Point<F>) -> Point<F> {
         let start = self.within().map_or(point, |within| inside(&within, point));
-        self.search(start, |_| true)
+        self.search(start, TRIES_TO_GOAL_MAX, |_| true)
+            .or_else(|| self.first_on_rings(start))
+            .unwrap_or(start)
     }
 
     /// Where to leave what covers a robot: the nearest free point to which no body stands in the straight way, else the nearest.
     pub(super) fn exit(&self, from: Point<F>) -> Point<F> {
         let start = self.within().map_or(from, |within| inside(&within, from));
-        self.search(start, |exit| self.sees(from, exit))
+        let found = self.search(start, TRIES_MAX, |exit| self.sees(from, exit));
+        found.or_else(|| self.nearest_of_lattice(start)).unwrap_or(start)
     }
 
-    fn search(&self, start: Point<F>, suits: impl Fn(Point<F>) -> bool) -> Point<F> {
-        let Some(cover) = self.cover(start) else { return start };
+    fn search(&self, start: Point<F>, tries: usize, suits: impl Fn(Point<F>) -> bool) -> Option<Point<F>> {
+        let Some(cover) = self.cover(start) else { return Some(start) };
         let mut exits = Exits { start, list: heapless::Vec::new() };
         self.add_exits(&mut exits, &cover, start);
         let mut free = None;
-        for _ in 0..TRIES_MAX {
+        for _ in 0..tries {
             let Some(at) = exits.take_nearest() else { break };
             match self.cover(at) {
-                None if suits(at) => return at,
+                None if suits(at) => return Some(at),
                 None => free = free.or(Some(at)),
                 Some(cover) => self.add_exits(&mut exits, &cover, at),
             }
         }
-        free.or_else(|| self.nearest_of_lattice(start)).unwrap_or(start)
+        free
+    }
+
+    /// The first free point on growing rings.
+    fn first_on_rings(&self, start: Point<F>) -> Option<Point<F>> {
+        let points = RINGS
+            .into_iter()
+            .flat_map(|ring| COMPASS.into_iter().map(move |[x, y]| start + Vector::new(x, y) * ring));
+        points.into_iter().find(|at| self.stays_within(*at) && self.cover(*at).is_none())
     }
 
     /// The shape of an obstacle in which the point lies, or that it touches.
@@ -176,8 +188,16 @@ const SAME: f32 = 0.001;
 const SAME_AROUND: f32 = 0.03;
 /// Most candidates that are looked at: with 16, keepers do not find into a mouth in which another robot stands.
 const TRIES_MAX: usize = 32;
+/// Most candidates for a target that is covered: whoever gets near it looks again.
+const TRIES_TO_GOAL_MAX: usize = 2;
 /// Most candidates that are noted.
 const EXITS_MAX: usize = 64;
 /// Points of the lattice along the region's x and y.
 const COLUMNS: u8 = 6;
 const ROWS: u8 = 4;
+/// Rings of 8 points around a covered point, m.
+const RINGS: [f32; 4] = [0.15, 0.3, 0.6, 1.2];
+const COMPASS: [[f32; 2]; 8] = {
+    let h = core::f32::consts::FRAC_1_SQRT_2;
+    [[1.0, 0.0], [h, h], [0.0, 1.0], [-h, h], [-1.0, 0.0], [-h, -h], [0.0, -1.0], [h, -h]]
+};

@@ -113,14 +113,14 @@ impl<'o, F: Copy> Scene<'o, F> {
     }
 
     /// Notes that every obstacle was looked at, at so much for each three, and so much besides.
-    fn spend(&self, a_third: u32, besides: u32) {
+    pub(super) fn spend(&self, a_third: u32, besides: u32) {
         let looked = self.items.len() as u32 * a_third / 3;
         self.effort.set(self.effort.get().saturating_sub(looked + besides));
     }
 
-    /// More may be spent: who must leave must find a way among everybody.
-    pub(super) fn spend_to_leave(&self) {
-        self.effort.set(self.effort.get().saturating_mul(TO_LEAVE));
+    /// Sets what may be spent from now on.
+    pub(super) fn allow(&self, effort: u32) {
+        self.effort.set(effort);
     }
 
     /// Whether a plan has had its share of a step.
@@ -357,8 +357,6 @@ impl<F: Copy> Obstacle<F> {
 pub(super) const SKIN: f32 = 0.02;
 /// What braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
-/// So many times the effort of a usual plan goes into a way out, which is looked for in few steps.
-const TO_LEAVE: u32 = 4;
 /// A share of a way that tells where it leads.
 const A_LITTLE: f32 = 0.1;
 /// The square of no circle's radius: nothing comes nearer.

@@ -28,6 +28,7 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
         within: None,
         step: STEP,
         effort: EFFORT_MAX,
+        effort_to_leave: 4 * EFFORT_MAX,
     }
 }
 
@@ -257,7 +258,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
         let from = at(dice.within(4.7), dice.within(3.2));
         let mut found = Scene::new(&scene, Some(CARPET), EFFORT_MAX);
         found.look();
-        let exit = found.nearest_free(from);
+        let exit = found.exit(from);
         assert!(CARPET.contains(exit), "scene {number}: {from:?} → {exit:?}");
         assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
     }
@@ -389,6 +390,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             within,
             step,
             effort: EFFORT_MAX,
+            effort_to_leave: 4 * EFFORT_MAX,
         });
         assert!(
             way.next.velocity.is_finite() && way.next.position.is_finite(),

@@ -62,6 +62,7 @@ impl Ways<'_> {
                 within,
                 step: STEP,
                 effort: EFFORT,
+                effort_to_leave: 4 * EFFORT,
             };
             let way = plan(&course);
             (from, velocity) = (way.next.position, way.next.velocity);

@@ -118,6 +118,11 @@ impl Drivetrain {
             within: Some(around.within),
             step,
             effort: if beyond_goal_line { avoid::EFFORT_LONG } else { EFFORT },
+            effort_to_leave: if is_moved_by_the_rules(belief.game.phase) {
+                EFFORT_STOPPED
+            } else {
+                EFFORT_IN_PLAY
+            },
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
@@ -157,6 +162,11 @@ impl Drivetrain {
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
 pub const EFFORT: u32 = 115;
+
+/// What a way out of a forbidden region may take while the ball is not in play: no case is sought then.
+const EFFORT_STOPPED: u32 = 4 * EFFORT;
+/// The same in play, where a step may seek a case too: more does not fit into a step of 40,000 instructions.
+const EFFORT_IN_PLAY: u32 = EFFORT + EFFORT / 4;
 
 /// Whether where a robot may stand changes in this phase, though nobody tells it to go: with the ball, or with the phase itself.
 fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
