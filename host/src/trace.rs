@@ -392,7 +392,7 @@ mod tests {
                     let expected = if begins.contains(&cut) {
                         End::Whole
                     } else {
-                        let last = [Instant(10), Instant(20)].into_iter().take(whole).last();
+                        let last = [Instant(10), Instant(20)].into_iter().take(whole).next_back();
                         End::Cut { at: begins[whole] as u64, last }
                     };
                     assert_eq!(reader.end(), Some(&expected), "{cut}");

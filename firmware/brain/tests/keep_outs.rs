@@ -175,7 +175,7 @@ fn starts(usual: u32) -> u32 {
 
 /// No more of these drives failed than may.
 fn judge(drives: usize, failed: &[String], may: usize) {
-    let first = failed.iter().take(8).map(|told| format!("  {told}\n")).collect::<String>();
+    let first = failed.iter().take(8).map(String::as_str).collect::<Vec<_>>().join("\n  ");
     assert!(failed.len() <= may, "{} of {drives} drives failed:\n{first}", failed.len());
 }
 

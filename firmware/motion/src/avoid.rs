@@ -165,7 +165,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
 /// Out of what holds the start: to a free point, around all bodies, through any region.
 fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let Course { from, velocity, to, limits, .. } = *course;
-    let exit = scene.exit(from);
+    let exit = scene.exit(from, course.effort_to_leave);
     // One search a step: a free point for a covered target is sought when the robot is out.
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);

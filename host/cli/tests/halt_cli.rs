@@ -25,7 +25,7 @@ use ssl::referee::{Command as Wire, Referee, TeamInfo};
 use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 /// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
 /// Resident memory may grow by so much under a flood, bytes; 465 MB before.

@@ -25,7 +25,7 @@ use ssl::referee::{Command as Order, Referee};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
 /// Generous: a loaded machine is no failure.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("hostile-cli");
@@ -215,8 +215,9 @@ fn a_match_that_is_ended_by_a_signal_ends_in_order_and_its_recording_is_whole() 
         assert!(log["damage"].is_null() && log["span_s"].as_f64().is_some_and(|s| s > 1.0), "{log}");
         let trace = json(&["replay", text(&stem.with_extension("trace")), "--at", "0.5"], 0);
         assert!(trace["ball"].is_object(), "{trace}");
-        let trace = MultiGzDecoder::new(&fs::read(stem.with_extension("trace")).unwrap()[..]).bytes().last();
-        assert!(trace.is_some_and(|byte| byte.is_ok()), "gzip's checksum is right");
+        let zipped = fs::read(stem.with_extension("trace")).unwrap();
+        let whole = MultiGzDecoder::new(&zipped[..]).read_to_end(&mut Vec::new());
+        assert!(whole.is_ok(), "gzip's checksum is right");
     }
 }
 

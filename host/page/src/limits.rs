@@ -29,7 +29,7 @@ impl Default for Limits {
             // An explanation of the largest library takes less than 1 s.
             request: Duration::from_secs(20),
             // A second of a match is the longest answer: 100 kB.
-            connection: Duration::from_secs(60),
+            connection: Duration::from_mins(1),
             // Browsers open 6 to a host. With the viewers' it stays below a fifth of the usual 1,024 descriptors of a process.
             connections: 128,
             // A team and its guests.

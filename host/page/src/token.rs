@@ -35,7 +35,8 @@ impl Token {
     pub fn random() -> Result<Self, NoToken> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(NoToken)?;
-        Ok(Self(bytes.iter().map(|byte| format!("{byte:02x}")).collect()))
+        let digit = |nibble: u8| char::from_digit(u32::from(nibble), 16).unwrap_or('0');
+        Ok(Self(bytes.iter().flat_map(|byte| [digit(byte >> 4), digit(byte & 15)]).collect()))
     }
 
     /// As it stands in the address.

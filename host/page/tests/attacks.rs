@@ -17,11 +17,11 @@ type Viewer = WebSocket<MaybeTlsStream<TcpStream>>;
 /// Attackers of each test.
 const ATTACKERS: usize = 300;
 /// Longer than any test may take: what is limited so is not limited by it.
-const NEVER: Duration = Duration::from_secs(3600);
+const NEVER: Duration = Duration::from_hours(1);
 /// Soon, on a machine under load.
 const SOON: Duration = Duration::from_millis(300);
 /// A test gives up.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 struct Silent;
 

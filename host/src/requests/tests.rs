@@ -22,7 +22,7 @@ fn stopped() -> View {
 fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<Request> {
     let mut asked = Vec::new();
     for _ in 0..(seconds * 10.0) as u32 {
-        view.now = view.now + Duration::millis(100);
+        view.now += Duration::millis(100);
         requests.look(view, Some(5));
         asked.extend(std::iter::from_fn(|| requests.poll()));
     }
@@ -76,7 +76,7 @@ fn a_substitution_that_nobody_carries_out_is_asked_for_once_and_never_where_it_i
     }
     let mut requests = Requests::default();
     for _ in 0..600 {
-        view.now = view.now + Duration::millis(100);
+        view.now += Duration::millis(100);
         requests.look(&view, Some(0));
     }
     assert_eq!(requests.poll(), None);

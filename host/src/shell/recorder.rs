@@ -211,7 +211,9 @@ mod tests {
     }
 
     fn remove(stem: &Path) {
-        Recorder::files(stem).iter().for_each(|file| fs::remove_file(file).unwrap());
+        for file in Recorder::files(stem) {
+            fs::remove_file(file).unwrap();
+        }
     }
 
     #[test]

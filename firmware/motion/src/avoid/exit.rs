@@ -21,9 +21,10 @@ impl<F: Copy> Scene<'_, F> {
     }
 
     /// Where to leave what covers a robot: the nearest free point to which no body stands in the straight way, else the nearest.
-    pub(super) fn exit(&self, from: Point<F>) -> Point<F> {
+    pub(super) fn exit(&self, from: Point<F>, effort: u32) -> Point<F> {
         let start = self.within().map_or(from, |within| inside(&within, from));
-        let found = self.search(start, TRIES_MAX, |exit| self.sees(from, exit));
+        let tries = (effort / EFFORT_A_TRY).min(TRIES_MAX) as usize;
+        let found = self.search(start, tries, |exit| self.sees(from, exit));
         found.or_else(|| self.nearest_of_lattice(start)).unwrap_or(start)
     }
 
@@ -48,7 +49,10 @@ impl<F: Copy> Scene<'_, F> {
         let points = RINGS
             .into_iter()
             .flat_map(|ring| COMPASS.into_iter().map(move |[x, y]| start + Vector::new(x, y) * ring));
-        points.into_iter().find(|at| self.stays_within(*at) && self.cover(*at).is_none())
+        points.into_iter().find(|at| {
+            self.spend(0, 1);
+            self.stays_within(*at) && self.cover(*at).is_none()
+        })
     }
 
     /// The shape of an obstacle in which the point lies, or that it touches.
@@ -187,7 +191,9 @@ const SAME: f32 = 0.001;
 /// The same around discs and capsules, of which there would be too many.
 const SAME_AROUND: f32 = 0.03;
 /// Most candidates that are looked at: with 16, keepers do not find into a mouth in which another robot stands.
-const TRIES_MAX: usize = 32;
+const TRIES_MAX: u32 = 32;
+/// A candidate is looked at for so much of the effort that a way out may take.
+const EFFORT_A_TRY: u32 = 12;
 /// Most candidates for a target that is covered: whoever gets near it looks again.
 const TRIES_TO_GOAL_MAX: usize = 2;
 /// Most candidates that are noted.

@@ -258,7 +258,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
         let from = at(dice.within(4.7), dice.within(3.2));
         let mut found = Scene::new(&scene, Some(CARPET), EFFORT_MAX);
         found.look();
-        let exit = found.exit(from);
+        let exit = found.exit(from, EFFORT_MAX);
         assert!(CARPET.contains(exit), "scene {number}: {from:?} → {exit:?}");
         assert!(scene.iter().all(|o| o.shape.distance_to(exit) > 0.0), "scene {number}: {from:?} → {exit:?}");
     }

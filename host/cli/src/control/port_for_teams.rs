@@ -45,7 +45,9 @@ pub(super) fn talk(
             if !open && stream.take().is_some() {
                 port.lost(now());
             }
-            asked.try_iter().for_each(|request| port.ask(request, now()));
+            for request in asked.try_iter() {
+                port.ask(request, now());
+            }
             port.tick(now());
             while let Some(event) = port.poll_event() {
                 if matches!(event, Event::GivenUp(_) | Event::RegistrationRefused { .. }) {

@@ -104,12 +104,11 @@ impl Board {
                 Request::Robot { team, id, at } => {
                     let who = RobotId::new(id).map(|id| Who { colour: colour(team), id });
                     let there = |who: &Who| server.world().robot(*who).is_some_and(|robot| robot.present);
-                    match who.filter(there) {
-                        Some(who) => server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None),
-                        None => {
-                            let team = colour(team).word();
-                            self.page.refuse(format!("{team} has no robot {id} on the field"));
-                        }
+                    if let Some(who) = who.filter(there) {
+                        server.world_mut().drag_robot(who, Point::new(at[0], at[1]), None);
+                    } else {
+                        let team = colour(team).word();
+                        self.page.refuse(format!("{team} has no robot {id} on the field"));
                     }
                 }
                 Request::Referee { command } => {

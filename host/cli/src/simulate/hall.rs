@@ -70,7 +70,9 @@ pub(super) fn run(
             )));
         }
     };
-    sync.iter().for_each(|sync| note!("{}", sync.line()));
+    if let Some(sync) = &sync {
+        note!("{}", sync.line());
+    }
     note!("vision   to {}", vision.to());
     whistle.lines().iter().for_each(|line| note!("{line}"));
     if let Some(tracked) = &tracker {

@@ -89,12 +89,12 @@ fn who_is_off_stays_off_and_comes_back_a_second_after_the_card_is_over() {
     assert_eq!(bench.choose(&view, None), off);
     view.allowed = 5;
     assert_eq!(bench.choose(&view, None), off);
-    view.now = view.now + Duration::millis(1001);
+    view.now += Duration::millis(1001);
     assert_eq!(bench.choose(&view, None), &off[..1]);
     // Vision loses a playing robot for half a second: nobody comes back.
     view.ours.remove(3);
     assert_eq!(bench.choose(&view, None), &off[..1]);
-    view.now = view.now + Duration::millis(500);
+    view.now += Duration::millis(500);
     assert_eq!(bench.choose(&view, None), &off[..1]);
 }
 

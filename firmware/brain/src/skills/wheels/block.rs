@@ -60,14 +60,12 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
 fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
     // Who takes a penalty tells by where it lines up: there is no time to wait for the ball.
-    let (near, looks_at): (f32, fn(Pose<Field>, Point<Field>) -> bool) =
-        if belief.game.phase == Phase::Penalty(Side::Theirs) {
-            (LINES_UP, |pose, ball| (pose.position.direction_to(ball) - pose.heading).abs() < LOOKS_AT)
-        } else {
-            (HOLDS, |_, _| true)
-        };
+    let penalty = belief.game.phase == Phase::Penalty(Side::Theirs);
+    let looks_at_it =
+        |pose: Pose<Field>| (pose.position.direction_to(ball.position) - pose.heading).abs() < LOOKS_AT;
     let holder = belief.others.iter().filter(|other| other.side == Side::Theirs).find(|other| {
-        other.pose.position.distance(ball.position) < near && looks_at(other.pose, ball.position)
+        let distance = other.pose.position.distance(ball.position);
+        if penalty { distance < LINES_UP && looks_at_it(other.pose) } else { distance < HOLDS }
     });
     let shot = holder.and_then(|other| {
         let along = geometry::Vector::polar(FAR_BACK, other.pose.heading);
