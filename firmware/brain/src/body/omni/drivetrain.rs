@@ -117,7 +117,11 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: if beyond_goal_line { avoid::EFFORT_LONG } else { EFFORT },
+            effort: match is_moved_by_the_rules(belief.game.phase) {
+                _ if beyond_goal_line => avoid::EFFORT_LONG,
+                true => EFFORT_NOT_IN_PLAY,
+                false => EFFORT,
+            },
             effort_to_leave: if is_moved_by_the_rules(belief.game.phase) {
                 EFFORT_STOPPED
             } else {
@@ -161,10 +165,12 @@ impl Drivetrain {
 }
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
-pub const EFFORT: u32 = 115;
+pub const EFFORT: u32 = 100;
+/// The same while the ball is not in play: neither a case nor an interception is sought then.
+const EFFORT_NOT_IN_PLAY: u32 = 115;
 
 /// What a way out of a forbidden region may take while the ball is not in play: no case is sought then.
-const EFFORT_STOPPED: u32 = 4 * EFFORT;
+const EFFORT_STOPPED: u32 = 4 * EFFORT_NOT_IN_PLAY;
 /// The same in play, where a step may seek a case too: more does not fit into a step of 40,000 instructions.
 const EFFORT_IN_PLAY: u32 = EFFORT + EFFORT / 4;
 
