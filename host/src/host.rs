@@ -249,7 +249,7 @@ impl Host {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
-    /// Whether robots are told to halt now, by the referee or by [`Host::halt`].
+    /// Whether robots are told to halt now, by the referee or by `Host::halt`.
     pub fn is_halting(&self) -> bool {
         self.halted || self.listener.game().phase == Phase::Halt
     }

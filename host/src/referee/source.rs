@@ -25,7 +25,7 @@ use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
 use super::{Game, words};
 
-/// HALT or STOP out of order restrains for so long: 12 periods of the controller, and twice [`COPY`], so that a referee
+/// HALT or STOP out of order restrains for so long: 12 periods of the controller, and twice `COPY`, so that a referee
 /// whose stamps stand still restrains without a gap.
 pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.

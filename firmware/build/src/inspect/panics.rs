@@ -121,7 +121,12 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             let Some(file) = location.file else { continue };
             let name = frame.function.as_ref().and_then(|f| Some(demangled(f.raw_name().ok()?.as_ref())));
             let name = name.unwrap_or_else(|| symbol.to_owned());
-            let site = PanicSite { crate_name: crate_of(file).to_owned(), function: plain(&name) };
+            // Line 0 is code that the compiler made; the file beside it is any that was merged with it, the name is right.
+            let crate_name = match (location.line, name.split_once("::")) {
+                (None | Some(0), Some((named, _))) if !named.contains('<') => named.replace('_', "-"),
+                _ => crate_of(file).to_owned(),
+            };
+            let site = PanicSite { crate_name, function: plain(&name) };
             let line = format!("{file}:{}", location.line.unwrap_or(0));
             let is_std = STANDARD.contains(&site.crate_name.as_str());
             innermost.get_or_insert((site.clone(), line.clone()));

@@ -142,6 +142,8 @@ struct Exit<F> {
 impl<F: Copy> Exits<F> {
     /// Notes a candidate that is farther than `least` from all others along an axis; where there is no room for more, those there
     /// are must do.
+    // Called from many places; a copy in each takes 2 kB of flash.
+    #[inline(never)]
     fn add(&mut self, at: Point<F>, least: f32) {
         let same = |exit: &Exit<F>| {
             let off = exit.at - at;
