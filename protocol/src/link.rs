@@ -2,7 +2,7 @@
 //! [`crate::host_link`] is the other.
 //!
 //! A robot hears its teammates and its host, and believes neither before they have answered its present boot epoch: the host with a
-//! [`Welcome`], teammates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
+//! [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
 //! and again when a host or teammate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s. The host's
 //! frames are refused as [`Refusal::Stale`] when they are older than [`AGE_MAX`](crate::host_clock::AGE_MAX).
 

@@ -2,7 +2,7 @@
 //!
 //! A directive is held until the next one, and stale after 100 ms without a command (the governor's
 //! [`SILENCE`]); the phase is the newest that any frame told. A frame counts as heard when it came, if it is at most
-//! [`LATENCY_MAX`] old, and by so much earlier as it is older ([`heard_at`]).
+//! [`LATENCY_MAX`] old, and by so much earlier as it is older (`heard_at`).
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};

@@ -165,7 +165,7 @@ impl Drivetrain {
 }
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
-pub const EFFORT: u32 = 100;
+pub const EFFORT: u32 = 108;
 /// The same while the ball is not in play: neither a case nor an interception is sought then.
 const EFFORT_NOT_IN_PLAY: u32 = 115;
 
