@@ -120,7 +120,9 @@ impl Drivetrain {
             effort: match is_moved_by_the_rules(belief.game.phase) {
                 _ if beyond_goal_line => avoid::EFFORT_LONG,
                 true => EFFORT_NOT_IN_PLAY,
-                false => EFFORT,
+                // Where to meet a moving ball is sought in the same step.
+                false if belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > 0.05) => EFFORT,
+                false => EFFORT_NOT_IN_PLAY,
             },
             effort_to_leave: if is_moved_by_the_rules(belief.game.phase) {
                 EFFORT_STOPPED
@@ -165,7 +167,7 @@ impl Drivetrain {
 }
 
 /// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
-pub const EFFORT: u32 = 108;
+pub const EFFORT: u32 = 100;
 /// The same while the ball is not in play: neither a case nor an interception is sought then.
 const EFFORT_NOT_IN_PLAY: u32 = 115;
 
