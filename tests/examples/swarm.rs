@@ -1,24 +1,63 @@
 //! `swarm`: plays many runs drawn from seeds and holds them to what is promised.
-//! `cargo xtask swarm [--plan faults|referee] --seeds 10000 [--first N] [--jobs J]`
+//! `cargo xtask swarm [--plan faults|referee] --seeds 10000 [--first N] [--jobs J] [--record STEM]`
 //!
 //! `faults`: a team with faults of radio, clocks and sensors. `referee`: matches of 60 s with cards, keeper changes, restarts and
 //! halts. Prints what the runs came to; a run that breaks a promise is told with the line that repeats it, and the exit code is 1.
+//! `--record` plays the match of `--first` alone and records it, for `onetwo replay STEM.trace`.
 
 use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use match_tests::swarm::matches::{self, Sum};
+use arena::game::header;
+use host::shell::Recorder;
+use match_tests::swarm::matches::{self, Plan, Sum};
 use match_tests::swarm::{Runs, watch, watch_matches, words};
 
 fn main() -> ExitCode {
-    let Some((plan, runs)) = arguments(std::env::args().skip(1)) else {
-        eprintln!("usage: cargo xtask swarm [--plan faults|referee] [--seeds N] [--first N] [--jobs J]");
+    let Some(Arguments { plan, runs, record }) = arguments(std::env::args().skip(1)) else {
+        eprintln!("usage: cargo xtask swarm [--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]");
         return ExitCode::from(2);
     };
-    match plan {
-        Which::Faults => faults(runs),
-        Which::Referee => referee(runs),
+    match (plan, record) {
+        (Which::Referee, Some(stem)) => recorded(runs.first, &stem),
+        (Which::Faults, Some(_)) => {
+            eprintln!("swarm: only matches are recorded: --plan referee --first N --record STEM");
+            ExitCode::from(2)
+        }
+        (Which::Faults, None) => faults(runs),
+        (Which::Referee, None) => referee(runs),
+    }
+}
+
+/// What is asked for.
+struct Arguments {
+    plan: Which,
+    runs: Runs,
+    record: Option<PathBuf>,
+}
+
+/// The match of one seed, recorded.
+fn recorded(seed: u64, stem: &Path) -> ExitCode {
+    let plan = Plan::drawn(seed, matches::LENGTH);
+    let header = header(env!("CARGO_PKG_VERSION"), "", &matches::config(&plan));
+    let mut recorder = match Recorder::begin(stem, &header) {
+        Ok(recorder) => recorder,
+        Err(error) => {
+            eprintln!("swarm: {}: {error}", stem.display());
+            return ExitCode::FAILURE;
+        }
+    };
+    let outcome = matches::play(&plan, &mut recorder);
+    println!("{}", matches::words(&plan, &outcome));
+    match recorder.finish() {
+        Ok(()) if outcome.found.is_empty() => ExitCode::SUCCESS,
+        Ok(()) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("swarm: {}: {error}", stem.display());
+            ExitCode::FAILURE
+        }
     }
 }
 
@@ -101,9 +140,9 @@ fn faults(runs: Runs) -> ExitCode {
     if broken.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-fn arguments(mut words: impl Iterator<Item = String>) -> Option<(Which, Runs)> {
+fn arguments(mut words: impl Iterator<Item = String>) -> Option<Arguments> {
     let jobs = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let (mut plan, mut runs) = (Which::Faults, Runs { first: 0, seeds: 100, jobs });
+    let (mut plan, mut runs, mut record) = (Which::Faults, Runs { first: 0, seeds: 100, jobs }, None);
     while let Some(word) = words.next() {
         let value = words.next()?;
         let number = || value.parse::<u64>().ok();
@@ -113,10 +152,11 @@ fn arguments(mut words: impl Iterator<Item = String>) -> Option<(Which, Runs)> {
             "--seeds" => runs.seeds = number().filter(|seeds| *seeds > 0)?,
             "--first" | "--from" => runs.first = number()?,
             "--jobs" => runs.jobs = number().filter(|jobs| *jobs > 0)? as usize,
+            "--record" => record = Some(PathBuf::from(value)),
             _ => return None,
         }
     }
-    Some((plan, runs))
+    Some(Arguments { plan, runs, record })
 }
 
 /// Of many that fail the first are told.

@@ -1,6 +1,7 @@
 //! `swarm`: samples of the runs that `cargo xtask swarm` plays by the thousand. A hundred runs of a team under faults drawn at random,
 //! and two short matches under the referee's plan.
 
+use arena::game::Nobody;
 use match_tests::swarm::matches::{self, Plan};
 use match_tests::swarm::{Runs, run, watch, words};
 
@@ -32,7 +33,7 @@ fn short_matches_with_cards_restarts_and_halts_keep_every_promise() {
     // One of each division.
     for seed in [0, 1] {
         let plan = Plan::drawn(seed, SHORT);
-        let outcome = matches::play(&plan);
+        let outcome = matches::play(&plan, &mut Nobody);
         assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
         // The match was no empty one.
         assert!(outcome.acts > 1 && outcome.begun.iter().any(|times| *times > 0), "{outcome:?}");

@@ -85,9 +85,10 @@ const fn handed_on(
 static CHORES: [Chore; 18] = [
     handed_on(
         "swarm",
-        "[--plan faults|referee] [--seeds N] [--first N] [--jobs J]",
+        "[--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]",
         "play N runs (100 if not said) drawn from their seeds, and hold them to what is promised: a team with faults of radio,\n\
-        \x20                clocks and sensors, or matches of 60 s with cards, keeper changes, penalties, halts and restarts",
+        \x20                clocks and sensors, or matches of 60 s with cards, keeper changes, penalties, halts and restarts;\n\
+         \x20                --record plays the match of --first alone and records it for `onetwo replay`",
         |context, words| bench::start_example(context, "swarm", words),
     ),
     handed_on(

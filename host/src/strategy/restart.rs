@@ -16,15 +16,13 @@ use super::view::{Ball, View};
 pub const OFF_BALL: f32 = 0.78;
 /// How far behind the ball our taker waits, m.
 const TAKER_WAITS: f32 = 0.7;
-/// How far behind the ball everybody but taker and keeper is at a penalty, m: the rules' 1 m, a body and a margin.
-const BEHIND_PENALTY: f32 = 1.3;
-/// Least distance between robots that wait at a penalty, m: two bodies, and as much between them. A third does not pass between
-/// two of them, so that they stand in one row where the field holds it.
-const PENALTY_APART_MIN: f32 = 0.36;
+/// How far behind the ball all robots but taker and keeper are at a penalty, m: the rules' 1 m, a body and a margin, and room for
+/// another robot (0.23 m) to pass in front of the row on its way to its place.
+const BEHIND_PENALTY: f32 = 1.45;
+/// Least distance between robots that wait at a penalty, m: two bodies, and room for a third between them, 0.27 m, less its margins.
+const PENALTY_APART_MIN: f32 = 0.45;
 /// Most robots of a team that wait at a penalty: eleven without the keeper.
 const PENALTY_ROW_MAX: usize = 10;
-/// From the touch line to the last place of a row behind a penalty, m.
-const PENALTY_INSIDE: f32 = 0.2;
 /// A ball this near the mark lies for the penalty, m: the game controller starts it within 0.15 m.
 const NEAR_MARK: f32 = 0.3;
 /// Beside a body that passes between two walls, m.
@@ -82,23 +80,35 @@ pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
 pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     let ahead = if ours { 1.0 } else { -1.0 };
     let mark = Point::new(ahead * (view.field.length * 0.5 - view.field.penalty_mark), 0.0);
-    let lies = view
-        .ball
-        .map(|ball| ball.position)
-        .filter(|at| view.phase != Phase::Stop && at.distance(mark) < NEAR_MARK);
-    view.placement.or(lies).unwrap_or(mark)
+    view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
+}
+
+/// Where our kick-off is taken from, likewise.
+pub fn kickoff_spot(view: &View) -> Point<Attack> {
+    let mark = Point::default();
+    view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
+}
+
+/// The ball, where it lies for a restart from `mark`.
+fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
+    let ball = view.ball.filter(|_| view.phase != Phase::Stop)?;
+    Some(ball.position).filter(|at| at.distance(mark) < NEAR_MARK)
 }
 
 /// Robots other than taker and keeper at a penalty from `spot`: in a row behind it, each team on its own left, so that no two are
-/// sent to one place. A second row only where the field does not hold them in one.
+/// sent to one place. A second row only where the field does not hold them in one. The rules' metre is behind the ball: where that
+/// lies farther back than the mark, as if someone has moved it, so does the row.
 pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let wide = view.field.width * 0.5 - PENALTY_INSIDE;
-    let in_row = ((wide / PENALTY_APART_MIN + 0.01) as usize).clamp(1, PENALTY_ROW_MAX);
+    let wide = view.field.width * 0.5;
+    // The first place is half a distance from the middle.
+    let in_row = ((wide / PENALTY_APART_MIN + 0.51) as usize).clamp(1, PENALTY_ROW_MAX);
     let (row, place) = (slot / in_row, slot % in_row);
-    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
-    let y = wide / in_row as f32 * (place as f32 + 1.0);
-    view.clamp(Point::new(x, y), PENALTY_INSIDE)
+    let ball = view.ball.filter(|_| matches!(view.phase, Phase::PreparePenalty(_) | Phase::Penalty(_)));
+    let farther = ball.map_or(0.0, |ball| back * (ball.position.x() - spot.x())).max(0.0);
+    let x = spot.x() + back * (farther + BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
+    let y = wide / (in_row as f32 - 0.5) * (place as f32 + 0.5);
+    view.clamp(Point::new(x, y), 0.0)
 }
 
 /// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.

@@ -3,6 +3,8 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use arena::game::Nobody;
+
 use super::matches::{self, LENGTH, Outcome, Plan};
 use super::{Found, Tally, plan, run};
 
@@ -35,7 +37,7 @@ pub fn watch(runs: Runs, look: impl Fn(u64) + Sync) -> (Tally, Vec<(u64, Found)>
 pub fn watch_matches(runs: Runs, look: impl Fn(u64, &(Plan, Outcome)) + Sync) -> Vec<(Plan, Outcome)> {
     let play = |seed| {
         let plan = Plan::drawn(seed, LENGTH);
-        let outcome = matches::play(&plan);
+        let outcome = matches::play(&plan, &mut Nobody);
         (plan, outcome)
     };
     each(runs, play, look).into_iter().map(|(_, ended)| ended).collect()

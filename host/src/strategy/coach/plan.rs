@@ -22,7 +22,12 @@ impl<'v> Plan<'v> {
         Self { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() }
     }
 
+    /// The robot's order. Nobody is sent to a place too near to a ball that is not in play: no robot would go there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
+        let task = match task {
+            Task::GoTo { at, face } => Task::GoTo { at: self.kept_off(at), face },
+            other => other,
+        };
         // One order a robot, and as many places as robots.
         let _ = self.orders.push(Order { robot, role, task, why });
     }

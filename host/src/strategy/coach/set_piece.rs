@@ -49,7 +49,7 @@ impl Coach {
     pub(super) fn kickoff(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         if side == Side::Ours {
-            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), None);
+            self.taker(plan, matches!(view.phase, Phase::Kickoff(_)), Some(restart::kickoff_spot(view)));
             self.receiver(plan);
         }
         self.defend(plan, false);
@@ -87,9 +87,10 @@ impl Coach {
         self.spread(plan);
     }
 
-    /// Our taker: behind the ball until it may kick, then the kick; a penalty's behind its mark.
-    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, penalty: Option<Point<Attack>>) {
+    /// Our taker: behind the ball until it may kick, then the kick; behind the `mark` of a kick-off or a penalty.
+    pub(super) fn taker(&mut self, plan: &mut Plan<'_>, started: bool, mark: Option<Point<Attack>>) {
         let view = plan.view;
+        let penalty = matches!(view.phase, Phase::Penalty(_));
         let Some(ball) = view.ball else { return };
         let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
         let chosen = roles::choose(field_players, self.first, TAKER_WORTH, |robot| {
@@ -101,7 +102,7 @@ impl Coach {
             return;
         }
         if !started {
-            let spot = penalty.or(view.placement).unwrap_or(ball.position);
+            let spot = mark.or(view.placement).unwrap_or(ball.position);
             let at = plan.kept_off(restart::taker_waits(view, spot));
             return plan.order(id, Role::Taker, plan.facing_ball(at), Why::SoonestAtBall { seconds });
         }
@@ -109,11 +110,11 @@ impl Coach {
         if let Some((task, why)) = self.coerce(plan, id, &ball) {
             return plan.order(id, Role::Taker, task, why);
         }
-        let wait = if penalty.is_some() { Duration(0) } else { MATES_GET_READY };
+        let wait = if penalty { Duration(0) } else { MATES_GET_READY };
         let stands =
             self.ahead.is_some() || self.aim.is_some_and(|(since, _)| view.now.since(since) < AIM_STANDS);
         if self.age(view) >= wait && !stands {
-            let target = if penalty.is_some() {
+            let target = if penalty {
                 let (at, room) = support::best_shot(view, ball.position);
                 Target::Shot { at, room }
             } else {

@@ -19,7 +19,7 @@ use protocol::Who;
 use rules::{Colour, Phase};
 
 pub use plan::Plan;
-pub use run::{BLOCKED_LONGEST, play};
+pub use run::{BLOCKED_LONGEST, config, play};
 
 /// Length of a match, ms.
 pub const LENGTH: u32 = 60_000;

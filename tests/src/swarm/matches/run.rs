@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use arena::game::{Game, GameConfig, Nobody, TICK_US};
+use arena::game::{Game, GameConfig, TICK_US, Watcher};
 use geometry::{Field, GoalEnd, Point};
 use hil_sim::NativeBackend;
 use hil_sim::small_size::Ball;
@@ -30,12 +30,18 @@ const CARRIED: f32 = 0.1;
 /// Findings of a match that are kept.
 const MOST: usize = 40;
 
-/// Plays it.
-pub fn play(plan: &Plan) -> Outcome {
+/// The match's settings.
+pub fn config(plan: &Plan) -> GameConfig {
     let mut config = GameConfig::new(plan.league, plan.seed, f64::from(plan.length) / 1000.0);
     if !plan.half_time {
         config.referee.clock = MatchClock::Playing { half: Duration::millis(300_000) };
     }
+    config
+}
+
+/// Plays it; `watcher` sees every tick.
+pub fn play(plan: &Plan, watcher: &mut dyn Watcher) -> Outcome {
+    let config = config(plan);
     let mut backend = NativeBackend::new(host::cases_of(plan.league));
     let mut game = match Game::new(&config, &mut backend) {
         Ok(game) => game,
@@ -52,7 +58,7 @@ pub fn play(plan: &Plan) -> Outcome {
                 watch.ball_carried |= carried;
             }
         }
-        if let Err(error) = game.step(&mut Nobody) {
+        if let Err(error) = game.step(watcher) {
             return ended(error.to_string());
         }
         if game.is_over() {
