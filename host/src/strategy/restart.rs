@@ -5,7 +5,7 @@
 use geometry::{Angle, Attack, Point, Segment, Vector};
 
 use rules::Phase;
-use rules::limits::ROBOT_RADIUS;
+use rules::limits::{NEAR_MARK, ROBOT_RADIUS};
 
 use super::order::{Task, Why};
 use super::support::{self, Target};
@@ -16,15 +16,13 @@ use super::view::{Ball, View};
 pub const OFF_BALL: f32 = 0.78;
 /// How far behind the ball our taker waits, m.
 const TAKER_WAITS: f32 = 0.7;
-/// How far behind the ball all robots but taker and keeper are at a penalty, m: the rules' 1 m, a body and a margin, and room for
-/// another robot (0.23 m) to pass in front of the row on its way to its place.
+/// How far behind the mark all robots but taker and keeper are at a penalty, m: the rules' 1 m, a body and a margin, and room for
+/// another robot (0.23 m) to pass in front of the row on its way to its place, or for a ball that lies a little behind the mark.
 const BEHIND_PENALTY: f32 = 1.45;
-/// Least distance between robots that wait at a penalty, m: two bodies, and room for a third between them, 0.27 m, less its margins.
-const PENALTY_APART_MIN: f32 = 0.45;
+/// Least distance between robots that wait at a penalty, m: two bodies, and room for a third where the field is wide enough.
+const PENALTY_APART_MIN: f32 = 0.43;
 /// Most robots of a team that wait at a penalty: eleven without the keeper.
 const PENALTY_ROW_MAX: usize = 10;
-/// A ball this near the mark lies for the penalty, m: the game controller starts it within 0.15 m.
-const NEAR_MARK: f32 = 0.3;
 /// Beside a body that passes between two walls, m.
 const ROOM_TO_PASS: f32 = 0.04;
 /// Steps by which the way out is turned, degrees: 24 of them are once around.
@@ -96,19 +94,16 @@ fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
 }
 
 /// Robots other than taker and keeper at a penalty from `spot`: in a row behind it, each team on its own left, so that no two are
-/// sent to one place. A second row only where the field does not hold them in one. The rules' metre is behind the ball: where that
-/// lies farther back than the mark, as if someone has moved it, so does the row.
+/// sent to one place. A second row only where the field does not hold them in one.
 pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let wide = view.field.width * 0.5;
+    let wide = view.field.width * 0.5 - ROBOT_RADIUS;
     // The first place is half a distance from the middle.
     let in_row = ((wide / PENALTY_APART_MIN + 0.51) as usize).clamp(1, PENALTY_ROW_MAX);
     let (row, place) = (slot / in_row, slot % in_row);
-    let ball = view.ball.filter(|_| matches!(view.phase, Phase::PreparePenalty(_) | Phase::Penalty(_)));
-    let farther = ball.map_or(0.0, |ball| back * (ball.position.x() - spot.x())).max(0.0);
-    let x = spot.x() + back * (farther + BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
+    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
     let y = wide / (in_row as f32 - 0.5) * (place as f32 + 0.5);
-    view.clamp(Point::new(x, y), 0.0)
+    view.clamp(Point::new(x, y), ROBOT_RADIUS)
 }
 
 /// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.

@@ -9,7 +9,7 @@ use heapless::Vec;
 
 use crate::legality::{InArea, in_area};
 use crate::limits::{
-    BALL_DISTANCE, BALL_RADIUS, OPPONENT_AREA_DISTANCE, PENALTY_BEHIND, ROBOT_RADIUS, STOP_SPEED,
+    BALL_DISTANCE, BALL_RADIUS, NEAR_MARK, OPPONENT_AREA_DISTANCE, PENALTY_BEHIND, ROBOT_RADIUS, STOP_SPEED,
 };
 use crate::{Duty, FieldSpec, Phase, Side};
 
@@ -268,7 +268,9 @@ impl List {
             let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });
             self.add_some(Why::BallTouch, on);
         } else {
-            let ball = s.ball.unwrap_or_else(|| s.field.penalty_spot(attacked));
+            // A ball that lies elsewhere is not yet where the kick is taken from: people carry it there.
+            let mark = s.field.penalty_spot(attacked);
+            let ball = s.ball.filter(|ball| ball.distance(mark) < NEAR_MARK).unwrap_or(mark);
             let from = ball.x() - attacked.sign() as f32 * PENALTY_BEHIND;
             self.half_plane(s, Why::BehindBall, from, attacked);
         }

@@ -22,6 +22,8 @@ pub const KICKOFF_TIME: f32 = 10.0;
 pub const PENALTY_TIME: f32 = 10.0;
 /// All but keeper and shooter are this far behind the ball at a penalty, m (same).
 pub const PENALTY_BEHIND: f32 = 1.0;
+/// A ball this near its mark lies for a kick-off or a penalty, m (ours: the game controller starts it within 0.15 m).
+pub const NEAR_MARK: f32 = 0.3;
 /// Placing the ball may take this long, s (referee commands, ball placement).
 pub const PLACEMENT_TIME: f32 = 30.0;
 /// What an interference adds to it, s (offenses).

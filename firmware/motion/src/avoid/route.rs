@@ -72,7 +72,7 @@ impl<F: Copy> Route<F> {
         let _ = search.nodes.push(start);
         match search.run() {
             Some(last) => search.route(start, last, true),
-            None => search.route(start, search.nearest(), false),
+            None => search.route(start, search.most_promising(), false),
         }
     }
 }
@@ -220,7 +220,12 @@ impl<F: Copy> Search<'_, F> {
         }
     }
 
-    fn nearest(&self) -> usize {
+    /// Where to go when no way was found: the cheapest corner that was not looked at any more; where all were, the one nearest to
+    /// the goal. To stay at the start would repeat the same search in the next step.
+    fn most_promising(&self) -> usize {
+        if let Some((number, _)) = self.cheapest() {
+            return number;
+        }
         let mut best = (0, f32::INFINITY);
         for (i, node) in self.nodes.iter().enumerate() {
             let distance = node.at.distance(self.goal);

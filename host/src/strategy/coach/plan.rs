@@ -2,11 +2,11 @@
 
 use geometry::{Angle, Attack, Point};
 use protocol::RobotId;
-use rules::Phase;
+use rules::{Duty, Phase};
 
 use super::super::order::{Order, Role, Task, Why};
 use super::super::view::{Robot, View};
-use super::super::{defence, restart};
+use super::super::{defence, restart, threat};
 use super::{Free, Orders};
 
 /// Orders being written, and who has none yet.
@@ -22,10 +22,17 @@ impl<'v> Plan<'v> {
         Self { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() }
     }
 
-    /// The robot's order. Nobody is sent to a place too near to a ball that is not in play: no robot would go there.
+    /// The robot's order. While the ball is not in play none is sent where the rules do not let it stand: it would not go there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
+        let duty = match role {
+            Role::Taker => Duty::Taker,
+            _ if robot == self.view.keeper => Duty::Keeper,
+            _ => Duty::Player,
+        };
         let task = match task {
-            Task::GoTo { at, face } => Task::GoTo { at: self.kept_off(at), face },
+            Task::GoTo { at, face } if self.view.phase != Phase::Run => {
+                Task::GoTo { at: threat::lawful_for(self.view, duty, at, &threat::Settings::default()), face }
+            }
             other => other,
         };
         // One order a robot, and as many places as robots.

@@ -1,4 +1,4 @@
-//! May a defender stand here now? Places are moved to where `rules::keep_out` lets a player's body be. Attack frame, m.
+//! `lawful`: moves a place to where `rules::keep_out` lets a robot's body be in this phase. Attack frame, m.
 
 use geometry::{Attack, Field, GoalEnd, Point, Vector};
 use rules::keep_out::{KeepOut, Situation, keep_out};
@@ -13,11 +13,19 @@ use super::edge::Edge;
 /// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge), and off
 /// everything else that the phase forbids.
 pub fn lawful(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
+    lawful_for(view, Duty::Player, at, settings)
+}
+
+/// The same for a robot of that duty: a keeper may stay in our area, a taker near the ball.
+pub fn lawful_for(view: &View, duty: Duty, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
     let ours = Edge::of(&view.field, settings.off_area);
     let more =
         if matches!(view.phase, Phase::Stop | Phase::FreeKick(_)) { OPPONENT_AREA_DISTANCE } else { 0.0 };
     let theirs = Edge::of(&view.field, settings.off_area + more);
     let out = |at: Point<Attack>| {
+        if duty != Duty::Player {
+            return at;
+        }
         let inside = view.clamp(at, ROBOT_RADIUS);
         let (back, ahead) = (ours.distance_to(inside), theirs.distance_to(turned(inside)));
         match (back < 0.0, ahead < 0.0) {
@@ -30,7 +38,7 @@ pub fn lawful(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Atta
     if view.phase != Phase::Run {
         place = out(restart::kept_off(view, place));
     }
-    let rules = player_keep_out(view);
+    let rules = forbidden_to(view, duty);
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
         rules.offence(body, ROBOT_RADIUS + MARGIN).is_none()
@@ -53,14 +61,14 @@ fn turned(at: Point<Attack>) -> Point<Attack> {
     Point::new(-at.x(), -at.y())
 }
 
-/// Where a player's body must not be, in the attack frame: we defend −x in it, as a team of that end does on the field.
-fn player_keep_out(view: &View) -> KeepOut {
+/// Where a body of that duty must not be, in the attack frame: we defend −x in it, as a team of that end does on the field.
+fn forbidden_to(view: &View, duty: Duty) -> KeepOut {
     let on_field = |at: Point<Attack>| Point::<Field>::new(at.x(), at.y());
     keep_out(&Situation {
         field: &view.field,
         own: GoalEnd::Negative,
         phase: view.phase,
-        duty: Duty::Player,
+        duty,
         ball: view.ball.map(|ball| on_field(ball.position)),
         placement: view.placement.map(on_field),
         ball_in_play: false,
@@ -99,7 +107,7 @@ mod tests {
                     view.field = league.field();
                     view.phase = phase;
                     view.placement = Some(Point::new(placement.0, placement.1));
-                    let rules = player_keep_out(&view);
+                    let rules = forbidden_to(&view, Duty::Player);
                     for i in 0..400 {
                         let (column, row) = ((i % 20) as f32 / 19.0 - 0.5, (i / 20) as f32 / 19.0 - 0.5);
                         let at = Point::new(column * view.field.length, row * view.field.width);

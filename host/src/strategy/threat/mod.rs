@@ -26,7 +26,7 @@ use cover::{Case, Cover};
 use danger::{Blocks, Danger};
 use receiving::FirstLevel;
 
-pub use lawful::lawful;
+pub use lawful::{lawful, lawful_for};
 
 /// What the paper leaves open, in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
-use rules::{Phase, Side};
+use rules::{FieldSpec, Phase, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, Manner};
@@ -105,8 +105,7 @@ impl Drivetrain {
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
-        // From behind a goal the way into its mouth is long.
-        let beyond_goal_line = from.x().abs() > 0.5 * field.length;
+        let (effort, effort_to_leave) = efforts(belief, &field);
         let mut around = Surroundings::none(&field);
         around.look(belief, &field, drive.to, drive.manner);
         let way = avoid::plan(&Course {
@@ -117,18 +116,8 @@ impl Drivetrain {
             obstacles: &around.obstacles,
             within: Some(around.within),
             step,
-            effort: match is_moved_by_the_rules(belief.game.phase) {
-                _ if beyond_goal_line => avoid::EFFORT_LONG,
-                true => EFFORT_NOT_IN_PLAY,
-                // Where to meet a moving ball is sought in the same step.
-                false if belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > 0.05) => EFFORT,
-                false => EFFORT_NOT_IN_PLAY,
-            },
-            effort_to_leave: if is_moved_by_the_rules(belief.game.phase) {
-                EFFORT_STOPPED
-            } else {
-                EFFORT_IN_PLAY
-            },
+            effort,
+            effort_to_leave,
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
@@ -166,15 +155,36 @@ impl Drivetrain {
     }
 }
 
-/// What a step spends on a way: eight pieces among three obstacles, five among a dozen; only what stands near the way is one.
-pub const EFFORT: u32 = 100;
-/// The same while the ball is not in play: neither a case nor an interception is sought then.
-const EFFORT_NOT_IN_PLAY: u32 = 115;
+/// What a step may spend on a way, and on a way out of a forbidden region. It is what the rest of the step leaves of 40,000
+/// instructions (`qemu_wheels`).
+fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
+    if is_moved_by_the_rules(belief.game.phase) {
+        return (EFFORT_STOPPED, EFFORT_STOPPED_TO_LEAVE);
+    }
+    let beyond_goal_line = belief.pose.position.x().abs() > 0.5 * field.length;
+    let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
+    let effort = match (beyond_goal_line, ball_moves) {
+        // From behind a goal the way into its mouth is long.
+        (true, _) => avoid::EFFORT_LONG,
+        (false, true) => EFFORT_BALL_MOVES,
+        (false, false) => EFFORT_BALL_RESTS,
+    };
+    (effort, EFFORT_TO_LEAVE)
+}
 
-/// What a way out of a forbidden region may take while the ball is not in play: no case is sought then.
-const EFFORT_STOPPED: u32 = 4 * EFFORT_NOT_IN_PLAY;
-/// The same in play, where a step may seek a case too: more does not fit into a step of 40,000 instructions.
-const EFFORT_IN_PLAY: u32 = EFFORT + EFFORT / 4;
+/// In play: eight pieces among three obstacles, five among a dozen; only what stands near the way is one. Where to meet a moving ball
+/// is sought in the same step.
+const EFFORT_BALL_MOVES: u32 = 100;
+/// The same while the ball rests.
+const EFFORT_BALL_RESTS: u32 = 115;
+/// The same while the ball is not in play: neither a case nor an interception is sought then.
+const EFFORT_STOPPED: u32 = avoid::EFFORT_LONG;
+/// A way out of a forbidden region then.
+const EFFORT_STOPPED_TO_LEAVE: u32 = 460;
+/// A way out in play, where a step may seek a case too.
+const EFFORT_TO_LEAVE: u32 = 125;
+/// A ball faster than this is met on its way, m/s.
+const BALL_MOVES: f32 = 0.05;
 
 /// Whether where a robot may stand changes in this phase, though nobody tells it to go: with the ball, or with the phase itself.
 fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {

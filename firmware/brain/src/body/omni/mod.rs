@@ -20,7 +20,7 @@ use crate::body::{Body, BodySpec, Intent};
 use crate::skills::wheels as skills;
 use crate::skills::{Reception, Step};
 
-pub use drivetrain::{Drivetrain, EFFORT, LIMITS};
+pub use drivetrain::{Drivetrain, LIMITS};
 
 /// From the robot's centre to its flat front, m: usual for robots of 180 mm.
 pub const FRONT: f32 = 0.073;
