@@ -2,10 +2,10 @@
 //! where the rules forbid it; others taken to keep their velocity. Robots do not tell their plans, so it is the host's reckoning of
 //! them. m, s, field frame.
 
-use brain::body::omni::{EFFORT, LIMITS};
+use brain::body::omni::LIMITS;
 use geometry::{Field, GoalEnd, Point};
 use host::world::{Robot, World};
-use motion::avoid::{Course, OBSTACLES_MAX, Obstacle, plan};
+use motion::avoid::{Course, EFFORT_LONG, OBSTACLES_MAX, Obstacle, plan};
 use page::milli;
 use rules::keep_out::{Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
@@ -61,8 +61,8 @@ impl Ways<'_> {
                 obstacles: &obstacles,
                 within,
                 step: STEP,
-                effort: EFFORT,
-                effort_to_leave: 4 * EFFORT,
+                effort: EFFORT_LONG,
+                effort_to_leave: EFFORT_LONG,
             };
             let way = plan(&course);
             (from, velocity) = (way.next.position, way.next.velocity);

@@ -46,7 +46,8 @@ const LEAVE_OWN_AREA: f32 = 4.0;
 pub const BOUND: f32 = 0.5;
 /// Robots nearer than that to a region's border are not in it, m: a camera's noise on a robot that touches the border.
 const TOLERANCE: f32 = 0.005;
-/// A ball faster than this cannot be got away from at once (referee commands, stop, note), m/s.
+/// A ball that rolls freely and faster than this, or its way to the placement's target, cannot be got away from at once (referee
+/// commands, stop, note), m/s.
 const BALL_QUICK: f32 = 0.5;
 
 /// The match as the check needs it.
@@ -86,6 +87,11 @@ pub struct Within {
 }
 
 impl Moment<'_> {
+    /// No robot has the ball: it rolls as it was sent.
+    fn ball_is_free(&self, robots: &[(Who, Point<Field>)]) -> bool {
+        robots.iter().all(|(_, at)| at.distance(self.ball) > limits::ROBOT_RADIUS + 2.0 * limits::BALL_RADIUS)
+    }
+
     fn situation(&self, who: Who, duty: Duty) -> Situation<'_> {
         Situation {
             field: self.field,
@@ -162,7 +168,8 @@ impl KeepOuts {
             let phase = moment.phase.seen_by(one.who.colour);
             let Some(grace) = grace(one.why, phase) else { continue };
             let entry = self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
-            if one.why == Why::BallDistance && moment.ball_speed > BALL_QUICK {
+            let of_ball = matches!(one.why, Why::BallDistance | Why::Stadium);
+            if of_ball && moment.ball_speed > BALL_QUICK && moment.ball_is_free(robots) {
                 entry.0 = moment.time;
             }
             entry.1 = entry.1.max(one.depth);

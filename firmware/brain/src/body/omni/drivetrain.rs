@@ -159,10 +159,11 @@ impl Drivetrain {
 /// instructions (`qemu_wheels`).
 fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
     if is_moved_by_the_rules(belief.game.phase) {
-        return (EFFORT_STOPPED, EFFORT_STOPPED_TO_LEAVE);
+        let places = belief.game.phase == Phase::BallPlacement(Side::Ours);
+        return (if places { EFFORT_PLACING } else { EFFORT_STOPPED }, EFFORT_STOPPED_TO_LEAVE);
     }
-    let beyond_goal_line = belief.pose.position.x().abs() > 0.5 * field.length;
     let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
+    let beyond_goal_line = belief.pose.position.x().abs() > 0.5 * field.length;
     let effort = match (beyond_goal_line, ball_moves) {
         // From behind a goal the way into its mouth is long.
         (true, _) => avoid::EFFORT_LONG,
@@ -179,6 +180,8 @@ const EFFORT_BALL_MOVES: u32 = 100;
 const EFFORT_BALL_RESTS: u32 = 115;
 /// The same while the ball is not in play: neither a case nor an interception is sought then.
 const EFFORT_STOPPED: u32 = avoid::EFFORT_LONG;
+/// The same while our team places the ball: its robot looks for a way behind the ball besides.
+const EFFORT_PLACING: u32 = 200;
 /// A way out of a forbidden region then.
 const EFFORT_STOPPED_TO_LEAVE: u32 = 460;
 /// A way out in play, where a step may seek a case too.
