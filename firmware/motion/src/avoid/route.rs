@@ -220,12 +220,9 @@ impl<F: Copy> Search<'_, F> {
         }
     }
 
-    /// Where to go when no way was found: the cheapest corner that was not looked at any more; where all were, the one nearest to
-    /// the goal. To stay at the start would repeat the same search in the next step.
+    /// Where to go when no way was found: the corner nearest to the goal; where that is the start, the cheapest that was not looked
+    /// at any more, for to stay would repeat the same search in the next step.
     fn most_promising(&self) -> usize {
-        if let Some((number, _)) = self.cheapest() {
-            return number;
-        }
         let mut best = (0, f32::INFINITY);
         for (i, node) in self.nodes.iter().enumerate() {
             let distance = node.at.distance(self.goal);
@@ -233,7 +230,7 @@ impl<F: Copy> Search<'_, F> {
                 best = (i, distance);
             }
         }
-        best.0
+        if best.0 > 0 { best.0 } else { self.cheapest().map_or(0, |(number, _)| number) }
     }
 
     fn route(&self, start: Node<F>, last: usize, arrives: bool) -> Route<F> {
