@@ -249,8 +249,8 @@ impl Coach {
     }
 }
 
-/// Field players besides keeper, first and defenders.
-const OTHERS: usize = 8;
+/// Most robots that are given a place in order: all field players, as behind a penalty of the opponents.
+const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m: radii of body and ball, and a centimetre and a half.
 const TOUCHING: f32 = 0.126;
 /// A pass is not waited for longer: 5 m take 2.5 s.

@@ -1,5 +1,7 @@
 //! `penalty`: orders of everybody at a penalty, and in the stop before it. Attack frame, m.
 
+use geometry::{Attack, Point};
+use protocol::RobotId;
 use rules::{Phase, Side};
 
 use super::super::order::{Role, Why};
@@ -22,6 +24,33 @@ impl Coach {
         }
         let places: heapless::Vec<_, ROBOTS_MAX> =
             (0..plan.free.len()).map(|slot| restart::behind_penalty(view, spot, ours, slot)).collect();
-        self.fill(plan, &places, |i| (Role::Support(i as u8), Why::Referee));
+        self.row(plan, &places);
+    }
+
+    /// Robots left to the places of a row, in the order in which they stand along it, so that none has to pass another one's place. Who
+    /// has a place keeps it while the same robots wait.
+    fn row(&mut self, plan: &mut Plan<'_>, places: &[Point<Attack>]) {
+        let same = |held: &[Option<RobotId>], free: &[RobotId]| {
+            held.iter().flatten().count() == free.len() && held.iter().flatten().all(|id| free.contains(id))
+        };
+        let mut order: heapless::Vec<usize, ROBOTS_MAX> = (0..places.len()).collect();
+        if !same(&self.others, &plan.free) {
+            let along = |id: &RobotId| plan.view.our(*id).map_or(0.0, |robot| robot.position.y());
+            plan.free.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
+            order.sort_unstable_by(|a, b| places[*a].y().total_cmp(&places[*b].y()));
+            self.others = Default::default();
+            for (slot, id) in order.iter().zip(&plan.free) {
+                if let Some(held) = self.others.get_mut(*slot) {
+                    *held = Some(*id);
+                }
+            }
+        }
+        for (slot, id) in self.others.into_iter().enumerate() {
+            if let (Some(id), Some(at)) = (id, places.get(slot))
+                && plan.take(id)
+            {
+                plan.order(id, Role::Support(slot as u8), plan.facing_ball(*at), Why::Referee);
+            }
+        }
     }
 }

@@ -179,7 +179,7 @@ const EFFORT_BALL_MOVES: u32 = 100;
 /// The same while the ball rests.
 const EFFORT_BALL_RESTS: u32 = 115;
 /// The same while the ball is not in play: neither a case nor an interception is sought then.
-const EFFORT_STOPPED: u32 = avoid::EFFORT_LONG;
+const EFFORT_STOPPED: u32 = 460;
 /// The same while our team places the ball: its robot looks for a way behind the ball besides.
 const EFFORT_PLACING: u32 = 200;
 /// A way out of a forbidden region then.
