@@ -24,6 +24,8 @@ pub struct Drivetrain {
     velocity: Vector<Field>,
     angular: f32,
     stepped: Option<Instant>,
+    /// Length of the present step, s.
+    step: f32,
     /// The way it is on; none where it stands or brakes.
     under_way: Option<UnderWay>,
 }
@@ -43,7 +45,7 @@ impl Drivetrain {
     pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
         let since = self.stepped.map_or(STEP, |last| now.since(last));
         let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
-        self.stepped = Some(now);
+        (self.stepped, self.step) = (Some(now), step);
         if (self.velocity - belief.velocity).norm() > ASTRAY {
             self.velocity = belief.velocity;
         }
@@ -73,9 +75,11 @@ impl Drivetrain {
         }
     }
 
-    /// What was let through in the end: the next plan starts from it.
+    /// What was let through in the end: the next plan starts from it. The body turns in the step, and `twist` is meant for the
+    /// heading in the middle of it.
     pub fn told(&mut self, belief: &Belief, twist: Twist<Body>) {
-        self.velocity = belief.pose.vector_to_field(twist.linear);
+        let half = half_turn(twist.angular, self.step);
+        self.velocity = belief.pose.vector_to_field(twist.linear.rotated(half));
         self.angular = twist.angular;
     }
 
@@ -149,10 +153,14 @@ impl Drivetrain {
             }
         };
         // The body turns while it moves: the velocity as seen from the heading half a step on.
-        let half = Angle::new(0.5 * (angular * step));
-        let linear = pose.vector_to_body(velocity).rotated(-half);
+        let linear = pose.vector_to_body(velocity).rotated(-half_turn(angular, step));
         Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick: drive.kick }
     }
+}
+
+/// By how much the body has turned in the middle of a step of so many s.
+fn half_turn(angular: f32, step: f32) -> Angle {
+    Angle::new(0.5 * (angular * step))
 }
 
 /// What a step may spend on a way, and on a way out of a forbidden region. It is what the rest of the step leaves of 40,000
