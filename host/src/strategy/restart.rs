@@ -20,9 +20,11 @@ const TAKER_WAITS: f32 = 0.7;
 /// another robot (0.23 m) to pass in front of the row on its way to its place, or for a ball that lies a little behind the mark.
 const BEHIND_PENALTY: f32 = 1.45;
 /// Least distance between robots that wait at a penalty, m: two bodies, and room for a third where the field is wide enough.
-const PENALTY_APART_MIN: f32 = 0.43;
+const PENALTY_APART_MIN: f32 = 0.42;
 /// Most robots of a team that wait at a penalty: eleven without the keeper.
 const PENALTY_ROW_MAX: usize = 10;
+/// From the touch line to the last place of a row behind a penalty, m: a body.
+const PENALTY_INSIDE: f32 = 0.1;
 /// Beside a body that passes between two walls, m.
 const ROOM_TO_PASS: f32 = 0.04;
 /// Steps by which the way out is turned, degrees: 24 of them are once around.
@@ -97,13 +99,13 @@ fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
 /// sent to one place. A second row only where the field does not hold them in one.
 pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let wide = view.field.width * 0.5 - ROBOT_RADIUS;
+    let wide = view.field.width * 0.5 - PENALTY_INSIDE;
     // The first place is half a distance from the middle.
     let in_row = ((wide / PENALTY_APART_MIN + 0.51) as usize).clamp(1, PENALTY_ROW_MAX);
     let (row, place) = (slot / in_row, slot % in_row);
     let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
     let y = wide / (in_row as f32 - 0.5) * (place as f32 + 0.5);
-    view.clamp(Point::new(x, y), ROBOT_RADIUS)
+    view.clamp(Point::new(x, y), PENALTY_INSIDE)
 }
 
 /// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.

@@ -38,10 +38,11 @@ pub fn lawful_for(view: &View, duty: Duty, at: Point<Attack>, settings: &Setting
     if view.phase != Phase::Run {
         place = out(restart::kept_off(view, place));
     }
+    let margin = if view.phase == Phase::Run { MARGIN } else { MARGIN_STOPPED };
     let rules = forbidden_to(view, duty);
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
-        rules.offence(body, ROBOT_RADIUS + MARGIN).is_none()
+        rules.offence(body, ROBOT_RADIUS + margin).is_none()
     };
     if free(&place) {
         return place;
@@ -75,8 +76,11 @@ fn forbidden_to(view: &View, duty: Duty) -> KeepOut {
     })
 }
 
-/// Bodies stay this far off what is forbidden, m: what control overshoots by; less than `off_area` leaves.
+/// In play bodies stay this far off what is forbidden, m: what control overshoots by; less than `off_area` leaves.
 const MARGIN: f32 = 0.01;
+/// While the ball is not in play, m: as robots do themselves (0.04, `brain`'s surroundings), less rounding. A place that is nearer is
+/// none for them: they would stand elsewhere.
+const MARGIN_STOPPED: f32 = 0.038;
 /// m.
 const RING: f32 = 0.1;
 const RINGS: u32 = 15;

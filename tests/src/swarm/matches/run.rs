@@ -89,7 +89,9 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
         Act::Keeper(team, robot) => {
             let who = Who { colour: team, id: robot };
             let here = game.world().robot(who).is_some_and(|robot| robot.present);
-            here && game.change_keeper(team, robot)
+            // Whoever names another keeper during a penalty breaks the rules at once: the old one is metres before the ball.
+            let penalty = matches!(game.referee().phase(), Phase::Penalty(_));
+            here && !penalty && game.change_keeper(team, robot)
         }
         Act::Penalty(team) => game.restart(Restart::Penalty(team), origin),
         Act::Kickoff(team) => game.restart(Restart::Kickoff(team), origin),
