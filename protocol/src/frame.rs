@@ -28,6 +28,8 @@ pub const AUDIENCE_LEN: usize = 2;
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
 /// The longest frame on the air (a part of the world; DESIGN §6).
 pub const FRAME_LEN_MAX: usize = 120;
+/// A frame's bytes.
+pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;
 /// The longest payload, in a frame with one tag.
 pub const PAYLOAD_LEN_MAX: usize = FRAME_LEN_MAX - OVERHEAD;
 
@@ -275,41 +277,51 @@ impl<'a> Frame<'a> {
         seen.is_some_and(|seen| (seen ^ key.tag(covered)) & kept == 0)
     }
 
-    /// Writes a frame with one tag; gives its length, or `None` if `out` is too short for it or the frame has an audience.
-    pub fn emit(&self, key: &Key, out: &mut [u8]) -> Option<usize> {
+    /// The frame with one tag; `None` if it is too long or has an audience.
+    pub fn emit(&self, key: &Key) -> Option<FrameBytes> {
+        let mut out = FrameBytes::new();
+        self.write(key, &mut out).map(|()| out)
+    }
+
+    /// The frame to its audience, with a tag for each; `None` if it is too long or has no audience.
+    pub fn emit_to_audience(&self, keys: &TeamKeys) -> Option<FrameBytes> {
+        let mut out = FrameBytes::new();
+        self.write_to_audience(keys, &mut out).map(|()| out)
+    }
+
+    /// As [`Self::emit`], to the end of `out`.
+    #[inline]
+    pub(crate) fn write(&self, key: &Key, out: &mut FrameBytes) -> Option<()> {
         if self.audience.is_some() {
             return None;
         }
-        let (covered, rest) = self.cover(out)?;
-        *rest.first_chunk_mut::<TAG_LEN>()? = key.tag(covered).to_le_bytes();
-        Some(covered.len() + TAG_LEN)
+        self.write_covered(out)?;
+        let tag = key.tag(out).to_le_bytes();
+        out.extend_from_slice(&tag).ok()
     }
 
-    /// Writes a frame to its audience, a tag for each; gives its length, or `None` if `out` is too short for it or it has none.
-    pub fn emit_to_audience(&self, keys: &TeamKeys, out: &mut [u8]) -> Option<usize> {
+    /// As [`Self::emit_to_audience`], to the end of `out`.
+    pub(crate) fn write_to_audience(&self, keys: &TeamKeys, out: &mut FrameBytes) -> Option<()> {
         let audience = self.audience?;
-        let (covered, rest) = self.cover(out)?;
-        let tags = rest.get_mut(..tags_len(self.audience))?;
-        for (robot, tag) in audience.robots().zip(tags.as_chunks_mut::<SHORT_TAG_LEN>().0) {
-            let [a, b, c, ..] = keys.of(robot).tag(covered).to_le_bytes();
-            *tag = [a, b, c];
+        self.write_covered(out)?;
+        let covered = out.len();
+        for robot in audience.robots() {
+            let [a, b, c, ..] = keys.of(robot).tag(out.get(..covered)?).to_le_bytes();
+            out.extend_from_slice(&[a, b, c]).ok()?;
         }
-        Some(covered.len() + tags.len())
+        Some(())
     }
 
-    /// Writes what tags cover; gives it and the rest of `out`.
-    fn cover<'o>(&self, out: &'o mut [u8]) -> Option<(&'o [u8], &'o mut [u8])> {
-        let names = if self.audience.is_some() { AUDIENCE_LEN } else { 0 };
-        let (covered, rest) = out.split_at_mut_checked(HEADER_LEN + names + self.payload.len())?;
-        let (head, body) = covered.split_first_chunk_mut::<HEADER_LEN>()?;
+    /// Writes what tags cover.
+    #[inline]
+    fn write_covered(&self, out: &mut FrameBytes) -> Option<()> {
         let ([e0, e1, e2, e3], [c0, c1, c2, c3]) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
         let sender = if self.audience.is_some() { HOST_TO_SEVERAL } else { self.sender.number() };
-        *head = [VERSION, self.team.0, sender, e0, e1, e2, e3, c0, c1, c2, c3];
+        out.extend_from_slice(&[VERSION, self.team.0, sender, e0, e1, e2, e3, c0, c1, c2, c3]).ok()?;
         if let Some(Audience(robots)) = self.audience {
-            *body.first_chunk_mut::<AUDIENCE_LEN>()? = robots.to_le_bytes();
+            out.extend_from_slice(&robots.to_le_bytes()).ok()?;
         }
-        body.get_mut(names..)?.copy_from_slice(self.payload);
-        Some((covered, rest))
+        out.extend_from_slice(self.payload).ok()
     }
 }
 
@@ -385,19 +397,19 @@ mod tests {
 
     #[test]
     fn a_frame_has_the_bytes_of_the_specification() {
-        let mut out = [0; FRAME_LEN_MAX];
-        let n = frame(0x0102_0304, 5).emit(&KEY, &mut out).unwrap();
-        assert_eq!(n, OVERHEAD + 3);
+        let out = frame(0x0102_0304, 5).emit(&KEY).unwrap();
+        assert_eq!(out.len(), OVERHEAD + 3);
         assert_eq!(&out[..14], &[2, 3, 2, 4, 3, 2, 1, 5, 0, 0, 0, b'a', b'b', b'c']);
-        assert_eq!(Frame::parse(&out[..n], TEAM), Ok(frame(0x0102_0304, 5)));
-        assert!(frame(0x0102_0304, 5).is_genuine(&out[..n], &KEY, robot(0)));
+        assert_eq!(Frame::parse(&out, TEAM), Ok(frame(0x0102_0304, 5)));
+        assert!(frame(0x0102_0304, 5).is_genuine(&out, &KEY, robot(0)));
     }
 
     #[test]
     fn a_frame_to_several_has_a_tag_for_each_and_every_flipped_bit_is_noticed_by_those_it_concerns() {
         let keys = TeamKey([9; 16]).of_team();
-        let (sent, mut out) = (to_several(&[0, 4, 15]), [0; FRAME_LEN_MAX]);
-        let n = sent.emit_to_audience(&keys, &mut out).unwrap();
+        let sent = to_several(&[0, 4, 15]);
+        let mut out = sent.emit_to_audience(&keys).unwrap();
+        let n = out.len();
         assert_eq!(n, HEADER_LEN + 2 + 3 + 3 * 3);
         assert_eq!(out[2], 17);
         assert_eq!(Frame::parse(&out[..n], TEAM), Ok(sent));
@@ -426,8 +438,8 @@ mod tests {
 
     #[test]
     fn every_flipped_bit_is_noticed() {
-        let mut out = [0; FRAME_LEN_MAX];
-        let n = frame(1, 1).emit(&KEY, &mut out).unwrap();
+        let mut out = frame(1, 1).emit(&KEY).unwrap();
+        let n = out.len();
         for bit in 0..n * 8 {
             out[bit / 8] ^= 1 << (bit % 8);
             assert!(!frame(1, 1).is_genuine(&out[..n], &KEY, robot(0)), "bit {bit}");
@@ -479,10 +491,11 @@ mod tests {
 
     #[test]
     fn a_frame_that_does_not_fit_is_not_written() {
-        assert_eq!(frame(1, 1).emit(&KEY, &mut [0; 21]), None);
         let keys = TeamKey([9; 16]).of_team();
-        assert_eq!(to_several(&[1, 2]).emit_to_audience(&keys, &mut [0; 21]), None);
-        assert_eq!(to_several(&[1, 2]).emit(&KEY, &mut [0; 120]), None);
-        assert_eq!(frame(1, 1).emit_to_audience(&keys, &mut [0; 120]), None);
+        let payload = &[0; PAYLOAD_LEN_MAX + 1];
+        assert_eq!(Frame { payload, ..frame(1, 1) }.emit(&KEY), None);
+        assert_eq!(Frame { payload, ..to_several(&[1, 2]) }.emit_to_audience(&keys), None);
+        assert_eq!(to_several(&[1, 2]).emit(&KEY), None);
+        assert_eq!(frame(1, 1).emit_to_audience(&keys), None);
     }
 }

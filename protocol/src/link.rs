@@ -7,7 +7,7 @@
 //! frames are refused as [`Refusal::Stale`] when they are older than [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
 use crate::acquaintance::Acquaintances;
-use crate::frame::{FRAME_LEN_MAX, Frame, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
+use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
 use crate::host::{HostMessage, PARTS_MAX, Telemetry, WorldPart};
 use crate::host_clock::{Age, HostClock, ticks};
 use crate::key::Key;
@@ -15,7 +15,7 @@ use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{Duration, Instant, RobotId, TeamId};
 
 /// A packet of the air: one whole frame.
-pub type Packet = heapless::Vec<u8, FRAME_LEN_MAX>;
+pub type Packet = FrameBytes;
 
 /// What a robot heard.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
@@ -291,21 +291,20 @@ pub fn overhear_host(
 
 /// The frame as a packet; empty if it is too long for one.
 pub(crate) fn packet(frame: &Frame<'_>, key: &Key) -> Packet {
-    written(|out| frame.emit(key, out))
+    let mut out = Packet::new();
+    if frame.write(key, &mut out).is_none() {
+        out.clear();
+    }
+    out
 }
 
 /// As [`packet`], with a tag for each of its audience.
 pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> Packet {
-    written(|out| frame.emit_to_audience(keys, out))
-}
-
-fn written(emit: impl FnOnce(&mut [u8]) -> Option<usize>) -> Packet {
-    let mut packet = Packet::new();
-    if packet.resize_default(FRAME_LEN_MAX).is_ok() {
-        let len = emit(&mut packet).unwrap_or(0);
-        packet.truncate(len);
+    let mut out = Packet::new();
+    if frame.write_to_audience(keys, &mut out).is_none() {
+        out.clear();
     }
-    packet
+    out
 }
 
 pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {

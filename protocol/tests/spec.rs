@@ -225,9 +225,8 @@ fn frames_have_the_bytes_of_the_specification() {
     let payload = worked("quiet");
     let (sender, audience) = (Sender::Robot(robot(3)), None);
     let frame = Frame { team: TeamId(1), sender, audience, epoch: 1, counter: 258, payload: &payload };
-    let mut out = [0; 64];
-    let n = frame.emit(&team_key().of_robot(robot(3)).team, &mut out).unwrap();
-    assert_eq!(&out[..n], &worked("frame")[..], "{}", hex(&out[..n]));
+    let out = frame.emit(&team_key().of_robot(robot(3)).team).unwrap();
+    assert_eq!(out[..], worked("frame")[..], "{}", hex(&out));
     assert_eq!(Frame::parse(&worked("frame"), TeamId(1)), Ok(frame));
 }
 
@@ -239,9 +238,8 @@ fn a_frame_of_the_host_has_the_bytes_of_the_specification_on_the_air_and_on_a_li
     let payload = &*postcard::to_slice(&stand(), &mut payload).unwrap();
     let (sender, audience, epoch) = (Sender::Host, None, 0x6500_0000);
     let frame = Frame { team: TeamId(1), sender, audience, epoch, counter: 4097, payload };
-    let mut out = [0; 64];
-    let n = frame.emit(&key, &mut out).unwrap();
-    assert_eq!(&out[..n], &bytes[..], "{}", hex(&out[..n]));
+    let out = frame.emit(&key).unwrap();
+    assert_eq!(out[..], bytes[..], "{}", hex(&out));
     let genuine = |key: &Key| frame.is_genuine(&bytes, key, robot(3));
     assert!(genuine(&key) && !genuine(&team_key().of_robot(robot(4)).host));
     assert_eq!(line(&bytes)[..], worked("line")[..], "{}", hex(&line(&bytes)));
@@ -257,10 +255,9 @@ fn a_frame_to_several_robots_has_the_bytes_of_the_specification() {
     let audience = Some(Audience(1 << 3 | 1 << 5));
     let (sender, epoch) = (Sender::Host, 0x6500_0000);
     let frame = Frame { team: TeamId(1), sender, audience, epoch, counter: 4098, payload: &payload };
-    let mut out = [0; 64];
-    let n = frame.emit_to_audience(&team_key().of_team(), &mut out).unwrap();
-    assert_eq!(&out[..n], &worked("host-frame-to-several")[..], "{}", hex(&out[..n]));
-    assert_eq!(Frame::parse(&out[..n], TeamId(1)), Ok(frame));
+    let out = frame.emit_to_audience(&team_key().of_team()).unwrap();
+    assert_eq!(out[..], worked("host-frame-to-several")[..], "{}", hex(&out));
+    assert_eq!(Frame::parse(&out, TeamId(1)), Ok(frame));
 }
 
 #[test]

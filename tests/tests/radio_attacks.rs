@@ -345,9 +345,7 @@ fn the_keys_of_a_stolen_robot_move_no_other_robot_and_keep_none_moving() {
             for keys in &stolen {
                 for key in [&keys.host, &keys.team] {
                     let frame = Frame { counter: counter + n % 7, audience: None, ..frame };
-                    let mut out = [0; 120];
-                    let len = frame.emit(key, &mut out).unwrap();
-                    packets.push(Packet::from_slice(&out[..len]).unwrap());
+                    packets.push(frame.emit(key).unwrap());
                 }
             }
         }

@@ -308,7 +308,7 @@ fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
     let payload = &*postcard::to_slice(&world(1, 0, 1), &mut payload).unwrap();
     let audience = Audience(1 << 2 | 1 << 3);
     let forged = Frame { audience: Some(audience), payload, ..forged };
-    let mut bytes = written(|out| forged.emit_to_audience(&TeamKey([1; 16]).of_team(), out));
+    let mut bytes = packet_to_audience(&forged, &TeamKey([1; 16]).of_team());
     let tags = bytes.len() - 6;
     for key in [&stolen.host, &stolen.team] {
         let [x, y, z, ..] = key.tag(&bytes[..tags]).to_le_bytes();

@@ -2,7 +2,7 @@
 //! too: robots and hosts start again all the while.
 
 use geometry::GoalEnd;
-use protocol::frame::{Audience, Frame, HEADER_LEN, Sender, TAG_LEN, TeamKey};
+use protocol::frame::{Audience, Frame, Sender, TeamKey};
 use protocol::host::{Command, Directive, Duty, HostMessage, Telemetry, Welcome, WorldPart};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::{Heard, Link, Packet};
@@ -245,14 +245,8 @@ fn forged(draw: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
     let (epoch, counter) = ([70, 71, 9, 4, 5][draw(5)], 10_000 + draw(1_000_000) as u32);
     let audience = (sender == Sender::Host && draw(2) == 0).then_some(Audience(0b1100));
     let frame = Frame { team: TEAM, sender, audience, epoch, counter, payload };
-    let mut out = vec![0; HEADER_LEN + payload.len() + TAG_LEN];
     let key = TeamKey(std::array::from_fn(|_| draw(256) as u8));
     let keys = key.of_team();
-    let len = if audience.is_some() {
-        frame.emit_to_audience(&keys, &mut out)
-    } else {
-        frame.emit(keys.team(), &mut out)
-    };
-    out.truncate(len.unwrap());
-    out
+    let out = if audience.is_some() { frame.emit_to_audience(&keys) } else { frame.emit(keys.team()) };
+    out.unwrap().to_vec()
 }

@@ -2,7 +2,7 @@
 
 use geometry::GoalEnd;
 use hil_sim::Stream;
-use protocol::frame::{FRAME_LEN_MAX, Frame, Key, Sender};
+use protocol::frame::{Frame, Key, Sender};
 use protocol::host::{Command, Directive, Duty, HostMessage, Welcome};
 use protocol::host_link::HostLink;
 use protocol::link::{Link, Packet};
@@ -88,11 +88,7 @@ impl Adversary {
         let length = written.map_or(0, |bytes| bytes.len());
         let (audience, counter, payload) = (None, u32::MAX, &payload[..length]);
         let frame = Frame { team, sender, audience, epoch, counter, payload };
-        let mut packet = Packet::new();
-        let _fits = packet.resize_default(FRAME_LEN_MAX);
-        let length = frame.emit(&key, &mut packet).unwrap_or(0);
-        packet.truncate(length);
-        packet
+        frame.emit(&key).unwrap_or_default()
     }
 }
 
