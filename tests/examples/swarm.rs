@@ -17,7 +17,9 @@ use match_tests::swarm::{Runs, watch, watch_matches, words};
 
 fn main() -> ExitCode {
     let Some(Arguments { plan, runs, record }) = arguments(std::env::args().skip(1)) else {
-        eprintln!("usage: cargo xtask swarm [--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]");
+        eprintln!(
+            "usage: cargo xtask swarm [--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]"
+        );
         return ExitCode::from(2);
     };
     match (plan, record) {
