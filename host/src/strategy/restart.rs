@@ -19,10 +19,10 @@ const TAKER_WAITS: f32 = 0.7;
 /// How far behind the mark all robots but taker and keeper are at a penalty, m: the rules' 1 m, a body and a margin, and room for
 /// another robot (0.23 m) to pass in front of the row on its way to its place, or for a ball that lies a little behind the mark.
 const BEHIND_PENALTY: f32 = 1.45;
-/// Least distance between robots that wait at a penalty, m: two bodies, and room for a third where the field is wide enough.
-const PENALTY_APART_MIN: f32 = 0.42;
-/// Most robots of a team that wait at a penalty: eleven without the keeper.
-const PENALTY_ROW_MAX: usize = 10;
+/// From the middle to the first robot that waits at a penalty, m: the taker passes between the teams.
+const PENALTY_FIRST: f32 = 0.3;
+/// Most distance between robots that wait at a penalty, m: a third passes between two of them.
+const PENALTY_APART: f32 = 0.6;
 /// From the touch line to the last place of a row behind a penalty, m: a body.
 const PENALTY_INSIDE: f32 = 0.1;
 /// Beside a body that passes between two walls, m.
@@ -95,17 +95,20 @@ fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
     Some(ball.position).filter(|at| at.distance(mark) < NEAR_MARK)
 }
 
-/// Robots other than taker and keeper at a penalty from `spot`: in a row behind it, each team on its own left, so that no two are
-/// sent to one place. A second row only where the field does not hold them in one.
-pub fn behind_penalty(view: &View, spot: Point<Attack>, ours: bool, slot: usize) -> Point<Attack> {
+/// Robots other than taker and keeper at a penalty from `spot`, `waiting` in number: in a row behind it, each team on its own left, so
+/// that no two are sent to one place.
+pub fn behind_penalty(
+    view: &View,
+    spot: Point<Attack>,
+    ours: bool,
+    slot: usize,
+    waiting: usize,
+) -> Point<Attack> {
     let back = if ours { -1.0 } else { 1.0 };
-    let wide = view.field.width * 0.5 - PENALTY_INSIDE;
-    // The first place is half a distance from the middle.
-    let in_row = ((wide / PENALTY_APART_MIN + 0.51) as usize).clamp(1, PENALTY_ROW_MAX);
-    let (row, place) = (slot / in_row, slot % in_row);
-    let x = spot.x() + back * (BEHIND_PENALTY + PENALTY_APART_MIN * row as f32);
-    let y = wide / (in_row as f32 - 0.5) * (place as f32 + 0.5);
-    view.clamp(Point::new(x, y), PENALTY_INSIDE)
+    let wide = view.field.width * 0.5 - PENALTY_INSIDE - PENALTY_FIRST;
+    let apart = PENALTY_APART.min(wide / waiting.saturating_sub(1).max(1) as f32);
+    let at = Point::new(spot.x() + back * BEHIND_PENALTY, PENALTY_FIRST + apart * slot as f32);
+    view.clamp(at, PENALTY_INSIDE)
 }
 
 /// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.
@@ -126,7 +129,8 @@ pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     // In the stop before a penalty nobody rolls the ball to its mark: people put it there.
     let penalty = matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
     let by_hand = view.phase == Phase::Stop && penalty;
-    let target = view.placement.filter(|_| !by_hand).unwrap_or(ball.position);
+    // A ball that rolls is left before it comes.
+    let target = view.placement.filter(|_| !by_hand).unwrap_or(ball.rest);
     let spine = Segment::new(ball.position, target);
     let closest = spine.closest_to(at);
     let away = at - closest;
@@ -204,8 +208,9 @@ mod tests {
             // The same mark, seen from the other side.
             assert_eq!(defending, Point::new(-shooting.x(), -shooting.y()));
             let turned = |at: Point<Attack>| Point::<Attack>::new(-at.x(), -at.y());
-            let ours = (0..robots).map(|slot| behind_penalty(&view, shooting, true, slot));
-            let theirs = (0..robots).map(|slot| turned(behind_penalty(&view, defending, false, slot)));
+            let ours = (0..robots).map(|slot| behind_penalty(&view, shooting, true, slot, robots));
+            let theirs =
+                (0..robots).map(|slot| turned(behind_penalty(&view, defending, false, slot, robots)));
             let all: Vec<_> = ours.chain(theirs).collect();
             for (i, at) in all.iter().enumerate() {
                 assert!(shooting.x() - at.x() > 1.1, "{league:?}: {at:?}");

@@ -22,8 +22,9 @@ impl Coach {
         } else if plan.take(view.keeper) {
             plan.order(view.keeper, Role::Keeper, defence::keeper_on_goal_line(view), Why::Referee);
         }
+        let waiting = plan.free.len();
         let places: heapless::Vec<_, ROBOTS_MAX> =
-            (0..plan.free.len()).map(|slot| restart::behind_penalty(view, spot, ours, slot)).collect();
+            (0..waiting).map(|slot| restart::behind_penalty(view, spot, ours, slot, waiting)).collect();
         self.row(plan, &places);
     }
 

@@ -112,6 +112,12 @@ impl Moment<'_> {
         regions.iter().filter(offends).map(|r| Within { who, why: r.why, depth: depth(r) }).collect()
     }
 
+    /// Whether that robot may be there now.
+    pub fn may_stand(&self, who: Who, at: Point<Field>) -> bool {
+        let duty = if self.keepers.contains(&who) { Duty::Keeper } else { Duty::Player };
+        self.regions(who, duty, at).is_empty() || self.regions(who, Duty::Taker, at).is_empty()
+    }
+
     /// Every robot that is where it must not be.
     pub fn offenders(&self, robots: &[(Who, Point<Field>)]) -> Vec<Within> {
         let mut all = Vec::new();

@@ -199,9 +199,10 @@ impl Watch {
             self.changed = time;
         }
         let own = [Colour::Yellow, Colour::Blue].map(|team| referee.own_end(team));
+        let field = self.field;
         let moment = Moment {
             time,
-            field: &self.field,
+            field: &field,
             phase: self.phase,
             ball,
             ball_speed: world.ball.speed(),
@@ -222,7 +223,7 @@ impl Watch {
             .iter()
             .map(|&(who, at)| {
                 let leaves = offenders.iter().any(|one| one.who == who);
-                (who, at, self.must(game, own, who, at, leaves))
+                (who, at, self.must(game, &moment, who, at, leaves))
             })
             .collect();
         for frozen in self.stands.look(time, &must) {
@@ -236,7 +237,7 @@ impl Watch {
     fn must(
         &self,
         game: &Game<'_>,
-        own: [GoalEnd; 2],
+        moment: &Moment<'_>,
         who: Who,
         at: Point<Field>,
         leaves: bool,
@@ -251,7 +252,7 @@ impl Watch {
             return Some(Must::MakeWay);
         }
         let order = game.host(who.colour).orders().iter().find(|order| order.robot == who.id)?;
-        let flip = Flip::defending(own[who.colour as usize]);
+        let flip = Flip::defending(moment.own[who.colour as usize]);
         let ours = |phase: Phase<Side>| {
             matches!(
                 phase,
@@ -262,8 +263,10 @@ impl Watch {
         let to_ball = at.distance(self.ball);
         match order.task {
             Task::GoTo { at: target, .. } => {
-                let away = flip.to_field(target).distance(at);
-                (away > SENT).then_some(Must::GoTo(away))
+                let target = flip.to_field(target);
+                let away = target.distance(at);
+                // Who is on its way to a place that is forbidden now waits before it.
+                (away > SENT && moment.may_stand(who, target)).then_some(Must::GoTo(away))
             }
             Task::PlaceBall { .. } if phase == Phase::BallPlacement(Side::Ours) => Some(Must::Play(to_ball)),
             Task::Kick { .. } | Task::Pass { ready: true, .. } if ours(phase) => Some(Must::Play(to_ball)),
