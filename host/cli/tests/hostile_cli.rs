@@ -149,7 +149,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             let report = json(&["replay", text(&file)], 1);
             assert!(report["damage"].as_str().is_some_and(|words| words.contains("cut at byte")), "{report}");
             assert_eq!(report["same_decisions"], true, "after {kind:?} at byte {at}: {}", report["hosts"]);
-            let out = onetwo(&[text(&file)]);
+            let out = onetwo(&["replay", text(&file)]);
             let (told, why) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
             assert!(
                 told.contains("the file is damaged: cut at byte") && why.contains("cut at byte"),
@@ -158,7 +158,7 @@ fn a_recording_cut_between_any_two_records_is_cut_and_never_other_decisions() {
             assert!(!told.contains("other decisions"), "{told}");
             // Without gzip's end mark only missing packets show that it was cut; whichever: no other decisions.
             fs::write(&file, &whole[..*at]).unwrap();
-            let told = onetwo(&[text(&file)]).stdout;
+            let told = onetwo(&["replay", text(&file)]).stdout;
             assert!(
                 !String::from_utf8_lossy(&told).contains("other decisions"),
                 "after {kind:?} at byte {at}"

@@ -22,7 +22,17 @@ fn phases() -> impl Iterator<Item = Phase<Side>> {
 }
 
 fn why(field: &FieldSpec, phase: Phase<Side>, duty: Duty, at: (f32, f32)) -> Option<Why> {
-    let ball = Some(Point::new(0.0, 0.0));
+    why_with_ball(field, phase, duty, (0.0, 0.0), at)
+}
+
+fn why_with_ball(
+    field: &FieldSpec,
+    phase: Phase<Side>,
+    duty: Duty,
+    ball: (f32, f32),
+    at: (f32, f32),
+) -> Option<Why> {
+    let ball = Some(Point::new(ball.0, ball.1));
     let placement = Some(Point::new(2.0, 0.0));
     let s = Situation { field, own: GoalEnd::Negative, phase, duty, ball, placement, ball_in_play: false };
     keep_out(&s).offence(Point::new(at.0, at.1), ROBOT_RADIUS)
@@ -94,16 +104,19 @@ fn at_a_kick_off_only_the_kicker_is_in_the_circle() {
 fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
     let field = League::DivisionB.field();
     for phase in [Phase::PreparePenalty(Side::Ours), Phase::Penalty(Side::Ours)] {
-        // The ball is at x = 0, we attack +x: the body ends at x = −1.
-        let player = |x| why(&field, phase, Duty::Player, (x, 2.0));
-        assert_eq!((player(-1.05), player(-1.10)), (Some(Why::BehindBall), None));
+        // The ball is at x = −1.6, 0.1 m behind its mark, and we attack +x: the body ends at x = −2.6.
+        let player = |x| why_with_ball(&field, phase, Duty::Player, (-1.6, 0.0), (x, 2.0));
+        assert_eq!((player(-2.68), player(-2.70)), (Some(Why::BehindBall), None));
+        // A ball that was carried elsewhere: the mark, at x = −1.5, counts.
+        let carried = |x| why(&field, phase, Duty::Player, (x, 2.0));
+        assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
         assert_eq!(why(&field, phase, Duty::Keeper, (-4.4, 0.0)), None);
         assert_eq!(why(&field, phase, Duty::Taker, (-0.3, 0.0)), None);
     }
     for phase in [Phase::PreparePenalty(Side::Theirs), Phase::Penalty(Side::Theirs)] {
-        // They attack −x: behind the ball is x > 1.
-        let player = |x| why(&field, phase, Duty::Player, (x, 2.0));
-        assert_eq!((player(1.05), player(1.10)), (Some(Why::BehindBall), None));
+        // They attack −x: behind the ball is x > 2.6.
+        let player = |x| why_with_ball(&field, phase, Duty::Player, (1.6, 0.0), (x, 2.0));
+        assert_eq!((player(2.68), player(2.70)), (Some(Why::BehindBall), None));
         let keeper = |x, y| why(&field, phase, Duty::Keeper, (x, y));
         assert_eq!(keeper(-4.5, 0.0), None);
         assert_eq!(keeper(-4.42, 0.4), None);
