@@ -262,7 +262,7 @@ pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
 /// Who may spend so much looks at as many pieces of a way as who leaves a region: around a goal and into its mouth takes them.
-pub const EFFORT_LONG: u32 = EFFORT_MAX / 2;
+pub const EFFORT_LONG: u32 = 200;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.

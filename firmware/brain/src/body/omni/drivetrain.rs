@@ -9,7 +9,7 @@ use motion::avoid::{self, Course, Restraint, Verdict};
 use motion::trajectory::{CalcMotion, FreeLimits, Motion, TurnLimits};
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
-use rules::{FieldSpec, Phase, Side};
+use rules::{Duty, FieldSpec, Phase, Side};
 
 use super::surroundings::Surroundings;
 use super::{Drive, Manner};
@@ -166,19 +166,18 @@ fn half_turn(angular: f32, step: f32) -> Angle {
 /// What a step may spend on a way, and on a way out of a forbidden region. It is what the rest of the step leaves of 40,000
 /// instructions (`qemu_wheels`).
 fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
-    if is_moved_by_the_rules(belief.game.phase) {
-        let places = belief.game.phase == Phase::BallPlacement(Side::Ours);
-        return (if places { EFFORT_PLACING } else { EFFORT_STOPPED }, EFFORT_STOPPED_TO_LEAVE);
-    }
     let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
-    let beyond_goal_line = belief.pose.position.x().abs() > 0.5 * field.length;
-    let effort = match (beyond_goal_line, ball_moves) {
+    let stopped = is_moved_by_the_rules(belief.game.phase);
+    let effort = match belief.game.phase {
         // From behind a goal the way into its mouth is long.
-        (true, _) => avoid::EFFORT_LONG,
-        (false, true) => EFFORT_BALL_MOVES,
-        (false, false) => EFFORT_BALL_RESTS,
+        _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
+        Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
+        _ if stopped && belief.game.duty == Duty::Taker => EFFORT_TAKING,
+        _ if stopped => EFFORT_STOPPED,
+        _ if ball_moves => EFFORT_BALL_MOVES,
+        _ => EFFORT_BALL_RESTS,
     };
-    (effort, EFFORT_TO_LEAVE)
+    (effort, if stopped { EFFORT_STOPPED_TO_LEAVE } else { EFFORT_TO_LEAVE })
 }
 
 /// In play: eight pieces among three obstacles, five among a dozen; only what stands near the way is one. Where to meet a moving ball
@@ -187,9 +186,11 @@ const EFFORT_BALL_MOVES: u32 = 100;
 /// The same while the ball rests.
 const EFFORT_BALL_RESTS: u32 = 115;
 /// The same while the ball is not in play: neither a case nor an interception is sought then.
-const EFFORT_STOPPED: u32 = 460;
-/// The same while our team places the ball: its robot looks for a way behind the ball besides.
-const EFFORT_PLACING: u32 = 200;
+const EFFORT_STOPPED: u32 = 230;
+/// Behind a goal line.
+const EFFORT_BEHIND_GOAL: u32 = 312;
+/// The same of who places the ball or takes a restart: it looks for a way behind the ball besides.
+const EFFORT_TAKING: u32 = 200;
 /// A way out of a forbidden region then.
 const EFFORT_STOPPED_TO_LEAVE: u32 = 460;
 /// A way out in play, where a step may seek a case too.
