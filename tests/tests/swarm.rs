@@ -28,11 +28,11 @@ fn a_seed_gives_the_same_run_on_any_number_of_threads() {
 #[test]
 fn matches_with_cards_restarts_and_halts_keep_every_promise() {
     // One of each division.
-    for seed in [1, 2] {
+    for seed in [4, 7] {
         let plan = Plan::drawn(seed, LENGTH);
         let outcome = matches::play(&plan, &mut Nobody);
         assert!(outcome.found.is_empty(), "\n{}", matches::words(&plan, &outcome));
         // The match was no empty one.
-        assert!(outcome.acts > 1 && outcome.begun.iter().any(|times| *times > 0), "{outcome:?}");
+        assert!(outcome.acts > 1 && outcome.begun[1] > 0, "{outcome:?}");
     }
 }
