@@ -79,6 +79,8 @@ pub struct Course<'o, F> {
     pub effort: u32,
     /// The same for the route of a way out.
     pub effort_to_leave: u32,
+    /// Most straight pieces that are looked at, [`CHECKS_LONG`] at most; a way out may take all of these.
+    pub checks: u32,
 }
 
 /// Which way it goes.
@@ -151,7 +153,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     }
     let goal = scene.nearest_free(to);
     scene.keep_apart(from, goal, false);
-    let route = Route::find(&scene, from, velocity, goal, &limits, course.effort >= EFFORT_LONG);
+    let route = Route::find(&scene, from, velocity, goal, &limits, course.checks);
     let (verdict, towards) = match route.via {
         _ if !route.arrives => (Verdict::Blocked { at: route.end }, route.via.unwrap_or(route.end)),
         None => (Verdict::Direct, goal),
@@ -170,7 +172,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
     scene.allow(course.effort_to_leave);
-    let route = Route::find(scene, from, velocity, exit, &limits, true);
+    let route = Route::find(scene, from, velocity, exit, &limits, CHECKS_LONG);
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
         Some(via) => via,
@@ -261,8 +263,8 @@ pub const OBSTACLES_MAX: usize = 40;
 pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
-/// Who may spend so much looks at as many pieces of a way as who leaves a region: around a goal and into its mouth takes them.
-pub const EFFORT_LONG: u32 = 200;
+/// The same of a long search, for a way out or while there is time: around a goal and into its mouth it takes more.
+pub const CHECKS_LONG: u32 = 24;
 /// A control step is no longer, s.
 const STEP_MAX: f32 = 1.0;
 /// So long others are taken to keep their velocity, s: about what a robot needs to change it.

@@ -128,9 +128,9 @@ impl Task {
             obstacles,
             within: Some(Shape::Box { low: Point::new(-4.7, -3.2), high: Point::new(4.7, 3.2) }),
             step: 0.01,
-            // The most that a usual plan may spend; a long search is for robots behind a goal line.
-            effort: avoid::EFFORT_LONG - 1,
+            effort: avoid::EFFORT_MAX,
             effort_to_leave: 4 * avoid::EFFORT_MAX,
+            checks: avoid::CHECKS_MAX,
         };
         folded(&avoid::plan(&course).next)
     }

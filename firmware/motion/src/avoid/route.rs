@@ -3,7 +3,7 @@
 use geometry::{Point, Shape, Vector, math};
 
 use super::item::{Item, Scene, at, tangent};
-use super::{CHECKS_MAX, Obstacle};
+use super::{CHECKS_LONG, Obstacle};
 use crate::trajectory::FreeLimits;
 
 /// What was found.
@@ -52,22 +52,15 @@ impl<F: Copy> Route<F> {
         velocity: Vector<F>,
         goal: Point<F>,
         limits: &FreeLimits,
-        long: bool,
+        checks: u32,
     ) -> Self {
         let length = from.distance(goal);
         let start = Node { at: from, parent: 0, length: 0.0, cost: 0.0, estimate: length };
         let towards = (goal - from).unit().unwrap_or_default();
         let speed = math::clamp(velocity.dot(towards), 0.0, limits.speed);
         let nodes = heapless::Vec::new();
-        let mut search = Search {
-            scene,
-            goal,
-            velocity,
-            limits,
-            nodes,
-            checks: if long { CHECKS_LONG } else { CHECKS_MAX },
-            speed,
-        };
+        let mut search =
+            Search { scene, goal, velocity, limits, nodes, checks: checks.min(CHECKS_LONG), speed };
         // The first of many.
         let _ = search.nodes.push(start);
         match search.run() {
@@ -331,8 +324,6 @@ fn around<F: Copy>(
 
 /// Most turns that are tried from a corner.
 const TURNS_MAX: usize = 12;
-/// Most straight pieces that a long search looks at, for a way out or while there is time: around a goal and into its mouth it takes more.
-const CHECKS_LONG: u32 = 24;
 /// Most corners of a search: one a piece, and the start.
 const NODES_MAX: usize = CHECKS_LONG as usize + 1;
 /// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.

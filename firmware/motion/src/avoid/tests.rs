@@ -29,6 +29,7 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
         step: STEP,
         effort: EFFORT_MAX,
         effort_to_leave: 4 * EFFORT_MAX,
+        checks: CHECKS_LONG,
     }
 }
 
@@ -391,6 +392,7 @@ fn nothing_that_comes_in_makes_it_fall_over() {
             step,
             effort: EFFORT_MAX,
             effort_to_leave: 4 * EFFORT_MAX,
+            checks: CHECKS_LONG,
         });
         assert!(
             way.next.velocity.is_finite() && way.next.position.is_finite(),

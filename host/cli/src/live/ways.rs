@@ -5,7 +5,7 @@
 use brain::body::omni::LIMITS;
 use geometry::{Field, GoalEnd, Point};
 use host::world::{Robot, World};
-use motion::avoid::{Course, EFFORT_LONG, OBSTACLES_MAX, Obstacle, plan};
+use motion::avoid::{CHECKS_LONG, Course, EFFORT_MAX, OBSTACLES_MAX, Obstacle, plan};
 use page::milli;
 use rules::keep_out::{Situation, keep_out};
 use rules::limits::ROBOT_RADIUS;
@@ -61,8 +61,9 @@ impl Ways<'_> {
                 obstacles: &obstacles,
                 within,
                 step: STEP,
-                effort: EFFORT_LONG,
-                effort_to_leave: EFFORT_LONG,
+                effort: EFFORT_MAX,
+                effort_to_leave: EFFORT_MAX,
+                checks: CHECKS_LONG,
             };
             let way = plan(&course);
             (from, velocity) = (way.next.position, way.next.velocity);

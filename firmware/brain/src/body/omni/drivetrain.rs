@@ -122,6 +122,7 @@ impl Drivetrain {
             step,
             effort,
             effort_to_leave,
+            checks: if effort >= EFFORT_TAKING { avoid::CHECKS_LONG } else { avoid::CHECKS_MAX },
         });
         if way.restraint == Restraint::None {
             let winds = way.verdict != Verdict::Direct;
