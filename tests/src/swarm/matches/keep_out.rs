@@ -46,8 +46,7 @@ const LEAVE_OWN_AREA: f32 = 4.0;
 pub const BOUND: f32 = 0.5;
 /// Robots nearer than that to a region's border are not in it, m: a camera's noise on a robot that touches the border.
 const TOLERANCE: f32 = 0.005;
-/// A ball that rolls freely and faster than this, or its way to the placement's target, cannot be got away from at once (referee
-/// commands, stop, note), m/s.
+/// A ball that rolls freely and faster than this cannot be got away from at once (referee commands, stop, note), m/s.
 const BALL_QUICK: f32 = 0.5;
 
 /// The match as the check needs it.
@@ -112,12 +111,6 @@ impl Moment<'_> {
         regions.iter().filter(offends).map(|r| Within { who, why: r.why, depth: depth(r) }).collect()
     }
 
-    /// Whether that robot may be there now.
-    pub fn may_stand(&self, who: Who, at: Point<Field>) -> bool {
-        let duty = if self.keepers.contains(&who) { Duty::Keeper } else { Duty::Player };
-        self.regions(who, duty, at).is_empty() || self.regions(who, Duty::Taker, at).is_empty()
-    }
-
     /// Every robot that is where it must not be.
     pub fn offenders(&self, robots: &[(Who, Point<Field>)]) -> Vec<Within> {
         let mut all = Vec::new();
@@ -174,8 +167,7 @@ impl KeepOuts {
             let phase = moment.phase.seen_by(one.who.colour);
             let Some(grace) = grace(one.why, phase) else { continue };
             let entry = self.since.entry((one.who, one.why as u8)).or_insert((moment.time, one.depth, false));
-            let of_ball = matches!(one.why, Why::BallDistance | Why::Stadium);
-            if of_ball && moment.ball_speed > BALL_QUICK && moment.ball_is_free(robots) {
+            if one.why == Why::BallDistance && moment.ball_speed > BALL_QUICK && moment.ball_is_free(robots) {
                 entry.0 = moment.time;
             }
             entry.1 = entry.1.max(one.depth);

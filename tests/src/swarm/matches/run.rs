@@ -89,7 +89,7 @@ fn perform(game: &mut Game<'_>, act: Act) -> bool {
         Act::Keeper(team, robot) => {
             let who = Who { colour: team, id: robot };
             let here = game.world().robot(who).is_some_and(|robot| robot.present);
-            // Whoever names another keeper during a penalty breaks the rules at once: the old one is metres before the ball.
+            // A keeper may be changed while the ball is out of play or in the opponents' half (choosing keeper id): not in a penalty.
             let penalty = matches!(game.referee().phase(), Phase::Penalty(_));
             here && !penalty && game.change_keeper(team, robot)
         }
@@ -265,8 +265,7 @@ impl Watch {
             Task::GoTo { at: target, .. } => {
                 let target = flip.to_field(target);
                 let away = target.distance(at);
-                // Who is on its way to a place that is forbidden now waits before it.
-                (away > SENT && moment.may_stand(who, target)).then_some(Must::GoTo(away))
+                (away > SENT).then_some(Must::GoTo(away))
             }
             Task::PlaceBall { .. } if phase == Phase::BallPlacement(Side::Ours) => Some(Must::Play(to_ball)),
             Task::Kick { .. } | Task::Pass { ready: true, .. } if ours(phase) => Some(Must::Play(to_ball)),
