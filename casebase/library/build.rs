@@ -1,4 +1,4 @@
-//! Are the built-in libraries sound, and what do their tables look like? `cases/<league>/` → one blob each.
+//! Build script: checks the built-in libraries and encodes their tables. `cases/<league>/` → one blob each.
 //!
 //! A faulty library fails the build with its findings; doubts are shown as warnings of the build.
 #![forbid(unsafe_code)]

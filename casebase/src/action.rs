@@ -1,4 +1,4 @@
-//! What do the robots of a case do, and what can a kick do? (Ros et al. 2009, §2.2; DESIGN §4.1, §4.4)
+//! `action`: actions of a case's robots, and kick kinds (Ros et al. 2009, §2.2; DESIGN §4.1, §4.4).
 //!
 //! Points are the case's own coordinates, mm; whoever plays the case adapts them with `Case::shift`.
 

@@ -1,4 +1,4 @@
-//! What does one stored case say? (Ros et al. 2009, §2) A view into the table; mm, field frame.
+//! `case`: one stored case (Ros et al. 2009, §2). A view into the table; mm, field frame.
 
 use protocol::CaseId;
 

@@ -1,4 +1,5 @@
-//! Which gameplay fits this situation, who plays whom in it, and is its way free? (Ros et al. 2009, §2–§3)
+//! `casebase`: case representation and retrieval: which gameplay fits a situation, which robot plays which
+//! part, and whether the ball's path is free (Ros et al. 2009, §2–§3).
 //!
 //! A case is (P, A, K): a situation, what each robot does in it, and how far it generalises. A [`CaseBase`] is a
 //! flat table in flash; [`retrieve()`] finds the case for a [`Problem`]; [`explain()`] says why, for every case. The

@@ -1,4 +1,4 @@
-//! Where is something on the field, and how deep inside an elliptic scope? (Ros et al. 2009, §2.1, §2.3)
+//! `point`: points on the field, and depth inside an elliptic scope (Ros et al. 2009, §2.1, §2.3).
 //!
 //! Whole millimetres in the field frame, as the paper has them. Differences saturate, so that no input overflows.
 

@@ -1,4 +1,5 @@
-//! What is the situation a case is sought for? P = (B, G, Tm, Opp) (Ros et al. 2009, §2.1), mm, field frame.
+//! `problem`: the situation that a case is retrieved for. P = (B, G, Tm, Opp) (Ros et al. 2009, §2.1), mm,
+//! field frame.
 
 use heapless::Vec;
 use protocol::RobotId;

@@ -1,4 +1,5 @@
-//! How does one stored case fare in one problem? The checks of DESIGN §4.3 one by one, everything relative to the ball, mm.
+//! `query`: tests of one stored case against one problem. The checks of DESIGN §4.3 one by one, everything
+//! relative to the ball, mm.
 //!
 //! Retrieval and explanation put the same questions, in their own order.
 

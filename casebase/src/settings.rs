@@ -1,4 +1,5 @@
-//! Which readings of the paper are chosen? The named settings of retrieval (DESIGN §4.3), each declared once.
+//! `settings`: the named settings of retrieval (DESIGN §4.3), one for each reading of the paper, each
+//! declared once.
 //!
 //! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is what gets recorded with every result.
 

@@ -1,4 +1,4 @@
-//! Where in the table are the records of one stored case? What retrieval looks at: by reference, nothing copied.
+//! `stored`: record addresses of one stored case. What retrieval looks at: by reference, nothing copied.
 //!
 //! [`Case`](crate::Case) is the view for everybody else; it carries its base with it and decodes what it is asked for.
 

@@ -1,4 +1,4 @@
-//! What do the tests of this crate draw their random situations from? A small seeded stream.
+//! `testing`: seeded random situations for this crate's tests. A small seeded stream.
 
 /// xorshift64*, enough for drawing test situations.
 pub(crate) struct Stream(u64);

@@ -1,4 +1,4 @@
-//! Where does the image lie in memory? Writes the linker's map; nothing to do on the PC.
+//! Build script: writes the linker's memory map; does nothing on the PC.
 
 use std::path::PathBuf;
 use std::{env, error::Error, fs};

@@ -1,4 +1,5 @@
-//! What is there to count in a simulated second? Eleven against eleven by a fixed script, with as much around it as asked for.
+//! `small_size_cost`: instruction count of a simulated second. Eleven against eleven by a fixed script, with
+//! as much around it as asked for.
 //!
 //! `cargo run --release -p hil-sim --example small_size_cost -- physics|cameras|packets|restless SECONDS` plays division A and
 //! prints what came of it; `cargo xtask bench simulator` counts its instructions.

@@ -1,4 +1,5 @@
-//! Which packet reaches whom, and when? A broadcast radio in steps of a tick: loss, delay, duplication, reordering, partition.
+//! `air`: simulated radio channel. A broadcast radio in steps of a tick: loss, delay, duplication,
+//! reordering, partition.
 //!
 //! Every fate is drawn per receiver from the air's own stream; packets that come in the same tick keep the order they were sent
 //! in unless reordering says otherwise. What does not fit into a tick ([`AIR_IN_MAX`], [`AIR_IN_BYTES_MAX`]) waits for the next.

@@ -1,4 +1,4 @@
-//! What can go wrong during a trial, and when? Crashes, returns, worse air, and a flipped bit; by tick number.
+//! `fault`: faults injected into a trial. Crashes, returns, worse air, and a flipped bit; by tick number.
 
 use geometry::{Twist, Vector};
 use protocol::RobotId;

@@ -1,4 +1,4 @@
-//! How do many bytes become one number? FNV-1a, 64 bits: the hash DESIGN §2 names for traces.
+//! `hash`: FNV-1a hash. FNV-1a, 64 bits: the hash DESIGN §2 names for traces.
 
 use core::fmt;
 

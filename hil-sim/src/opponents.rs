@@ -1,6 +1,6 @@
-//! What do the opponents do? Ros et al. 2009 §5.1.2: each has a home region that it never leaves; a ball inside it is gone
-//! for and cleared, else the robot stands at the region's border nearest the ball and faces it; a ball in its grasp there
-//! is cleared as well. m, s, field frame.
+//! `opponents`: opponents of the first paper. Ros et al. 2009 §5.1.2: each has a home region that it never
+//! leaves; a ball inside it is gone for and cleared, else the robot stands at the region's border nearest the
+//! ball and faces it; a ball in its grasp there is cleared as well. m, s, field frame.
 //!
 //! They have the attackers' bodies, nothing more and nothing less: they walk, grab (which may fail) and then kick at once
 //! in whichever of the body's three directions (ahead, left, right) points most upfield. They see the truth, as the

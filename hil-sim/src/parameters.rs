@@ -1,4 +1,5 @@
-//! How does the simulated world behave? The league's numbers, read from one file, checked, with their sources beside them.
+//! `parameters`: parameters of the four-legged simulator. The league's numbers, read from one file, checked,
+//! with their sources beside them.
 //!
 //! `hil-sim/data/four-legged.toml` is that file; SI units, degrees where a name says so. Nothing else in this crate types a
 //! physical number in. Dimensions of field, robots and ball are crate `rules`', and only the ball's deceleration stands in

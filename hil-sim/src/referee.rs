@@ -1,4 +1,4 @@
-//! How did the trial end, and how often did the opponents have the ball? Ros et al. 2009 §5.1.4, checklist R32–R35.
+//! `referee`: outcome and possession of a trial. Ros et al. 2009 §5.1.4, checklist R32–R35.
 //!
 //! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and goalie), when
 //! it enters the attacked penalty area (two defenders; the paper calls that "to goal", the outcome here is `goal`), or

@@ -1,4 +1,5 @@
-//! Where does chance come from? One seeded stream per subsystem, so that a draw more in one moves nothing in another.
+//! `rng`: seeded random streams. One seeded stream per subsystem, so that a draw more in one moves nothing in
+//! another.
 //!
 //! The generator is xoshiro128++ (a published stream, the same everywhere); what is made of its bits goes through
 //! `geometry::math` (DESIGN §2).

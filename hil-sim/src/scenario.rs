@@ -1,4 +1,5 @@
-//! Where does everybody stand at kick-off? The paper's four scenarios as data files (§5.1.3, checklist R31), and random ones.
+//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, checklist R31),
+//! and random ones.
 //!
 //! The paper gives no coordinates: `hil-sim/data/scenarios/*.toml` say what was estimated from its text and figures.
 

@@ -1,4 +1,5 @@
-//! What does a robot perceive of the truth? Everything as it is by default; with a noise profile, blurred (checklist R39, R40).
+//! `sensors`: perception of a walking robot. Everything as it is by default; with a noise profile, blurred
+//! (checklist R39, R40).
 //!
 //! This is where noise enters, and only here (DESIGN §3). m, rad, field frame.
 

@@ -1,4 +1,5 @@
-//! How does a trial run? Tick by tick: faults, senses, computers, air, opponents, physics, referee (DESIGN §2, §7).
+//! `simulation`: main loop of a trial. Tick by tick: faults, senses, computers, air, opponents, physics,
+//! referee (DESIGN §2, §7).
 //!
 //! In tick n at n · 40 ms: what is scheduled happens; every robot that runs is handed its senses and its packets, all robots
 //! think (in parallel where they are processes), their answers are taken in the order of ids; packets go into the air and are heard in

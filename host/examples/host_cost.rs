@@ -1,4 +1,4 @@
-//! What is there to count in a host's work? A recorded match's inputs, fed again image by image.
+//! `host_cost`: instruction count of a host. A recorded match's inputs, fed again image by image.
 //!
 //! `cargo run --release -p host --example host_cost -- FILE.trace` feeds the recording's first host. A round is everything
 //! from one packet of vision to the next: tracking, the referee's packets, robots' frames, deadlines, planning where it is due,

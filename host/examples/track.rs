@@ -1,4 +1,5 @@
-//! What does tracking make of a recorded match? Rates and delays of the cameras, what became of images and objects, noise.
+//! `track`: statistics of tracking on a recorded match. Rates and delays of the cameras, what became of
+//! images and objects, noise.
 //!
 //! ```sh
 //! cargo run --release -p host --example track -- protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz

@@ -1,4 +1,4 @@
-//! What does vision say of the field, its cameras and its ball? Geometry packets, merged.
+//! `geometry`: field geometry from vision. Geometry packets, merged.
 //!
 //! Simulators send one camera's calibration a packet (trap 2), leave the defence area out, send lines in any order and
 //! dummies for a camera's rotation (trap 8). The defence area is taken from its own numbers, else from its lines, else from the

@@ -1,4 +1,5 @@
-//! Where is a ball that no camera sees? Under a robot, or where it was put; field frame, SI.
+//! `hidden_ball`: position of a ball that no camera sees. Under a robot, or where it was put; field frame,
+//! SI.
 //!
 //! Of ours, it is at the robot that feels it, and where that robot felt it last once it has let go; of theirs, at the one whose
 //! front was at it when it vanished. At a restart after a placement it lies where it was placed: who brought it there hid it on the

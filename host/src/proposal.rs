@@ -1,5 +1,6 @@
-//! To whom does the case that our robots play pass next, and where? What they say of their cycle, looked up in the case base that they
-//! carry (papers-checklist §6: the case is the intent). From the field to the attack frame, m.
+//! `proposal`: the pass proposed by the case that our robots play. What they say of their cycle, looked up in
+//! the case base that they carry (papers-checklist §6: the case is the intent). From the field to the attack
+//! frame, m.
 
 use casebase::{CaseBase, CaseRobot, LegKind};
 use protocol::RobotId;

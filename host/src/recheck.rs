@@ -1,4 +1,4 @@
-//! Does a host decide again what it decided when it was recorded? Feeds a trace's inputs to hosts built from its header and
+//! `recheck`: replay check of a host's decisions. Feeds a trace's inputs to hosts built from its header and
 //! holds every packet they send to the record, byte for byte (DESIGN §7).
 
 use std::collections::VecDeque;

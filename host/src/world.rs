@@ -1,5 +1,5 @@
-//! Where is everything, how fast does it move, and where will it be in a moment? The picture that tracking hands to
-//! strategy, radio, referee and page. Field frame; m, m/s, rad, rad/s; times on the host's clock.
+//! `world`: the world model. The picture that tracking hands to strategy, radio, referee and page. Field
+//! frame; m, m/s, rad, rad/s; times on the host's clock.
 
 use geometry::{Field, Point, Pose, Vector, math};
 use motion::ball::chip::ChipModel;

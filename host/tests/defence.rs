@@ -1,5 +1,5 @@
-//! Is the threat-based defence calm on what cameras really send? The recordings of the league's programs, tracked, and defended
-//! against by either team, with and without the defence's memory.
+//! `defence`: tests: the threat-based defence is calm on real camera data. The recordings of the league's
+//! programs, tracked, and defended against by either team, with and without the defence's memory.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! Does HALT leave the host in the call that brings it, and does a trace with two referees decide the same again?
+//! `halt`: tests: HALT leaves the host in the call that brings it, and a trace with two referees is decided
+//! the same again.
 
 use host::radio::To;
 use host::recheck::Recheck;

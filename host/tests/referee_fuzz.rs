@@ -1,5 +1,5 @@
-//! Does any packet bring the referee's listener or the geometry down? Packets of the recordings with bits turned, and with
-//! numbers of the referee that no referee would send.
+//! `referee_fuzz`: fuzz tests of the referee listener and of geometry. Packets of the recordings with bits
+//! turned, and with numbers of the referee that no referee would send.
 
 use std::path::PathBuf;
 

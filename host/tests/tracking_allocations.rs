@@ -1,4 +1,4 @@
-//! Does tracking take memory while a match runs? Not one allocation after the first seconds (DESIGN §9).
+//! `tracking_allocations`: test: tracking does not allocate after the first seconds of a match (DESIGN §9).
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -1,5 +1,5 @@
-//! Which mates has this robot shown that it lives now, and which have shown it? What keeps recordings of mates from being
-//! believed after a boot.
+//! `acquaintance`: replay protection between robots: a peer is trusted after it has echoed our boot epoch.
+//! What keeps recordings of mates from being believed after a boot.
 //!
 //! A mate is believed once it has named this robot's present life in a [`Greeting`]: no recording can, for it was made
 //! before that life began. So whoever hears a new life of a mate greets it, and again every 40 ms, until both know of

@@ -1,4 +1,4 @@
-//! Who is who, and which gameplay is it? Ids that cannot be taken for each other.
+//! `ids`: identifiers of robots, teams, cycles and cases. Ids that cannot be taken for each other.
 
 use core::fmt;
 

@@ -1,4 +1,5 @@
-//! How does SI become integers of the wire, and back? Here and nowhere else (DESIGN §2). All conversions saturate.
+//! `quantized`: conversion between SI units and wire integers. Here and nowhere else (DESIGN §2). All
+//! conversions saturate.
 
 use geometry::{Angle, Field, Point, Pose, math};
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,5 @@
-//! What does a body give its brain, and what does it take? (DESIGN §3) SI units, field frame where not said otherwise.
+//! `robot_io`: interface between body and brain (DESIGN §3) (DESIGN §3). SI units, field frame where not said
+//! otherwise.
 //!
 //! Noise enters the system here and nowhere else: the simulator (or a real camera) fills a [`SensorFrame`], and that
 //! is all a robot knows of the world besides its teammates' beacons.

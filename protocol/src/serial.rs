@@ -1,4 +1,5 @@
-//! Where does a frame end on a serial line? At the next zero byte: frames travel COBS-stuffed, a zero after each (DESIGN §6).
+//! `serial`: framing on a serial line. At the next zero byte: frames travel COBS-stuffed, a zero after each
+//! (DESIGN §6).
 //!
 //! COBS finds the next frame after any garbage and nothing more; whether the bytes are right, the frame's tag tells.
 

@@ -1,4 +1,4 @@
-//! Where does a case library lie that was not built into the image? In a slot of the flash, behind a header of its own.
+//! `slot`: flash slot of a case library that is not built into the image, with a header of its own.
 //!
 //! `magic 4 | length 4 LE | table`, at a fixed place above the image; QEMU puts it there with `-device loader`. An empty
 //! slot has no magic. The board reads it, the simulator's QEMU back end fills it.

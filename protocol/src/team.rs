@@ -1,4 +1,4 @@
-//! What do robots tell each other? Their whole state, again and again (DESIGN §5; paper §4.1).
+//! `team`: messages between robots. Their whole state, again and again (DESIGN §5; paper §4.1).
 //!
 //! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
 //! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is

@@ -1,4 +1,5 @@
-//! What time is it? Whatever the caller says: microseconds since the robot's start. Nothing here reads a clock.
+//! `time`: instants and durations. Whatever the caller says: microseconds since the robot's start. Nothing
+//! here reads a clock.
 
 use core::ops::{Add, AddAssign, Mul, Sub};
 

@@ -1,5 +1,5 @@
-//! Can anybody who does not have the key, or has only recordings, make a robot or a host believe something? 10^5 tries; `cargo run
-//! --release -p protocol --example forge -- --count 1000000` makes more.
+//! `forgery`: tests: without the key, or with recordings only, no robot and no host can be deceived. 10^5
+//! tries; `cargo run --release -p protocol --example forge -- --count 1000000` makes more.
 
 #[path = "support/forgery.rs"]
 mod forgery;

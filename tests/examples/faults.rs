@@ -1,5 +1,5 @@
-//! What does loss cost a team? `cargo xtask faults [--seeds N] [--write]` prints the table; with `--write` it becomes
-//! `docs/faults.md` and its picture.
+//! `faults`: cost of packet loss for a team. `cargo xtask faults [--seeds N] [--write]` prints the table;
+//! with `--write` it becomes `docs/faults.md` and its picture.
 
 use std::path::Path;
 use std::process::ExitCode;

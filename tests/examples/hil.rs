@@ -1,4 +1,4 @@
-//! How fast do six images in QEMU play, against real time and against native brains? `cargo xtask bench hil [--seconds N] [--seed N]`
+//! `hil`: speed of six images in QEMU. `cargo xtask bench hil [--seconds N] [--seed N]`
 //!
 //! Both matches run in one process, tick by tick in turn, so that whatever slows the machine slows both; hashes are compared.
 

@@ -1,5 +1,5 @@
-//! Does any byte string bring a reader, or a brain, down? `cargo run --release -p match-tests --example hostile -- --count 10000000
-//! [--seed N] [--jobs J]`: a panic is told with what repeats it.
+//! `hostile`: fuzzing of readers and brains. `cargo run --release -p match-tests --example hostile -- --count
+//! 10000000 [--seed N] [--jobs J]`: a panic is told with what repeats it.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};

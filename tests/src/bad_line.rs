@@ -1,4 +1,4 @@
-//! What does a bad serial line make of the bytes that it carries? It drops some, changes bits and doubles others, seeded.
+//! `bad_line`: simulated bad serial line. It drops some, changes bits and doubles others, seeded.
 
 use hil_sim::Stream;
 

@@ -1,4 +1,4 @@
-//! What do brains on wheels do in the simulator's Small Size world, told by a host that only repeats what a test says?
+//! `carpet`: test bench: brains on wheels in the simulator, commanded by the test.
 //!
 //! Every brain is led by pictures made of the true state, rounded as the wire rounds, 75 a second, and by the command that
 //! the test set. SI units, field frame; a step is 10 ms. No camera, no noise of pictures, no radio: these have tests of their own.

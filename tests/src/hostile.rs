@@ -1,5 +1,5 @@
-//! What do readers do with bytes that nobody of the team, the league or the simulator wrote? Seeded bytes for the very targets that
-//! `cargo fuzz` has (`protocol/fuzz`), and for brains.
+//! `hostile`: random bytes for every reader. Seeded bytes for the very targets that `cargo fuzz` has
+//! (`protocol/fuzz`), and for brains.
 //!
 //! Most are true messages of the corpus with a few breaks, so that readers come far; the rest is noise. A run is its seed.
 

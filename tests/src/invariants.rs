@@ -1,4 +1,5 @@
-//! Does a team keep its promises? The coordination invariants of DESIGN §5, watched from outside the brain.
+//! `invariants`: coordination invariants of a team. The coordination invariants of DESIGN §5, watched from
+//! outside the brain.
 //!
 //! The watcher sees only what an eavesdropper with the key sees: which beacon each robot sent and heard, and when
 //! robots died, came back, and the air was cut or healed. What a robot does with its body in a step is judged by the

@@ -1,4 +1,4 @@
-//! Which case answers a problem, by an independent and naive reading of the agreement?
+//! `oracle`: independent, naive retrieval after the agreement.
 //!
 //! DESIGN §4.3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed. **Invariant:** it uses no
 //! crate of the project, so that it can be wrong only on its own account. Field frame, mm.

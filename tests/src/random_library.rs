@@ -1,4 +1,4 @@
-//! Which valid libraries could anybody write? Seeded random ones, as the TOML files a person would have.
+//! `random_library`: random valid libraries. Seeded random ones, as the TOML files a person would have.
 //!
 //! Everything DESIGN §4.1 allows occurs: 1–4 teammates, 0–4 opponents, every action, kicks by heading and at the goal
 //! with their partners, plans of several legs, a later `get_ball` after a kick, either goal, points outside the field,

@@ -1,4 +1,4 @@
-//! What do brains do when nothing goes wrong by itself? Bodies that obey at once, grabs that succeed, kicks that hit, air
+//! `tabletop`: ideal test world for brains. Bodies that obey at once, grabs that succeed, kicks that hit, air
 //! that carries every beacon to the next step: whatever then fails was made to fail by the test.
 //!
 //! SI units, field frame; a step is 40 ms. The simulator proper has physics and chance; here a test places everything.

@@ -1,4 +1,4 @@
-//! What does the repository hold? Its files and lines for the tests that read the project itself.
+//! `workspace`: the repository's files. Its files and lines for the tests that read the project itself.
 
 mod manifest;
 

@@ -1,4 +1,5 @@
-//! Is the built-in library for division B what it says, judged by the oracle? No simulator plays it yet: its plans are read.
+//! `division_b_library`: tests of division B's built-in library with the oracle. No simulator plays it yet:
+//! its plans are read.
 //!
 //! Rules it must keep (ssl-rules, 2026): nobody of ours touches the ball in their defence area (1 m deep, 2 m wide), and a ball is
 //! dribbled for less than a metre.

@@ -1,4 +1,4 @@
-//! Is the built-in four-legged library fit to play with, judged by the oracle and by nothing of the program?
+//! `four_legged_library`: tests of the built-in four-legged library with the oracle.
 //!
 //! Each case must be the answer to its own situation (DESIGN §4.1 warns of a case beaten there), nearly every problem must have a
 //! candidate (paper §5: "most of the time, at least one case will be retrieved"), no case may be there for nothing, none may win

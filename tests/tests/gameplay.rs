@@ -1,4 +1,5 @@
-//! Do robots play a case as the paper tells it, and leave it for the reasons it gives? (Ros et al. 2009 §4.2; DESIGN §4.4, §5)
+//! `gameplay`: tests: robots play a case as the paper describes it, and leave it for the paper's reasons (Ros
+//! et al. 2009 §4.2; DESIGN §4.4, §5).
 //!
 //! Brains on a table where nothing goes wrong by itself; the library is DESIGN's worked example alone.
 

@@ -1,5 +1,5 @@
-//! Does any byte string bring a reader, or a brain, down? A bounded run; `cargo run --release -p match-tests --example hostile --
-//! --count 10000000` is a long one, `protocol/fuzz` has the same targets for `cargo fuzz`.
+//! `hostile`: fuzz tests of readers and brains. A bounded run; `cargo run --release -p match-tests --example
+//! hostile -- --count 10000000` is a long one, `protocol/fuzz` has the same targets for `cargo fuzz`.
 
 use match_tests::hostile::{corpus, run};
 

@@ -1,4 +1,4 @@
-//! Does a library of 2,500 files load at run time, and do `explain` and `retrieve` agree in it and in the built-in one?
+//! `large_library`: tests of a library of 2,500 files.
 //!
 //! `explain` looks at every case without index or short cut: it is the plain scan.
 

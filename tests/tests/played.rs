@@ -1,4 +1,4 @@
-//! Does the table of played cases tell the truth about the library beside it? Re-plays some of it, and looks for every case.
+//! `played`: tests: the table of played cases is true. Re-plays some of it, and looks for every case.
 
 use std::path::Path;
 

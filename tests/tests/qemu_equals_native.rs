@@ -1,4 +1,5 @@
-//! Does the firmware image play the very trial that the same brain plays on the PC, bit for bit? (DESIGN §2, §7)
+//! `qemu_equals_native`: tests: firmware image and native brain play the same trial, bit for bit (DESIGN §2,
+//! §7).
 //!
 //! Each robot runs in a QEMU of its own; trace hashes are taken by the simulator, so by the same code for both. Needs QEMU
 //! and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.

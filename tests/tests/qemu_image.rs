@@ -1,4 +1,4 @@
-//! Is the firmware image what a robot can carry, and does the emulator run programs of its kind?
+//! `qemu_image`: tests of the firmware image and of the emulator.
 //!
 //! Needs QEMU and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
 

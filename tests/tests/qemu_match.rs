@@ -1,5 +1,5 @@
-//! Do six firmware images play a match as six native brains do? Host, radio, cameras and referee around them are the very same;
-//! the match's hash is compared after every tick (DESIGN §2, §7).
+//! `qemu_match`: tests: six firmware images play the same match as six native brains. Host, radio, cameras
+//! and referee around them are the very same; the match's hash is compared after every tick (DESIGN §2, §7).
 //!
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
 //! compiler for the target (feature `qemu`).

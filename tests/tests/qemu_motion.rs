@@ -1,4 +1,5 @@
-//! Is a motion planned on the robot's processor the same as on the PC, and no dearer than it was? (DESIGN §9)
+//! `qemu_motion`: tests: motion planning on the robot's processor equals the PC's, within its budget (DESIGN
+//! §9).
 //!
 //! `cargo xtask bench motion` prints the same counts, and those of this machine.
 //! Needs QEMU and a compiler for the target (feature `qemu`).

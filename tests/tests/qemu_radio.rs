@@ -1,4 +1,4 @@
-//! Does a radio frame cost no more on the robot's processor than it may? (DESIGN §9)
+//! `qemu_radio`: tests: radio frames stay within their budget on the robot's processor (DESIGN §9).
 //!
 //! `cargo xtask bench radio` prints the same counts. Needs QEMU and a compiler for the target (feature `qemu`).
 

@@ -1,4 +1,5 @@
-//! Is a retrieval on the robot's processor the same as on the PC, and no dearer than it was? (DESIGN §9)
+//! `qemu_retrieval`: tests: retrieval on the robot's processor equals the PC's, within its budget (DESIGN
+//! §9).
 //!
 //! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases and problems,
 //! and holds them to the budgets.

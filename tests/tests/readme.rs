@@ -1,5 +1,5 @@
-//! Does README still tell the truth? Its commands are those that are checked, its links lead somewhere, and its table
-//! names every crate.
+//! `readme`: tests: README's commands, links and crate table are true. Its commands are those that are
+//! checked, its links lead somewhere, and its table names every crate.
 
 use match_tests::workspace::{Source, members, root};
 

@@ -1,4 +1,4 @@
-//! Does retrieval answer as an independent reading of the agreement does?
+//! `retrieval_oracle`: tests: retrieval agrees with the oracle.
 //!
 //! Random libraries and the built-in one, 1,000 problems and more each, `case-tools` + `casebase` on one side and
 //! `match_tests::oracle` on the other, both from the same TOML files. Where a decision hangs on less than 1e-4 of its

@@ -1,4 +1,4 @@
-//! Does retrieval answer bit for bit as a plain scan of the same table does?
+//! `retrieval_scan`: tests: retrieval agrees with a scan of the same table, bit for bit.
 //!
 //! A share of what `cargo xtask bench retrieval --verify` does, over the same bases: 36 to 10,000 stored cases.
 

@@ -1,4 +1,4 @@
-//! Is the source as we agreed to write it? What a reviewer would say again and again, a test says once.
+//! `tidy`: style tests of the source. What a reviewer would say again and again, a test says once.
 //!
 //! Walks the repository from this crate's folder upwards. Every finding names file and line, what is wrong and the mend.
 //! The rules are DESIGN §1 and §2: shared crates give the same bits everywhere, allocate nothing and do no I/O; who

@@ -1,4 +1,5 @@
-//! Do robots on wheels do what they are told, in the simulator's physics? Every skill from order to outcome, and the law.
+//! `wheels`: tests of wheeled robots in the simulator's physics. Every skill from order to outcome, and the
+//! law.
 
 use brain::governor::Ruling;
 use casebase::CaseBase;

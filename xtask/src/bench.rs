@@ -1,5 +1,5 @@
-//! What does a retrieval cost, motion, or a radio frame, and what comes of faults? Starts a bench or an example of the crate
-//! `match-tests`, with what it needs installed first.
+//! `cargo xtask bench`. Starts a bench or an example of the crate `match-tests`, with what it needs installed
+//! first.
 
 use firmware_build::Install;
 

@@ -1,4 +1,4 @@
-//! What can be asked for besides the tests? One row a chore: its words, what it does, and who does it.
+//! `chores`: table of xtask commands. One row a chore: its words, what it does, and who does it.
 
 use crate::context::{Context, Failure};
 use crate::{

@@ -1,4 +1,5 @@
-//! What do the steps share? The workspace, the tools found so far, and how a command is run and judged.
+//! `context`: shared context of the steps. The workspace, the tools found so far, and how a command is run
+//! and judged.
 
 use std::cell::OnceCell;
 use std::env;

@@ -1,5 +1,5 @@
-//! What does the host side cost, and is it within DESIGN §9? Programs under callgrind, which counts instructions: the same on any
-//! machine of one kind, however busy it is. [`write()`] gathers every such figure in docs/budgets.md.
+//! `cost`: instruction counts of the host side. Programs under callgrind, which counts instructions: the same
+//! on any machine of one kind, however busy it is. [`write()`] gathers every such figure in docs/budgets.md.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,6 @@
-//! How does cargo run a program for the robot's processor here? In QEMU; an image of tests test by test, each in an emulator of its
-//! own, with the words of Rust's own test runner (`.cargo/config.toml` names this as the target's runner).
+//! `emulate`: cargo runner for the robot's processor. In QEMU; an image of tests test by test, each in an
+//! emulator of its own, with the words of Rust's own test runner (`.cargo/config.toml` names this as the
+//! target's runner).
 
 use std::fs;
 use std::path::Path;

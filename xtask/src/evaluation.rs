@@ -1,4 +1,5 @@
-//! Where do the figures of `docs/evaluation.md` come from? From here: `cargo xtask evaluation` plays every trial and writes them.
+//! `cargo xtask evaluation`: figures of `docs/evaluation.md`. From here: `cargo xtask evaluation` plays every
+//! trial and writes them.
 
 use crate::context::{Context, Failure, run};
 

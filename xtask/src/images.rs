@@ -1,4 +1,4 @@
-//! Are the robots' images as small as they must be, and do they panic only where that is known? (DESIGN §9)
+//! `images`: size and panic check of the robots' images (DESIGN §9).
 //!
 //! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of places that may panic is `firmware/panics.allow`, for all images together.
 

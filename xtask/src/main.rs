@@ -1,4 +1,4 @@
-//! What does a person type to have everything checked? `cargo xtask test`, on a laptop and in CI alike.
+//! `xtask`: entry point of `cargo xtask`. `cargo xtask test`, on a laptop and in CI alike.
 //!
 //! It installs what is missing or says what to install, runs every step whatever failed before, and tells all
 //! failures last, each with the command that repeats it.

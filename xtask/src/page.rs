@@ -1,4 +1,4 @@
-//! Does the page work in a real browser, what does it look like, and what does it cost? `cargo xtask test --only page`, `cargo xtask
+//! `page`: browser checks, screenshots and cost of the page. `cargo xtask test --only page`, `cargo xtask
 //! screenshots` and `cargo xtask bench page`.
 
 use std::io::{self, BufRead, BufReader};

@@ -1,4 +1,5 @@
-//! Where do the pictures in the documentation come from? From here: `cargo xtask pictures` draws them anew.
+//! `cargo xtask pictures`: the pictures in the documentation. From here: `cargo xtask pictures` draws them
+//! anew.
 
 use crate::context::{Context, Failure, run};
 

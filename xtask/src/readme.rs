@@ -1,4 +1,4 @@
-//! Do the commands that README shows do what they say? Those that run the program are run, in order, as they stand there.
+//! `readme`: check of README's commands. Those that run the program are run, in order, as they stand there.
 
 use std::fs;
 

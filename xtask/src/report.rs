@@ -1,4 +1,4 @@
-//! What passed, what failed, how long did it take, and how is a failure repeated?
+//! `report`: summary of a run: results, times, and how to repeat a failure.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};

@@ -1,4 +1,5 @@
-//! What does a simulated second of eleven against eleven cost? The simulator under callgrind (DESIGN §9).
+//! `simulator_cost`: instruction count of a simulated second of eleven against eleven. The simulator under
+//! callgrind (DESIGN §9).
 //!
 //! So many seconds and twice as many: the difference is free of everything that happens once.
 

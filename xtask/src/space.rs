@@ -1,4 +1,4 @@
-//! Is there room on the disk for what a whole run builds? Said before it begins, rather than by the compiler after a quarter of an hour.
+//! `space`: disk-space check. Said before it begins, rather than by the compiler after a quarter of an hour.
 
 use std::path::Path;
 use std::process::Command;

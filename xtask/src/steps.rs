@@ -1,4 +1,4 @@
-//! What is checked, and in which order?
+//! `steps`: the steps of a run, in their order.
 //!
 //! Quick answers first. Steps share what they build: the linter and the documentation check metadata, the tests are a
 //! debug build, QEMU and the trials a release build, the robot's crates and the image a build for

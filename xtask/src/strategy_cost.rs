@@ -1,4 +1,5 @@
-//! What do strategy's decisions cost? Its example `strategy_cost` under callgrind, which counts instructions (DESIGN §9).
+//! `strategy_cost`: instruction counts of strategy decisions. Its example `strategy_cost` under callgrind,
+//! which counts instructions (DESIGN §9).
 //!
 //! So many of a kind and twice as many: the difference is free of everything that happens once.
 

@@ -1,4 +1,5 @@
-//! What does a simulated second cost? Trials of the paper with full brains under callgrind, which counts instructions (DESIGN §9).
+//! `trial_cost`: instruction count of a simulated second of a trial. Trials of the paper with full brains
+//! under callgrind, which counts instructions (DESIGN §9).
 //!
 //! The same trials once and twice as many: the difference is free of everything that happens once.
 

@@ -1,4 +1,4 @@
-//! How do problems reach the board that is measured, and how do its answers come back?
+//! `exchange`: exchange of problems and answers with the measured board.
 //!
 //! Table and problems lie in memory the image leaves free, each behind `length 4 LE | count 4 LE`; problems are in the
 //! wire's own encoding (postcard). An answer is a line of numbers on the console.

@@ -1,4 +1,5 @@
-//! What is retrieval measured against, and how do problems and answers travel to the board that is measured?
+//! `retrieval_bench`: the baselines that retrieval is measured against, and the exchange of problems and
+//! answers with the measured board.
 //!
 //! [`scan`] is the plain linear scan of DESIGN §4.3: every case in turn, no index, no short cut. [`encode`] and
 //! [`problems`] carry problems to a board, [`Answer`] brings back what it found and what that cost. Runs on the PC and in

@@ -1,4 +1,5 @@
-//! Which case fits best, if every case is looked at in turn? The plain reading of DESIGN §4.3 with its default settings.
+//! `scan`: reference retrieval that scans every case. The plain reading of DESIGN §4.3 with its default
+//! settings.
 //!
 //! Nothing is shared with the retrieval that is measured but the records and the ranking: no index, no bound, and the
 //! correspondence by enumeration. Lengths in mm.

@@ -1,4 +1,5 @@
-//! What lies under a case? Carpet, lines and goals of a league; the goals in the paper's colours.
+//! `field`: the field under a case drawing. Carpet, lines and goals of a league; the goals in the paper's
+//! colours.
 
 use casebase::FieldMm;
 

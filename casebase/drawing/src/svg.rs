@@ -1,4 +1,4 @@
-//! How do places become shapes of an SVG? Elements under a growing string; the one place where y turns.
+//! `svg`: SVG elements appended to a growing string; the one place where y is flipped.
 //!
 //! Pictures of the field are told in mm with y up, text beside the field included; charts in px. The viewBox is in the same unit.
 

@@ -1,4 +1,4 @@
-//! Which colours? Okabe and Ito's, told apart by every eye, on three kinds of paper.
+//! `theme`: the colour palettes. Okabe and Ito's, told apart by every eye, on three kinds of paper.
 
 /// What the picture is for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,4 +1,5 @@
-//! Which cases come with the project? The files under `cases/<league>/`, checked and laid out when this was built.
+//! `case_library`: the built-in case libraries. The files under `cases/<league>/`, checked and laid out when
+//! this was built.
 //!
 //! Runs on robots and on the host. A robot links the table alone ([`four_legged`]); names and texts ([`LEAGUES`])
 //! are for people, and only programs that ask for them carry them.

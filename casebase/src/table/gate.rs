@@ -1,5 +1,6 @@
-//! Where do the records that retrieval looks at lie? Each stored case has a [`Gate`], and behind it, in one run of the
-//! table's places, its opponents, its legs and its robots' positions. Lengths in mm.
+//! `gate`: record headers: where the records that retrieval reads lie. Each stored case has a [`Gate`], and
+//! behind it, in one run of the table's places, its opponents, its legs and its robots' positions. Lengths in
+//! mm.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 

@@ -1,4 +1,5 @@
-//! How does a case base lie in flash? One flat table of fixed records, read in place, without a decode step.
+//! `table`: the flat case-base table as it lies in flash. One flat table of fixed records, read in place,
+//! without a decode step.
 //!
 //! Sections follow the [`Header`] in the order of [`CaseBase`]'s fields, those of the widest alignment first, native
 //! byte order. The four symmetric copies of an authored case are stored in full, one after the other; what retrieval

@@ -1,4 +1,4 @@
-//! Can these bytes be trusted as a case base? Everything is checked once, so that nothing need be checked later.
+//! `validate`: one-time validation of case-base bytes, so that nothing need be checked later.
 
 use core::fmt;
 

@@ -1,4 +1,5 @@
-//! Does the walk follow DESIGN §4.3, step by step? Small gameplays whose ball path is worked out by hand.
+//! Tests: the plan simulation follows DESIGN §4.3 step by step. Small gameplays whose ball path is worked out
+//! by hand.
 
 extern crate std;
 use std::vec::Vec;

@@ -1,4 +1,5 @@
-//! What does a case file say? (DESIGN §4.1) Read key by key, so that every fault names its line. mm, field frame.
+//! `authored`: the contents of a case file (DESIGN §4.1). Read key by key, so that every fault names its
+//! line. mm, field frame.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Can this case be played at all? What refuses a library beyond its spelling (DESIGN §4.1).
+//! `check`: errors that make a case unplayable. What refuses a library beyond its spelling (DESIGN §4.1).
 
 use casebase::walk::{Script, WalkError, walk};
 use casebase::{Action, CaseRobot, Symmetry};

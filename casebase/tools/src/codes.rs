@@ -1,4 +1,5 @@
-//! Which kinds of findings are there, and what does each mean? One table, from which `cases check --explain` is told.
+//! `codes`: the table of finding codes and their meanings. One table, from which `cases check --explain` is
+//! told.
 //!
 //! Errors are those DESIGN §4.1 lists; everything else doubtful is a warning and never stops retrieval.
 

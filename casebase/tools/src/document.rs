@@ -1,4 +1,4 @@
-//! How is a TOML file read so that every complaint names its line? A table with spans, asked key by key.
+//! `document`: TOML reader whose errors name the line. A table with spans, asked key by key.
 
 use std::ops::{Range, RangeInclusive};
 

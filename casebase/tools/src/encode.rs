@@ -1,4 +1,5 @@
-//! How do authored cases become the flat table that robots carry? Mirrored four ways, walked, indexed, laid out.
+//! `encode`: encoder from authored cases to the flat table that robots carry. Mirrored four ways, walked,
+//! indexed, laid out.
 //!
 //! The code that will read the table computes what is stored in it: `casebase`'s symmetry, walk and records.
 

@@ -1,4 +1,4 @@
-//! Which files make up a league's library? `league.toml` and `<region>/<name>.toml` (DESIGN §4.1).
+//! `files`: the files of a league's library. `league.toml` and `<region>/<name>.toml` (DESIGN §4.1).
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is wrong with a library, where, and how is it mended? (DESIGN §4.1)
+//! `finding`: findings: what is wrong with a library, where, and how to fix it (DESIGN §4.1).
 
 use std::fmt;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Which cases does each cell of the index list? (DESIGN §4.3: an index over the ball's position)
+//! `grid`: cell lists of the index (DESIGN §4.3: an index over the ball's position).
 //!
 //! See `casebase::Grid`: the two copies of each authored case that defend the negative goal; a cell lists them where the
 //! ball scope reaches into the cell. The cells are as small as the table's budget of bytes allows.

@@ -1,4 +1,4 @@
-//! What does `league.toml` say: the field, passes, and what each kind of kick does? (DESIGN §4.1) mm, degrees.
+//! `league`: the contents of `league.toml`: field, passes, kick kinds (DESIGN §4.1). mm, degrees.
 
 use casebase::action::KICKS_MAX;
 use casebase::walk::Kicks;

@@ -1,4 +1,5 @@
-//! How do case files become what robots carry, and what is wrong with them? Runs on the host, at build and run time.
+//! `case_tools`: tools that turn case files into tables and check them. Runs on the host, at build and run
+//! time.
 //!
 //! [`load`] reads one league's folder: files → [`League`] and authored cases → checks → the four symmetric copies →
 //! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend (DESIGN §4.1).

@@ -1,4 +1,5 @@
-//! Is a league's library sound, and what do robots carry of it? From its files to a checked table (DESIGN §4.1–§4.3).
+//! `library`: loading and checking of a league's library. From its files to a checked table (DESIGN
+//! §4.1–§4.3).
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Who stands where around a ball, in the problems a league is tried with? mm, seen in attack towards +x.
+//! `lineup`: line-ups around a ball for drawn problems. mm, seen in attack towards +x.
 //!
 //! `league.toml` may say it; where it does not, a line-up is guessed from the field and the size of the cases:
 //!

@@ -1,4 +1,4 @@
-//! Does the joint plan make sense on the field it is drawn on? Warnings; none stops retrieval (DESIGN §4.1).
+//! `plans`: checks of a case's joint plan. Warnings; none stops retrieval (DESIGN §4.1).
 //!
 //! Everything is judged in the case's own situation: ball and robots where the file puts them. mm, field frame.
 

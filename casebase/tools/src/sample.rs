@@ -1,4 +1,4 @@
-//! Which problems is a library tried with? Seeded draws of situations as they come up in play. mm, field frame.
+//! `sample`: seeded draws of problems. Seeded draws of situations as they come up in play. mm, field frame.
 //!
 //! The ball lies anywhere on the field. Robots stand as in the paper's scenarios (Ros et al. 2009, §5.1.2–§5.1.3): the
 //! first teammate behind the ball, the others around it; each opponent in its home region, half of them where the

@@ -1,4 +1,4 @@
-//! What would a case for this situation look like, to begin with? A file to author from; mm, field frame.
+//! `skeleton`: draft of a case file for a given situation. A file to author from; mm, field frame.
 //!
 //! Robots and opponents stand where the problem has them; the robot nearest to the ball gets it. What it then does is
 //! the first plan that the checks pass, best without a doubt, and whose case is retrieved from the problem itself: a

@@ -1,4 +1,4 @@
-//! What is doubtful about a case, though it can be played? Warnings; none stops retrieval (DESIGN §4.1).
+//! `warnings`: warnings about cases that are playable but doubtful; none stops retrieval (DESIGN §4.1).
 
 use std::collections::HashMap;
 use std::ops::Range;

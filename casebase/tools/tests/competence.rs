@@ -1,4 +1,4 @@
-//! Do the counts of a survey hold against the library itself: cases really deleted, problems really retrieved?
+//! `competence`: tests: survey counts agree with cases really deleted and problems really retrieved.
 
 use case_tools::coverage::{Cells, Survey, Tally};
 use case_tools::{Files, Library, build};

@@ -1,4 +1,5 @@
-//! Does the move that `counterfactual` names really make the case win, and is a shorter one of its kind in vain?
+//! `counterfactual`: tests: the move that `counterfactual` names makes the case win, and no shorter one of
+//! its kind does.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! Is every fault of a library told with its code and its line? (DESIGN §4.1)
+//! `findings`: tests: every fault of a library is reported with its code and line (DESIGN §4.1).
 
 mod common;
 

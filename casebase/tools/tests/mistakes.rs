@@ -1,4 +1,5 @@
-//! Is each kind of mistake told with its code, its file, its line and a mend that helps? One test a kind (DESIGN §4.1).
+//! `mistakes`: tests: each kind of mistake is reported with code, file, line and a hint that helps. One test
+//! a kind (DESIGN §4.1).
 //!
 //! A sound library of two files; each test makes exactly one mistake in one of them. Every code of the table that
 //! a text alone can raise has a test here; those that need a folder or thousands of actions are in `findings.rs`.

@@ -1,4 +1,5 @@
-//! Does it hold whatever the library and the problem? Index against scan, symmetry, bytes that lie.
+//! `properties`: property tests over random libraries and problems. Index against scan, symmetry, bytes that
+//! lie.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What is left of a library without mirror images, or without the opponents of its cases?
+//! `reduction`: tests: libraries without mirror images or without opponents.
 
 use std::cmp::Ordering;
 use std::path::Path;

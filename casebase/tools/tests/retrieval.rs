@@ -1,4 +1,4 @@
-//! Does retrieval decide as the paper and DESIGN §4.3 say? Situations worked out by hand.
+//! `retrieval`: tests: retrieval decides as the paper and DESIGN §4.3 say. Situations worked out by hand.
 
 mod common;
 

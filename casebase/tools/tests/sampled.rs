@@ -1,4 +1,5 @@
-//! Is a case that no drawn problem retrieves told, with what is retrieved instead, and no other case? (DESIGN §4.1)
+//! `sampled`: tests: a case that no drawn problem retrieves is reported, with what is retrieved instead, and
+//! no other case is (DESIGN §4.1).
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! Does a first draft pass every check and retrieve itself from the situation it was drafted from?
+//! `skeleton`: tests: a drafted case passes every check and is retrieved in the situation it was drafted
+//! from.
 
 mod common;
 

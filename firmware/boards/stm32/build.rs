@@ -1,4 +1,4 @@
-//! Where does the image lie in memory, and which log levels does it carry? Nothing to do on the PC.
+//! Build script: memory map and log levels. Nothing to do on the PC.
 
 use std::path::PathBuf;
 use std::{env, error::Error, fs};

@@ -1,4 +1,4 @@
-//! What is fixed for a robot's life, and what may be chosen? Identity, abilities and the paper's alternatives.
+//! `config`: static configuration of a robot. Identity, abilities and the paper's alternatives.
 
 use casebase::{GoalEnd, Settings};
 use protocol::{Duration, RobotId, TeamId};

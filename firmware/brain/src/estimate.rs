@@ -1,4 +1,4 @@
-//! How long should a gameplay take, and when has it taken too long? (DESIGN §5: 1.5 × expected duration + 2 s)
+//! `estimate`: expected duration and timeout of a gameplay (DESIGN §5: 1.5 × expected duration + 2 s).
 
 use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};

@@ -1,4 +1,5 @@
-//! Which action of its part does a robot do now? Preconditions start actions, no clock does (paper §2.2; DESIGN §4.4).
+//! `execution`: execution of a robot's part of a case. Preconditions start actions, no clock does (paper
+//! §2.2; DESIGN §4.4).
 //!
 //! The place in the action list is the whole memory that teammates see: `done` counts finished actions, is repeated in
 //! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball

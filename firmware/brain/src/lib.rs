@@ -1,4 +1,4 @@
-//! What does a robot do next? The robot's logic as a value (DESIGN §3–§5; Ros et al. 2009 §4–§5). Runs on the MCU, in the
+//! `brain`: the robot's logic as a value (DESIGN §3–§5; Ros et al. 2009 §4–§5). Runs on the MCU, in the
 //! simulator and in tests, unchanged.
 //!
 //! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for what happens; `poll_*` for what it wants, to be

@@ -1,4 +1,4 @@
-//! Who is in the game, where, and how far has everybody come? The newest beacon of every teammate, with a lease.
+//! `mates`: the newest beacon of every teammate, with a lease.
 
 use geometry::{Field, Pose};
 use protocol::team::{Beacon, CycleState, Progress, Status};

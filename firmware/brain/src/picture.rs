@@ -1,4 +1,5 @@
-//! What does the host show a robot of the field? Pictures put together from their parts, and carried forward to now.
+//! `picture`: the host's snapshot of the field as a robot receives it. Pictures put together from their
+//! parts, and carried forward to now.
 //!
 //! Parts may be lost, doubled and reordered, and their numbers wrap: what came counts, what did not keeps its last place for a
 //! moment. Places hold at the moment of arrival (DESIGN §3); between pictures the own pose goes on by odometry, everybody

@@ -1,4 +1,4 @@
-//! Which deadlines does a robot have? All of them in one table, named by an enum (DESIGN §3, §5).
+//! `timer`: the table of a robot's deadlines. All of them in one table, named by an enum (DESIGN §3, §5).
 
 use protocol::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! Does every robot leave where the rules forbid it to be, from every place, in every phase? With the robot's own motion planner,
-//! followed exactly; the judge is `rules::keep_out`. Field frame, SI.
+//! `keep_outs`: tests: every robot leaves where the rules forbid it to be, from every place, in every phase.
+//! With the robot's own motion planner, followed exactly; the judge is `rules::keep_out`. Field frame, SI.
 
 use brain::belief::{Ball, Belief, Other};
 use brain::body::omni::{Drive, Drivetrain};

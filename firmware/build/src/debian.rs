@@ -1,4 +1,5 @@
-//! What does a Debian-like system offer where rustup's server does not answer: packages, and `core`'s sources?
+//! `debian`: toolchain fallback on Debian-like systems without access to rustup's server: packages and
+//! `core`'s sources.
 //!
 //! The sources of `core` must be of exactly the compiler's release. Debian's backports carry them as `rust-src`; they are
 //! read through an apt state of our own (lists, cache, one source), so that the system's sources stay untouched.

@@ -1,4 +1,4 @@
-//! Is the image there, and is it what its sources say? Whoever plays on QEMU asks here first.
+//! `image`: freshness check of a firmware image. Whoever plays on QEMU asks here first.
 //!
 //! cargo itself is the judge of freshness: an image that is up to date costs one short call and no words.
 

@@ -1,4 +1,4 @@
-//! How does the firmware image come about on this machine, and what must be installed for it?
+//! `firmware_build`: building of the firmware image on this machine.
 //!
 //! Runs on the PC. `cargo xtask` and `onetwo` (`trial --backend qemu`, `firmware build`) stand on the same three
 //! questions, answered here once:

@@ -1,4 +1,4 @@
-//! Which tests does an image of tests hold, and does one of them pass in an emulator of its own?
+//! `on_target`: on-target test runner.
 //!
 //! Images of `embedded-test` list their tests in a section that is not loaded: a symbol a test, whose name is a JSON object, at a
 //! pair of the test's function and its module's path. The image is told by its command line which function to call (semihosting),

@@ -1,4 +1,4 @@
-//! How do we run other programs without waiting for ever, and say what went wrong in one line?
+//! `process`: child processes with timeouts and one-line errors.
 
 use std::env;
 use std::path::{Path, PathBuf};

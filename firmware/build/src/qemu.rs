@@ -1,4 +1,4 @@
-//! Where is QEMU, and does it know the robots' machine?
+//! `qemu`: detection of QEMU.
 
 use std::fmt;
 use std::path::PathBuf;

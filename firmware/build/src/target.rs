@@ -1,4 +1,4 @@
-//! With which compiler can this machine build for the robot's processor?
+//! `target`: compiler detection for the robot's processor.
 //!
 //! rustup's target where it is, or can be fetched. Where it cannot, `core` is compiled from its sources of the same
 //! release; last comes the distribution's own compiler. Each way that fails leaves its reason, and all reasons

@@ -1,4 +1,5 @@
-//! How does a robot get around others and out of forbidden places, and what does it drive in the next control step?
+//! `avoid`: path planning around robots and out of forbidden regions, with the velocity of the next control
+//! step.
 //!
 //! [`plan`] is called every step and remembers nothing. It answers in three parts:
 //!

@@ -1,4 +1,5 @@
-//! Where will a kicked ball be? It slides, then rolls (two decelerations), in the air it hops ([`chip`]); m, s, m/s, m/s².
+//! `ball`: prediction of a kicked ball. It slides, then rolls (two decelerations), in the air it hops
+//! ([`chip`]); m, s, m/s, m/s².
 //!
 //! Kicked with v₀ it slides with a_s until its speed is c·v₀, where it rolls without slipping, then rolls with a_r until it
 //! rests. All of a path in closed form: t_s = v₀ (1 − c) / a_s, d_s = v₀² (1 − c²) / (2 a_s). Lines and robots in its way are

@@ -1,4 +1,5 @@
-//! Where can a robot meet a moving ball: soonest, or with the most time to spare? (paper 2 §2, equations 1 and 2; m, s)
+//! `intercept`: interception of a moving ball, soonest or with the most time to spare (paper 2 §2, equations
+//! 1 and 2; m, s).
 //!
 //! For future places of the ball, [`STEP`] apart in time: when is the ball there, when can the robot be behind it, looking
 //! at the kick's target? Their difference is the slack; only a slack ≥ 0 meets the ball. Places that a bound of the robot's

@@ -1,4 +1,5 @@
-//! What can a walking robot do, as its own brain believes? Speeds, reach and kicks of an AIBO; SI units.
+//! `legged`: abilities of a walking robot, as its own brain assumes them. Speeds, reach and kicks of an AIBO;
+//! SI units.
 //!
 //! Walking speeds lie between CMU's own gait (180 mm/s, Tekkotsu's `CMPackWalkMC`) and learned ones (291 mm/s, UT Austin
 //! 2003; 350–450 mm/s reported for the ERS-7).

@@ -1,4 +1,4 @@
-//! How do balls and bodies move, as a robot or a host believes it? Models for decisions, not the simulator's physics.
+//! `motion`: motion models of balls and bodies. Models for decisions, not the simulator's physics.
 //!
 //! | question | answer |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! How fast must which wheel turn? Kinematics of four omnidirectional wheels; body frame, m/s at the rim, rad/s.
+//! `omni`: kinematics of four omnidirectional wheels; body frame, m/s at the rim, rad/s.
 //!
 //! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle α from where
 //! the robot faces, counter-clockwise, at the distance R from its centre, and drives along its tangent: its rim runs at

@@ -1,4 +1,4 @@
-//! How far and how long does a ball roll on carpet? Constant deceleration until rest; m, s, m/s, m/s².
+//! `rolling`: distance and time of a rolling ball. Constant deceleration until rest; m, s, m/s, m/s².
 
 use geometry::math;
 

@@ -1,4 +1,4 @@
-//! How soon can a robot be there and at rest, and how does it move on the way? (paper 2 §2: `CalcMotion2D`)
+//! `trajectory`: time-optimal motion of a robot to a place at rest (paper 2 §2: `CalcMotion2D`).
 //!
 //! `CalcMotion2D(x_s, v_s, x_f) → (t*, V*)` is [`CalcMotion::plan`]: `t*` is [`Motion::duration`], `V*` is [`Motion::at`].
 //! The end is always at rest. Two models of a robot answer it:

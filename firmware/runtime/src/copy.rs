@@ -1,4 +1,4 @@
-//! How does a Cortex-M4 copy memory in few instructions? Four words at a time.
+//! `copy`: memory copy for the Cortex-M4. Four words at a time.
 //!
 //! Rust moves values by calling these functions of the Arm run-time ABI (§4.3.4). The compiler's own are weak symbols and
 //! copy word by word, five instructions each: a third of a robot's tick. With these in their place the median tick of 24

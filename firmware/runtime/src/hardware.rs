@@ -1,5 +1,5 @@
-//! What does a robot's computer do besides thinking, where no simulator does it? Wheels a thousand times a second, kicker,
-//! senses, and the watchdog over all of it.
+//! `hardware`: hardware tasks of a robot's computer: wheel control, kicker, sensors, watchdog. Wheels a
+//! thousand times a second, kicker, senses, and the watchdog over all of it.
 //!
 //! ```text
 //! brain ─► orders ─► control (1 kHz) ─► wheels, dribbler

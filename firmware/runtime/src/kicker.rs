@@ -1,4 +1,5 @@
-//! When may the kicker charge, and when does it fire? The interlock between the brain's wish and 200 V (DESIGN §6). Sans-IO.
+//! `kicker`: interlock of charger and kicker. The interlock between the brain's wish and 200 V (DESIGN §6).
+//! Sans-IO.
 //!
 //! | wish | ball at the mouth | capacitor | what happens |
 //! |---|---|---|---|

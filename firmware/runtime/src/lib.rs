@@ -1,4 +1,5 @@
-//! What runs around the brain on a robot's own computer? Embassy tasks, generic over the board (DESIGN §3).
+//! `runtime`: tasks around the brain on a robot's computer. Embassy tasks, generic over the board (DESIGN
+//! §3).
 //!
 //! ```text
 //! air ──► radio_receive ─┐              ┌─► outbox ─► radio_send ──► air

@@ -1,4 +1,5 @@
-//! Where do a robot's tasks meet? One inbox to the brain, one outbox and one slip of orders from it.
+//! `mailboxes`: mailboxes between a robot's tasks. One inbox to the brain, one outbox and one slip of orders
+//! from it.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};

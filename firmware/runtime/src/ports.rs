@@ -1,4 +1,5 @@
-//! What must a board be able to do? Hear and speak on the air, sense, and move.
+//! `ports`: traits that a board implements: radio, sensors, actuators. Hear and speak on the air, sense, and
+//! move.
 //!
 //! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(

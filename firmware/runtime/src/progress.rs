@@ -1,5 +1,4 @@
-//! Does everything that must run still run? Whoever does says so, and the watchdog is fed only when all of them did
-//! (DESIGN §1: runtime).
+//! `progress`: task supervision: the watchdog is fed only when every task has reported (DESIGN §1: runtime).
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

@@ -1,5 +1,5 @@
-//! What do a robot's raw readings mean? Encoder counts to rim speed, a gyroscope without its zero, a light barrier in daylight, and
-//! which way is up. Sans-IO; SI units, fed at the pace of the control loop.
+//! `sense`: conversion of raw sensor readings. Encoder counts to rim speed, a gyroscope without its zero, a
+//! light barrier in daylight, and which way is up. Sans-IO; SI units, fed at the pace of the control loop.
 
 use protocol::{Duration, Instant};
 

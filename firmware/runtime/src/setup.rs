@@ -1,4 +1,4 @@
-//! Who shall this robot be? The configuration as it comes from outside: from the simulator, or from provisioning.
+//! `setup`: a robot's configuration as it comes from outside: from the simulator, or from provisioning.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! In which order does a robot's computer do what there is to do? The five tasks a board starts.
+//! `tasks`: the five tasks that a board starts.
 //!
 //! The brain's task sleeps until something arrives or its own deadline comes, does that one thing, and takes from the
 //! brain everything it has to say about it. Each deadline is handled at its own time, and one that is due when it is set

@@ -1,4 +1,4 @@
-//! What do tests run tasks on? A little executor, and embassy's clock in their hands.
+//! `testing`: test executor and test clock. A little executor, and embassy's clock in their hands.
 
 use std::boxed::Box;
 use std::future::Future;

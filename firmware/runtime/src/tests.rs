@@ -1,4 +1,5 @@
-//! Do the tasks drive a mind exactly as one would by hand? Against a plain loop over the same mind (DESIGN §7).
+//! Tests: tasks drive a brain exactly as a plain loop does. Against a plain loop over the same mind (DESIGN
+//! §7).
 
 use std::boxed::Box;
 use std::cell::RefCell;

@@ -1,5 +1,6 @@
-//! How does a wheel get the speed the brain wants? A thousand times a second, from encoder to duty, and to a stop where the
-//! brain has gone silent (DESIGN §2, §6). Sans-IO; m/s at the rim, duty as a share of the battery's voltage.
+//! `wheel`: wheel speed control at 1 kHz, with a stop when the brain is silent. A thousand times a second,
+//! from encoder to duty, and to a stop where the brain has gone silent (DESIGN §2, §6). Sans-IO; m/s at the
+//! rim, duty as a share of the battery's voltage.
 
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};

@@ -1,4 +1,5 @@
-//! How often did each robot back up? Entries into the supporting role, as its beacons tell (paper §5.2.1, Table 2; checklist R36).
+//! `backups`: count of backups per robot. Entries into the supporting role, as its beacons tell (paper
+//! §5.2.1, Table 2; checklist R36).
 
 use protocol::RobotId;
 use protocol::team::Role;

@@ -1,4 +1,5 @@
-//! Which retrieve–reuse cycles did a team go through? Put together from overheard beacons alone (paper §4; DESIGN §5).
+//! `cycles`: log of a team's retrieve–reuse cycles. Put together from overheard beacons alone (paper §4;
+//! DESIGN §5).
 
 use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
 use protocol::{CycleId, RobotId};

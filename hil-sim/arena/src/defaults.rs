@@ -1,4 +1,5 @@
-//! How long did a team play its default behaviour, and why? (paper §5.4: "only when the costs exceeded the threshold")
+//! `defaults`: time that a team played its default behaviour, and why (paper §5.4: "only when the costs
+//! exceeded the threshold").
 //!
 //! A spell begins with a coordinator's word that no case fits and lasts until a case is decided on. Why none fitted is judged from
 //! the carpet at the end of the tick in which that is heard: the farthest any case came through retrieval's tests (DESIGN §4.3).

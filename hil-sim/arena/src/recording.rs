@@ -1,4 +1,5 @@
-//! What must be kept of a trial to draw it afterwards? Places by tick, kicks, and where gameplays began; m, s, field frame.
+//! `recording`: recording of a trial for its picture. Places by tick, kicks, and where gameplays began; m, s,
+//! field frame.
 
 use geometry::{Field, Point, Pose};
 use hil_sim::TICK_US;

@@ -1,4 +1,4 @@
-//! What does a trial come to? The fields of `onetwo trial --json` in their order (DESIGN §8); s, counts.
+//! `report`: result of a trial. The fields of `onetwo trial --json` in their order (DESIGN §8); s, counts.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! What happened, in words? Coordinator, case and who plays what, phases, kicks, possession, outcome; a line each, with its time.
+//! `story`: text log of a trial. Coordinator, case and who plays what, phases, kicks, possession, outcome; a
+//! line each, with its time.
 
 use std::fmt::Write as _;
 

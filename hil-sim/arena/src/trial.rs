@@ -1,4 +1,5 @@
-//! How is a trial of the paper played? (Ros et al. 2009 §5.1; DESIGN §7, §8) Robots 1, 2, … are A, B, … and attack +x.
+//! `trial`: a trial of the first paper (Ros et al. 2009 §5.1; DESIGN §7, §8). Robots 1, 2, … are A, B, … and
+//! attack +x.
 
 use brain::{Approach, BrainConfig, Positioning};
 use casebase::{CaseBase, Settings};

@@ -1,5 +1,5 @@
-//! Does a match hold what it promises? Short matches of division B, watched from outside: the truth of the carpet, the referee's books,
-//! and what the hosts sent.
+//! `game`: tests: a match keeps its promises. Short matches of division B, watched from outside: the truth of
+//! the carpet, the referee's books, and what the hosts sent.
 
 use arena::game::{Crowd, Game, GameConfig, GameReport, Nobody, Watcher, play};
 use geometry::Point;

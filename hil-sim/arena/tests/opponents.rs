@@ -1,4 +1,4 @@
-//! Can the teams that ours is measured by score at all? Whole matches against a side whose robots stand.
+//! `opponents`: tests: the opponent teams can score. Whole matches against a side whose robots stand.
 
 use arena::game::{GameConfig, Nobody, play};
 use hil_sim::NativeBackend;

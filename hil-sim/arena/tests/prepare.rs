@@ -1,5 +1,6 @@
-//! Does a whole team stand where it must after a PREPARE command, from wherever its robots were? Hosts, radio, brains and wheels as in
-//! a match; the judge is `rules::keep_out` on the simulator's truth.
+//! `prepare`: tests: a whole team stands where it must after a PREPARE command, from wherever its robots
+//! were. Hosts, radio, brains and wheels as in a match; the judge is `rules::keep_out` on the simulator's
+//! truth.
 
 use arena::game::{Game, GameConfig, Nobody};
 use geometry::{Angle, Field, Point, Pose};

@@ -1,4 +1,5 @@
-//! What is each part of the approach worth? A page, a plot and a Markdown table of what every change does, one line an arm.
+//! `ablation`: ablation report. A page, a plot and a Markdown table of what every change does, one line an
+//! arm.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Which columns has each of the paper's tables, and what stands in a row's? The one list that page, plots and Markdown share.
+//! `columns`: columns of the paper's tables. The one list that page, plots and Markdown share.
 
 use arena::evaluation::statistics::{Interval, newcombe, student, wilson};
 use arena::evaluation::{Measure, TableRow};

@@ -1,4 +1,5 @@
-//! What decided the trials? Everything the evaluation's files say of themselves, by name and value, nothing left out.
+//! `facts`: provenance of an evaluation. Everything the evaluation's files say of themselves, by name and
+//! value, nothing left out.
 
 use arena::evaluation::Identity;
 use serde_json::Value;

@@ -1,5 +1,5 @@
-//! What did the evaluation come to, for people? One page beside the paper's numbers, its plots as files, and its part of the
-//! documentation. Runs on the PC.
+//! `report`: report of an evaluation. One page beside the paper's numbers, its plots as files, and its part
+//! of the documentation. Runs on the PC.
 //!
 //! ```text
 //! tables, paper, comparisons, claims, facts ─┬─► html()      one file: no network, no scripts; light, dark, paper

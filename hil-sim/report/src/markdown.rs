@@ -1,4 +1,5 @@
-//! What stands in the documentation? The tables in few columns, the claims, the pictures; between two markers of a file.
+//! `markdown`: the report's part of the documentation. The tables in few columns, the claims, the pictures;
+//! between two markers of a file.
 
 use std::fmt;
 use std::fmt::Write as _;

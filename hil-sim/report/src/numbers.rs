@@ -1,4 +1,4 @@
-//! How is a number written? As many digits as its trials bear, a real minus, and p as people print it.
+//! `numbers`: number formatting. As many digits as its trials bear, a real minus, and p as people print it.
 
 /// With that many decimals; a minus is a minus, and zero has no sign.
 pub(crate) fn plain(value: f64, decimals: usize) -> String {

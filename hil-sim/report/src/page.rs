@@ -1,4 +1,5 @@
-//! In which order does the page tell it? At a glance, the claims, tables with their plots, maps, every comparison, every parameter.
+//! `page`: layout of the report page. At a glance, the claims, tables with their plots, maps, every
+//! comparison, every parameter.
 
 use arena::evaluation::{Claim, Comparison, Held, Judgement, Line, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -1,4 +1,4 @@
-//! How does the page look? One style sheet; in the dark the very same pictures change their colours by rule.
+//! `style`: style sheet of the report; in dark mode the same pictures change their colours by rule.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! What stands in which line of a table? Ours, the paper's, their difference; then one approach against another.
+//! `table`: lines of the report's tables. Ours, the paper's, their difference; then one approach against
+//! another.
 //!
 //! The same model becomes HTML here and Markdown in `markdown`. A difference carries Holm's p over the scenarios of its table.
 

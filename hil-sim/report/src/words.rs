@@ -1,4 +1,4 @@
-//! What are things called, and in which colour? One word and one colour an approach, wherever it appears.
+//! `words`: labels and colours of the report. One word and one colour an approach, wherever it appears.
 
 use arena::approach_word;
 use brain::Approach;

@@ -1,4 +1,5 @@
-//! Does the page show what was measured, all of it, and nothing else? The paper's rows stand in for ours, a little changed.
+//! `report`: tests: the page shows everything that was measured, and nothing else. The paper's rows stand in
+//! for ours, a little changed.
 
 use arena::TrialConfig;
 use arena::evaluation::{

@@ -1,4 +1,5 @@
-//! What body does a brain have in somebody else's simulator? Orders become `RobotControl`, `RobotControlResponse` becomes senses.
+//! `body`: robot body in another simulator. Orders become `RobotControl`, `RobotControlResponse` becomes
+//! senses.
 //!
 //! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so this keeps to what
 //! all of them do:

@@ -1,5 +1,5 @@
-//! How does a brain play in a simulator that is not ours? As a process of its own, which takes radio frames from whoever
-//! commands and speaks the league's simulation protocol with any simulator. Runs on the PC.
+//! `virtual_robot`: a virtual robot for other simulators. As a process of its own, which takes radio frames
+//! from whoever commands and speaks the league's simulation protocol with any simulator. Runs on the PC.
 //!
 //! [`VirtualRobot`] is the whole robot without sockets: the very [`brain::Station`] of a board, in a [`SimulatedBody`] that the
 //! simulation protocol moves. [`run`] gives it a socket and a clock. `onetwo control --robots sim://HOST` starts one for

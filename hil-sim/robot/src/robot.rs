@@ -1,4 +1,4 @@
-//! How do frames and the simulation protocol meet in one robot? Brain, radio and body as a value: bytes and times in, bytes out.
+//! `robot`: sans-IO core of a virtual robot. Brain, radio and body as a value: bytes and times in, bytes out.
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;

@@ -1,4 +1,4 @@
-//! How does a virtual robot run? One socket for host and simulator, one thread, the system's clock.
+//! `run`: main loop of a virtual robot. One socket for host and simulator, one thread, the system's clock.
 
 use std::fmt;
 use std::io::{self, BufRead as _};

@@ -1,4 +1,4 @@
-//! Does a trial run as its configuration says, whoever thinks? With scripted computers in place of brains.
+//! Tests: a trial runs as its configuration says. With scripted computers in place of brains.
 
 use std::cell::RefCell;
 use std::rc::Rc;

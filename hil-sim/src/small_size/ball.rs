@@ -1,4 +1,5 @@
-//! Where does the ball go by itself? It slides, rolls, flies and hops; m, s, field frame, heights above the carpet.
+//! `ball`: motion of a free ball. It slides, rolls, flies and hops; m, s, field frame, heights above the
+//! carpet.
 //!
 //! A solid sphere: while it slips, the carpet slows it by `slide` and turns it until it rolls (a ball kicked without spin then
 //! has 5/7 of its speed); rolling it loses `roll` a second. A hop keeps fixed shares of its speeds. Each step is exact for

@@ -1,4 +1,4 @@
-//! What does the ball bounce on? Hulls, goals and boards; m, s, field frame.
+//! `contact`: collisions of the ball. Hulls, goals and boards; m, s, field frame.
 //!
 //! The ball's way in a step is swept: it goes ahead by its distance from the nearest surface until it touches one, so that no
 //! speed tunnels. What still overlaps in the end is pushed apart: the ball out of robots, and robots off a ball that has

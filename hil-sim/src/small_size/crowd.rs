@@ -1,4 +1,4 @@
-//! Which robots are in each other's way? Discs against discs, boards and goals; m, s, field frame.
+//! `crowd`: collisions of robots. Discs against discs, boards and goals; m, s, field frame.
 //!
 //! Where two overlap they are moved apart by their masses, and what they closed in with is exchanged. Only pairs that could
 //! meet within the next milliseconds are looked at.

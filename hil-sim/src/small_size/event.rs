@@ -1,4 +1,4 @@
-//! What happens on the carpet that a referee, a recording or a test wants to know? m, m/s, field frame.
+//! `event`: events of the physics. m, m/s, field frame.
 
 use geometry::{Field, Point, Vector};
 

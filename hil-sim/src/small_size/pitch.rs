@@ -1,4 +1,4 @@
-//! What stands around the carpet? Goals with posts, bars and nets, boards at the margin; m, field frame.
+//! `pitch`: goals and boards. Goals with posts, bars and nets, boards at the margin; m, field frame.
 
 use rules::FieldSpec;
 

@@ -1,4 +1,5 @@
-//! Whose manners does the simulator have? Its own, or those in which the league's other simulators differ on the wire.
+//! `quirks`: compatibility profiles. Its own, or those in which the league's other simulators differ on the
+//! wire.
 //!
 //! So that a host can be tried against what it will meet: clocks, cameras, geometry, which settings are taken and how robots
 //! are answered, as they were seen when grSim and ER-Force's simulator ran. Physics stay ours but for the ball's wire model.

@@ -1,4 +1,4 @@
-//! What does a robot on wheels know of itself? Wheels and gyroscope with noise, light barrier, battery (DESIGN §3).
+//! `senses`: sensors of a wheeled robot. Wheels and gyroscope with noise, light barrier, battery (DESIGN §3).
 //!
 //! Where it is it learns from its host alone: no pose, no ball seen, no opponents.
 

@@ -1,4 +1,4 @@
-//! How far is a point from a robot's hull, a wall or a board, and which way is out? m.
+//! `surface`: distance and normal of a robot's hull, a wall or a board. m.
 //!
 //! The hull is a disc with a flat front: what lies beyond the chord at `front` is cut off. Distances are exact outside (so
 //! that steps as long as the distance never jump into a body) and, inside, to the nearest side.

@@ -1,4 +1,5 @@
-//! Do robots and ball obey hand calculations? Drives, impacts, dribbler, kicks; and the same seed the same world.
+//! Tests: robots and ball obey hand calculations. Drives, impacts, dribbler, kicks; and the same seed the
+//! same world.
 
 mod ball;
 mod drive;

@@ -1,4 +1,4 @@
-//! How do four wheels move a body, and how fast must each turn? m/s at the rim, rad/s, body frame.
+//! `wheels`: kinematics of four wheels. m/s at the rim, rad/s, body frame.
 //!
 //! A wheel at the angle α drives along its tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Four rims and three
 //! ways to move: the body follows the least squares. Written apart from `motion`'s kinematics, which robots believe.

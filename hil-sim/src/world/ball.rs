@@ -1,4 +1,5 @@
-//! Where does the ball go by itself? Constant deceleration until rest, and a net that catches; m, s, field frame.
+//! `ball`: motion of a free ball. Constant deceleration until rest, and a net that catches; m, s, field
+//! frame.
 //!
 //! Written apart from `motion`'s model on purpose: a wrong belief of the robots must show as a missed pass.
 

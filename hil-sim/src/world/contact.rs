@@ -1,5 +1,5 @@
-//! What happens where bodies meet? Robots are pushed apart; a robot pushes the ball, and between its front legs the ball
-//! lies deeper and does not bounce. Discs, m, field frame.
+//! `contact`: collisions. Robots are pushed apart; a robot pushes the ball, and between its front legs the
+//! ball lies deeper and does not bounce. Discs, m, field frame.
 
 use geometry::{Field, Vector};
 

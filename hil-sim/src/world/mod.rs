@@ -1,4 +1,5 @@
-//! What happens on the carpet? Ball and walking robots in steps of 10 ms; m, s, rad, field frame (DESIGN §7).
+//! `world`: physics of the four-legged league. Ball and walking robots in steps of 10 ms; m, s, rad, field
+//! frame (DESIGN §7).
 //!
 //! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls (`ball`) or is
 //! carried, and what touches it pushes it (`contact`). What happened comes out as [`WorldEvent`]s. Robots are named

@@ -1,4 +1,5 @@
-//! How do grabs and kicks come out? They take their time, grabs fail, kicks scatter (Ros et al. 2009 §5.2); m, s, rad.
+//! `primitives`: grabs and kicks. They take their time, grabs fail, kicks scatter (Ros et al. 2009 §5.2); m,
+//! s, rad.
 
 use geometry::{Angle, Vector, math};
 use protocol::robot_io::LeggedKick;

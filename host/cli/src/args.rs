@@ -1,4 +1,4 @@
-//! What can be said on the command line? The verbs and the arguments they share (DESIGN §8).
+//! `args`: command-line arguments. The verbs and the arguments they share (DESIGN §8).
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Why could the thing asked for not be done, and how is it mended? Exit code 1 (DESIGN §8); wrong usage is clap's.
+//! `failure`: errors of the program, and how to fix them. Exit code 1 (DESIGN §8); wrong usage is clap's.
 
 use std::fmt;
 use std::io;

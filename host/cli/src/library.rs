@@ -1,4 +1,4 @@
-//! Whose cases, by name and by id? One library: built in, or one league's folder read at run time (DESIGN §8).
+//! `library`: a case library: built in, or one league's directory read at run time (DESIGN §8).
 
 use std::path::Path;
 

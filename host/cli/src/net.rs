@@ -1,5 +1,4 @@
-//! How do verbs hear and speak on the league's networks? By group where an address is multicast, straight where it is one
-//! machine's.
+//! `net`: sockets of the verbs. By group where an address is multicast, straight where it is one machine's.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! How does a picture get into a file? An SVG as it is, or as a PNG with the same look on every machine: its letters come
-//! from the font in `fonts`, never from what is installed.
+//! `picture`: output of figures as SVG or PNG. An SVG as it is, or as a PNG with the same look on every
+//! machine: its letters come from the font in `fonts`, never from what is installed.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

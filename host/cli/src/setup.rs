@@ -1,4 +1,4 @@
-//! How do the attackers play, whatever leads them? The flags of every verb that plays trials of the paper.
+//! `setup`: the flags of every verb that plays trials of the first paper.
 //!
 //! Each is a change to the paper's team, so that `onetwo trial` plays any trial of an evaluation or of an ablation again.
 

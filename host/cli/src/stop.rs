@@ -1,5 +1,5 @@
-//! Has somebody pressed Ctrl-C, or asked the program to end (SIGTERM)? Whoever runs for long looks now and then, and ends in order;
-//! a second time ends it at once.
+//! `stop`: Ctrl-C and SIGTERM. Whoever runs for long looks now and then, and ends in order; a second time
+//! ends it at once.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

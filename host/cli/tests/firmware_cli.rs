@@ -1,4 +1,4 @@
-//! Does the built `onetwo firmware` do what its help says, without a compiler for the target and without a probe? (DESIGN §8)
+//! `firmware_cli`: tests of `onetwo firmware` without a target compiler and without a probe (DESIGN §8).
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,5 +1,5 @@
-//! Do the built `onetwo simulate` and `onetwo control` do what their help says on a network? Real sockets on this machine, ports
-//! that the system chooses, addresses of one machine, so that no multicast is needed.
+//! `net_cli`: tests of `onetwo simulate` and `onetwo control` on a network. Real sockets on this machine,
+//! ports that the system chooses, addresses of one machine, so that no multicast is needed.
 
 mod running;
 

@@ -1,4 +1,5 @@
-//! Do the verbs serve their page, and take from it what they may? Seen by a viewer that is no browser.
+//! `page_cli`: tests: the verbs serve their page and accept only permitted requests. Seen by a viewer that is
+//! no browser.
 
 #[path = "page_browser/program.rs"]
 mod program;

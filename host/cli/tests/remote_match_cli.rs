@@ -1,5 +1,6 @@
-//! Does `onetwo simulate` serve a match that a game controller elsewhere runs? A scripted controller on this machine: referee packets
-//! made here, and the port for automatic referees; a client of the simulation protocol and of the vision sees what came of it.
+//! `remote_match_cli`: tests of `onetwo simulate` under an external game controller. A scripted controller on
+//! this machine: referee packets made here, and the port for automatic referees; a client of the simulation
+//! protocol and of the vision sees what came of it.
 
 mod running;
 

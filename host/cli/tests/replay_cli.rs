@@ -1,4 +1,4 @@
-//! Does the built `onetwo replay` do what its help says, on recordings of the league's own programs, seen from outside?
+//! `replay_cli`: tests of `onetwo replay` on recordings of the league's own programs.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Does the built `onetwo trial` (and `play`) do what DESIGN §8 says, seen from outside?
+//! `trial_cli`: tests of `onetwo trial` and `play`.
 
 use std::path::PathBuf;
 use std::process::{Command, Output};

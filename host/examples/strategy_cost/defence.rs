@@ -1,4 +1,4 @@
-//! What is there to count in defending (Biswas et al. 2014 §5) and in planning a free kick (§4)? Whole decisions of a tick.
+//! `defence`: instruction count of the defence and of free-kick planning. Whole decisions of a tick.
 
 use host::strategy::View;
 use host::strategy::coerce::tactics::Models;

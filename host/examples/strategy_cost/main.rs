@@ -1,4 +1,5 @@
-//! What is there to count in strategy's decisions? So many of one kind, on scenes of six or eleven against as many.
+//! `strategy_cost`: instruction counts of strategy decisions. So many of one kind, on scenes of six or eleven
+//! against as many.
 //!
 //! `cargo run --release -p host --example strategy_cost -- PART COUNT` does it and prints what came of it; `cargo xtask bench strategy`
 //! counts its instructions, for every PART of its table.

@@ -1,4 +1,5 @@
-//! What is there to count in seeking a place for a pass? Places rated in full, and a search (Biswas et al. 2014 §3.1).
+//! `passes`: instruction count of the search for a pass. Places rated in full, and a search (Biswas et al.
+//! 2014 §3.1).
 
 use host::strategy::View;
 use host::strategy::pass::{Kicks, PassConstants, SAMPLES, Scene, Search};

@@ -1,4 +1,5 @@
-//! On which moments is strategy counted? Everybody somewhere on the field, drawn from a seed; attack frame, SI.
+//! `scenes`: random situations for the counts. Everybody somewhere on the field, drawn from a seed; attack
+//! frame, SI.
 
 use geometry::{Attack, Point, Vector};
 use host::strategy::View;

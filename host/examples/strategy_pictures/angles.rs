@@ -1,4 +1,5 @@
-//! Who blocks which part of the goal? The open angle and the three placements of keeper and primary defenders, as the paper's Figure 7.
+//! `angles`: figure of the open angle and the three placements of keeper and primary defenders, as the
+//! paper's Figure 7.
 
 use drawing::{Anchor, Svg};
 use geometry::{Angle, Attack, Point};

@@ -1,4 +1,5 @@
-//! Where are those who follow us drawn to? The optimistic attack and the coerce plan against it, by the planner (§4.2, §4.3).
+//! `coercing`: figure of the coerce plan. The optimistic attack and the coerce plan against it, by the
+//! planner (§4.2, §4.3).
 
 use drawing::{Anchor, Svg};
 use geometry::{Point, Vector};

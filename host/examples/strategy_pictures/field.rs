@@ -1,4 +1,5 @@
-//! What lies under a picture of strategy? The field with robots, ball and a map of probabilities over it; mm, +x to the right.
+//! `field`: field background of the figures. The field with robots, ball and a map of probabilities over it;
+//! mm, +x to the right.
 
 use casebase::FieldMm;
 use drawing::{Anchor, At, Colors, Font, Svg, Theme};

@@ -1,4 +1,4 @@
-//! What does strategy believe, drawn? The figures of the second paper, by our own code (Biswas et al. 2014).
+//! `strategy_pictures`: the figures of the second paper, by our own code (Biswas et al. 2014).
 //!
 //! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them; `cargo xtask pictures` keeps those in `docs/strategy`.
 

@@ -1,4 +1,5 @@
-//! How are pictures of strategy laid out? Panels with a field of any league, robots, the ball, and areas of equal value.
+//! `page`: layout of the figures. Panels with a field of any league, robots, the ball, and areas of equal
+//! value.
 //!
 //! Places are told in metres of the attack frame, the picture is in px with y up (`drawing`).
 

@@ -1,4 +1,5 @@
-//! Who could receive a moving ball? Equation 6 over the field for c = 5 and 20, as the paper's Figure 6.
+//! `risk`: figure of the probability to receive a moving ball. Equation 6 over the field for c = 5 and 20, as
+//! the paper's Figure 6.
 
 use drawing::{Anchor, Svg};
 use geometry::{Attack, Point, Vector};

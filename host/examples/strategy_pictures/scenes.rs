@@ -1,4 +1,4 @@
-//! Which moments are drawn? A free kick in the second paper's world: six against six on 6 × 4 m.
+//! `scenes`: situations of the figures. A free kick in the second paper's world: six against six on 6 × 4 m.
 
 use geometry::Point;
 use host::strategy::View;

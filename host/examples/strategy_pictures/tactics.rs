@@ -1,4 +1,5 @@
-//! Where is a robot that runs a tactic? P(p | M_t, W) of the four models over the field, as the paper's Figure 5.
+//! `tactics`: figure of the tactic models. P(p | M_t, W) of the four models over the field, as the paper's
+//! Figure 5.
 
 use drawing::{Anchor, Font, Svg};
 use geometry::Point;

@@ -1,5 +1,5 @@
-//! What was shown before? Scenes are finished and encoded here, once each, off the match's own thread: the newest for viewers, whole
-//! seconds gzipped for those who look back, one sample a second for plots.
+//! `archive`: history of scenes. Scenes are finished and encoded here, once each, off the match's own thread:
+//! the newest for viewers, whole seconds gzipped for those who look back, one sample a second for plots.
 
 use std::collections::BTreeMap;
 use std::io::Write;

@@ -1,4 +1,5 @@
-//! What is the page made of? Files that stand in the program itself: nothing is to be installed, built or found.
+//! `files`: the page's static files. Files that stand in the program itself: nothing is to be installed,
+//! built or found.
 
 /// A file of the page.
 #[derive(Clone, Copy, Debug)]

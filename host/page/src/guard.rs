@@ -1,4 +1,5 @@
-//! Who may speak to this page? Its own viewers, and no page of somebody else's that runs in the same browser.
+//! `guard`: access control of the page. Its own viewers, and no page of somebody else's that runs in the same
+//! browser.
 //!
 //! - **DNS rebinding**: a foreign name is made to point at this machine, so that the browser takes the foreign page for ours. The
 //!   name then stands in `Host`. Only addresses and `localhost` are answered, which nobody can make point anywhere.

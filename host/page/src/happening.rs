@@ -1,4 +1,4 @@
-//! What happened, and when? One entry of the time line, told once and kept.
+//! `happening`: time-line events. One entry of the time line, told once and kept.
 
 use serde::{Deserialize, Serialize};
 

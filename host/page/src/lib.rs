@@ -1,4 +1,5 @@
-//! What is happening on the field, and why? A web page, served by the program itself (runs on the PC).
+//! `page`: the web page: what happens on the field, and why. A web page, served by the program itself (runs
+//! on the PC).
 //!
 //! Whoever drives a match fills a [`Scene`] some 25 times a second and hands it to [`Page::show`], which never waits; what takes long
 //! to work out is done to it later, on the page's own thread ([`Sketch`]). Viewers get the newest one over a WebSocket; the seconds

@@ -1,4 +1,5 @@
-//! How does a match get its page? [`Page::open`] takes the port; from then on the match shows and tells, and never waits.
+//! `page`: handle of a match's page. [`Page::open`] takes the port; from then on the match shows and tells,
+//! and never waits.
 
 use std::cell::RefCell;
 use std::fmt;

@@ -1,4 +1,4 @@
-//! How does a moment become something to work with? As a problem line for `onetwo cases retrieve` and `explain`, or as the
+//! `problem`: export of a moment. As a problem line for `onetwo cases retrieve` and `explain`, or as the
 //! beginnings of a case file. mm, field frame (DESIGN §4.1, §8).
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! What may a viewer ask of the match, and when is it refused?
+//! `request`: requests of a viewer, and their refusals.
 
 use serde::{Deserialize, Serialize};
 

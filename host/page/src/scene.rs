@@ -1,4 +1,4 @@
-//! What is shown of one moment? Plain data that JSON can say; m, m/s, rad, s, field frame.
+//! `scene`: one moment as data. Plain data that JSON can say; m, m/s, rad, s, field frame.
 //!
 //! Everything but time and field may be missing: a league's log file knows no minds, a real field no truth. The page shows what
 //! is there.

@@ -1,4 +1,4 @@
-//! How do viewers get the page, its scenes and its answers? HTTP and WebSocket on one thread of its own.
+//! `server`: HTTP and WebSocket server on a thread of its own.
 //!
 //! A viewer's socket carries the newest scene whenever the viewer has taken the one before: it says so with a dot. So a slow viewer
 //! sees fewer scenes, none of them old, and one that is gone holds nothing up. Connections are served within

@@ -1,5 +1,5 @@
-//! What else is drawn on the field? Named layers of plain shapes: whoever fills a scene can show anything, and the page need not
-//! know what it means. m, field frame.
+//! `shape`: shapes of overlays. Named layers of plain shapes: whoever fills a scene can show anything, and
+//! the page need not know what it means. m, field frame.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,5 @@
-//! What of a scene can be worked out when the match has already gone on? A sketch is a scene and what still has to be done to it: the
-//! page's own thread does that, so that planned ways, maps and beliefs cost whoever drives the match nothing.
+//! `sketch`: a scene with deferred work. A sketch is a scene and what still has to be done to it: the page's
+//! own thread does that, so that planned ways, maps and beliefs cost whoever drives the match nothing.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Do viewers get what is newest, and nobody else anything? Real sockets; viewers that read, that do not, that vanish, and pages of
-//! others that try.
+//! `viewers`: tests: viewers get the newest scene, and only viewers get anything. Real sockets; viewers that
+//! read, that do not, that vanish, and pages of others that try.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};

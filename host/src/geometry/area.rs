@@ -1,4 +1,4 @@
-//! How large is the defence area? From its numbers, its lines, or the division.
+//! `area`: size of the defence area. From its numbers, its lines, or the division.
 
 use rules::{AreaForm, League};
 use ssl::vision::{FieldCircularArc, FieldLineSegment, FieldShapeType, GeometryFieldSize};

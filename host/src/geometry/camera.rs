@@ -1,4 +1,4 @@
-//! Where does a camera hang? Balls in the air are seen off their place, along the line from the camera.
+//! `camera`: camera positions. Balls in the air are seen off their place, along the line from the camera.
 
 use ssl::vision::GeometryCameraCalibration;
 

@@ -1,4 +1,4 @@
-//! Is the field of the league's own programs the field it was, and is nonsense refused?
+//! Tests: geometry of the league's own programs, and refusal of nonsense.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,6 @@
-//! How good is the link to a robot? The league's own table of a radio (technical challenge 2026): round trip, loss, data
-//! rate, interference, start-up; and what people look at during a match: silence, battery, refusals.
+//! `quality`: link quality of a robot. The league's own table of a radio (technical challenge 2026): round
+//! trip, loss, data rate, interference, start-up; and what people look at during a match: silence, battery,
+//! refusals.
 //!
 //! What is scored there is the quality of the data, so each figure says from what it comes:
 //! - round trip: now − departure of the newest picture the robot had − the robot's silence since; the robot states its

@@ -1,4 +1,5 @@
-//! How large, how different, how large at most? Count, mean, variance and maximum of a measure, in one pass (Welford).
+//! `tally`: running statistics of a measure. Count, mean, variance and maximum of a measure, in one pass
+//! (Welford).
 
 /// A measure's summary; its unit is the measure's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

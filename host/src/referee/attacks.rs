@@ -1,5 +1,6 @@
-//! Does HALT win against forged packets, second referees and clocks that step? The attacks of the security review in virtual
-//! time: a genuine controller at 40 Hz, what an attacker adds, and how long robots were let play under HALT.
+//! `attacks`: tests: HALT wins against forged packets, second referees and clocks that step. The attacks of
+//! the security review in virtual time: a genuine controller at 40 Hz, what an attacker adds, and how long
+//! robots were let play under HALT.
 
 use rules::{Colour, League};
 use ssl::referee::{Command as Wire, TeamInfo};

@@ -1,5 +1,5 @@
-//! What stands on the referee's sheet? Phase, stage, times, teams and sides, as the newest packet and the state of the game
-//! have them. SI, field frame; times left in s.
+//! `game`: game state as the referee reports it. Phase, stage, times, teams and sides, as the newest packet
+//! and the state of the game have them. SI, field frame; times left in s.
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::RobotId;

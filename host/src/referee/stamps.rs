@@ -1,5 +1,5 @@
-//! `stamps`: is a packet's stamp where the referee's clock should stand now? Compares the difference between stamps with the
-//! difference between arrivals on our own clock, µs, so that the two clocks need not agree.
+//! `stamps`: check of packet stamps against the referee's clock. Compares the difference between stamps with
+//! the difference between arrivals on our own clock, µs, so that the two clocks need not agree.
 //!
 //! A [`StampClock`] is the offset between the two. It follows drift of [`DRIFT_PPM`] and no more: a forged stamp cannot pull it
 //! away faster than 1 ms a second. Right after its start it takes the least delayed packet as the truth, since what lay in a

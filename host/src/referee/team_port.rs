@@ -1,4 +1,4 @@
-//! How do we tell the game controller who keeps our goal? A client of its port for teams (TCP 10008), without the socket.
+//! `team_port`: client of the game controller's port for teams (TCP 10008), without the socket.
 //!
 //! The controller speaks first (a reply with a token), we register under the name it shows, and every request gets a reply, one at a
 //! time. The shell connects where [`TeamPort::wants_connection`] says so, tells [`connected`](TeamPort::connected) and

@@ -1,4 +1,5 @@
-//! Do the league's own packets become the game that was played? Recordings of the game controller and packets made here.
+//! Tests: the league's own packets become the game that was played. Recordings of the game controller and
+//! packets made here.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,5 @@
-//! What do the referee's numbers mean? The wire's commands and stages in the words of [`rules`].
+//! `words`: decoding of the referee's commands and stages. The wire's commands and stages in the words of
+//! [`rules`].
 
 use rules::Colour::{self, Blue, Yellow};
 use rules::state::{Command, Stage};

@@ -1,4 +1,4 @@
-//! Why can robots not be reached, and what is to be done about it?
+//! `error`: connection errors, and how to fix them.
 
 use std::fmt;
 use std::io;

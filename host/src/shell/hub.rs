@@ -1,5 +1,6 @@
-//! How do several robots' processes share one simulator? Through one socket: some simulators answer only whoever spoke last
-//! (ER-Force's does), so what each robot says goes out from here, and what comes back goes to all.
+//! `hub`: one simulator socket shared by several robot processes. Through one socket: some simulators answer
+//! only whoever spoke last (ER-Force's does), so what each robot says goes out from here, and what comes back
+//! goes to all.
 //!
 //! Bytes are passed on unread; each process picks its own robot's part.
 

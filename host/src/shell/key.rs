@@ -1,4 +1,4 @@
-//! Which key does the team have? A file with 32 hexadecimal digits, which nobody else should be able to read.
+//! `key`: the team's key file. A file with 32 hexadecimal digits, which nobody else should be able to read.
 
 use std::fmt;
 use std::path::{Path, PathBuf};

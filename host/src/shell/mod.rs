@@ -1,4 +1,4 @@
-//! How do frames get to robots and back? The effects of the host: network, serial line, processes, files.
+//! `shell`: the host's effects: network, serial line, processes, files.
 //!
 //! [`open`] takes the link that a team's settings name; [`Link`] carries whole frames and knows nothing of what is in them.
 //! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;

@@ -1,5 +1,5 @@
-//! How are robots reached that are brains of our own in a simulator? `sim://HOST`: a process each, `onetwo virtual-robot`,
-//! that speaks radio frames with us and the league's simulation protocol with the simulator.
+//! `sim`: link to virtual robots in a simulator. `sim://HOST`: a process each, `onetwo virtual-robot`, that
+//! speaks radio frames with us and the league's simulation protocol with the simulator.
 //!
 //! **Life.** They are started here, each started again a second after it ended, and told of. They end with us, however we
 //! end: the pipe to their standard input closes, and that is their sign. It also brings them the key, which no list of

@@ -1,5 +1,5 @@
-//! How are robots reached over a network? A datagram is a frame; one address hears them all: a base station, or the robots'
-//! own broadcast or multicast group.
+//! `udp`: UDP link to robots. A datagram is a frame; one address hears them all: a base station, or the
+//! robots' own broadcast or multicast group.
 
 use std::io;
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};

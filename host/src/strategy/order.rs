@@ -1,4 +1,5 @@
-//! What is a robot told, and why? A task in the attack frame, the role it serves, and the numbers behind it.
+//! `order`: order of a robot, and its reason. A task in the attack frame, the role it serves, and the numbers
+//! behind it.
 
 use core::fmt;
 

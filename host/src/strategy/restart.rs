@@ -1,6 +1,6 @@
-//! Where does everybody stand while the ball is not in play, and how is our restart taken? (rules 2026: stop, kick-off, free
-//! kick, penalty, ball placement). Attack frame, m. The robots' own keep-outs hold the rules to the centimetre; here stands
-//! what is sensible within them.
+//! `restart`: positions while the ball is not in play, and our restarts (rules 2026: stop, kick-off, free
+//! kick, penalty, ball placement). Attack frame, m. The robots' own keep-outs hold the rules to the
+//! centimetre; here stands what is sensible within them.
 
 use geometry::{Angle, Attack, Point, Segment, Vector};
 

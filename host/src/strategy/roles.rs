@@ -1,4 +1,5 @@
-//! Who is what? Few, clear roles, held until a change is worth it, so that nobody turns round twice a second.
+//! `roles`: role assignment. Few, clear roles, held until a change is worth it, so that nobody turns round
+//! twice a second.
 //!
 //! First who plays the ball (soonest there), then the defenders (nearest to their places), the rest are field players. Robots that
 //! play a case stay field players until it ends. A robot leaves a role only for a gain of [`WORTH`].

@@ -1,5 +1,5 @@
-//! Which parts of the second paper does a team play with? Each can be left out, so that what it is worth can be measured: an
-//! ablation is a setting (papers-checklist D24).
+//! `tactics`: the parts of the second paper that a team plays with. Each can be left out, so that what it is
+//! worth can be measured: an ablation is a setting (papers-checklist D24).
 
 use serde::{Deserialize, Serialize};
 

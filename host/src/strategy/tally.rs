@@ -1,4 +1,5 @@
-//! How did the passes and free kicks of a team go, and how calm were its roles? Counts of a match, for reports (papers-checklist D24).
+//! `tally`: match counters of passes, free kicks and role changes. Counts of a match, for reports
+//! (papers-checklist D24).
 
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};

@@ -1,4 +1,5 @@
-//! What does strategy see? The field turned so that the goal we attack lies at +x (DESIGN §2: the one place that flips). SI.
+//! `view`: the strategy's view of the field. The field turned so that the goal we attack lies at +x (DESIGN
+//! §2: the one place that flips). SI.
 
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};

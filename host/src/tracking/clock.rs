@@ -1,5 +1,5 @@
-//! When was an image taken, on our clock? Vision stamps images by a clock of its own: Unix seconds, or a simulator's
-//! seconds from 0 (trap 1), which may run slower than ours, stop, jump and begin anew. µs.
+//! `clock`: vision's clock on ours. Vision stamps images by a clock of its own: Unix seconds, or a
+//! simulator's seconds from 0 (trap 1), which may run slower than ours, stop, jump and begin anew. µs.
 //!
 //! Only differences are used. The packet that came quickest of the last few tells how the two clocks lie to each other;
 //! what vision itself needed from image to packet is known from the packet. An image of another time is not believed

@@ -1,5 +1,5 @@
-//! Where does something move, given noisy glimpses of it? Kalman filters of position and velocity: one for a point of the
-//! plane, one for a heading. m, m/s, rad, rad/s, s.
+//! `filter`: Kalman filters of position and velocity: one for a point of the plane, one for a heading. m,
+//! m/s, rad, rad/s, s.
 //!
 //! Both know two kinds of motion: calm, and changing. While glimpses scatter around the prediction the filter smooths;
 //! when several in a row lie on one side of it, the body has begun to change its mind and the filter follows quickly.

@@ -1,4 +1,4 @@
-//! How do the images of many cameras become one picture of the field? [`ssl::vision::WrapperPacket`]s with their time of
+//! `tracking`: tracking: camera frames to one world model. [`ssl::vision::WrapperPacket`]s with their time of
 //! arrival go in, a [`World`] comes out, now or carried forward to any moment.
 //!
 //! | question | where |

@@ -1,5 +1,5 @@
-//! In which order were the images taken, whatever order their packets came in? Nothing counts twice, and what comes
-//! late within a short window is put where it belongs: everything after it is worked out again.
+//! `order`: ordering of camera frames. Nothing counts twice, and what comes late within a short window is put
+//! where it belongs: everything after it is worked out again.
 //!
 //! So the picture depends on what was seen, not on how the network shuffled it. A team lost a match to the other way:
 //! vision came over cable and wireless at once, and late copies were taken for news.

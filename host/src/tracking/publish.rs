@@ -1,4 +1,4 @@
-//! How is the picture told to others? As the league's tracker packets: m, m/s, rad, rad/s, seconds on vision's clock.
+//! `publish`: the league's tracker packets: m, m/s, rad, rad/s, seconds on vision's clock.
 
 use rules::Colour;
 use ssl::common::{Vector2, Vector3};

@@ -1,4 +1,4 @@
-//! Which robots are there, where, and how do they move? A track per shell number and colour, merged over all cameras.
+//! `robots`: robot tracking. A track per shell number and colour, merged over all cameras.
 //!
 //! A robot is believed once it was seen in several images. What is seen far from where its robot can be is a misread
 //! pattern until it stays there while the robot is seen nowhere else; a name read where another robot stands is a wrong

@@ -1,5 +1,5 @@
-//! What of vision's geometry does a tracker need at every image? Where cameras hang, how large the surface is and how balls
-//! move on it, ready at hand. m.
+//! `scene`: geometry as tracking needs it. Where cameras hang, how large the surface is and how balls move on
+//! it, ready at hand. m.
 
 use geometry::{Field, Point};
 use ssl::vision::GeometryData;

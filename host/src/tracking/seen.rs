@@ -1,4 +1,4 @@
-//! What did a camera claim to see, in our units and without nonsense? SI, field frame; times in µs on the sender's clock.
+//! `seen`: detections in SI units, without nonsense. SI, field frame; times in µs on the sender's clock.
 
 use geometry::{Angle, Field, Point};
 use heapless::Vec;

@@ -1,4 +1,4 @@
-//! Is the ball where tracking says, are kicks noticed at once, and do chips come down where it says?
+//! `ball`: tests of ball tracking: position, kicks and chips.
 
 use geometry::{Field, Point, Vector};
 use host::tracking::Tracker;

@@ -1,4 +1,4 @@
-//! Does the picture stand whatever vision's clock shows, and however it jumps?
+//! `clocks`: tests: tracking is independent of vision's clock and its jumps.
 
 use geometry::Point;
 use host::tracking::{Heard, Tracker};

@@ -1,4 +1,5 @@
-//! Does tracking see what is there? Made-up fields whose truth is known, and the recordings of the league's programs.
+//! `tracking`: tests of tracking. Made-up fields whose truth is known, and the recordings of the league's
+//! programs.
 
 mod ball;
 mod clocks;

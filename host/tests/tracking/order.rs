@@ -1,4 +1,4 @@
-//! Does the picture depend on what was seen only, and not on how the network shuffled, copied and delayed it?
+//! `order`: tests: tracking does not depend on how the network shuffled, copied and delayed packets.
 
 use geometry::{Field, Point, Vector};
 use host::tracking::{Heard, Tracker};

@@ -1,4 +1,4 @@
-//! Do others hear the same picture that we see?
+//! `publish`: tests: tracker packets show what we see.
 
 use geometry::{Point, Vector};
 use host::tracking::{Publisher, Tracker};

@@ -1,4 +1,4 @@
-//! Are robots where tracking says, do they move so, and is nobody believed who is not there?
+//! `robots`: tests of robot tracking.
 
 use geometry::Point;
 use host::tracking::Tracker;

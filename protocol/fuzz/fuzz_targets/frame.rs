@@ -1,4 +1,4 @@
-//! Does a frame of the air bring its reader down, whatever its bytes?
+//! `frame`: fuzz target: radio frames.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::frame(bytes));

@@ -1,4 +1,4 @@
-//! Does the host's message bring its reader down, whatever its bytes?
+//! `host`: fuzz target: host messages.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::host(bytes));

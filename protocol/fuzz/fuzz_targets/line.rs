@@ -1,4 +1,4 @@
-//! Does bytes of a serial line bring its reader down, whatever its bytes?
+//! `line`: fuzz target: serial lines.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::line(bytes));

@@ -1,4 +1,4 @@
-//! Does a message between simulator and computer bring its reader down, whatever its bytes?
+//! `lockstep`: fuzz target: lockstep messages.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::lockstep(bytes));

@@ -1,4 +1,4 @@
-//! Does a packet of the league bring its reader down, whatever its bytes?
+//! `ssl`: fuzz target: the league's packets.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::league(bytes));

@@ -1,4 +1,4 @@
-//! Does a robot's message bring its reader down, whatever its bytes?
+//! `team`: fuzz target: robots' messages.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz::team(bytes));

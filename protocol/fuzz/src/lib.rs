@@ -1,4 +1,5 @@
-//! What reads bytes from outside, and what holds whatever they are? The targets of `cargo fuzz`, and of the seeded loop that CI runs.
+//! `fuzz`: fuzz targets of every reader of external bytes. The targets of `cargo fuzz`, and of the seeded
+//! loop that CI runs.
 //!
 //! A target panics where a reader does, where something without the key is believed, or where a message changes on its way out and
 //! in again.

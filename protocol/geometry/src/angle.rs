@@ -1,4 +1,4 @@
-//! What is a direction? A wrapped angle in (−π, π], counter-clockwise from +x, without a misleading order.
+//! `angle`: direction. A wrapped angle in (−π, π], counter-clockwise from +x, without a misleading order.
 
 use core::ops::{Add, Neg, Sub};
 

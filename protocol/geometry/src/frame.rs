@@ -1,4 +1,5 @@
-//! What keeps a point of the field from being taken for a point of the robot? Frames as type parameters.
+//! `frame`: coordinate frames as type parameters, so that a point of the field is never taken for a point of
+//! the robot.
 //!
 //! Thin over nalgebra's `Point2` and `Vector2`; its `norm` and `distance` are avoided (they reach for libm's √).
 //! Metres, or metres per second where a [`Vector`] is a velocity.

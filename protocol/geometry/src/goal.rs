@@ -1,4 +1,5 @@
-//! Which goal is meant? The one at this end of the field; the paper's words for the two, and who attacks where (DESIGN §2).
+//! `goal`: the two goals. The one at this end of the field; the paper's words for the two, and who attacks
+//! where (DESIGN §2).
 
 use serde::{Deserialize, Serialize};
 

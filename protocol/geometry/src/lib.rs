@@ -1,4 +1,4 @@
-//! Which frames, axes and units does everything else stand on? (DESIGN §2)
+//! `geometry`: frames, axes and units (DESIGN §2) (DESIGN §2).
 //!
 //! | frame | origin | axes | who thinks in it |
 //! |---|---|---|---|

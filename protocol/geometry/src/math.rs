@@ -1,4 +1,4 @@
-//! How do we compute beyond `+ − × ÷` so that PC and Cortex-M agree to the last bit, and cheaply? (DESIGN §2)
+//! `math`: elementary functions with equal bits on PC and Cortex-M (DESIGN §2) (DESIGN §2).
 //!
 //! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and cosine are
 //! single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer); the rest is libm,

@@ -1,4 +1,4 @@
-//! Where is a robot, how does it move, and how do field and body translate into each other?
+//! `pose`: pose, velocity, and transformations between field and body.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! How far is a point from a stretch of line, and where along it? Obstacles, goal lines and ball legs ask this.
+//! `segment`: distance between a point and a segment. Obstacles, goal lines and ball legs ask this.
 
 use crate::{Point, Vector};
 

@@ -1,4 +1,4 @@
-//! Which places does something cover? Discs, boxes along the axes and capsules: what robots keep out of. Metres.
+//! `shape`: discs, boxes along the axes and capsules: what robots keep out of. Metres.
 
 use crate::{Point, Segment, Vector, math};
 

@@ -1,4 +1,4 @@
-//! Where are lines, goals and defence areas? All lengths in metres, points in the field frame.
+//! `field`: dimensions of the field. All lengths in metres, points in the field frame.
 //!
 //! Lines are measured between their centres (rules 2026, playing environment), so a line's outer edge lies half a line's
 //! width further out.

@@ -1,5 +1,5 @@
-//! What may be done now? The phase of the game, as robots, host, referee and simulator name it (rules 2026, chapter on
-//! referee commands).
+//! `game`: phases of the game. The phase of the game, as robots, host, referee and simulator name it (rules
+//! 2026, chapter on referee commands).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Where must a robot not be now, how fast may it go, and may it touch the ball? The rules of 2026 as shapes.
+//! `keep_out`: the rules of 2026 as shapes: forbidden regions, speed limits and touch bans for a robot.
 //!
 //! Robots' skills, host and referee ask here, so that there is one truth. Shapes are for the robot's *body*: who plans for its
 //! centre grows them by its radius, and by what it takes for its own noise ([`KeepOut::offence`] does the former).

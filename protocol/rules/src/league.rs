@@ -1,4 +1,4 @@
-//! Which leagues are there, and how large are field, robots and ball in each?
+//! `league`: the leagues: field, robots and ball.
 //!
 //! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; carpet 6 × 4 m
 //! as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their fields; goals 0.3 m high and

@@ -1,4 +1,5 @@
-//! Was that an offence? The predicates an automatic referee needs, each with its rule (2026); none of them remembers anything.
+//! `legality`: predicates of offences. The predicates an automatic referee needs, each with its rule (2026);
+//! none of them remembers anything.
 //!
 //! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
 //! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.

@@ -1,5 +1,5 @@
-//! What does each league's field and robot look like, where is what, and what may be done now? Dimensions, limits, keep-out
-//! areas, restarts, offences and the state of a game, SI, field frame.
+//! `rules`: rules of the leagues. Dimensions, limits, keep-out areas, restarts, offences and the state of a
+//! game, SI, field frame.
 //!
 //! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`keep_out`] says where a robot must not be,
 //! [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a referee's command means.

@@ -1,4 +1,4 @@
-//! How fast, how near, how long? Every number of the rules that players and referee need: m, m/s, s.
+//! `limits`: limits of the rules. Every number of the rules that players and referee need: m, m/s, s.
 //!
 //! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a robot are
 //! measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the ball's centre.

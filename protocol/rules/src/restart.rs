@@ -1,5 +1,5 @@
-//! Where does the ball go, and where do robots stand, when the game begins again? Rules of 2026, chapters "referee commands" and
-//! "ball leaves the field". Field frame, m.
+//! `restart`: restart positions of ball and robots. Rules of 2026, chapters "referee commands" and "ball
+//! leaves the field". Field frame, m.
 
 use geometry::{Field, GoalEnd, Point, math};
 use heapless::Vec;

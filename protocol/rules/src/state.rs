@@ -1,4 +1,5 @@
-//! What does a referee's command mean now? The league's state graph as a value (rules 2026, appendix "game states").
+//! `state`: state machine of the referee's commands. The league's state graph as a value (rules 2026,
+//! appendix "game states").
 //!
 //! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both say what came of it. Times are µs of
 //! one clock, the caller's. Three things are decided here, because the rules leave them open:

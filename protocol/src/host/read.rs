@@ -1,4 +1,5 @@
-//! How does a robot read the host's messages in few instructions? Parts of pictures robot by robot, the rest as `postcard` does.
+//! `read`: fast decoder of the host's messages. Parts of pictures robot by robot, the rest as `postcard`
+//! does.
 //!
 //! Two parts come with every picture and are the longest frames there are. What stands before the robots is `postcard`'s; each
 //! robot is eleven fixed bytes, taken as they lie: 30 instructions of a Cortex-M4 instead of 170. The tests hold it to

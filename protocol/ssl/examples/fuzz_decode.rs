@@ -1,4 +1,4 @@
-//! Does any broken packet bring a decoder down? `cargo run -p ssl --example fuzz_decode -- --count 1000000`
+//! `fuzz_decode`: fuzzing of the decoders. `cargo run -p ssl --example fuzz_decode -- --count 1000000`
 //!
 //! Prints what was read and refused; a panic is a finding, told with the seed that repeats it.
 

@@ -1,4 +1,4 @@
-//! What does the Small Size League say on its networks, and how is it heard, sent and kept? Runs on the PC.
+//! `ssl`: the Small Size League's messages, sockets and log files. Runs on the PC.
 //!
 //! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the league's
 //! without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does not. Enums are kept

@@ -1,4 +1,4 @@
-//! What was proposed in 2015 as the league's radio protocol? Commands over UDP; no current team uses it.
+//! `radio`: the radio protocol proposed in 2015. Commands over UDP; no current team uses it.
 //!
 //! Units: m/s, rad/s in the robot's frame.
 

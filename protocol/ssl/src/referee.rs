@@ -1,4 +1,5 @@
-//! What does the referee say? One [`Referee`] a datagram from the game controller, to 224.5.23.1:10003, about 38 a second.
+//! `referee`: referee packets. One [`Referee`] a datagram from the game controller, to 224.5.23.1:10003,
+//! about 38 a second.
 //!
 //! Units: all times in µs; `designated_position` in **mm**; what game events tell in **m**; field frame.
 

@@ -1,4 +1,4 @@
-//! Where does one message end and the next begin? On TCP a varint length stands before each; a datagram is one message.
+//! `stream`: message framing on TCP. On TCP a varint length stands before each; a datagram is one message.
 //!
 //! Sans-IO: whoever owns the socket pushes what it read, however torn, and takes whole messages out. The league's own
 //! code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.

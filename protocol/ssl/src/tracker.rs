@@ -1,4 +1,4 @@
-//! What does a filter make of vision? One [`TrackerWrapperPacket`] a datagram, to 224.5.23.2:10010.
+//! `tracker`: tracker packets. One [`TrackerWrapperPacket`] a datagram, to 224.5.23.2:10010.
 //!
 //! Units: m, m/s, rad, rad/s, s in the field frame. Several sources may share the port: keep them apart by `uuid`.
 

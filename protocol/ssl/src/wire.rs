@@ -1,4 +1,4 @@
-//! Which fields does a message have on the wire, before anybody knows its type? Borrowed, without taking memory.
+//! `wire`: fields of an undecoded message. Borrowed, without taking memory.
 
 /// A field as it stands in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

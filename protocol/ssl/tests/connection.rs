@@ -1,4 +1,4 @@
-//! Does the talk over TCP work as with the game controller, and does each way it can fail say what mends it?
+//! `connection`: tests of the TCP connection and of its errors.
 
 use std::io::Write;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};

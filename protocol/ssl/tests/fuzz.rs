@@ -1,4 +1,4 @@
-//! Does a broken packet bring a decoder down? A short run of `examples/fuzz_decode.rs`.
+//! `fuzz`: fuzz test of the decoders. A short run of `examples/fuzz_decode.rs`.
 
 #[path = "support/messages.rs"]
 mod messages;

@@ -1,5 +1,6 @@
-//! Do our structs have the league's numbers and types? Packets assembled from the league's tables by another program
-//! (`golden/assemble.py`) decode to what it put in, and encode to the same bytes.
+//! `golden`: golden packets: our structs have the league's numbers and types. Packets assembled from the
+//! league's tables by another program (`golden/assemble.py`) decode to what it put in, and encode to the same
+//! bytes.
 
 #[path = "support/messages.rs"]
 mod messages;

@@ -1,4 +1,5 @@
-//! Does the log reader survive what files meet: cuts, damage, versions, unknown types? And does what is written read back?
+//! `log`: tests: the log reader survives cuts, damage, versions and unknown types, and reads back what is
+//! written.
 
 #[path = "support/recordings.rs"]
 mod recordings;

@@ -1,4 +1,4 @@
-//! Do the sockets work as the league's do, on this machine's loopback? And does each failure say what mends it?
+//! `net`: tests of the sockets on loopback, and that each error says how to fix it.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::{Duration, Instant};

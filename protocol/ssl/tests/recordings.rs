@@ -1,5 +1,5 @@
-//! Do our messages agree with what the league's own programs sent? Every packet of the recordings decodes, and single
-//! packets agree field by field with what an independent decoder read in them.
+//! `recordings`: tests: our messages agree with what the league's own programs sent. Every packet of the
+//! recordings decodes, and single packets agree field by field with what an independent decoder read in them.
 
 #[path = "support/recordings.rs"]
 mod recordings;

@@ -1,5 +1,5 @@
-//! Which surprises do the league's programs hold on the wire? Each trap of the README as a fact of a recording, told by
-//! our own structs: who relies on the opposite finds it here.
+//! `traps`: tests of the league's surprises on the wire. Each trap of the README as a fact of a recording,
+//! told by our own structs: who relies on the opposite finds it here.
 
 #[path = "support/recordings.rs"]
 mod recordings;

@@ -1,4 +1,5 @@
-//! Does the decoder that keeps its room give what a plain decode gives, whatever came before? And does it take no memory?
+//! `vision_decoder`: tests: the allocation-free decoder gives what a plain decode gives. And does it take no
+//! memory?
 
 #[path = "support/messages.rs"]
 mod messages;

@@ -1,4 +1,4 @@
-//! What do the counts of motion come to, are they within DESIGN §9, and how do they get into firmware/motion/README.md?
+//! `figures`: figures of the motion benchmark, their budgets, and their table in firmware/motion/README.md.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,5 @@
-//! What does motion cost on the robot's processor? The bench's image under QEMU, which counts instructions.
+//! `guest`: motion benchmark on the robot's processor. The bench's image under QEMU, which counts
+//! instructions.
 
 use std::process::{Command, Stdio};
 

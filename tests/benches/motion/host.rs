@@ -1,4 +1,4 @@
-//! What does motion cost on this machine? This very program under callgrind, which counts instructions.
+//! `host`: motion benchmark on this machine. This very program under callgrind, which counts instructions.
 //!
 //! It does all tasks once and then twice; the difference is free of everything that happens once.
 

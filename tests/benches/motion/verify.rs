@@ -1,4 +1,4 @@
-//! Is every task solved, and how much longer do motions take than with the best share between the axes?
+//! `verify`: check of the motion benchmark's solutions.
 
 use geometry::{Field, Point, Vector, math};
 use motion::trajectory::{CalcMotion, DragLimits, FreeLimits};

@@ -1,5 +1,5 @@
-//! What do radio frames cost on the robot's processor, and is that within DESIGN §9? The image's counts, held to this
-//! machine's answers.
+//! `counts`: figures of the radio benchmark, and their budgets. The image's counts, held to this machine's
+//! answers.
 
 use std::fmt::Write as _;
 use std::process::{Command, Stdio};

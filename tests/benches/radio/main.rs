@@ -1,4 +1,4 @@
-//! What does a radio frame cost on the robot's processor? (DESIGN §9) `cargo xtask bench radio` starts it.
+//! `radio`: radio benchmark (DESIGN §9). `cargo xtask bench radio` starts it.
 //!
 //! The bench's image under QEMU, which counts instructions. Exit code 1 where a budget is broken.
 

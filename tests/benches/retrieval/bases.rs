@@ -1,4 +1,5 @@
-//! Which case bases are measured? A part of the built-in library, all of it, and random ones of 1,000 and 10,000 cases.
+//! `bases`: case bases of the retrieval benchmark. A part of the built-in library, all of it, and random ones
+//! of 1,000 and 10,000 cases.
 
 use std::path::Path;
 

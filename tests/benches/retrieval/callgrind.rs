@@ -1,4 +1,5 @@
-//! What does a retrieval cost on this machine? This very program under callgrind, which counts instructions.
+//! `callgrind`: retrieval benchmark on this machine. This very program under callgrind, which counts
+//! instructions.
 //!
 //! It runs over all problems once and then twice; the difference is free of everything that happens once.
 

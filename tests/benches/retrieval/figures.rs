@@ -1,4 +1,4 @@
-//! What do the counts of one base and one set of problems come to, and are they within the budgets of DESIGN §9?
+//! `figures`: figures of the retrieval benchmark, and their budgets.
 
 use casebase::{CaseBase, Problem};
 use retrieval_bench::Answer;

@@ -1,4 +1,5 @@
-//! What does a retrieval cost on the robot's processor? The bench's image under QEMU, which counts instructions.
+//! `guest`: retrieval benchmark on the robot's processor. The bench's image under QEMU, which counts
+//! instructions.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,4 +1,4 @@
-//! What does a retrieval cost, and does it answer as a plain scan does? (DESIGN §9) `cargo xtask bench retrieval` starts it.
+//! `retrieval`: retrieval benchmark (DESIGN §9). `cargo xtask bench retrieval` starts it.
 //!
 //! Bases of 36 to 10,000 stored cases; random problems and those that robots retrieved for in 200 trials; instructions
 //! on the robot's processor (QEMU) and on this machine (callgrind). Exit code 1 where a budget is broken.

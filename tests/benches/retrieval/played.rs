@@ -1,4 +1,5 @@
-//! Which problems do robots really retrieve for? Those of whole trials, recorded as their coordinators decided.
+//! `played`: problems that robots really retrieve for. Those of whole trials, recorded as their coordinators
+//! decided.
 //!
 //! Nothing is kept in a file: trials are seeded and quick, so the problems are those of the library and brain of today.
 

@@ -1,4 +1,4 @@
-//! How do the figures look in casebase/README.md, and how do they get there?
+//! `table`: table of the retrieval benchmark in casebase/README.md.
 
 use std::fmt::Write as _;
 use std::fs;

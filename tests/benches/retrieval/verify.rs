@@ -1,4 +1,4 @@
-//! Does retrieval answer as the plain scan does: on how many problems?
+//! `verify`: check of retrieval against the scan.
 
 use casebase::{Settings, retrieve, retrieve_best};
 use retrieval_bench::scan;

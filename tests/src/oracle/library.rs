@@ -1,4 +1,4 @@
-//! What do a league's case files say, read naively?
+//! `library`: naive reader of case files.
 //!
 //! DESIGN §4.1 and §4.2 with the `toml` crate's generic values and nothing else of the project: every stored case is
 //! spelled out (the authored one and its three mirror images), kicks resolved into aim and radii. Field frame, mm,

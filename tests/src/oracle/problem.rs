@@ -1,4 +1,4 @@
-//! What does a problem line of `onetwo cases retrieve` ask?
+//! `problem`: naive parser of problem lines.
 //!
 //! The format of DESIGN §8, read with `serde_json`'s generic values. Integers in mm, field frame.
 

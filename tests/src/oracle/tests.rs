@@ -1,4 +1,4 @@
-//! Does the oracle itself say what the agreement's own examples and pencil and paper say?
+//! Tests of the oracle by hand calculations.
 
 use std::collections::BTreeMap;
 

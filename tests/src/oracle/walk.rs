@@ -1,4 +1,4 @@
-//! Which way does the ball run through a case, and who holds it when?
+//! `walk`: naive plan simulation: the ball's path through a case.
 //!
 //! The symbolic walk of DESIGN §4.3 item 4 (paper §3.3.1), played one ball action after the other. Field frame, mm.
 

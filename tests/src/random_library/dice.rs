@@ -1,4 +1,4 @@
-//! Where does chance come from? One seeded stream, the same on every machine.
+//! `dice`: seeded random numbers. One seeded stream, the same on every machine.
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{RngCore, SeedableRng};

@@ -1,4 +1,5 @@
-//! Which situations put a library to the test? Those near its cases, a good share of them with several candidates.
+//! `problems`: random problems near a library's cases. Those near its cases, a good share of them with
+//! several candidates.
 //!
 //! Field frame, mm.
 

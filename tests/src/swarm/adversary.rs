@@ -1,4 +1,4 @@
-//! What reaches a robot's antenna that the air did not bring as it was sent? Flipped bits, recordings, other teams, guesses.
+//! `adversary`: attacker on the radio. Flipped bits, recordings, other teams, guesses.
 
 use geometry::GoalEnd;
 use hil_sim::Stream;

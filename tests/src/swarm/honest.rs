@@ -1,4 +1,5 @@
-//! Which packets may a robot believe? The rules of `protocol/SPEC.md` once more, apart from the code that keeps them.
+//! `honest`: reference for the packets that a robot may accept. The rules of `protocol/SPEC.md` once more,
+//! apart from the code that keeps them.
 //!
 //! How old a frame of the host is, is not judged: a robot that refuses one as stale brakes, which it may always do.
 //!

@@ -1,5 +1,5 @@
-//! Does a team stay safe whatever goes wrong at once, and does it play again when all is well? A swarm of runs, each with
-//! faults of its own (DESIGN §5, §6).
+//! `swarm`: swarm test: a team stays safe under many faults at once, and plays again afterwards. A swarm of
+//! runs, each with faults of its own (DESIGN §5, §6).
 //!
 //! A seed is a run: [`plan`] draws who plays and what goes wrong, `legged` and `wheels` play it with native brains,
 //! [`adversary`] tampers with radios and [`computer`] with sensors and clocks. What is promised is watched from outside:

@@ -1,4 +1,4 @@
-//! What goes wrong in the swarm's run of this seed? Which faults are on, how bad, for whom, and from when to when.
+//! `plan`: faults of a swarm run. Which faults are on, how bad, for whom, and from when to when.
 //!
 //! Everything is drawn from the seed, faults independently of each other, so that a few thousand seeds meet most pairs and
 //! triples of them. A run is calm first, then everything that is on rages, then all of it heals at one moment. Times in ms.

@@ -1,4 +1,4 @@
-//! How are many runs played on many threads, with one answer whatever their number?
+//! `runs`: parallel runs with deterministic results.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,4 +1,4 @@
-//! What does the swarm see of a team's cycles, and does the team play again after healing?
+//! `team`: a team's cycles in a swarm run.
 
 use protocol::link::{Packet, overhear};
 use protocol::team::{Beacon, Closure, CycleState, Decision, Status, TeamMessage};

@@ -1,4 +1,4 @@
-//! Which crates are there, where do they lie, and what do they depend on?
+//! `manifest`: the workspace's crates and their dependencies.
 
 use std::collections::BTreeSet;
 

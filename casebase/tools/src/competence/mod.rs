@@ -1,4 +1,5 @@
-//! Which cases carry a library, and which could go? (Smyth & Keane 1995; Smyth & McKenna 2001, on sampled problems)
+//! `competence`: how much each case contributes to a library (Smyth & Keane 1995; Smyth & McKenna 2001, on
+//! sampled problems).
 //!
 //! A case's *coverage set* are the problems it is a candidate for, a problem's *reachability set* the cases that are
 //! candidates for it (authored cases: a file goes with its four copies). With C(x) for the coverage set of x:

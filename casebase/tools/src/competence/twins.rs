@@ -1,4 +1,5 @@
-//! Which cases answer the same problems? Pairs that share problems, and how alike their coverage sets are.
+//! `twins`: pairs of cases that answer the same problems. Pairs that share problems, and how alike their
+//! coverage sets are.
 
 use std::collections::BTreeMap;
 

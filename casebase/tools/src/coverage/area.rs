@@ -1,5 +1,6 @@
-//! In which strategic part of the field does the ball lie? The six words of the paper's case base (Ros et al. 2009,
-//! §5.1.1), which gives no borders: these are ours. Attack frame: +x towards the goal attacked.
+//! `area`: the strategic area of the field in which the ball lies. The six words of the paper's case base
+//! (Ros et al. 2009, §5.1.1), which gives no borders: these are ours. Attack frame: +x towards the goal
+//! attacked.
 //!
 //! Along x, from the own goal line (−1) to the opponents' (+1); across, from the middle (0) to a touch line (1):
 //! the outer 40 % of each half (|y| > 0.6) are `corner` beyond |x| > 0.8, `front-side` where x > 1/3, else `side`; the

@@ -1,5 +1,6 @@
-//! Into which cell of the heat map does a ball fall? A grid over the field, attack frame (+x towards the goal attacked):
-//! a ball of the team that attacks towards −x is turned by 180°, as the `both` copies of cases are. mm.
+//! `cells`: heat-map cell of a ball position. A grid over the field, attack frame (+x towards the goal
+//! attacked): a ball of the team that attacks towards −x is turned by 180°, as the `both` copies of cases
+//! are. mm.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! Where on the field does a library leave robots without a case? (Ros et al. 2009, §5.1.1; Smyth & McKenna 2001)
+//! `coverage`: regions of the field where a library has no case (Ros et al. 2009, §5.1.1; Smyth & McKenna
+//! 2001).
 //!
 //! A [`Survey`] asks the library about many problems and counts into a [`Tally`]. Tallies of parts merge to the tally
 //! of the whole, in any order and grouping, so a caller may spread the work over threads and always gets the same

@@ -1,4 +1,5 @@
-//! What does a library say to many problems? Every case is judged in every problem, as `cases explain` does.
+//! `survey`: answers of a library to many problems. Every case is judged in every problem, as `cases explain`
+//! does.
 
 use casebase::{CaseBase, Match, Problem, SettingError, Settings, Verdict, explain, rank_order};
 

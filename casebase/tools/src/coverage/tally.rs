@@ -1,4 +1,4 @@
-//! What was counted over many problems? Whole numbers only, so that tallies merge exactly, in any order.
+//! `tally`: counters over many problems. Whole numbers only, so that tallies merge exactly, in any order.
 
 use std::collections::BTreeMap;
 

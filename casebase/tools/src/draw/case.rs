@@ -1,4 +1,4 @@
-//! What does a case say, and what becomes of a problem under it? One picture: scopes, ball path, robots, and who goes where.
+//! `case`: picture of one case, optionally with a problem: scopes, ball path, robots, and who goes where.
 //!
 //! Over a problem everything is adapted, moved by `B_p` − `B_c`, except the ball's scope: that is where the case has it.
 

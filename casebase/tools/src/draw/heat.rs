@@ -1,4 +1,5 @@
-//! Where on the field is how much? A grid of values over the field with its legend and caption, as an SVG.
+//! `heat`: heat map of the field as SVG. A grid of values over the field with its legend and caption, as an
+//! SVG.
 
 use casebase::{FieldMm, PointMm};
 use drawing::{Anchor, At, Colors, Font, Svg, Theme, draw_field, field_lines, half_extent, width, wrapped};

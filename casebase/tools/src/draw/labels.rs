@@ -1,4 +1,5 @@
-//! Where do names go so that none lies on another? Signs are told first, then each name takes the first free side.
+//! `labels`: label placement without overlaps. Signs are told first, then each name takes the first free
+//! side.
 
 use drawing::{Anchor, At, Font, Svg, width};
 

@@ -1,4 +1,4 @@
-//! What does a case base look like? Pictures as SVG text, in mm of the field.
+//! `draw`: pictures of a case base. Pictures as SVG text, in mm of the field.
 
 mod case;
 mod heat;

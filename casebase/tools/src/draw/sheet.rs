@@ -1,4 +1,4 @@
-//! What does a whole library look like? Every case small on one page, grouped by region.
+//! `sheet`: one page with every case of a library, small, grouped by region.
 
 use drawing::{Anchor, Font, Svg, Theme, half_extent};
 

@@ -1,4 +1,4 @@
-//! What does a verdict say in one sentence? For captions; mm.
+//! `words`: a verdict as one sentence. For captions; mm.
 
 use casebase::Verdict;
 

@@ -1,4 +1,4 @@
-//! What libraries and problems do these tests draw? Written out, or from a small seeded stream.
+//! `common`: test helpers: libraries and problems. Written out, or from a small seeded stream.
 #![allow(dead_code, reason = "every test file takes the part it needs")]
 
 use std::fmt::Write as _;

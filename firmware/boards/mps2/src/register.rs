@@ -1,4 +1,5 @@
-//! How is a device's register read and written? At its address, 32 bits wide, never merged or left out.
+//! `register`: access to a memory-mapped device register. At its address, 32 bits wide, never merged or left
+//! out.
 
 /// A register of the board's.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! How much of its stack has the program ever used? The start-up code paints it (`cortex-m-rt`'s `paint-stack`); what is no
+//! `stack`: stack high-water mark. The start-up code paints it (`cortex-m-rt`'s `paint-stack`); what is no
 //! longer painted was used.
 //!
 //! Bytes. A function that reserves room without writing to its far end leaves paint there, and what lies beyond it counts

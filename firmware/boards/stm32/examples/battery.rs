@@ -1,4 +1,4 @@
-//! Is the battery's voltage right?
+//! `battery`: bench test of the battery voltage.
 //!
 //! Connect: the battery, or a supply in its place; motors and kicker unplugged.
 //! See: its voltage, within 2 % of a meter's. It differs: the divider is another (`src/analog.rs`). The governor brakes a robot whose

@@ -1,4 +1,5 @@
-//! Does the kicker's capacitor charge, is its voltage right, and does it run empty? Nothing is fired.
+//! `charge`: bench test of the kicker's capacitor: it charges, its voltage is right, and it discharges.
+//! Nothing is fired.
 //!
 //! **Up to 60 V on the kicker's board: touch nothing, one hand in the pocket; both coils unplugged, and a voltmeter on the capacitor
 //! that you trust.** Set the charger's own limit first.

@@ -1,4 +1,4 @@
-//! Does every encoder count, and the right way round? Turned by hand.
+//! `encoders`: bench test of the encoders: each counts, in the right direction. Turned by hand.
 //!
 //! Connect: the encoders and their supply; motors without current.
 //! See: four counts and four rim speeds, five times a second. Turn each wheel so that it would turn the robot counter-clockwise: its

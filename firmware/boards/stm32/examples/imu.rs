@@ -1,4 +1,4 @@
-//! Does the gyroscope answer, and does its z axis point up?
+//! `imu`: bench test of the IMU: the gyroscope answers, and its z axis points up.
 //!
 //! Connect: the IMU.
 //! See: lying still, the acceleration is about (0, 0, 1) g and every rate within 0.02 rad/s of 0. Turn the board counter-clockwise

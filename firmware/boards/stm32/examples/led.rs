@@ -1,4 +1,4 @@
-//! Does the chip run, and does its log arrive? The first thing to try on a new board.
+//! `led`: bench test of chip and log. The first thing to try on a new board.
 //!
 //! Connect: the probe and the board's supply, nothing else.
 //! See: green and red take turns, a second each, and the log counts them. A second must be one: otherwise the quartz is another

@@ -1,4 +1,4 @@
-//! Does the serial line to the radio carry bytes, both ways? Whatever comes goes back.
+//! `radio`: bench test of the radio's serial line. Whatever comes goes back.
 //!
 //! Connect: the radio modem; or a USB serial adapter of 3.3 V instead of it, crossed (its TX to our RX).
 //! See: from the other end (1 Mbit/s, 8N1) whatever is typed comes back, and the log counts it. `line errors` rise: another rate, or

@@ -1,4 +1,5 @@
-//! Does every motor turn, the right one and the right way round? One at a time, at a sixth of the battery's voltage.
+//! `wheels`: bench test of the motors: each turns, in the right place and direction. One at a time, at a
+//! sixth of the battery's voltage.
 //!
 //! **The robot on a stand, wheels off the ground, nobody's fingers near them; the kicker's board unplugged.**
 //! Connect: motor drivers and battery, or a supply limited to 2 A.

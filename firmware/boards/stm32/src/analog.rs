@@ -1,4 +1,5 @@
-//! What do battery, capacitor and light barrier say? Three voltages, read one after the other, some 10 µs each.
+//! `analog`: ADC inputs: battery, capacitor and break-beam sensor. Three voltages, read one after the other,
+//! some 10 µs each.
 
 use embassy_stm32::adc::{Adc, AdcChannel, AnyAdcChannel, SampleTime};
 use embassy_stm32::gpio::{Level, Output, Speed};

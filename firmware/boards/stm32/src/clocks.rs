@@ -1,4 +1,5 @@
-//! How fast does the chip run? 400 MHz from a quartz of 8 MHz: what every revision of the chip bears (480 MHz is for later ones).
+//! `clocks`: clock tree. 400 MHz from a quartz of 8 MHz: what every revision of the chip bears (480 MHz is
+//! for later ones).
 
 use embassy_stm32::Config;
 use embassy_stm32::rcc::{

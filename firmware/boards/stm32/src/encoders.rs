@@ -1,4 +1,4 @@
-//! How fast do the wheels turn? Four timers count the edges of two channels each.
+//! `encoders`: wheel-speed measurement. Four timers count the edges of two channels each.
 
 use embassy_stm32::peripherals::{TIM2, TIM3, TIM4, TIM8};
 use embassy_stm32::timer::qei::{Config, Qei};

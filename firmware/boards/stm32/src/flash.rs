@@ -1,4 +1,5 @@
-//! What does the chip's flash keep besides the image? The key page, which only a probe writes, and the ledger of starts.
+//! `flash`: flash storage besides the image. The key page, which only a probe writes, and the ledger of
+//! starts.
 //!
 //! | address | what |
 //! |---|---|

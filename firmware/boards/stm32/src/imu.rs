@@ -1,4 +1,4 @@
-//! How does the robot turn, and which way is up? A gyroscope and accelerometer on SPI: ICM-42688-P (TDK DS-000347).
+//! `imu`: IMU driver. A gyroscope and accelerometer on SPI: ICM-42688-P (TDK DS-000347).
 
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::mode::Blocking;

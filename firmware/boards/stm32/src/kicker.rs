@@ -1,5 +1,5 @@
-//! How does the kicker's board do what the interlock decided? Charger and coils by timers that end by themselves, the capacitor kept
-//! from its resistor only as long as somebody says so.
+//! `kicker`: driver of the kicker board. Charger and coils by timers that end by themselves, the capacitor
+//! kept from its resistor only as long as somebody says so.
 
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_time::{Duration, Timer};

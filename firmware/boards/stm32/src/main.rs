@@ -1,4 +1,5 @@
-//! How does a real robot start? Clocks, record of the last life, provisioned page, ledger, tasks, and what it says of all that.
+//! `board-stm32`: start-up of the robot. Clocks, record of the last life, provisioned page, ledger, tasks,
+//! and what it says of all that.
 //!
 //! Without a page, an epoch or a radio it drives nothing and says nothing on the air; its red lamp is lit.
 #![cfg_attr(target_os = "none", no_std, no_main)]

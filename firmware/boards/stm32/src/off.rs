@@ -1,4 +1,4 @@
-//! How does everything that moves stop at once? Past all drivers, for a panic asks nobody's leave.
+//! `off`: emergency stop of everything that moves. It bypasses all drivers, because a panic cannot ask them.
 
 use embassy_stm32::pac;
 

@@ -1,4 +1,5 @@
-//! Which pin does what? This table is the only place that says it; README.md shows it as wiring, and a test holds both equal.
+//! `pins`: pin assignment. This table is the only place that says it; README.md shows it as wiring, and a
+//! test holds both equal.
 //!
 //! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left as they are. A line
 //! `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.

@@ -1,5 +1,5 @@
-//! How does a wire go high for exactly so long, whatever becomes of the program? A timer that counts once to its end and stops
-//! (RM0433, 39.3.15: one-pulse mode).
+//! `pulse`: one-shot hardware pulses of exact length, whatever becomes of the program. A timer that counts
+//! once to its end and stops (RM0433, 39.3.15: one-pulse mode).
 //!
 //! The driver of embassy-stm32 starts such a pulse from a pin only, and knows no timers of one or two channels; these start by the
 //! program and end by themselves. A microsecond is a tick.

@@ -1,4 +1,4 @@
-//! How do frames come and go over the radio's serial line? Stuffed bytes (`protocol::serial`), carried by the DMA: a ring for what
+//! `radio`: UART driver of the radio. Stuffed bytes (`protocol::serial`), carried by the DMA: a ring for what
 //! comes, so that the brain's longest step loses nothing, one line at a time for what goes.
 
 use core::sync::atomic::{AtomicU32, Ordering};

@@ -1,5 +1,5 @@
-//! What does the board read a thousand times a second, and who gets it? One task reads gyroscope, battery, capacitor and light
-//! barrier; kicker and brain take the newest.
+//! `sampling`: sensor sampling at 1 kHz. One task reads gyroscope, battery, capacitor and light barrier;
+//! kicker and brain take the newest.
 //!
 //! What is older than ten steps is no reading: then the kicker neither charges nor fires, and nobody turns by an old gyroscope.
 

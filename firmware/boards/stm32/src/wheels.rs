@@ -1,5 +1,5 @@
-//! How do four motors and the dribbler get their voltage? PWM and direction into their drivers, and one wire that takes the current
-//! off all of them.
+//! `wheels`: PWM outputs of wheels and dribbler. PWM and direction into their drivers, and one wire that
+//! takes the current off all of them.
 
 use embassy_stm32::gpio::{Input, Level, Output, OutputType, Pull, Speed};
 use embassy_stm32::peripherals::{TIM1, TIM5};

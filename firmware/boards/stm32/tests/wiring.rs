@@ -1,5 +1,6 @@
-//! Does the wiring people read say what the pins are, and is what they flash what is measured? README.md's table against
-//! `src/pins.rs`, no pin for two things, this folder's `release` against the workspace's `firmware`.
+//! `wiring`: tests: the README's wiring equals the pins, and the flashed profile equals the measured one.
+//! README.md's table against `src/pins.rs`, no pin for two things, this folder's `release` against the
+//! workspace's `firmware`.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! Which bodies can this build lead? An image carries the one body its robot has (features `legged` and `omni`); on the PC
-//! both are there.
+//! `kind`: robot bodies that this build supports. An image carries the one body its robot has (features
+//! `legged` and `omni`); on the PC both are there.
 //!
 //! Everything that depends on the body asks [`Kind::of`] once and keeps its answer, with the proof that the body is built
 //! in. Without the feature there is no such proof, so the compiler drops whatever would be done with it.

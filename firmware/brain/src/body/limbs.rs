@@ -1,4 +1,5 @@
-//! Who turns an intent into an order for the body? Legs as they are, wheels through drivetrain, governor and kinematics.
+//! `limbs`: actuation: turns an intent into actuator orders. Legs as they are, wheels through drivetrain,
+//! governor and kinematics.
 
 use geometry::Twist;
 use motion::omni::Omni;

@@ -1,4 +1,4 @@
-//! What does a robot do by itself, when no case binds it? The reactive behaviour of the paper's comparison (§5).
+//! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
 //! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others back up,
 //! off the line from ball to goal. An opponent is considered only when it blocks the way within 0.4 m: then dodge,

@@ -1,4 +1,4 @@
-//! What does a robot do by itself, when no case binds it? A behaviour per body, behind one face.
+//! `reactive`: reactive behaviour of robots without a case. A behaviour per body, behind one face.
 
 mod legged;
 mod wheels;

@@ -1,4 +1,4 @@
-//! Which skills does the case language need, and how does each go? A folder per body; belief in, intent and verdict out.
+//! `skills`: skills of the case language. A folder per body; belief in, intent and verdict out.
 //!
 //! A walking robot's skills remember nothing; what must be remembered between steps (a kick was commanded, the ball was
 //! held) is the [execution's](crate::execution) or the reactive behaviour's.

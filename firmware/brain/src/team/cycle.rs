@@ -1,4 +1,4 @@
-//! What does this robot know of the running cycle, and what is its own part in it?
+//! `cycle`: this robot's part in the running cycle.
 
 use protocol::team::{AbortReason, Closure, CycleState, Decision, Play, Progress};
 use protocol::{CycleId, RobotId};

@@ -1,4 +1,5 @@
-//! Who elects, and who is elected? The lowest id present names the retriever nearest the ball (paper §4.1).
+//! `election`: election of coordinator and retriever. The lowest id present names the retriever nearest the
+//! ball (paper §4.1).
 
 use protocol::team::{Beacon, CycleState, Decision, Status};
 use protocol::{CycleId, Instant, RobotId};

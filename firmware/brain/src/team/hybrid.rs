@@ -1,4 +1,4 @@
-//! When is it better to act than to reason? The deliberative and the reactive approach combined (Ros et al. 2009, §5.4 and §7).
+//! `hybrid`: combination of the deliberative and the reactive approach (Ros et al. 2009, §5.4 and §7).
 //!
 //! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting plays", elsewhere
 //! cooperation is better. So the reactive behaviour competes with the retrieved case by the time to its shot, as both are

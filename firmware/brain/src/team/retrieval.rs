@@ -1,4 +1,4 @@
-//! Which problem does the coordinator see, and what does it decide? Beliefs to a problem, a retrieval to a decision.
+//! `retrieval`: retrieval by the coordinator. Beliefs to a problem, a retrieval to a decision.
 //!
 //! The ball of the problem is where the ball will lie: robots that adapt to a place a rolling ball has left would only
 //! abort. For a ball at rest it is the paper's own ball position.

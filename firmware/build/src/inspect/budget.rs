@@ -1,4 +1,4 @@
-//! May an image be as large as it is? The budget of DESIGN §9, and the computers it is compared with.
+//! `budget`: size budget of an image. The budget of DESIGN §9, and the computers it is compared with.
 
 use std::fmt;
 

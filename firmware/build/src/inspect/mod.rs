@@ -1,4 +1,5 @@
-//! What is in a firmware image? Its sections and symbols (ELF), and the source line behind every instruction (DWARF).
+//! `inspect`: inspection of a firmware image. Its sections and symbols (ELF), and the source line behind
+//! every instruction (DWARF).
 //!
 //! Needs an image with debug information, as the profile `firmware` makes them. The bytes that are flashed do not change
 //! with it.

@@ -1,5 +1,5 @@
-//! Where can an image panic? Every call of a panic function, told by the line it was written in, against a list of those
-//! that are known to be impossible or wanted (`panics.allow`).
+//! `panics`: panic locations of an image. Every call of a panic function, told by the line it was written in,
+//! against a list of those that are known to be impossible or wanted (`panics.allow`).
 //!
 //! The list may only shrink without a word: a site that is gone has to be taken off it, and one of the crates that read what
 //! comes from outside, or think ([`NEVER`]), has no place on it.

@@ -1,4 +1,4 @@
-//! How much flash and RAM does an image take, by crate and by symbol?
+//! `size`: flash and RAM usage by crate and symbol.
 //!
 //! Crates by source line: an inlined instruction counts for the crate it was written in, whichever function it ended up in.
 

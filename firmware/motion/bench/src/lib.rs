@@ -1,4 +1,4 @@
-//! On which tasks is motion measured, and what is done with each? The same on a board and on the PC, to the last bit.
+//! `motion_bench`: motion benchmark tasks. The same on a board and on the PC, to the last bit.
 //!
 //! Tasks are drawn from a seed, so nothing travels to the board; back come counts, and a hash of what was found. Runs in
 //! the bench's image (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`, which drives both. SI units.

@@ -1,4 +1,4 @@
-//! Does a straight piece of way touch an obstacle? Points and segments against shapes; m, s.
+//! `item`: collision test of a straight path segment. Points and segments against shapes; m, s.
 
 use core::cell::Cell;
 

@@ -1,4 +1,4 @@
-//! Which way leads around the obstacles? A bounded best-first search over tangent points; lengths in m.
+//! `route`: route search around obstacles. A bounded best-first search over tangent points; lengths in m.
 
 use geometry::{Point, Shape, Vector, math};
 

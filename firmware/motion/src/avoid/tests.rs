@@ -1,4 +1,4 @@
-//! Does a robot that drives what it is told get there, and touch nothing?
+//! Tests: a robot that follows its plan arrives and touches nothing.
 
 extern crate std;
 

@@ -1,4 +1,5 @@
-//! Where will a chipped ball be, and how high? Hops without air, each shorter than the last, then it rolls; m, s, m/s.
+//! `chip`: prediction of a chipped ball. Hops without air, each shorter than the last, then it rolls; m, s,
+//! m/s.
 
 use geometry::{Point, Vector, math};
 

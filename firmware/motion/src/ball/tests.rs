@@ -1,4 +1,4 @@
-//! Is the closed form what small steps come to?
+//! Tests: the closed form agrees with small steps.
 
 use geometry::Field;
 

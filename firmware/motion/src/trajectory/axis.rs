@@ -1,4 +1,4 @@
-//! How long does one axis take to a place and to rest, and by which phases? Trapezoid or triangle; m or rad, s.
+//! `axis`: one axis of a trajectory. Trapezoid or triangle; m or rad, s.
 //!
 //! Phases, any of which may be empty: brake (the wrong way, or above the speed limit), speed up, cruise, brake.
 

@@ -1,4 +1,5 @@
-//! Which shares of the limits make both axes arrive together? (one angle α: cos α for x, sin α for y)
+//! `balance`: shares of the limits with which both axes arrive together (one angle α: cos α for x, sin α for
+//! y).
 //!
 //! The more an axis gets, the sooner it arrives; so the times cross, and the crossing is the least of their larger one. It
 //! is sought between bounds: false position with halved weights ("Illinois"), on (tx − ty) / (tx + ty), which is −1 and +1

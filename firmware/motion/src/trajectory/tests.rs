@@ -1,4 +1,4 @@
-//! Does a planned motion arrive, keep its limits, and take hardly longer than the best shares would?
+//! Tests: a planned motion arrives, keeps its limits, and takes hardly longer than the best shares would.
 
 extern crate std;
 

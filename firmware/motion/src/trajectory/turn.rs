@@ -1,4 +1,4 @@
-//! How soon does a robot face another way, and how does it turn? One axis with a wrap; rad, rad/s, rad/s².
+//! `turn`: time-optimal turn to a heading. One axis with a wrap; rad, rad/s, rad/s².
 
 use geometry::{Angle, math};
 

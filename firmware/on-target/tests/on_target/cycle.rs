@@ -1,4 +1,5 @@
-//! Does a robot go through its cycle as the paper's Fig. 10 has it? A walking robot alone with the ball, its senses made up here.
+//! `cycle`: tests: a robot goes through its cycle as the paper's Fig. 10 has it. A walking robot alone with
+//! the ball, its senses made up here.
 
 #[embedded_test::tests]
 mod tests {

@@ -1,4 +1,5 @@
-//! Does the governor stop a robot on this processor when something breaks, to the millisecond of the PC's tests? (DESIGN §6)
+//! `failsafe`: tests: the governor stops a robot on this processor, to the millisecond of the PC's tests
+//! (DESIGN §6).
 
 #[embedded_test::tests]
 mod tests {

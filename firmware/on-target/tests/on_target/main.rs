@@ -1,4 +1,4 @@
-//! Does the robot's logic do on its own processor what the paper, the specification and the design say? Tests that run there.
+//! `on_target`: tests of the robot's logic on its own processor. Tests that run there.
 //!
 //! `cargo xtask on-target` builds this as an image of its own and gives every test an emulator of its own; the same image runs on
 //! hardware with `probe-rs run`. Not what the PC's tests say again, but a little of each part: retrieval, a robot's cycle, frames,

@@ -1,4 +1,4 @@
-//! Is the case that is retrieved the one a plain reading of DESIGN §4.3 finds? mm.
+//! `retrieval`: tests: the retrieved case is the one that a scan by DESIGN §4.3 finds. mm.
 
 #[embedded_test::tests]
 mod tests {

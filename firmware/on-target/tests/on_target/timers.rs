@@ -1,4 +1,4 @@
-//! Do tasks wake when they asked to, by the board's own clock and interrupt?
+//! `timers`: tests: tasks wake at their deadlines, by the board's own clock and interrupt.
 
 use cortex_m::peripheral::SYST;
 use embassy_executor::Spawner;

@@ -1,4 +1,5 @@
-//! What is each part of the approach worth? Case-based attackers with one thing changed, on the seeds of the unchanged ones.
+//! `ablation`: ablations: what each part of the approach is worth. Case-based attackers with one thing
+//! changed, on the seeds of the unchanged ones.
 //!
 //! Trials of equal seed begin alike and meet the same chances while they go alike, so they are compared in pairs: McNemar's exact
 //! test for shares, the paired t for means; the unpaired tests stand beside them. Over the arms, p is corrected by Holm.

@@ -1,4 +1,4 @@
-//! What can go wrong with an evaluation, and what is to be done about it?
+//! `error`: errors of an evaluation, and how to fix them.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,5 @@
-//! Does the pattern of the paper's results come out? Verdicts on a list of lines, each worked out from table rows.
+//! `judge`: judgement whether the pattern of the paper's results comes out. Verdicts on a list of lines, each
+//! worked out from table rows.
 //!
 //! Lines a to g are the pattern that any faithful simulation should show, whatever its parameters; the rest is what this project
 //! holds itself to. They are meant for thousands of trials a cell (`onetwo evaluate judge`), on starts nothing was tuned on. A

@@ -1,4 +1,5 @@
-//! How is nothing lost when an evaluation is interrupted? Every trial is a line, appended to its shard's file when it is over.
+//! `ledger`: crash-safe file of finished trials. Every trial is a line, appended to its shard's file when it
+//! is over.
 //!
 //! The first line says which evaluation the file is of, the second names the columns. A last line without its end was torn by the
 //! interrupt: it is cut off, and its trial played again. Lines stand in the order in which trials ended; whoever reads sorts.

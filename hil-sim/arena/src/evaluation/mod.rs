@@ -1,4 +1,5 @@
-//! Do case-based attackers play better than reactive ones? The paper's evaluation: thousands of trials, its Tables 1 to 6 (§5).
+//! `evaluation`: the paper's evaluation of case-based against reactive attackers: thousands of trials, its
+//! Tables 1 to 6 (§5).
 //!
 //! ```text
 //! Plan ─► Evaluation::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► tables ─► compare ─ Wilson, z, Welch, Holm

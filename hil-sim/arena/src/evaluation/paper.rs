@@ -1,4 +1,5 @@
-//! What did the paper measure? Its Tables 1 to 6 as rows like ours (`hil-sim/arena/data`, whose README names every source).
+//! `paper`: the paper's measurements. Its Tables 1 to 6 as rows like ours (`hil-sim/arena/data`, whose README
+//! names every source).
 
 use std::collections::HashMap;
 use std::sync::LazyLock;

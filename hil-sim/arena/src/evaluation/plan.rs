@@ -1,4 +1,5 @@
-//! Which trials make an evaluation? Cells of (profile, opponents, scenario, approach), trials numbered through, a seed each.
+//! `plan`: the trials of an evaluation. Cells of (profile, opponents, scenario, approach), trials numbered
+//! through, a seed each.
 //!
 //! Common random numbers: the k-th trial of every approach has the same seed, so that approaches meet the same chances. A seed
 //! is enough to play a trial again alone: `onetwo trial --scenario S --opponents O --approach A --seed N`.

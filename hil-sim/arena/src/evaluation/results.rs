@@ -1,4 +1,5 @@
-//! What came out of an evaluation? Everything that is written into its folder, put together from the rows of its trials alone.
+//! `results`: results of an evaluation. Everything that is written into its folder, put together from the
+//! rows of its trials alone.
 //!
 //! | file | what |
 //! |---|---|

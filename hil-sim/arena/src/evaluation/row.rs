@@ -1,4 +1,4 @@
-//! What is kept of a trial? One row of `trials.csv`: which trial it was, and every measure of the paper (§5.1.4, §5.2.1, §5.4).
+//! `row`: one row of `trials.csv`: which trial it was, and every measure of the paper (§5.1.4, §5.2.1, §5.4).
 //!
 //! Rows stand in the order of the plan, so that equal evaluations are equal files, however many processes played them.
 

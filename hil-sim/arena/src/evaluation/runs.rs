@@ -1,4 +1,5 @@
-//! How are thousands of trials played? On all threads of the pool, each kept when it is over, resumed after an interrupt, merged.
+//! `runs`: parallel execution of trials. On all threads of the pool, each kept when it is over, resumed after
+//! an interrupt, merged.
 //!
 //! A trial depends on its place in the plan alone, and merged rows stand in the plan's order: the same evaluation gives the same
 //! bytes for any number of threads, shards and interrupts.

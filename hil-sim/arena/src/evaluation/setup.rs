@@ -1,4 +1,5 @@
-//! How do the attackers play, whatever leads them? Everything of a team that an evaluation may change: one value for all its trials.
+//! `setup`: team configuration of an evaluation. Everything of a team that an evaluation may change: one
+//! value for all its trials.
 
 use brain::Positioning;
 use casebase::Settings;

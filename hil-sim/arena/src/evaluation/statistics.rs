@@ -1,4 +1,5 @@
-//! How sure is a number, and do two differ? Intervals of shares, tests of shares and means, and many tests at once.
+//! `statistics`: confidence intervals and significance tests. Intervals of shares, tests of shares and means,
+//! and many tests at once.
 //!
 //! Wilson 1927 for a share's interval, the pooled z test for two shares, Welch 1947 for two means of unequal spread, McNemar's
 //! exact test and the paired t for trials of equal seeds, Holm 1979 for a family of tests. Two-sided throughout, no continuity correction; p from `statrs`' distributions.

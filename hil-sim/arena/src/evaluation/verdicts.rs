@@ -1,4 +1,5 @@
-//! How do verdicts read in a terminal? The claims of the paper in a line each, the lines of the pattern with their numbers.
+//! `verdicts`: claims and verdicts as terminal text. The claims of the paper in a line each, the lines of the
+//! pattern with their numbers.
 
 use std::fmt::Write as _;
 

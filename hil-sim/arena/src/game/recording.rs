@@ -1,4 +1,5 @@
-//! What of a match is kept? Everything both hosts heard and said; [`host::shell::Recorder`] writes it (DESIGN §7).
+//! `recording`: header of a match recording. Everything both hosts heard and said; [`host::shell::Recorder`]
+//! writes it (DESIGN §7).
 
 use host::Input;
 use host::radio::To;

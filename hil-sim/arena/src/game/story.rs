@@ -1,4 +1,5 @@
-//! How is a match told? A line for each thing that the referee notes, and for each restart. Seconds, field frame, m.
+//! `story`: text log of a match. A line for each thing that the referee notes, and for each restart. Seconds,
+//! field frame, m.
 
 use hil_sim::small_size::referee::{Event, What};
 use rules::{Colour, Phase};

@@ -1,5 +1,5 @@
-//! What does our play come to against other teams? Many matches, and the second paper's Table 2 of them (Biswas et al. 2014 §6):
-//! offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
+//! `matches`: match evaluation against other teams. Many matches, and the second paper's Table 2 of them
+//! (Biswas et al. 2014 §6): offence ratio, attack ratio, goals, with intervals beside the paper's numbers.
 //!
 //! ```text
 //! Plan ─► Matches::play_shard ─► trials-1-of-3.csv … ─► merge ─► rows ─► outcomes, effects ─► matches.json, tables in words, plots

@@ -1,4 +1,5 @@
-//! What did two teams' matches come to? Means a match with Student's 95 % intervals, and the paper's ratios (Biswas et al. 2014 §6).
+//! `outcome`: results of the matches of two teams. Means a match with Student's 95 % intervals, and the
+//! paper's ratios (Biswas et al. 2014 §6).
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! What did the second paper's team come to? Biswas et al. 2014, Tables 1 and 2: RoboCup 2013, 6 against 6 on 6 × 4 m.
+//! `paper`: results of the second paper's team. Biswas et al. 2014, Tables 1 and 2: RoboCup 2013, 6 against 6
+//! on 6 × 4 m.
 
 use serde::Serialize;
 

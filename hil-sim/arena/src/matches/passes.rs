@@ -1,5 +1,6 @@
-//! Which passes arrived, and was P(receive) right? What hosts count of their passes in a match, as a row's columns, and its sums over
-//! matches: the second paper's Table 1, passes by kind of kick, and the calibration of its equation 5. Shares with Wilson's 95 % intervals.
+//! `passes`: pass statistics of matches. What hosts count of their passes in a match, as a row's columns, and
+//! its sums over matches: the second paper's Table 1, passes by kind of kick, and the calibration of its
+//! equation 5. Shares with Wilson's 95 % intervals.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! Which matches are played? Each pair of teams so many times, with the same chances for every pair, in turn as blue and as yellow.
+//! `plan`: the matches of an evaluation. Each pair of teams meets equally often, with the same random seeds
+//! for every pair, alternately as blue and as yellow.
 
 use hil_sim::Fnv;
 use rules::League;

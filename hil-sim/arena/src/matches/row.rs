@@ -1,4 +1,5 @@
-//! What is kept of a match? One row of `matches.csv`: who met whom, and every measure of both sides. s; `own` is the first of the pair.
+//! `row`: one row of `matches.csv`: who met whom, and every measure of both sides. s; `own` is the first of
+//! the pair.
 
 use std::collections::BTreeMap;
 

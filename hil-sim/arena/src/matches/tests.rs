@@ -1,4 +1,4 @@
-//! Are equal plans equal files, however they were played, and are the sums right?
+//! Tests: equal plans give equal files, however they were played, and the sums are right.
 
 use std::fs;
 use std::path::PathBuf;

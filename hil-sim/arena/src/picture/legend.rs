@@ -1,4 +1,4 @@
-//! What do the signs mean, and which gameplay is which number? The part below the field.
+//! `legend`: legend of a trial's picture. The part below the field.
 
 use super::page::{Page, Px, bold, font};
 use super::{ATTACKERS, BALL, FAINT, INK, OPPONENTS, SIDE};

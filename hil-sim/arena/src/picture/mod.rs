@@ -1,4 +1,5 @@
-//! What does a whole trial look like on one sheet? An SVG: field, tracks, the ball's path and who sent it, kicks, gameplays, outcome.
+//! `picture`: picture of a whole trial on one sheet. An SVG: field, tracks, the ball's path and who sent it,
+//! kicks, gameplays, outcome.
 //!
 //! Attackers are circles and opponents squares, as in the paper's figures; hollow where they began, filled where they ended.
 //! The ball's path is thick where it was carried and dotted where it rolled, in the colour of whoever carried or last kicked

@@ -1,4 +1,5 @@
-//! Where on the sheet is a place of the field? Pixels from the sheet's upper left corner, drawn with the project's one writer.
+//! `page`: mapping from field to sheet coordinates. Pixels from the sheet's upper left corner, drawn with the
+//! project's one writer.
 
 use drawing::{Anchor, At, Font, Svg, Theme, draw_field};
 use geometry::{Field, Point};

@@ -1,4 +1,4 @@
-//! Does the picture show what was recorded? Counted shapes and hand-made recordings.
+//! Tests: the picture shows what was recorded. Counted shapes and hand-made recordings.
 
 use hil_sim::NativeBackend;
 

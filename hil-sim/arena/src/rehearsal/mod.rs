@@ -1,4 +1,5 @@
-//! Does a case work? It is played from its own situation, many times, by real brains that must retrieve it themselves.
+//! `rehearsal`: self-test of a case. It is played from its own situation, many times, by real brains that
+//! must retrieve it themselves.
 //!
 //! The robots of the case and nobody else stand near their places, the opponents on their scopes ([`situation`]). An attempt ends
 //! with the first retrieval's gameplay; then the ball is watched until it rests or is taken. m, s; every attempt attacks +x.

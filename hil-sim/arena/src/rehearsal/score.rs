@@ -1,4 +1,5 @@
-//! What do many attempts come to? Shares in percent, seconds, metres; and the table that is kept beside the cases.
+//! `score`: score of many attempts. Shares in percent, seconds, metres; and the table that is kept beside the
+//! cases.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -1,4 +1,4 @@
-//! Which situation does a case describe? One drawn from it: who stands where when an attempt begins. m, field frame.
+//! `situation`: start situation drawn from a case: who stands where when an attempt begins. m, field frame.
 //!
 //! - The ball lies in the scope's core, where the similarity is H (at least 0.8), every place there equally likely.
 //! - Everything else moves along with it, as adaptation does. Robots stand 0.15 m (one standard deviation) about their places and look

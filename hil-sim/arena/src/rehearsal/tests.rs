@@ -1,4 +1,4 @@
-//! Are drawn situations those of their cases, and are attempts repeatable and truly told?
+//! Tests: drawn situations are those of their cases, and attempts are repeatable and reported correctly.
 
 use casebase::{PointMm, Symmetry};
 use hil_sim::Role;

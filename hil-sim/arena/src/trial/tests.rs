@@ -1,4 +1,5 @@
-//! Are trials repeatable, reported as DESIGN §8 says, and sensitive to a single bit? With full brains, in process.
+//! Tests: trials are repeatable, reported as DESIGN §8 says, and sensitive to a single bit. With full brains,
+//! in process.
 
 use hil_sim::{Fault, NativeBackend};
 

@@ -1,4 +1,5 @@
-//! What do a cell's maps look like? The ball's seconds as shades, passes as arrows, ends by outcome, on the field.
+//! `draw`: drawing of a cell's maps. The ball's seconds as shades, passes as arrows, ends by outcome, on the
+//! field.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,5 @@
-//! Where was the ball, and who got it from whom? The first trials of a cell played again and watched: they are the same trials.
+//! `map`: maps of ball and passes of a cell. The first trials of a cell played again and watched: they are
+//! the same trials.
 
 mod draw;
 

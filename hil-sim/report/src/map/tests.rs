@@ -1,4 +1,4 @@
-//! Is what a map shows what happened? Hand-made flights, and a trial played twice.
+//! Tests: a map shows what happened. Hand-made flights, and a trial played twice.
 
 use arena::TEAM;
 use arena::evaluation::{Plan, Setup};

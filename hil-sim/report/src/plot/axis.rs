@@ -1,4 +1,4 @@
-//! Where on a panel does a value lie? A horizontal axis with round numbers, its unit at its end.
+//! `axis`: horizontal plot axis. A horizontal axis with round numbers, its unit at its end.
 
 use drawing::{Anchor, Font, Svg, Theme};
 

@@ -1,4 +1,4 @@
-//! How often does what happen? Bars with intervals: outcomes, backing up, cases; a panel a scenario.
+//! `bars`: bar plots of frequencies. Bars with intervals: outcomes, backing up, cases; a panel a scenario.
 
 use arena::evaluation::Measure;
 use arena::evaluation::TableRow;

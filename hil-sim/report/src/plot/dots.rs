@@ -1,4 +1,4 @@
-//! How much on average? Possessions and times with Student's intervals; a panel a measure.
+//! `dots`: dot plots of means. Possessions and times with Student's intervals; a panel a measure.
 
 use arena::evaluation::Measure;
 

@@ -1,4 +1,5 @@
-//! Which approach is better, and is that sure? Differences in points with Newcombe's intervals, ours beside the paper's.
+//! `effects`: plot of the differences between approaches. Differences in points with Newcombe's intervals,
+//! ours beside the paper's.
 
 use arena::evaluation::{Measure, TableRow};
 use brain::Approach;

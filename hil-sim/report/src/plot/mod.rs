@@ -1,5 +1,5 @@
-//! Which plots are there, and how do panels become a figure? One panel a scenario or measure; beside each other on a page, stacked
-//! on a phone, in one file for a paper.
+//! `plot`: plots and their arrangement as figures. One panel a scenario or measure; beside each other on a
+//! page, stacked on a phone, in one file for a paper.
 //!
 //! Everywhere: ours is filled, the paper's is hollow, an approach keeps its colour, whiskers are 95 % intervals.
 

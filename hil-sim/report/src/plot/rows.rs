@@ -1,4 +1,4 @@
-//! How do dots with whiskers stand below each other? A scenario a row, the numbers beside the whiskers.
+//! `rows`: rows of dots with error bars. A scenario a row, the numbers beside the whiskers.
 
 use brain::Approach;
 use drawing::{Anchor, Font, Svg, Theme};

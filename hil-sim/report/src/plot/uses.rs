@@ -1,4 +1,5 @@
-//! What became of each case? How often it was played, and how its plays ended; a panel a kind of trial, the most played first.
+//! `uses`: plot of the use of each case. How often it was played, and how its plays ended; a panel a kind of
+//! trial, the most played first.
 
 use arena::CycleEnd;
 use arena::evaluation::{CaseUse, Profile};

@@ -1,4 +1,4 @@
-//! Do orders become the commands that every simulator understands, and answers what the robot feels?
+//! Tests: orders become the commands that every simulator understands, and answers become senses.
 
 use super::*;
 use prost::Message as _;

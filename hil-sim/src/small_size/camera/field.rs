@@ -1,4 +1,5 @@
-//! How is the field described on the wire? Lines, arc, numbers, cameras and the ball's model; mm, as SSL-Vision sends them.
+//! `field`: geometry packets. Lines, arc, numbers, cameras and the ball's model; mm, as SSL-Vision sends
+//! them.
 //!
 //! Names and directions are SSL-Vision's; grSim draws its lines inside the edge and the goals too.
 

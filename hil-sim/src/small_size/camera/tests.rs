@@ -1,4 +1,5 @@
-//! Do cameras show what is there, when and as wrongly as they should? And the others' manners, by the numbers of the traps.
+//! Tests: cameras show what is there, with the delay and the errors they should have. And the others'
+//! manners, by the numbers of the traps.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! What does one camera see? Robots and balls in its rectangle of the field, blurred, missed, hidden; mm and rad on the wire.
+//! `view`: detections of one camera. Robots and balls in its rectangle of the field, blurred, missed, hidden;
+//! mm and rad on the wire.
 //!
 //! The camera looks straight down. A ball above the carpet is told where the line from the camera through it meets the ground,
 //! as vision, which knows no heights, does (but where manners tell heights); a robot's cover height is known and its place is told as it is. A robot hides the

@@ -1,4 +1,5 @@
-//! What has each team to its account? Goals, fouls, cards, placements, time-outs (rules: sanctions, game structure).
+//! `account`: a team's account. Goals, fouls, cards, placements, time-outs (rules: sanctions, game
+//! structure).
 
 use protocol::{Instant, RobotId, Who};
 use rules::{Colour, limits};

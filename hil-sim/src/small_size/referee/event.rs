@@ -1,4 +1,4 @@
-//! What happened, who did it, and what follows? The rules' table of game events, with the evidence of each.
+//! `event`: game events. The rules' table of game events, with the evidence of each.
 //!
 //! Rules 2026, appendix "game events". m, m/s, s, field frame.
 

@@ -1,5 +1,5 @@
-//! What follows from an event? Fouls and cards, goals, what the game goes on with and from where (rules: offenses, sanctions,
-//! scoring goals; appendix "game events").
+//! `judge`: consequences of an event. Fouls and cards, goals, what the game goes on with and from where
+//! (rules: offenses, sanctions, scoring goals; appendix "game events").
 
 use rules::legality::{NoGoal, no_goal};
 use rules::state::Command;

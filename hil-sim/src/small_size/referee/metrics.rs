@@ -1,5 +1,5 @@
-//! How did the match go? What the match report needs, counted as it is played: time in play, whose half, shots, chances,
-//! passes, fouls by kind.
+//! `metrics`: match statistics. What the match report needs, counted as it is played: time in play, whose
+//! half, shots, chances, passes, fouls by kind.
 //!
 //! Biswas et al. 2014 §6: the *offence ratio* is the time of the ball in the opponents' half over that in one's own; the *attack
 //! ratio* is one's attempts to shoot at the goal over the opponents'. Both are shares of the two teams' numbers here.

@@ -1,5 +1,6 @@
-//! Who runs a simulated match, and who sees the fouls? Game controller and automatic referee of the Small Size League in
-//! one value, without sockets (rules 2026, chapters on referee commands, offenses, game structure and sanctions).
+//! `referee`: referee of a simulated match. Game controller and automatic referee of the Small Size League in
+//! one value, without sockets (rules 2026, chapters on referee commands, offenses, game structure and
+//! sanctions).
 //!
 //! [`InternalReferee::observe`] takes the true state of the world every 1 to 20 ms; [`InternalReferee::poll_packet`] gives
 //! what the league's game controller would send, [`InternalReferee::poll_order`] what people at the field would do:

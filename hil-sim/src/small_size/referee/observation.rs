@@ -1,4 +1,5 @@
-//! What does the referee see? The true state of the world at one moment, as the simulator's glue fills it in.
+//! `observation`: what the referee observes. The true state of the world at one moment, as the simulator's
+//! glue fills it in.
 //!
 //! m, m/s, rad, field frame; times in µs since the simulation's start.
 

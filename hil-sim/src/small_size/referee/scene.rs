@@ -1,4 +1,4 @@
-//! What do the watchers look at? One clean moment of the world, with what the game makes of it.
+//! `scene`: input of the rule monitors. One clean moment of the world, with what the game makes of it.
 //!
 //! m, m/s, s, field frame.
 

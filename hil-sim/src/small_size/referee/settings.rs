@@ -1,4 +1,4 @@
-//! How is the match to be run? Everything about it that the rules leave to the organisers or to people.
+//! `settings`: settings of a match. Everything about it that the rules leave to the organisers or to people.
 
 use protocol::{Duration, RobotId};
 use rules::{Colour, League};

@@ -1,4 +1,4 @@
-//! From where does the game go on after an event? `rules::restart`, asked for every kind of event. m, field frame.
+//! `spots`: restart positions. `rules::restart`, asked for every kind of event. m, field frame.
 
 use geometry::{Field, GoalEnd, Point};
 use rules::Colour;

@@ -1,4 +1,4 @@
-//! Which part of the match is it, how much of it is left, and what comes after it? Rules: game structure, shoot-out.
+//! `stages`: stages and match time. Rules: game structure, shoot-out.
 
 use geometry::Point;
 use protocol::Duration;

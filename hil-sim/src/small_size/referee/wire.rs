@@ -1,5 +1,5 @@
-//! What does the game controller send? The league's referee packet with all that is known, about 40 times a second and at
-//! every command. Times in µs, `designated_position` in mm, events in m; as the real one has it.
+//! `wire`: referee packets. The league's referee packet with all that is known, about 40 times a second and
+//! at every command. Times in µs, `designated_position` in mm, events in m; as the real one has it.
 
 use protocol::{Duration, Instant};
 use rules::state::{Command, Stage};

@@ -1,4 +1,4 @@
-//! How does the league write an event? Our events as its `GameEvent`s, with all evidence; m, m/s, s, rad.
+//! `wire_event`: game events on the wire. Our events as its `GameEvent`s, with all evidence; m, m/s, s, rad.
 //!
 //! Ours alone (moved in halt, too close in stop) are not told to anybody: the league has no message for them.
 

@@ -1,4 +1,5 @@
-//! What shall robots do, and what do they answer? Ports 10301 and 10302; m/s, rad/s, kick angles in degrees, dribbler in rpm.
+//! `command`: robot commands and feedback. Ports 10301 and 10302; m/s, rad/s, kick angles in degrees,
+//! dribbler in rpm.
 
 use geometry::{Twist, Vector, math};
 use protocol::{RobotId, Who};

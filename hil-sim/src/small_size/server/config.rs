@@ -1,4 +1,5 @@
-//! Which settings may be changed while it runs? Robots' bodies, the field, noise and losses, vision's port.
+//! `config`: run-time configuration of the simulator. Robots' bodies, the field, noise and losses, vision's
+//! port.
 //!
 //! A setting is checked as a whole before anything changes; a refused one leaves everything as it was. Units on the wire: mm
 //! in geometry, SI elsewhere, ns for delays.

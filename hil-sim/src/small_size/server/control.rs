@@ -1,4 +1,4 @@
-//! What is moved, and how fast does time pass? Teleports and the simulation's speed, port 10300; m, m/s, rad.
+//! `control`: simulator control. Teleports and the simulation's speed, port 10300; m, m/s, rad.
 //!
 //! What a message leaves out stays as it is.
 

@@ -1,4 +1,5 @@
-//! What could the simulator not do, and how is that mended? Every error code of this simulator, one variant each.
+//! `refusal`: error codes of the simulator, and how to fix them. Every error code of this simulator, one
+//! variant each.
 //!
 //! The protocol leaves codes to each simulator: ours are `ONETWO_…`. Under another's manners the codes are theirs, and what they
 //! have none for is not told, as they do not tell it. The messages are ours.

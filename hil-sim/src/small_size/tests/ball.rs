@@ -1,4 +1,4 @@
-//! Does the ball bounce on robots, goals and boards, and through nothing?
+//! `ball`: tests: the ball bounces on robots, goals and boards, and passes through nothing.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! How fast do robots go, stop, turn and push each other?
+//! `drive`: tests: how robots accelerate, stop, turn and push each other.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Do dribbler, kicker and light barrier do what real ones do?
+//! `mouth`: tests: dribbler, kicker and break-beam sensor.
 
 use super::*;
 

@@ -1,5 +1,5 @@
-//! How is an answer written down? One JSON object a line, keys in the order of DESIGN §8; lengths in mm, similarity to
-//! four decimals and cost to two.
+//! `answer`: output format of answers. One JSON object a line, keys in the order of DESIGN §8; lengths in mm,
+//! similarity to four decimals and cost to two.
 
 use std::io::{self, Write};
 

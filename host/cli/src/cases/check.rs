@@ -1,5 +1,6 @@
-//! Is a library sound? Every error and warning as `file:line: error[CODE]: message; mend`, then one line of summary a
-//! league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on errors, and with `--strict` on warnings.
+//! `onetwo cases check`: is a library sound? Every error and warning as `file:line: error[CODE]: message;
+//! mend`, then one line of summary a league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on
+//! errors, and with `--strict` on warnings.
 
 use std::io::{self, Write};
 use std::path::Path;

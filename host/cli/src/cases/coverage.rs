@@ -1,5 +1,6 @@
-//! Where on the field does a library leave the robots without a case? A heat map over the ball's place, attack frame
-//! (the goal attacked is on the right), shares by area, region and class, and the worst holes as problems.
+//! `onetwo cases coverage`: regions of the field where a library has no case. A heat map over the ball's
+//! place, attack frame (the goal attacked is on the right), shares by area, region and class, and the worst
+//! holes as problems.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};

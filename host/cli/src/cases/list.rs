@@ -1,4 +1,5 @@
-//! Which cases are stored, and what is each for? The table, or one JSON list of all of them (DESIGN §8).
+//! `onetwo cases list`: the stored cases and their purposes. The table, or one JSON list of all of them
+//! (DESIGN §8).
 
 use std::io::{self, Write};
 use std::process::ExitCode;

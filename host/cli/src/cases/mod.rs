@@ -1,4 +1,4 @@
-//! What is in a case base, is it sound, what does it answer and why? The verb `cases` (DESIGN §8).
+//! `onetwo cases`: contents, soundness and answers of a case base. The verb `cases` (DESIGN §8).
 
 mod answer;
 mod check;

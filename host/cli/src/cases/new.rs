@@ -1,5 +1,6 @@
-//! What would a case for this situation look like, to begin with? One problem in, a case file out, to author from. It
-//! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on stderr.
+//! `onetwo cases new`: draft of a case for a situation. One problem in, a case file out, to author from. It
+//! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on
+//! stderr.
 
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write, stdin};

@@ -1,4 +1,5 @@
-//! Does each case work? It is played from its own situation by robots that must retrieve it themselves (four-legged simulator).
+//! `onetwo cases play`: self-test of cases. It is played from its own situation by robots that must retrieve
+//! it themselves (four-legged simulator).
 //!
 //! The answer is a table in words for people, Markdown for the file beside the cases, or JSON: a list of scores. The same seed gives
 //! the same answer for any number of jobs. `--story` tells single attempts instead, for whoever mends a case.

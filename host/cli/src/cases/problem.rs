@@ -1,4 +1,4 @@
-//! Which situation does a line describe, and if it describes none, where does it go wrong? (DESIGN §8, `cases retrieve`)
+//! `problem`: parser of problem lines (DESIGN §8, `cases retrieve`).
 //!
 //! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`; integers in mm,
 //! field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that is no integer is

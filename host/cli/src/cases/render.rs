@@ -1,4 +1,4 @@
-//! What does a case look like, and a problem over it? An SVG or PNG, alone or all on one page (DESIGN §4.3).
+//! `onetwo cases render`: pictures of cases. An SVG or PNG, alone or all on one page (DESIGN §4.3).
 
 use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Which case fits each of these situations? Problems in on stdin, answers out on stdout, one a line (DESIGN §8).
+//! `onetwo cases retrieve`: the case that fits each situation. Problems in on stdin, answers out on stdout,
+//! one a line (DESIGN §8).
 
 use std::io::stdin;
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
-//! What may stand in a case file, or in `league.toml`? A JSON schema (draft 2020-12) from the names and ranges the reader
-//! knows, for editors. It says what a file may look like; what a plan must be is for `cases check`.
+//! `onetwo cases schema`: JSON schemas of case files and of `league.toml`. A JSON schema (draft 2020-12) from
+//! the names and ranges the reader knows, for editors. It says what a file may look like; what a plan must be
+//! is for `cases check`.
 
 use std::io::Write as _;
 use std::ops::RangeInclusive;

@@ -1,5 +1,5 @@
-//! What does a stored case say: the situation, what each robot does, and the ball's path? (paper §2; DESIGN §4.1–§4.3)
-//! Text for people; mm and degrees, the case's own coordinates.
+//! `onetwo cases show`: the contents of a stored case (paper §2; DESIGN §4.1–§4.3). Text for people; mm and
+//! degrees, the case's own coordinates.
 
 use std::io::{self, Write};
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
-//! Which cases carry a library, which are shadowed, and which could go? (Smyth & McKenna 2001; definitions in
-//! `case_tools::competence`) Suggestions come with their evidence and are never carried out.
+//! `onetwo cases stats`: which cases carry a library, which are shadowed, and which could go (Smyth & McKenna
+//! 2001; definitions in `case_tools::competence`). Suggestions come with their evidence and are never carried
+//! out.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};

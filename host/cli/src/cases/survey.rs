@@ -1,5 +1,6 @@
-//! Which problems is a library tried with, and how is the work shared? What `cases coverage` and `cases stats` have in
-//! common: drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on how many there are.
+//! `survey`: problems that a library is tried with. What `cases coverage` and `cases stats` have in common:
+//! drawn or recorded problems, counted in blocks on all cores. The numbers do not depend on how many there
+//! are.
 
 use std::io::sink;
 use std::path::{Path, PathBuf};

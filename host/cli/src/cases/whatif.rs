@@ -1,4 +1,4 @@
-//! What would have to be otherwise for a case to win? The words and the data of a counterfactual. mm, field frame.
+//! `whatif`: text and data of a counterfactual. mm, field frame.
 
 use case_tools::{Counterfactual, Entity, Obstacle};
 use serde::Serialize;

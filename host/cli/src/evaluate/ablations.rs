@@ -1,4 +1,5 @@
-//! `onetwo evaluate ablations`: what is each part of the approach worth? One thing changed at a time, on the same chances.
+//! `onetwo evaluate ablations`: what each part of the approach is worth. One thing changed at a time, on the
+//! same seeds.
 //!
 //! Every arm's trials are kept in a file of its own, `arms/NAME.csv`: the same command goes on where it was stopped, and arms that
 //! were played elsewhere are copied there.

@@ -1,4 +1,5 @@
-//! `onetwo evaluate judge`: does the pattern of the paper's results come out? Thousands of trials a cell, random starts among them.
+//! `onetwo evaluate judge`: whether the pattern of the paper's results comes out. Thousands of trials a cell,
+//! random starts among them.
 //!
 //! The same files and tables as `onetwo evaluate`; the verdicts are meant for these numbers. Its seed is its own, so that what was
 //! tuned while looking at the tables is judged on other chances. A missed line is a finding, and no error.

@@ -1,5 +1,5 @@
-//! `onetwo evaluate matches`: what does our play come to against other teams, and what is each part of it worth? The second paper's
-//! Tables 1 and 2 (Biswas et al. 2014 §6).
+//! `onetwo evaluate matches`: our play against other teams, and what each part of it is worth. The second
+//! paper's Tables 1 and 2 (Biswas et al. 2014 §6).
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,4 +1,5 @@
-//! How is a long evaluation played? On so many threads, with a bar on a terminal; Ctrl-C keeps what is over.
+//! `work`: long evaluations on several threads, with a progress bar on a terminal; Ctrl-C keeps what is
+//! finished.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! What does a robot on wheels do when something breaks, and after how long? The brain's governor, asked every millisecond
-//! (DESIGN §6); wheels that obey at once.
+//! `failsafe`: fail-safe table of a wheeled robot: reaction to each fault, and its time. The brain's
+//! governor, asked every millisecond (DESIGN §6); wheels that obey at once.
 
 use std::fmt::Write as _;
 

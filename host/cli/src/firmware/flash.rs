@@ -1,5 +1,5 @@
-//! How does an image get into a robot? By probe-rs, a program of its own that speaks to debug probes; without it, this says what
-//! to install.
+//! `onetwo firmware flash`: writes an image to a robot. By probe-rs, a program of its own that speaks to
+//! debug probes; without it, this says what to install.
 //!
 //! Nothing here has ever met a probe: that the words handed to probe-rs are right is all a machine without hardware can show.
 

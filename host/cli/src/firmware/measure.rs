@@ -1,5 +1,5 @@
-//! How deep does an image's stack get, and how long is its worst step? It plays under QEMU: a walking robot's a trial of each of the
-//! paper's cells, a wheeled robot's a match of six against six (DESIGN §9).
+//! `measure`: stack depth and worst step of an image. It plays under QEMU: a walking robot's a trial of each
+//! of the paper's cells, a wheeled robot's a match of six against six (DESIGN §9).
 //!
 //! Instructions of the guest and bytes: the same on every machine for the same image.
 

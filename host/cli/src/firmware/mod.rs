@@ -1,5 +1,5 @@
-//! What can be done with the robots' firmware from here? Build it, see what it takes, run it under QEMU, flash it, and write the
-//! page that tells a robot who it is (DESIGN §8).
+//! `onetwo firmware`: work with the robots' firmware. Build it, see what it takes, run it under QEMU, flash
+//! it, and write the page that tells a robot who it is (DESIGN §8).
 //!
 //! One file per verb: [`size`] (with [`measure`], which runs images under QEMU), [`mod@run`], [`flash`], [`provision`], and [`report`],
 //! which writes docs/firmware.md ([`failsafe`] is its table). Runs on a PC.

@@ -1,4 +1,5 @@
-//! What does docs/firmware.md say? What images take, and what a robot does when something breaks; written by `firmware report --write`.
+//! `onetwo firmware report`: the tables of docs/firmware.md. What images take, and what a robot does when
+//! something breaks; written by `firmware report --write`.
 
 use std::fmt::Write as _;
 use std::fs;

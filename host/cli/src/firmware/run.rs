@@ -1,5 +1,5 @@
-//! How is a robot run here without hardware? The image that runs by its own clock, in QEMU's emulated board, its radio on a serial
-//! line.
+//! `onetwo firmware run`: a robot without hardware. The image that runs by its own clock, in QEMU's emulated
+//! board, its radio on a serial line.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,5 +1,6 @@
-//! What do images take? Flash and RAM by crate and by symbol, statics that hold RAM for good, the deepest stack and the worst step
-//! under QEMU, each against the budgets of DESIGN §9 and as a share of three robots' computers.
+//! `onetwo firmware size`: resource usage of images. Flash and RAM by crate and by symbol, statics that hold
+//! RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of DESIGN §9 and
+//! as a share of three robots' computers.
 
 use std::fmt::Write as _;
 

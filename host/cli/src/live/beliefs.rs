@@ -1,5 +1,6 @@
-//! What do the opponents play, as our host sees it? The tactic that explains each one's places of the last half second best, by the
-//! second paper's models (Biswas et al. 2014 §4.1), with how well every tactic explains them. Field frame, m.
+//! `beliefs`: estimated tactics of the opponents. The tactic that explains each one's places of the last half
+//! second best, by the second paper's models (Biswas et al. 2014 §4.1), with how well every tactic explains
+//! them. Field frame, m.
 
 use geometry::Point;
 use host::strategy::View;

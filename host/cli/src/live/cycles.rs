@@ -1,4 +1,4 @@
-//! Which cycle does a team go through, and what is told of it? From its robots' own beacons, by arena's log.
+//! `cycles`: a team's cycles for the page. From its robots' own beacons, by arena's log.
 
 use arena::{CycleLog, News};
 use casebase::CaseBase;

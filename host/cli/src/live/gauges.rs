@@ -1,4 +1,4 @@
-//! Which numbers tell whether all is well? Vision, radio and the program's own beat, with the limits they should keep.
+//! `gauges`: health figures. Vision, radio and the program's own beat, with the limits they should keep.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What does the referee's packet tell that is new? Happenings for the time line; the referee of a simulation tells more.
+//! `happenings`: time-line events from the referee's packets; the referee of a simulation reports more.
 
 use arena::game::sentence;
 use hil_sim::small_size::referee::InternalReferee;

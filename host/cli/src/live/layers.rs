@@ -1,5 +1,5 @@
-//! What can be drawn of a case and of the rules? Scopes, the ball's way, adapted positions, keep-out zones, the truth; as plain
-//! shapes in m, field frame.
+//! `layers`: overlays of cases and rules. Scopes, the ball's way, adapted positions, keep-out zones, the
+//! truth; as plain shapes in m, field frame.
 
 use casebase::{Case, CaseBase, CaseRobot};
 use geometry::{GoalEnd, Point};

@@ -1,4 +1,4 @@
-//! What does a robot think, and how is it? From what its host told it last and what it said of itself.
+//! `minds`: state of each robot for the page. From what its host told it last and what it said of itself.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! How does what runs here come onto the page? A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
+//! `live`: feed of the page. A match, a host or a recording becomes a [`page::Scene`] some 25 times a second.
 //!
 //! [`Composer`] fills scenes from hosts, the same for `play`, `control` and `replay`; [`oracle`] answers why a case was chosen.
 //! Everything here looks on: nothing decides.

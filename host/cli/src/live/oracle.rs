@@ -1,4 +1,5 @@
-//! Why that case? The page's questions are answered by the very code of `onetwo cases explain`.
+//! `oracle`: answers to the page's questions about cases. The page's questions are answered by the very code
+//! of `onetwo cases explain`.
 
 use casebase::Settings;
 

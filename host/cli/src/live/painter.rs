@@ -1,5 +1,6 @@
-//! What of a scene is worked out beside the match? Planned ways, maps of passes, threats, what opponents are believed to play: from a
-//! picture of the moment, on the page's own thread, so that whoever drives the match pays for the picture alone. m, s, field frame.
+//! `painter`: deferred overlays. Planned ways, maps of passes, threats, what opponents are believed to play:
+//! from a picture of the moment, on the page's own thread, so that whoever drives the match pays for the
+//! picture alone. m, s, field frame.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -1,4 +1,5 @@
-//! Who had the ball, and in which half was it? Counted from what is seen, where no referee of our own counts (Biswas et al. 2014 §6).
+//! `possession`: possession statistics. Counted from what is seen, where no referee of our own counts (Biswas
+//! et al. 2014 §6).
 
 use host::world::World;
 use rules::{Colour, Phase};

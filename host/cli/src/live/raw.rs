@@ -1,4 +1,4 @@
-//! What did cameras see last, before any filter? The newest image of each camera, decoded only when it is to be shown.
+//! `raw`: unfiltered detections. The newest image of each camera, decoded only when it is to be shown.
 
 use std::collections::{BTreeMap, VecDeque};
 

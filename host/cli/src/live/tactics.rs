@@ -1,6 +1,6 @@
-//! Where would a pass arrive, where would it lead to a goal, and from where threatens one? The second paper's pictures of the moment, by
-//! strategy's own functions: maps of P(receive) and of P(receive) · P(goal) for the team at the ball, threats and open angles for the
-//! other, and what the one believes of the other ([`super::beliefs`]).
+//! `tactics`: overlays of passes and threats. The second paper's pictures of the moment, by strategy's own
+//! functions: maps of P(receive) and of P(receive) · P(goal) for the team at the ball, threats and open
+//! angles for the other, and what the one believes of the other ([`super::beliefs`]).
 //!
 //! Worked out from a picture, on the page's thread ([`super::painter`]); maps five times a second. Field frame, m.
 

@@ -1,4 +1,4 @@
-//! Does a scene say what truly is? A short match, held against the carpet and against retrieval itself.
+//! Tests: a scene shows the truth. A short match, held against the carpet and against retrieval itself.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! How is a match played for people to see? At the clock's pace, with the page beside it, and with hands on it.
+//! `theatre`: match runner with page and user controls. At the clock's pace, with the page beside it, and
+//! with hands on it.
 //!
 //! The match itself is [`arena::game::Game`], tick by tick as without a page: looking on changes nothing. Where the machine is too
 //! slow for the speed asked for, the match goes slower and the page says so.

@@ -1,6 +1,6 @@
-//! Which way does a robot go to its place? As the motion of its own body plans it, step by step, around what its host sees and out of
-//! where the rules forbid it; others taken to keep their velocity. Robots do not tell their plans, so it is the host's reckoning of
-//! them. m, s, field frame.
+//! `ways`: planned paths of robots. As the motion of its own body plans it, step by step, around what its
+//! host sees and out of where the rules forbid it; others taken to keep their velocity. Robots do not tell
+//! their plans, so it is the host's reckoning of them. m, s, field frame.
 
 use brain::body::omni::LIMITS;
 use geometry::{Field, GoalEnd, Point};

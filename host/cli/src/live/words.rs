@@ -1,4 +1,4 @@
-//! How are roles, reasons, directives and actions told to people? Short words; places in m, field frame.
+//! `words`: texts of roles, reasons, directives and actions. Short words; places in m, field frame.
 
 use casebase::{Action, Case, CaseRobot};
 use host::strategy::{Flip, Role, Why};

@@ -1,4 +1,4 @@
-//! What had each robot to do at that moment, and why? The orders of a host that decides the same again, in words.
+//! `decided`: orders and reasons at a moment. The orders of a host that decides the same again, in words.
 
 use host::Host;
 use protocol::Who;

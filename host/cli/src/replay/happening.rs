@@ -1,5 +1,5 @@
-//! What happened in a recorded match, by the referee's packets? Commands, stages, goals, game events, cards, and what else changed:
-//! names, robots allowed, places for the ball; each once.
+//! `happening`: referee events of a recorded match. Commands, stages, goals, game events, cards, and what
+//! else changed: names, robots allowed, places for the ball; each once.
 
 use std::collections::BTreeSet;
 

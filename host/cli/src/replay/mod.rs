@@ -1,4 +1,5 @@
-//! `onetwo replay`: what is in a recorded match, what was the field like at a moment, and does the host decide the same again?
+//! `onetwo replay`: contents of a recorded match, the field at a moment, and whether the host decides the
+//! same again.
 //!
 //! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
 

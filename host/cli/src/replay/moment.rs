@@ -1,5 +1,5 @@
-//! What was the field like at one moment of a recorded match, and who had what to do and why? Tracker, referee and hosts as they
-//! stood then. SI, field frame.
+//! `moment`: the state of a recorded match at one moment. Tracker, referee and hosts as they stood then. SI,
+//! field frame.
 
 use geometry::{Field, Point};
 use host::Host;

@@ -1,4 +1,5 @@
-//! What does one pass over a league log file bring? Counts of everything, for people and for JSON. Times: s since the begin.
+//! `report`: statistics of a league log file. Counts of everything, for people and for JSON. Times: s since
+//! the begin.
 
 use std::collections::{BTreeMap, BTreeSet};
 

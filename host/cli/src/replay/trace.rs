@@ -1,4 +1,4 @@
-//! A trace of ours: what is in it, and do the hosts decide the same again? Exit code 1 where they do not.
+//! `trace`: replay of a trace. Exit code 1 where they do not.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

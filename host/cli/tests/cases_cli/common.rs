@@ -1,4 +1,4 @@
-//! How do the black-box tests run the program? The built binary, a library folder of the test's own, and what came out.
+//! `common`: test helpers: the built program, a library directory of the test's own, and the output.
 
 use std::fs;
 use std::io::Write;

@@ -1,4 +1,4 @@
-//! Do `onetwo cases check`, `list` and `show` tell what a library holds and what is wrong with it? (DESIGN §4.1, §8)
+//! `inspect`: tests of `onetwo cases check`, `list` and `show` (DESIGN §4.1, §8).
 
 use crate::common::{PASS_AROUND, cases, command, library, onetwo, shot_at, worked_example};
 

@@ -1,4 +1,4 @@
-//! Does the built `onetwo cases` do what DESIGN §4 and §8 say, seen from outside?
+//! `cases_cli`: black-box tests of `onetwo cases` against DESIGN §4 and §8.
 
 mod common;
 mod explain;

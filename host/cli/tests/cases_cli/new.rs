@@ -1,4 +1,4 @@
-//! Does `onetwo cases new` write a case that the program checks and retrieves, and refuse what it cannot?
+//! `new`: tests of `onetwo cases new`.
 
 use std::fs;
 

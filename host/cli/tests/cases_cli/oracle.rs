@@ -1,5 +1,5 @@
-//! Does the built program answer problem lines as an independent reading of DESIGN §4.3 does? Files in, lines out: nothing
-//! of ours in between but the program itself.
+//! `oracle`: tests: the program answers as an independent reading of DESIGN §4.3 does. Files in, lines out:
+//! nothing of ours in between but the program itself.
 
 use std::path::Path;
 

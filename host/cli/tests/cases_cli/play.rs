@@ -1,4 +1,4 @@
-//! Does `onetwo cases play` tell how cases fare, the same for any number of jobs, and refuse what it cannot play?
+//! `play`: tests of `onetwo cases play`.
 
 use serde_json::Value;
 

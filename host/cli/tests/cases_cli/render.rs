@@ -1,4 +1,4 @@
-//! Does `onetwo cases render` draw what it is asked for, and say so where it cannot? (DESIGN §8)
+//! `render`: tests of `onetwo cases render` (DESIGN §8).
 
 use std::fs;
 

@@ -1,4 +1,5 @@
-//! Does `onetwo cases retrieve` answer as DESIGN §8 has it, to the letter, and tell what is malformed and go on?
+//! `retrieve`: tests of `onetwo cases retrieve`: output to the letter of DESIGN §8, malformed lines reported
+//! and skipped.
 
 use std::io::{BufRead, BufReader, Read, Write};
 

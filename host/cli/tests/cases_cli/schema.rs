@@ -1,4 +1,4 @@
-//! Does the JSON schema of `onetwo cases schema` admit every built-in file and refuse broken ones, to a validator of others?
+//! `schema`: tests of `onetwo cases schema` with an independent validator.
 
 use boon::{Compiler, SchemaIndex, Schemas};
 use case_library::LEAGUES;

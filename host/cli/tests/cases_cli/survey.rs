@@ -1,4 +1,4 @@
-//! Do `onetwo cases coverage` and `stats` count what retrieval does, whoever shares the work? (DESIGN §8)
+//! `survey`: tests of `onetwo cases coverage` and `stats` (DESIGN §8).
 
 use std::fs;
 

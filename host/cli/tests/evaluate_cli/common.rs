@@ -1,4 +1,4 @@
-//! How do tests talk to the built program, and what did it leave in its folder?
+//! `common`: test helpers for `onetwo evaluate`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,4 +1,4 @@
-//! Does the built `onetwo evaluate` do what DESIGN §8 says, seen from outside? Few trials of each kind.
+//! `evaluate_cli`: black-box tests of `onetwo evaluate`. Few trials of each kind.
 
 mod common;
 mod matches;

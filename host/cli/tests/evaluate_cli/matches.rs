@@ -1,4 +1,4 @@
-//! Does the built `onetwo evaluate matches` play what it is asked, keep it, and tell it? Matches of seconds.
+//! `matches`: tests of `onetwo evaluate matches` with matches of a few seconds.
 
 use std::fs;
 use std::thread::sleep;

@@ -1,4 +1,4 @@
-//! Does every evaluation have its report, and is it the same when it is written anew?
+//! `report`: tests: every evaluation has its report, and writing it again gives the same.
 
 use std::fs;
 

@@ -1,5 +1,6 @@
-//! Does the page work for a person with a browser? A real Chromium on the built program: it loads, robots move, layers switch, an
-//! explanation opens, a hand drags, a recording seeks to its goal, a lost connection is shown and heals, no error on the console.
+//! `page_browser`: browser tests of the page. A real Chromium on the built program: it loads, robots move,
+//! layers switch, an explanation opens, a hand drags, a recording seeks to its goal, a lost connection is
+//! shown and heals, no error on the console.
 //!
 //! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does without.
 

@@ -1,4 +1,4 @@
-//! Where is a browser, and how is it talked to? One process, one socket; answers go by the numbers of their questions.
+//! `browser`: Chromium process and its one socket; answers are matched by the numbers of their requests.
 
 use std::collections::HashMap;
 use std::env;

@@ -1,5 +1,5 @@
-//! What does a person with a browser see? Starts Chromium without a window and drives it by its own protocol (CDP); runs on the PC,
-//! for tests and pictures alone.
+//! `page_browser`: browser driver. Starts Chromium without a window and drives it by its own protocol (CDP);
+//! runs on the PC, for tests and pictures alone.
 //!
 //! A dozen of the protocol's commands are enough here. The crates that speak all of it (chromiumoxide, headless_chrome) generate some
 //! hundred thousand lines of types: a minute and more of every clean build, for the same dozen.

@@ -1,4 +1,5 @@
-//! What can be done on a page? Ask its script, click, press keys, wait until something is so, take a picture, hear its errors.
+//! `tab`: operations on a page. Ask its script, click, press keys, wait until something is so, take a
+//! picture, hear its errors.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

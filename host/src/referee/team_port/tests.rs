@@ -1,4 +1,4 @@
-//! Does the client speak as the game controller expects? A controller in a few lines answers.
+//! Tests: the client speaks as the game controller expects. A controller in a few lines answers.
 
 use super::*;
 

@@ -1,5 +1,4 @@
-//! To whom and where does our free kick go, and who starts when? Pass location and pass-ahead (Biswas et al. 2014 §3).
-//! Attack frame, SI units.
+//! `ahead`: our free kick: pass location and pass-ahead (Biswas et al. 2014 §3). Attack frame, SI units.
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};

@@ -1,5 +1,6 @@
-//! What does whoever is first at the ball do with it in open play? Shoots or passes, whichever is likelier to end in a goal (Biswas et
-//! al. 2014 §3); where neither is worth it, nothing is said and the robots play a case. Attack frame, SI units.
+//! `attack`: choice between shot and pass in open play. Shoots or passes, whichever is likelier to end in a
+//! goal (Biswas et al. 2014 §3); where neither is worth it, nothing is said and the robots play a case.
+//! Attack frame, SI units.
 //!
 //! Opponents are at the ball in open play, so nobody waits for a better start: passer and receiver go at once, and the ball leaves as
 //! soon as the receiver would be at x* with it (the last line of Algorithm 1).

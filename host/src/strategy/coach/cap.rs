@@ -1,5 +1,6 @@
-//! How does a free kick of ours go by the Coerce and Attack Planner? Coercers go and wait to be followed, then the pass ahead (Biswas
-//! et al. 2014 §4). Who coerces nobody defends or supports as usual until it receives. Attack frame, SI units.
+//! `cap`: our free kick by the Coerce and Attack Planner. Coercers go and wait to be followed, then the pass
+//! ahead (Biswas et al. 2014 §4). Who coerces nobody defends or supports as usual until it receives. Attack
+//! frame, SI units.
 
 use protocol::RobotId;
 use rules::{League, Phase, Side};

@@ -1,4 +1,4 @@
-//! Who has an order already, and who not yet? What is written while the coach decides. Attack frame, m.
+//! `plan`: orders under construction. What is written while the coach decides. Attack frame, m.
 
 use geometry::{Angle, Attack, Point};
 use protocol::RobotId;

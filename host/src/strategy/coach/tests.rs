@@ -1,4 +1,4 @@
-//! Does everybody have one sensible order in every phase of the game?
+//! Tests: every robot has one sensible order in every phase.
 
 use super::*;
 use crate::strategy::pass::bridge::{CasePass, RADIUS};

@@ -1,5 +1,5 @@
-//! Where is a pass of our free kick received best? Every cell of the grid, every receiver, by P(receive) · P(goal) (Biswas et al. 2014
-//! §4.2). Attack frame, m, probabilities.
+//! `attack`: best receiving position of our free kick. Every cell of the grid, every receiver, by P(receive)
+//! · P(goal) (Biswas et al. 2014 §4.2). Attack frame, m, probabilities.
 
 use geometry::{Angle, Attack, Point, Vector, math};
 use protocol::RobotId;

@@ -1,4 +1,5 @@
-//! What is a pass worth to the planner? What section 3.1 says, by the pass location's own functions ([`super::super::pass`]).
+//! `by_pass`: value of a pass for the planner. What section 3.1 says, by the pass location's own functions
+//! ([`super::super::pass`]).
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;

@@ -1,4 +1,5 @@
-//! Where do our robots draw those who follow them? (Biswas et al. 2014 §4.3: the coerce plan.) Attack frame, m, s.
+//! `coercing`: positions that draw followers away (Biswas et al. 2014 §4.3: the coerce plan.). Attack frame,
+//! m, s.
 //!
 //! For every opponent that follows robots, the robot of ours that it follows is sent to a cell. In every cell of the grid: the
 //! opponent is expected at its usual distance from our robot there, and the *interference likelihood* is how likely it then meets

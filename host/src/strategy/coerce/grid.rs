@@ -1,5 +1,5 @@
-//! Which places does the planner consider? The middles of a grid of 6 × 4 cells over the whole field (Biswas et al. 2014 §4.2).
-//! Attack frame, m.
+//! `grid`: positions that the planner considers. The middles of a grid of 6 × 4 cells over the whole field
+//! (Biswas et al. 2014 §4.2). Attack frame, m.
 
 use geometry::{Attack, Point, Vector};
 use rules::FieldSpec;

@@ -1,4 +1,4 @@
-//! How is our free kick played against a defence that follows us? The Coerce and Attack Planner (Biswas et al. 2014 §4).
+//! `coerce`: Coerce and Attack Planner: free kicks against a defence that follows us (Biswas et al. 2014 §4).
 //!
 //! | step | what | where |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! In which order is coerced, looked and attacked? The seven steps over time (Biswas et al. 2014 §4). Attack frame, s, m.
+//! `planner`: sequence of the planner. The seven steps over time (Biswas et al. 2014 §4). Attack frame, s, m.
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};

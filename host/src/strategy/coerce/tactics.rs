@@ -1,5 +1,5 @@
-//! How likely is a robot at p, if its tactic is t? P(p | M_t, W) for the four tactics that the planner knows (Biswas et al. 2014
-//! §4.1; its Figure 5). Attack frame (opponents defend +x), m.
+//! `tactics`: likelihood of a position under each tactic. P(p | M_t, W) for the four tactics that the planner
+//! knows (Biswas et al. 2014 §4.1; its Figure 5). Attack frame (opponents defend +x), m.
 //!
 //! The paper computes its models "analytically using assumptions of SSL-specific tactic behaviors and the rules" and prints none.
 //! Ours are bells around where the tactic wants a robot, 1 at their top, so that a threshold means the same for all of them.

@@ -1,4 +1,5 @@
-//! Does the planner do the paper's seven steps? With passes valued by a rule that can be worked out by hand.
+//! Tests: the planner follows the paper's seven steps. With passes valued by a rule that can be worked out by
+//! hand.
 
 use super::super::view::tests::view;
 use super::super::view::{Robot, View};

@@ -1,6 +1,6 @@
-//! How does a team of man-markers play? Whoever is not at the ball stays between an opponent and the own goal and moves when it moves,
-//! as the paper's Teams G and B, who were swift to answer every change (Biswas et al. 2014 §6). With the ball far from every
-//! opponent two go free for a pass. Attack frame, m.
+//! `marking`: opponent team of man-markers. Whoever is not at the ball stays between an opponent and the own
+//! goal and moves when it moves, as the paper's Teams G and B, who were swift to answer every change (Biswas
+//! et al. 2014 §6). With the ball far from every opponent two go free for a pass. Attack frame, m.
 
 use geometry::Vector;
 

@@ -1,5 +1,5 @@
-//! How does a team of ball chasers play? The nearest runs for the ball and shoots, or kicks it ahead; a second backs it up, a third
-//! waits in front, the rest defend. Nobody passes on purpose. Attack frame, m.
+//! `reactive`: opponent team of ball chasers. The nearest runs for the ball and shoots, or kicks it ahead; a
+//! second backs it up, a third waits in front, the rest defend. Nobody passes on purpose. Attack frame, m.
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;

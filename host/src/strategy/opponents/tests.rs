@@ -1,4 +1,4 @@
-//! Does each opponent give everybody one lawful order, and play in its own way?
+//! Tests: each opponent team gives every robot one lawful order and plays in its own style.
 
 use super::*;
 use crate::strategy::view::tests::view;

@@ -1,5 +1,5 @@
-//! How does a team play that defends its zone? All but two stand side by side on an arc between ball and goal and follow the ball; one
-//! plays it, one waits in front. Attack frame, m.
+//! `zone`: opponent team with zone defence. All but two stand side by side on an arc between ball and goal
+//! and follow the ball; one plays it, one waits in front. Attack frame, m.
 
 use geometry::{Angle, Vector};
 

@@ -1,5 +1,5 @@
-//! When does who start, and when does the ball leave, so that ball and receiver are at x* together? (Biswas et al. 2014 §3.2,
-//! Algorithm 1: pass-ahead; D14) Attack frame, SI units.
+//! `ahead`: timing of pass-ahead (Biswas et al. 2014 §3.2, Algorithm 1: pass-ahead; D14). Attack frame, SI
+//! units.
 //!
 //! The shorter the time between the first move and the shot, the less opponents can see of it: whoever needs longer starts first, the
 //! other one when both would be ready together. A start is never taken back; who gave up does not shoot. The tests hold the start times

@@ -1,5 +1,6 @@
-//! A case says to whom and about where; where exactly is likeliest to end in a goal? P(receive) · P(goal) refines a retrieved case's
-//! pass point near its adapted position (papers-checklist §6: the case is the intent, the evaluator its parameters). Attack frame, m.
+//! `bridge`: refinement of a retrieved case's pass point. P(receive) · P(goal) refines a retrieved case's
+//! pass point near its adapted position (papers-checklist §6: the case is the intent, the evaluator its
+//! parameters). Attack frame, m.
 
 use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};

@@ -1,5 +1,5 @@
-//! Is each thing true that a pass needs, and each that a goal after it needs? The paper's conditions c1–c5 and c1'–c4', one function
-//! each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
+//! `conditions`: the conditions of a pass and of a goal after it. The paper's conditions c1–c5 and c1'–c4',
+//! one function each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
 //!
 //! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the condition just holds
 //! (papers-checklist D3). Which margins those are is found by [`super::intercept`], [`super::open`] and [`super::scene`].

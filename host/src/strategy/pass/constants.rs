@@ -1,5 +1,5 @@
-//! Which numbers does the choice of a pass stand on? The constants that the paper names without values, in one table (Biswas et
-//! al. 2014 §3.1). SI units.
+//! `constants`: constants of pass selection. The constants that the paper names without values, in one table
+//! (Biswas et al. 2014 §3.1). SI units.
 
 use geometry::math;
 use motion::trajectory::FreeLimits;

@@ -1,5 +1,5 @@
-//! Can an opponent be at the ball's way before the ball? The least margin over all opponents and all places of the way, for c2
-//! (Biswas et al. 2014 §3.1, Fig. 2). Attack frame, SI units.
+//! `intercept`: interception of a pass by an opponent. The least margin over all opponents and all places of
+//! the way, for c2 (Biswas et al. 2014 §3.1, Fig. 2). Attack frame, SI units.
 //!
 //! An opponent's margin at a place is its time to touch a ball there, less the ball's time to it. Along the way the margin first falls
 //! (the opponent nears its best place faster than the ball comes) and then rises; the turning point is guessed from both speeds there,

@@ -1,4 +1,4 @@
-//! How is a pass over so many metres kicked, and when is its ball where? Flat kicks in closed form, chips from a table that is made
+//! `kicks`: kick speed and ball times of a pass. Flat kicks in closed form, chips from a table that is made
 //! once for a carpet. SI units.
 //!
 //! A flat pass is as fast as the receiver can still master at its end (T_b is the least over the kicks allowed, Algorithm 1); a chip

@@ -1,4 +1,5 @@
-//! Where to, when and with whom to pass, and what became of it? (Biswas et al. 2014 §3: pass location and pass-ahead)
+//! `pass`: passes: where, when, to whom, and their outcome (Biswas et al. 2014 §3: pass location and
+//! pass-ahead).
 //!
 //! | question | answer |
 //! |---|---|

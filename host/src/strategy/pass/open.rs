@@ -1,5 +1,5 @@
-//! How wide is the goal open from a place? The widest angle between the posts that no body closes (Biswas et al. 2014 c2', Fig. 3;
-//! D10). Attack frame, m, rad.
+//! `open`: open goal angle. The widest angle between the posts that no body closes (Biswas et al. 2014 c2',
+//! Fig. 3; D10). Attack frame, m, rad.
 
 use geometry::{Attack, Point, Vector, math};
 

@@ -1,4 +1,4 @@
-//! How soon is a robot somewhere, in so few instructions that hundreds of places can be asked for? SI units.
+//! `reach`: fast estimate of a robot's time to a place. SI units.
 //!
 //! [`Mover::time_to`] is what `CalcMotion2D` answers (paper 2 §2), along the straight line alone: exact for a robot at rest, and for
 //! one that moves along that line. [`Mover::time_to_touch`] is the same for who only has to touch a ball there.

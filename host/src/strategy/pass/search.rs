@@ -1,4 +1,5 @@
-//! Which place is best for a receiver? Random samples near the best of a moment ago, and some anywhere (Biswas et al. 2014 §3.1; D13).
+//! `search`: search for the best receiving place. Random samples near the best of a moment ago, and some
+//! anywhere (Biswas et al. 2014 §3.1; D13).
 //!
 //! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not jump. So does this, but
 //! for a tenth of its samples, which look over the whole field; the target jumps only for a place that is better by a quarter.

@@ -1,5 +1,5 @@
-//! How likely is a shot from where the ball lies, now, a goal? The paper's c1', c2' and c4' without a pass before (Biswas et al. 2014
-//! §3.1), so that a shot and a pass are weighed on one scale. Attack frame, SI units.
+//! `shot`: probability that a shot scores. The paper's c1', c2' and c4' without a pass before (Biswas et al.
+//! 2014 §3.1), so that a shot and a pass are weighed on one scale. Attack frame, SI units.
 
 use geometry::{Attack, Point};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};

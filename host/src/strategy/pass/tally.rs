@@ -1,4 +1,4 @@
-//! How many passes arrived, why not the others, and was P(receive) right? Counts that add up over matches: the passes of the second
+//! `tally`: counters of passes and calibration. Counts that add up over matches: the passes of the second
 //! paper's Table 1, and the calibration of its equation 5, predicted against seen.
 
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,5 @@
-//! What became of a pass? A watch that follows the field after a pass was ordered and gives one verdict, with its evidence (Biswas et
-//! al. 2014 §3.2; failures by kind). Field frame, SI units.
+//! `watch`: outcome of a pass. A watch that follows the field after a pass was ordered and gives one verdict,
+//! with its evidence (Biswas et al. 2014 §3.2; failures by kind). Field frame, SI units.
 //!
 //! It looks at pictures alone, so that a host, an arena or a replay can hold it: whoever has a [`World`] every few hundredths of a
 //! second. A touch is a robot near the ball and a ball that changes its way there.

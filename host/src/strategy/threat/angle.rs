@@ -1,4 +1,4 @@
-//! How much of our goal does a shot from here see, and what do bodies take of it? (Biswas et al. 2014 §5.1: open angles.)
+//! `angle`: open angle of our goal (Biswas et al. 2014 §5.1: open angles.).
 //!
 //! Angles of view are told from the direction of the view's middle, left positive, rad. A robot of radius r at distance D takes
 //! 2·asin((r + r_ball) / D): the ball's centre must not come nearer than both radii. Attack frame.

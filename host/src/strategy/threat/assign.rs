@@ -1,5 +1,5 @@
-//! Which defender takes which place? Primaries along the edge, the rest greedily by rank, tasks held (Biswas et al. 2014 §5.1,
-//! §5.2). Attack frame, m.
+//! `assign`: assignment of defenders to places. Primaries along the edge, the rest greedily by rank, tasks
+//! held (Biswas et al. 2014 §5.1, §5.2). Attack frame, m.
 
 use geometry::{Attack, Point};
 use protocol::RobotId;

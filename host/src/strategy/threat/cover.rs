@@ -1,5 +1,5 @@
-//! Where do keeper and primary defenders stand against the first-level threat? (Biswas et al. 2014 §5.1: three cases; its
-//! Figure 7.) Attack frame, m, rad.
+//! `cover`: places of keeper and primary defenders against the first-level threat (Biswas et al. 2014 §5.1:
+//! three cases; its Figure 7.). Attack frame, m, rad.
 //!
 //! 1. One defender takes the whole open angle: it stands on the bisector, the keeper before the middle of the goal.
 //! 2. Defender and keeper take it together: the defender just inside the line from the threat to the nearer post, the keeper on

@@ -1,5 +1,5 @@
-//! Who could have the ball from the first-level threat and shoot, from where is that blocked, and who comes first?
-//! (Biswas et al. 2014 §5.2: second-level threats, two positions each, and their ranking.) Attack frame, m, s, rad.
+//! `danger`: second-level threats (Biswas et al. 2014 §5.2: second-level threats, two positions each, and
+//! their ranking.). Attack frame, m, s, rad.
 
 use core::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! Who defends against what? Threats from the ball and from opponents who could have it next (Biswas et al. 2014 §5).
+//! `threat`: threat-based defence. Threats from the ball and from opponents who could have it next (Biswas et
+//! al. 2014 §5).
 //!
 //! [`defend`] is the whole of it: [`receiving`] finds the *first-level threat* (the ball, or whom it is being passed to),
 //! [`cover`] places keeper and primary defenders against it ([`angle`] says what a body takes, [`edge`] where primaries may

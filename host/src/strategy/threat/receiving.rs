@@ -1,5 +1,4 @@
-//! From where is a shot on our goal most imminent: from the ball, or from whom the ball is being passed to?
-//! (Biswas et al. 2014 §5.1, equation 6.) Attack frame, m, m/s, s.
+//! `receiving`: first-level threat (Biswas et al. 2014 §5.1, equation 6.). Attack frame, m, m/s, s.
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;

@@ -1,4 +1,4 @@
-//! Does the whole defence hold together? Lawful places, one task a robot, held tasks, and calm under noise.
+//! Tests: the whole defence is consistent. Lawful places, one task a robot, held tasks, and calm under noise.
 
 use super::super::view::tests::view;
 use super::*;

@@ -1,5 +1,6 @@
-//! Which blob is the ball? The one that goes on from where the ball was, while it is in sight; else one that was seen
-//! steadily, in the field rather than outside, near rather than far. m; times on vision's clock, µs.
+//! `choice`: choice of the ball among detections. The one that goes on from where the ball was, while it is
+//! in sight; else one that was seen steadily, in the field rather than outside, near rather than far. m;
+//! times on vision's clock, µs.
 
 use super::kick::Air;
 use super::track::{Glimpse, Track};

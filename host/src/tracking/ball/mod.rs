@@ -1,5 +1,5 @@
-//! Which of the blobs is the ball, who kicked it, does it fly, and where is it when nobody sees it? m, m/s; times on
-//! vision's clock, µs.
+//! `ball`: ball tracking: which detection is the ball, who kicked it, does it fly, and where it is when no
+//! camera sees it. m, m/s; times on vision's clock, µs.
 //!
 //! Every blob that stays becomes a track. One of them is the ball, and stays the ball while it is seen: a second ball, a
 //! hand or a shoe never takes over from a ball in sight. A ball that vanishes at a robot's front is taken to be held there.

@@ -1,5 +1,5 @@
-//! Where is one ball on the ground, and did it turn? A filter that knows how balls slow down, and notices when something
-//! else moved it. m, m/s, s; times on vision's clock, µs.
+//! `track`: filter of one ball on the ground. A filter that knows how balls slow down, and notices when
+//! something else moved it. m, m/s, s; times on vision's clock, µs.
 //!
 //! A glimpse far from the prediction is held back: the next one tells whether it was a misreading or the beginning of a
 //! new way. So a kick is known by the second image that shows it, and one wrong blob moves nothing.

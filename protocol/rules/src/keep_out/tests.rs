@@ -1,4 +1,4 @@
-//! Are the shapes the rules' words? Places worked out by hand on the fields of 2013 and 2026.
+//! Tests: the shapes are those of the rules. Places worked out by hand on the fields of 2013 and 2026.
 
 use super::*;
 use crate::League;

@@ -1,4 +1,4 @@
-//! Do the predicates say what the rules say? Each by numbers worked out by hand.
+//! Tests: the predicates agree with the rules. Each by numbers worked out by hand.
 
 use super::*;
 use crate::League;

@@ -1,4 +1,4 @@
-//! Are the spots where the rules put them? Worked out by hand, and against a search over a grid.
+//! Tests: restart positions are those of the rules. Worked out by hand, and against a search over a grid.
 
 use super::*;
 use crate::keep_out::{Situation, keep_out};

@@ -1,4 +1,4 @@
-//! Does the state follow the league's graph, and is it safe where a command does not?
+//! Tests: the state follows the league's graph, and is safe where a command does not.
 
 use std::vec;
 use std::vec::Vec;

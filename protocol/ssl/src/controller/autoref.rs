@@ -1,4 +1,5 @@
-//! How does an automatic referee talk with the game controller? Port 10007; under somebody's clock port 10013.
+//! `autoref`: messages between automatic referee and game controller. Port 10007; under somebody's clock port
+//! 10013.
 
 use prost::Message;
 

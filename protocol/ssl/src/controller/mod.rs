@@ -1,4 +1,5 @@
-//! How does a program talk with the game controller? Length-delimited over TCP ([`crate::stream`]), the controller first.
+//! `controller`: messages of the game controller's ports. Length-delimited over TCP ([`crate::stream`]), the
+//! controller first.
 //!
 //! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature` out.
 

@@ -1,4 +1,4 @@
-//! How does a team's remote control talk with the game controller? Port 10011.
+//! `remote`: messages between a team's remote control and the game controller. Port 10011.
 
 use prost::{Enumeration, Message, Oneof};
 

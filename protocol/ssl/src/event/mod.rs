@@ -1,4 +1,4 @@
-//! What happened in the game? Events that automatic referees see and the game controller decides and repeats.
+//! `event`: game events. Events that automatic referees see and the game controller decides and repeats.
 //!
 //! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is who did it.
 

@@ -1,4 +1,4 @@
-//! What did a robot do wrong, or suffer? Units: m, m/s, rad; field frame.
+//! `robot`: game events about robots. Units: m, m/s, rad; field frame.
 
 use prost::Message;
 

@@ -1,4 +1,4 @@
-//! Why can a log file not be read at all? Each answer says what was met and what mends it.
+//! `error`: errors of opening a log file. Each answer says what was met and what mends it.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,5 @@
-//! What is a payload of type 1, `Unknown`? Whichever message it has the required fields of, and no others.
+//! `guess`: type detection of `Unknown` payloads. Whichever message it has the required fields of, and no
+//! others.
 //!
 //! A protobuf decoder alone accepts nearly anything as nearly anything: unknown fields are passed over and missing ones
 //! read as zero. So the wire is looked at: numbers and wire types of the outermost fields, and where vision's two

@@ -1,4 +1,4 @@
-//! Where in an uncompressed file does each message begin? The index that may stand at its end.
+//! `index`: message index of an uncompressed log file. The index that may stand at its end.
 //!
 //! Its payload: an int64 offset from the file's begin for each message, an int64 distance from the file's end back to the
 //! index message's begin, and `INDEXED`; big-endian. Its own offset is not in it, its time is 0.

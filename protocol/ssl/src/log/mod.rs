@@ -1,4 +1,4 @@
-//! How are matches kept? The league's log files: `.log` and `.log.gz`, as its recorder writes and its players read.
+//! `log`: the league's log files: `.log` and `.log.gz`, as its recorder writes and its players read.
 //!
 //! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32 type, int32
 //! size, payload; all integers big-endian. An index of the messages may stand at the end of an uncompressed file; a

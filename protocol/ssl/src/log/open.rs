@@ -1,4 +1,4 @@
-//! How is a log file opened, from its begin or from a moment on? By its first bytes, whatever its name ends in.
+//! `open`: opening of a log file. By its first bytes, whatever its name ends in.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};

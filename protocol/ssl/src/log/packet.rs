@@ -1,4 +1,4 @@
-//! Which message does a payload hold?
+//! `packet`: decoding of a payload.
 
 use prost::Message;
 

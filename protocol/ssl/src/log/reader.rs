@@ -1,4 +1,4 @@
-//! Which messages does a log file hold, one after the other, and how does it end?
+//! `reader`: reader of log files.
 //!
 //! Streams from any `Read`; holds one message at a time. Whatever the bytes are: every whole message before the first
 //! damage is given, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is told.

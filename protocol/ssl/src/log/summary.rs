@@ -1,4 +1,5 @@
-//! What does a log file hold, in numbers? Messages by kind, spans of time, what could not be decoded, how it ends.
+//! `summary`: statistics of a log file. Messages by kind, spans of time, what could not be decoded, how it
+//! ends.
 
 use std::collections::BTreeMap;
 use std::io::Read;

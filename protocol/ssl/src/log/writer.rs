@@ -1,4 +1,4 @@
-//! How is a match kept so that everybody's tools open it? Writes `.log`, with an index at its end, and `.log.gz`.
+//! `writer`: writer of log files. Writes `.log`, with an index at its end, and `.log.gz`.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

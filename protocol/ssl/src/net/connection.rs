@@ -1,4 +1,4 @@
-//! How does a program talk with the game controller? Whole messages over TCP, each after its length.
+//! `connection`: TCP connection to the game controller. Whole messages over TCP, each after its length.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};

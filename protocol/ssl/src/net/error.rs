@@ -1,4 +1,4 @@
-//! What is wrong with the network, and what mends it?
+//! `error`: network errors, and how to fix them.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,4 @@
-//! By which of the machine's network interfaces? Those with IPv4: the league's groups are IPv4.
+//! `interfaces`: choice of the network interface. Those with IPv4: the league's groups are IPv4.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};

@@ -1,4 +1,4 @@
-//! How does the league's network work for a program? Sockets for multicast and unicast, as its own programs open them.
+//! `net`: sockets of the league's network. Sockets for multicast and unicast, as its own programs open them.
 //!
 //! [`Receiver`] hears a multicast group beside other programs on the same machine, [`Sender`] speaks to one, [`Port`] is a
 //! UDP port of one's own (simulators, robots), [`Connection`] a talk with the game controller. Every error says what to

@@ -1,4 +1,4 @@
-//! Does multicast work on this machine alone? Asked before a user waits in vain for packets.
+//! `probe`: multicast self-test of this machine. Asked before a user waits in vain for packets.
 //!
 //! Our own sockets choose their interface and reach each other by loopback on any machine. The league's programs let the
 //! system choose, so for them the loopback needs a route; [`route`] tells which way they will send.

@@ -1,4 +1,5 @@
-//! Which sockets does a program of the league need? One that hears a group, one that speaks to it, one of its own port.
+//! `sockets`: multicast and unicast sockets. One that hears a group, one that speaks to it, one of its own
+//! port.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};

@@ -1,4 +1,5 @@
-//! What do ER-Force's simulator and its kin add? Messages that travel in `custom` fields as [`crate::common::Any`].
+//! `custom`: custom messages of ER-Force's simulator and its relatives. Messages that travel in `custom`
+//! fields as [`crate::common::Any`].
 //!
 //! Units: m, rad, ns as named. The `type_url` must match: ER-Force has the specification in package `sslsim`, the
 //! realism in none.

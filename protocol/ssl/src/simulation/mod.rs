@@ -1,4 +1,5 @@
-//! How is a simulator steered? [`SimulatorCommand`] to port 10300, [`RobotControl`] to 10301 (blue) and 10302 (yellow).
+//! `simulation`: simulation control. [`SimulatorCommand`] to port 10300, [`RobotControl`] to 10301 (blue) and
+//! 10302 (yellow).
 //!
 //! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm. What is
 //! absent stays as it is. What a simulator cannot do it answers with a [`SimulatorError`].

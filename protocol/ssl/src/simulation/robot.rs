@@ -1,4 +1,5 @@
-//! How are simulated robots commanded? Units: m/s, rad/s; robot frame: forward, left, counter-clockwise.
+//! `robot`: robot commands and feedback of simulators. Units: m/s, rad/s; robot frame: forward, left,
+//! counter-clockwise.
 
 use prost::{Message, Oneof};
 

@@ -1,4 +1,4 @@
-//! How is vision decoded 400 times a second without taking memory? Into the same packet again and again.
+//! `decoder`: allocation-free vision decoder. Into the same packet again and again.
 //!
 //! A plain decode takes memory for every list of balls and robots, and where the field comes with every packet (README,
 //! trap 2) for each line's name.

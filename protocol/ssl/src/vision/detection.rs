@@ -1,4 +1,4 @@
-//! What did a camera see? Units: mm and rad in the field frame, confidence 0–1, times in s.
+//! `detection`: detections of a camera. Units: mm and rad in the field frame, confidence 0–1, times in s.
 
 use prost::Message;
 

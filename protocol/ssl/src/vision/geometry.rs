@@ -1,4 +1,4 @@
-//! Where are the lines, cameras and limits of this field? Units: mm and rad in the field frame.
+//! `geometry`: field geometry. Units: mm and rad in the field frame.
 
 use prost::{Enumeration, Message};
 

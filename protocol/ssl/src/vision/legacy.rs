@@ -1,4 +1,5 @@
-//! What did vision send in 2014? The same detections with a flat geometry (port 10005, log message type 2).
+//! `legacy`: vision packets of 2014. The same detections with a flat geometry (port 10005, log message type
+//! 2).
 //!
 //! Units: mm, rad, s, as today. The defence area was a quarter circle round each post.
 

@@ -1,4 +1,4 @@
-//! Which of our types is which message of the league? By the package and name of `golden/facts.txt`.
+//! `messages`: map from the league's messages to our types. By the package and name of `golden/facts.txt`.
 
 use ssl::Message;
 use ssl::{common, controller, event, radio, referee, simulation, tracker, vision};

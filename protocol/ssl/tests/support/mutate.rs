@@ -1,4 +1,4 @@
-//! What happens to packets that are nearly right? Seeds are true packets; each round breaks one and reads it as everything
+//! `mutate`: mutation of packets. Seeds are true packets; each round breaks one and reads it as everything
 //! the league sends.
 
 use rand_core::{RngCore, SeedableRng};

@@ -1,4 +1,4 @@
-//! Which recordings are there, and what do they hold? Read once a test, whole.
+//! `recordings`: the recordings and their contents. Read once a test, whole.
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 

@@ -1,4 +1,5 @@
-//! What does a message hold, told without knowing its type? Its `Debug` text, read back as a tree and compared with JSON.
+//! `shown`: comparison of messages by their `Debug` text. Its `Debug` text, read back as a tree and compared
+//! with JSON.
 //!
 //! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a wrong enum,
 //! which a round trip of bytes does not.

@@ -1,5 +1,5 @@
-//! How does a robot's firmware run by its own clock? The image for the emulated board without a simulator: radio over the
-//! serial line, motors that are modelled, watchdog and panic as on a robot; all of it is in [`free`].
+//! `free`: the free-running firmware image. The image for the emulated board without a simulator: radio over
+//! the serial line, motors that are modelled, watchdog and panic as on a robot; all of it is in [`free`].
 //!
 //! `onetwo firmware run` starts it. Built with the feature `omni` alone.
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -1,4 +1,5 @@
-//! What does motion cost on the robot's processor? Does every work on every task of a seed and counts; a line a task.
+//! `motion_bench`: motion benchmark on the target. Does every work on every task of a seed and counts; a line
+//! a task.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench motion` starts it and reads the lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]

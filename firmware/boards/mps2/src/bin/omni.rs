@@ -1,5 +1,5 @@
-//! How does the firmware of a robot on wheels run under QEMU? As the walking robot's (`src/main.rs`), with the other body's
-//! brain and cases. Built with the feature `omni` alone.
+//! `omni`: firmware of the wheeled robot under QEMU. As the walking robot's (`src/main.rs`), with the other
+//! body's brain and cases. Built with the feature `omni` alone.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

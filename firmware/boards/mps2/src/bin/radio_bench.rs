@@ -1,4 +1,4 @@
-//! What does a radio frame cost on the robot's processor? Does every work several times and counts; a line each:
+//! `radio_bench`: radio benchmark on the target. Does every work several times and counts; a line each:
 //! `number of the work, what it gave, instructions`.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench radio` starts it and reads the lines.

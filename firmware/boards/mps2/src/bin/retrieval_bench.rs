@@ -1,5 +1,6 @@
-//! What does a retrieval cost on the robot's processor? Retrieves for every problem that lies in memory, with the table
-//! beside them, three ways: `retrieve_best`, `retrieve`, the plain scan; an answer a line, instructions included.
+//! `retrieval_bench`: retrieval benchmark on the target. Retrieves for every problem that lies in memory,
+//! with the table beside them, three ways: `retrieve_best`, `retrieve`, the plain scan; an answer a line,
+//! instructions included.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems there and reads the lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -1,5 +1,5 @@
-//! What has a board without motors in their place? Wheels that follow their duty as motors do, a capacitor that fills, and
-//! probes that see nothing amiss.
+//! `body`: simulated actuators of a board without motors. Wheels that follow their duty as motors do, a
+//! capacitor that fills, and probes that see nothing amiss.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 

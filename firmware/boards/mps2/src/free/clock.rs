@@ -1,5 +1,5 @@
-//! What time is it on a board that runs by itself, and whose turn is it? The system timer counts microseconds, and the
-//! executor sleeps with WFI.
+//! `clock`: time source and executor wake-up of the free-running board. The system timer counts microseconds,
+//! and the executor sleeps with WFI.
 //!
 //! Works on any Cortex-M whose core clock is a whole number of MHz. Embassy's own executor sleeps with WFE, which QEMU runs
 //! as nothing: an idle robot would keep a whole core of the PC busy.

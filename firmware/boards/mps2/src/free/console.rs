@@ -1,4 +1,5 @@
-//! How does the board speak to people? A line on stderr over semihosting, without the formatting of `core::fmt`.
+//! `console`: diagnostic output over semihosting. A line on stderr over semihosting, without the formatting
+//! of `core::fmt`.
 
 use cortex_m_semihosting::hio;
 

@@ -1,5 +1,5 @@
-//! Who notices when nothing goes on any more? The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out
-//! rings the NMI, its second resets the board.
+//! `dog`: watchdog driver. The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out rings
+//! the NMI, its second resets the board.
 
 use cortex_m_rt::exception;
 use protocol::Duration;

@@ -1,4 +1,4 @@
-//! How does a robot start that nobody leads by the hand? Clock, provisioned page, tasks, and what it says of all that.
+//! `free`: start-up of the free-running board. Clock, provisioned page, tasks, and what it says of all that.
 //!
 //! Without a page ([`protocol::provision`]) it drives nothing and says nothing on the air. Its words for people go to stderr
 //! over semihosting. A page and a fault to be tried out ([`mod@trial`]) are put into its flash by the emulator's loader.

@@ -1,4 +1,5 @@
-//! What can be made to go wrong on the emulated board? A word that the emulator's loader puts into flash asks for it.
+//! `trial`: fault injection on the emulated board. A word that the emulator's loader puts into flash asks for
+//! it.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 

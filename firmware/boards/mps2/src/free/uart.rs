@@ -1,4 +1,4 @@
-//! How do frames come and go over the board's serial line? Stuffed bytes (`protocol::serial`), an interrupt each (CMSDK APB
+//! `uart`: UART driver of the radio link. Stuffed bytes (`protocol::serial`), an interrupt each (CMSDK APB
 //! UART, Arm DDI 0479).
 
 use core::future::poll_fn;

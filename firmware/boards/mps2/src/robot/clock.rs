@@ -1,4 +1,4 @@
-//! What time is it on this board, and whose turn is it? Time moves by ticks from outside, tasks run until all of them wait.
+//! `clock`: time of the lockstep board. Time moves by ticks from outside, tasks run until all of them wait.
 //!
 //! [`Clock::advance`] stops at every alarm on the way, so that each deadline runs at its own time, however far apart the
 //! ticks are and however slow the machine is that emulates the board.

@@ -1,4 +1,5 @@
-//! How do messages get in and out? One Ethernet frame each, through the board's LAN9118 controller (data sheet DS00002266).
+//! `eth`: Ethernet driver for lockstep messages. One Ethernet frame each, through the board's LAN9118
+//! controller (data sheet DS00002266).
 //!
 //! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message. Frames that
 //! are not of that form are counted and skipped. QEMU needs about 100 µs for the way there and back, 30 times less than

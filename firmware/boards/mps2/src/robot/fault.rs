@@ -1,5 +1,5 @@
-//! What does the emulated board do when its program cannot go on? It tells the place on stderr and ends the emulator with
-//! exit code 1.
+//! `fault`: fault handler of the lockstep board. It tells the place on stderr and ends the emulator with exit
+//! code 1.
 //!
 //! Only the place: what a panic says besides would need the formatting of `core::fmt`, 7 kB of an image.
 

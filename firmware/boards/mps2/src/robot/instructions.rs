@@ -1,4 +1,4 @@
-//! How many instructions did a piece of work take? The system timer knows, where the emulator counts them.
+//! `instructions`: instruction counter. The system timer knows, where the emulator counts them.
 //!
 //! QEMU with `-icount shift=6` lets each guest instruction take 2⁶ = 64 ns of virtual time; the timer ticks at 25 MHz, once
 //! in 40 ns. So a count is exact, up to the timer's 24 bits: 10.4 million instructions. Without `-icount` it is noise.

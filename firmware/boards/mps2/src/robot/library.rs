@@ -1,4 +1,5 @@
-//! Which cases does this robot know? Those put into the slot, or else the ones of its league that are built in.
+//! `library`: the case library of this robot. Those put into the slot, or else the ones of its league that
+//! are built in.
 
 use casebase::{CaseBase, TableError};
 

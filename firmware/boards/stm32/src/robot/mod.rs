@@ -1,4 +1,4 @@
-//! What does the robot do from its first instruction on? The start, then a task each for what must go on.
+//! `robot`: tasks of the robot's board. The start, then a task each for what must go on.
 //!
 //! All tasks run on one executor in one thread, in the order in which they are woken: the same order as on the emulated board. The
 //! brain's longest step, 40,000 instructions, takes a fifth of a millisecond here; by so much a control step may be late.

@@ -1,4 +1,4 @@
-//! What is a walking robot like, and how does it do what the case language asks for? SI.
+//! `legged`: abilities of the walking robot. SI.
 
 mod walk;
 

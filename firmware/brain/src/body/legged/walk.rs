@@ -1,4 +1,4 @@
-//! How does a walking robot do what its brain wants? Intents to walking velocities and primitives; SI, body frame out.
+//! `walk`: conversion of intents to walking velocities and primitives; SI, body frame out.
 //!
 //! Far from its goal the robot turns where it goes and walks ahead (its fastest gait), near it steps sideways and turns
 //! to the heading wanted at the end. Robots in the way are walked around, one at a time, nearest first.

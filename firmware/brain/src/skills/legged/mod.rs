@@ -1,4 +1,4 @@
-//! Which skills of the case language does a walking robot have, and how does each go? Pure functions of belief.
+//! `legged`: skills of the walking robot. Pure functions of belief.
 
 mod get_ball;
 mod kick;

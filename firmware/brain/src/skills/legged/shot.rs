@@ -1,4 +1,4 @@
-//! Where between the posts does a shot have the best chance? The open angle of the goal, as kicks scatter. Field frame, SI.
+//! `shot`: aim of a shot between the posts. The open angle of the goal, as kicks scatter. Field frame, SI.
 //!
 //! Rays from the robot fan over the goal's mouth. A ray is free where no opponent can be at it when the ball passes: each
 //! covers its body and what it walks sideways until then. A kick in one of these directions goes astray as kicks do

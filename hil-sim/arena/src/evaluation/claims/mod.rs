@@ -1,4 +1,5 @@
-//! What does the paper say in prose, and do numbers bear it out? Ours, and the paper's own tables (Ros et al. 2009 §5).
+//! `claims`: the paper's claims in prose, tested against numbers. Ours, and the paper's own tables (Ros et
+//! al. 2009 §5).
 //!
 //! A claim is a list of [`Point`]s, each two numbers and how they should lie. Its verdict is worked out from table rows and
 //! nothing else: *supported* where every point lies as claimed and is no chance (p < 0.05 after Holm's correction over the

@@ -1,4 +1,5 @@
-//! How do two numbers lie to each other, and could that be chance? The bricks of claims and verdicts.
+//! `point`: pairwise comparison of two measurements with a significance test. The bricks of claims and
+//! verdicts.
 
 use std::fmt;
 

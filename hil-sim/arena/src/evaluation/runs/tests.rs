@@ -1,4 +1,4 @@
-//! Are equal evaluations equal files, however they were played?
+//! Tests: equal evaluations give equal files, however they were run.
 
 use std::fs;
 use std::path::PathBuf;

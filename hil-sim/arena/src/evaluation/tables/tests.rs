@@ -1,4 +1,4 @@
-//! Do rows have the agreement's fields, and are trials counted where they belong?
+//! Tests: rows have the agreed fields, and trials are counted in the right row.
 
 use super::*;
 use crate::evaluation::row::tests::row;

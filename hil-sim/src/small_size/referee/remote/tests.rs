@@ -1,4 +1,5 @@
-//! Do assistant and automatic referee do what a game controller elsewhere needs? Packets made by hand, the simulator's own world.
+//! Tests: assistant and automatic referee do what an external game controller needs. Packets made by hand,
+//! the simulator's own world.
 
 use geometry::{Angle, Pose, Vector};
 use protocol::Who;

@@ -1,4 +1,4 @@
-//! Does the referee do what the rules say? Scripted observations against truth made by hand.
+//! Tests: the referee does what the rules say. Scripted observations against truth made by hand.
 //!
 //! The stage: division B, blue's goal at +x in the first half, yellow kicks off; robots stand where they offend nobody
 //! unless a test moves them; the ball keeps its velocity. Steps of 10 ms.

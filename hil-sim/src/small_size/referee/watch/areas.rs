@@ -1,5 +1,5 @@
-//! Who is in or too near a defence area? Rules: robot too close to opponent defense area, attacker touched ball, multiple
-//! defenders. m, s, field frame; distances from a robot's nearest side.
+//! `areas`: offences at defence areas. Rules: robot too close to opponent defense area, attacker touched
+//! ball, multiple defenders. m, s, field frame; distances from a robot's nearest side.
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::{Instant, Who};

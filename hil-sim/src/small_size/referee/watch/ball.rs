@@ -1,4 +1,5 @@
-//! Is the ball too fast, dribbled too far, touched twice, held by the keeper, or getting nowhere? Rules: offenses.
+//! `ball`: ball offences: too fast, dribbled too far, touched twice, held by the keeper, no progress. Rules:
+//! offenses.
 //!
 //! m, m/s, s, field frame.
 

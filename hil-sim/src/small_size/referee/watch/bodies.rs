@@ -1,4 +1,4 @@
-//! Who ran into whom, who pushed whom, who closed in the ball? Rules: crashing, pushing, ball holding.
+//! `bodies`: contact offences: crashing, pushing, ball holding. Rules: crashing, pushing, ball holding.
 //!
 //! m, m/s, s, field frame. What the rules leave to the human referee's eye has numbers of ours here, estimated.
 

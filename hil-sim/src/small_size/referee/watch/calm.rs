@@ -1,5 +1,5 @@
-//! Does everybody keep still, slow or away as halt, stop, restarts and placements ask? Rules: referee commands; fouls while
-//! the ball is out of play.
+//! `calm`: rules while the ball is out of play: standing still, speed and distances. Rules: referee commands;
+//! fouls while the ball is out of play.
 //!
 //! m, m/s, s, field frame; distances from a robot's nearest side to the ball's centre.
 

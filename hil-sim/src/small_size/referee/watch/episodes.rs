@@ -1,5 +1,5 @@
-//! When is it a new offence, and when still the same? An offence is told when it begins and, as long as it goes on, again
-//! after the rules' 2 s; one that pauses shorter than 0.2 s is still the same.
+//! `episodes`: separation of offences in time. An offence is told when it begins and, as long as it goes on,
+//! again after the rules' 2 s; one that pauses shorter than 0.2 s is still the same.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Where did the ball leave, and is it in a goal? Rules: ball leaves the field, scoring goals, boundary crossing.
+//! `lines`: ball left the field, and goals. Rules: ball leaves the field, scoring goals, boundary crossing.
 //!
 //! m, field frame.
 

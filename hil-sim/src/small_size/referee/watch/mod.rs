@@ -1,4 +1,4 @@
-//! Which offences and events does an automatic referee see in the true state? One watcher a question, one event an offence.
+//! `watch`: monitors of an automatic referee. One watcher a question, one event an offence.
 //!
 //! Rules 2026, chapters on offenses, ball leaves the field and scoring goals. m, m/s, s, field frame.
 

@@ -1,4 +1,4 @@
-//! Has the penalty failed? Rules: penalty kick.
+//! `penalty`: failed penalties. Rules: penalty kick.
 //!
 //! m, m/s, field frame. Goals, lines and time are other watchers' matter.
 

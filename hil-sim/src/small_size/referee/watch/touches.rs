@@ -1,4 +1,4 @@
-//! Who touched the ball last, and who has it? Contacts begin with a touch and end with a separation that can be seen.
+//! `touches`: ball contacts. Contacts begin with a touch and end with a separation that can be seen.
 //!
 //! m, field frame.
 

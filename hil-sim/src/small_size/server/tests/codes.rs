@@ -1,4 +1,4 @@
-//! Is every error code earned by the message that should earn it?
+//! `codes`: tests: every error code is returned for the message that deserves it.
 
 use std::collections::BTreeSet;
 

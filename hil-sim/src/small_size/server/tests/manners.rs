@@ -1,4 +1,4 @@
-//! Can a host be tried against the ways of the league's other simulators? The traps by their numbers.
+//! `manners`: tests: the compatibility profiles of the league's other simulators. The traps by their numbers.
 
 use super::*;
 

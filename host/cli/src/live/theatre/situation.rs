@@ -1,5 +1,5 @@
-//! How does a match come into a case's own situation? Ball, players and opponents as the case's author drew them, everybody else out of
-//! the way at the places of a kick-off. m, rad, field frame.
+//! `situation`: start of a match in a case's situation. Ball, players and opponents as the case's author drew
+//! them, everybody else out of the way at the places of a kick-off. m, rad, field frame.
 
 use casebase::CaseBase;
 use geometry::{Angle, Field, GoalEnd, Point, Pose};

@@ -1,5 +1,6 @@
-//! Does Algorithm 1 start everybody when the Simple Temporal Network says? The network (Dechter, Meiri and Pearl 1991; paper 2 Fig. 4) is
-//! solved by Floyd and Warshall, the algorithm is run every 10 ms on robots that keep their times exactly.
+//! Tests: Algorithm 1 agrees with the Simple Temporal Network. The network (Dechter, Meiri and Pearl 1991;
+//! paper 2 Fig. 4) is solved by Floyd and Warshall, the algorithm is run every 10 ms on robots that keep
+//! their times exactly.
 
 use super::*;
 use rand_core::{RngCore, SeedableRng};

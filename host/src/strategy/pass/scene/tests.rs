@@ -1,5 +1,6 @@
-//! Is a place rated as the paper's formulas say? Against numbers of a program of its own in Python (double precision; the ball's way is
-//! searched in 100,000 steps, the goal by 400,000 rays), and against what must hold for any place.
+//! Tests: a place is rated as the paper's formulas say. Against numbers of a program of its own in Python
+//! (double precision; the ball's way is searched in 100,000 steps, the goal by 400,000 rays), and against
+//! what must hold for any place.
 
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;

@@ -1,4 +1,4 @@
-//! Does the watch see what a play on the carpet was? Balls and robots are moved by hand every 10 ms.
+//! Tests: the outcome of a pass is recognised. Balls and robots are moved by hand every 10 ms.
 
 use super::*;
 use crate::world::{BallModels, Robot};

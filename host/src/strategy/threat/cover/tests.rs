@@ -1,4 +1,4 @@
-//! Do the three placements stand where the paper says, and take what they say? Against rays and hand-computed places.
+//! Tests: the three placements stand where the paper says. Against rays and hand-computed places.
 
 use super::super::super::view::tests::view;
 use super::super::angle::BODY;
