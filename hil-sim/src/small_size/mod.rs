@@ -23,6 +23,7 @@ pub mod server;
 mod surface;
 mod trace;
 mod wheels;
+pub mod worlds;
 
 pub use ball::Ball;
 pub use event::Event;
@@ -41,6 +42,7 @@ use rules::League;
 use crate::rng::Stream;
 use senses::Senses;
 use surface::Slab;
+use worlds::WorldModel;
 
 /// The true state of everything on the carpet.
 #[derive(Clone, Debug)]
@@ -114,6 +116,11 @@ impl World {
         };
         world.set_pitch(pitch);
         world
+    }
+
+    /// The same in a world of the family.
+    pub fn of_model(league: League, model: &WorldModel, seed: u64) -> Self {
+        Self::new(league, &model.parameters, seed)
     }
 
     /// Another field under the same robots and ball.

@@ -13,6 +13,7 @@ use ssl::vision::{DetectionFrame, GeometryData, Source, WrapperPacket};
 use super::World;
 use super::parameters::{CameraParameters, NoiseParameters};
 use super::quirks::{Clock, GeometryStyle, Profile, Quirks};
+use super::worlds::VisionModel;
 use view::View;
 
 /// Everything that decides what cameras send.
@@ -54,6 +55,11 @@ impl Cameras {
         let noise = profile.noise(ours.noise);
         let quirks = profile.quirks(&camera);
         Self::new(CameraSettings { camera, noise, clock: profile.clock(unix_now), quirks }, world, seed)
+    }
+
+    /// The same with what befalls frames in a world of the family.
+    pub fn of_model(profile: Profile, unix_now: f64, world: &World, _vision: VisionModel, seed: u64) -> Self {
+        Self::of(profile, unix_now, world, seed)
     }
 
     /// The settings.
