@@ -140,10 +140,10 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     settings.robots = args.robots.unwrap_or(settings.robots);
     settings.vision_port = args.vision.port();
     if let Some(count) = args.cameras {
-        settings.parameters.camera.count = count;
+        settings.model.parameters.camera.count = count;
     }
     if args.ideal {
-        settings.parameters.noise = NoiseParameters::NONE;
+        settings.model.parameters.noise = NoiseParameters::NONE;
     }
     let server = Server::new(&settings);
     hall::run(args, &settings, server, unix.as_micros() as u64)
