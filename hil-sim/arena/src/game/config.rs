@@ -4,6 +4,7 @@ use brain::{Approach, BrainConfig};
 use casebase::Settings;
 use hil_sim::AirSettings;
 use hil_sim::small_size::referee::{MatchClock, RefereeSettings};
+use hil_sim::small_size::worlds::WorldChoice;
 use host::strategy::{Tactics, Team};
 use protocol::{Duration, TeamId};
 use rules::{Colour, League};
@@ -23,6 +24,8 @@ pub struct GameConfig {
     pub teams: [TeamSetup; 2],
     /// How each team's air treats packets; delays in ticks of 10 ms.
     pub air: AirSettings,
+    /// Which world of the family it is played in.
+    pub world: WorldChoice,
 }
 
 /// One side.
@@ -68,6 +71,7 @@ impl GameConfig {
             },
             teams: [team(Colour::Yellow), team(Colour::Blue)],
             air: AirSettings::default(),
+            world: WorldChoice::Nominal,
         }
     }
 }

@@ -24,7 +24,8 @@ pub use story::{GameStory, sentence};
 use hil_sim::small_size::camera::Cameras;
 use hil_sim::small_size::quirks::Profile;
 use hil_sim::small_size::referee::InternalReferee;
-use hil_sim::small_size::{Event, Parameters, World};
+use hil_sim::small_size::worlds::WorldModel;
+use hil_sim::small_size::{Event, World};
 use hil_sim::{Backend, McuError, TraceHash};
 use host::Host;
 use protocol::{Instant, RobotId, Who};
@@ -93,18 +94,19 @@ impl<'a> Game<'a> {
     /// Robots on their halves, the ball in the middle, the referee before the first whistle.
     pub fn new(config: &GameConfig, backend: &mut dyn Backend<'a>) -> Result<Self, GameError> {
         let league = config.league;
-        let parameters = Parameters::of(league).ok_or_else(|| {
+        let model = WorldModel::of(league, &config.world).ok_or_else(|| {
             GameError::League(format!("{} has no wheels: `onetwo trial` plays it", league.name()))
         })?;
         let referee = InternalReferee::new(config.referee.clone(), config.seed)
             .map_err(|_| GameError::League(format!("{} has no referee of its own", league.name())))?;
-        let mut world = World::new(league, parameters, config.seed);
+        let mut world = World::of_model(league, &model, config.seed);
         let mut teams = Vec::new();
         for setup in &config.teams {
-            teams.push(Team::new(config, setup, &mut world, backend)?);
+            teams.push(Team::new(config, setup, &model.link, &mut world, backend)?);
         }
+        world.add_bystanders(model.bystanders);
         let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
-        let cameras = Cameras::of(Profile::Ours, 0.0, &world, config.seed);
+        let cameras = Cameras::of_model(Profile::Ours, 0.0, &world, model.vision, config.seed);
         Ok(Self {
             world,
             cameras,

@@ -2,6 +2,7 @@
 
 use geometry::{Angle, GoalEnd, Pose};
 use hil_sim::small_size::World;
+use hil_sim::small_size::worlds::LinkModel;
 use hil_sim::{Air, AirSettings, Backend, Mcu, TraceHash};
 use host::radio::{RadioSettings, Relay, To};
 use host::{Host, HostSettings, Input};
@@ -36,6 +37,7 @@ impl<'a> Team<'a> {
     pub(super) fn new(
         config: &GameConfig,
         setup: &TeamSetup,
+        link: &LinkModel,
         world: &mut World,
         backend: &mut dyn Backend<'a>,
     ) -> Result<Self, GameError> {
@@ -56,7 +58,7 @@ impl<'a> Team<'a> {
         }
         let settings = host_settings(config, colour);
         let seed = config.seed ^ colour as u64;
-        let air = Air::with_host(config.air.clone(), seed, &ids);
+        let air = Air::with_host(link.over(&config.air), seed, &ids);
         Ok(Self { host: Host::new(settings, Instant(0)), colour, air, players })
     }
 

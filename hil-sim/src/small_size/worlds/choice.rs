@@ -1,0 +1,236 @@
+//! Names of worlds: one world for a match, or a plan that gives each match its own.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+/// Which world is played in: `nominal`, a named profile, or `random:SEED`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum WorldChoice {
+    /// The league's own file, as it is.
+    #[default]
+    Nominal,
+    /// A named profile.
+    Named(NamedWorld),
+    /// Every number drawn from its distribution.
+    Random(u64),
+}
+
+/// A profile of `hil-sim/data/worlds`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum NamedWorld {
+    /// grSim's published defaults.
+    Grsim,
+    /// ER-Force's simulator with realism "Realistic".
+    Erforce,
+    /// ER-Force's simulator with realism "None".
+    ErforceNone,
+    /// TIGERs Mannheim's simulator Sumatra.
+    Sumatra,
+    /// Robots whose roller holds the ball weakly.
+    SlowDribbler,
+    /// Cameras with gaps, jitter, ghosts and misses.
+    PoorVision,
+    /// Robots whose kicks leave slower than ordered, and scatter.
+    WeakKickers,
+}
+
+impl NamedWorld {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Grsim,
+        Self::Erforce,
+        Self::ErforceNone,
+        Self::Sumatra,
+        Self::SlowDribbler,
+        Self::PoorVision,
+        Self::WeakKickers,
+    ];
+
+    /// Its name in options, reports and files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Grsim => "grsim",
+            Self::Erforce => "erforce",
+            Self::ErforceNone => "erforce-none",
+            Self::Sumatra => "sumatra",
+            Self::SlowDribbler => "slow-dribbler",
+            Self::PoorVision => "poor-vision",
+            Self::WeakKickers => "weak-kickers",
+        }
+    }
+}
+
+impl WorldChoice {
+    /// Every name that can be chosen, but for `random:SEED`.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        [NOMINAL].into_iter().chain(NamedWorld::ALL.into_iter().map(NamedWorld::word))
+    }
+}
+
+impl fmt::Display for WorldChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nominal => f.write_str(NOMINAL),
+            Self::Named(named) => f.write_str(named.word()),
+            Self::Random(seed) => write!(f, "{RANDOM}:{seed}"),
+        }
+    }
+}
+
+impl FromStr for WorldChoice {
+    type Err = UnknownWorld;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWorld> {
+        if word == NOMINAL {
+            return Ok(Self::Nominal);
+        }
+        if let Some(named) = NamedWorld::ALL.into_iter().find(|named| named.word() == word) {
+            return Ok(Self::Named(named));
+        }
+        let seed = word.strip_prefix(RANDOM).and_then(|rest| rest.strip_prefix(':'));
+        let seed = seed.and_then(|digits| digits.parse().ok());
+        seed.map(Self::Random).ok_or_else(|| UnknownWorld { word: word.to_owned(), plan: false })
+    }
+}
+
+/// Which world each match of many is played in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum WorldPlan {
+    /// All in this one.
+    Same(WorldChoice),
+    /// Each in the random world of its own seed; written `random`.
+    RandomPerMatch,
+}
+
+impl WorldPlan {
+    /// The world of the match with this seed.
+    pub const fn of_match(self, seed: u64) -> WorldChoice {
+        match self {
+            Self::Same(choice) => choice,
+            Self::RandomPerMatch => WorldChoice::Random(seed),
+        }
+    }
+}
+
+impl Default for WorldPlan {
+    fn default() -> Self {
+        Self::Same(WorldChoice::Nominal)
+    }
+}
+
+impl From<WorldChoice> for WorldPlan {
+    fn from(choice: WorldChoice) -> Self {
+        Self::Same(choice)
+    }
+}
+
+impl fmt::Display for WorldPlan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Same(choice) => choice.fmt(f),
+            Self::RandomPerMatch => f.write_str(RANDOM),
+        }
+    }
+}
+
+impl FromStr for WorldPlan {
+    type Err = UnknownWorld;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWorld> {
+        if word == RANDOM {
+            return Ok(Self::RandomPerMatch);
+        }
+        word.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
+    }
+}
+
+impl TryFrom<String> for WorldChoice {
+    type Error = UnknownWorld;
+    fn try_from(word: String) -> Result<Self, UnknownWorld> {
+        word.parse()
+    }
+}
+
+impl From<WorldChoice> for String {
+    fn from(choice: WorldChoice) -> Self {
+        choice.to_string()
+    }
+}
+
+impl TryFrom<String> for WorldPlan {
+    type Error = UnknownWorld;
+    fn try_from(word: String) -> Result<Self, UnknownWorld> {
+        word.parse()
+    }
+}
+
+impl From<WorldPlan> for String {
+    fn from(plan: WorldPlan) -> Self {
+        plan.to_string()
+    }
+}
+
+/// No world has that name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownWorld {
+    /// What was asked for.
+    pub word: String,
+    /// `random` alone would have been a name too.
+    plan: bool,
+}
+
+impl fmt::Display for UnknownWorld {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<_> = WorldChoice::names().collect();
+        let random = if self.plan { "random (the seed of each match) or random:SEED" } else { "random:SEED" };
+        write!(
+            f,
+            "no world is named {:?}; there are {}, and {random} with a whole number",
+            self.word,
+            names.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for UnknownWorld {}
+
+/// The league's own file.
+const NOMINAL: &str = "nominal";
+/// Before a seed, or alone in a plan.
+const RANDOM: &str = "random";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_read_as_it_is_written() {
+        let seeds = [0, 7, u64::MAX].map(WorldChoice::Random);
+        let named = NamedWorld::ALL.map(WorldChoice::Named);
+        for choice in [WorldChoice::Nominal].into_iter().chain(named).chain(seeds) {
+            assert_eq!(choice.to_string().parse(), Ok(choice));
+            assert_eq!(choice.to_string().parse(), Ok(WorldPlan::Same(choice)));
+        }
+        assert_eq!("random".parse(), Ok(WorldPlan::RandomPerMatch));
+        assert_eq!(WorldPlan::RandomPerMatch.to_string(), "random");
+        assert_eq!(WorldPlan::RandomPerMatch.of_match(12), WorldChoice::Random(12));
+        assert_eq!(WorldPlan::default().of_match(12), WorldChoice::Nominal);
+    }
+
+    #[test]
+    fn an_unknown_name_is_answered_with_all_that_there_are() {
+        for word in ["", "Nominal", "grsim ", "random", "random:", "random:-1", "random:1.5", "mars"] {
+            let error = word.parse::<WorldChoice>().unwrap_err().to_string();
+            for name in WorldChoice::names().chain(["random:SEED"]) {
+                assert!(error.contains(name), "{error}");
+            }
+            assert!(error.contains(&format!("{word:?}")), "{error}");
+        }
+        let error = "mars".parse::<WorldPlan>().unwrap_err().to_string();
+        assert!(error.contains("seed of each match"), "{error}");
+    }
+}
