@@ -153,7 +153,7 @@ impl<'a> Game<'a> {
     }
 
     /// Who held the ball in play, and for how long.
-    pub(super) fn holds(&self) -> &Holds {
+    fn holds(&self) -> &Holds {
         &self.holds
     }
 
