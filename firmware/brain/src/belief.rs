@@ -9,7 +9,7 @@ pub mod shown;
 use geometry::{Field, GoalEnd, Point, Pose, Vector, math};
 use motion::rolling::RollingBall;
 use protocol::host::Duty;
-use protocol::robot_io::{OPPONENTS_MAX, SensorFrame};
+use protocol::robot_io::{OPPONENTS_MAX, OmniKick, SensorFrame};
 use protocol::{Duration, Instant, RobotId};
 use rules::{League, Phase, Side};
 
@@ -123,6 +123,8 @@ pub struct Belief {
     pub others: heapless::Vec<Other, OTHERS_MAX>,
     /// What may be done now, and what it is for its team.
     pub game: Game,
+    /// What the ball at its front is for, once that is settled: where it is kicked to, and how.
+    pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
     /// Sights in a row of a loose ball slow enough to grab.
@@ -152,6 +154,7 @@ impl Belief {
             kicker_ready: false,
             others: heapless::Vec::new(),
             game: Game::default(),
+            resolved: None,
             handling: Handling::default(),
             sight: None,
             slow_sights: 0,

@@ -4,7 +4,6 @@ use geometry::{Field, Point, Pose, Segment};
 use protocol::Instant;
 use protocol::host::{Directive, KickOrder};
 use protocol::robot_io::OmniKick;
-use rules::Phase;
 
 use crate::belief::Belief;
 use crate::body::Intent;
@@ -26,7 +25,7 @@ impl Errand {
         if belief.game.barred && touches(directive) {
             return Some(wheels::keep_off(belief));
         }
-        let intent = match *directive {
+        Some(match *directive {
             Directive::Stand => Intent::Stand { face: None },
             Directive::GoTo { pose } => wheels::go_to(Pose::from(pose)),
             Directive::GetBall { face } => get_ball(belief, face.map(Point::from)),
@@ -37,9 +36,7 @@ impl Errand {
             Directive::Block { from, to } => wheels::block(belief, Segment::new(from.into(), to.into())),
             Directive::PlaceBall { at } => wheels::place_ball(now, &mut self.placing, belief, at.into()),
             Directive::Gameplay { .. } => return None,
-        };
-        // Placing a ball is no play: it may be carried as far as it takes.
-        Some(if belief.game.phase == Phase::Run { wheels::let_go_in_time(belief, intent) } else { intent })
+        })
     }
 }
 

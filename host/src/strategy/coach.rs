@@ -33,6 +33,7 @@ use super::{restart, roles};
 use ahead::Ahead;
 use attack::Intent;
 use cap::Cap;
+use defence::Clearing;
 use plan::Plan;
 
 /// All orders of one moment, by robot.
@@ -88,6 +89,10 @@ pub struct Coach {
     barred: Option<RobotId>,
     /// What the ball of open play is meant for.
     intent: Option<Intent>,
+    /// Whether the ball that lies before our area is the keeper's.
+    keepers: Option<bool>,
+    /// Where the ball is cleared to that lies in our area or before it.
+    clearing: Option<Clearing>,
 }
 
 impl Coach {
@@ -117,6 +122,8 @@ impl Coach {
             pass: None,
             barred: None,
             intent: None,
+            keepers: None,
+            clearing: None,
         }
     }
 

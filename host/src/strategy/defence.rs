@@ -67,6 +67,36 @@ pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder
     (at, clearing_kick(ball, at, room), room)
 }
 
+/// The same for a field player: it may not stand in our area, so the ball goes out where there is room to line up behind it, else along
+/// the area's edge. `off` is how far from the area the robot's centre stays, m.
+pub fn clearance_beside(
+    view: &View,
+    who: &super::view::Robot,
+    ball: &Ball,
+    off: f32,
+) -> (Point<Attack>, KickOrder, f32) {
+    let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
+    let best = (-CLEAR_TURNS..=CLEAR_TURNS)
+        .filter_map(|turn| {
+            let way = out.rotated(Angle::degrees(CLEAR_STEP_DEG * turn as f32));
+            let lines_up = ball.position - way * LINES_UP;
+            if view.in_our_area(lines_up, off) {
+                return None;
+            }
+            let at = view.clamp(ball.position + way * CLEAR_AHEAD, CLEAR_INSIDE);
+            let room = room_along(view, ball.position, at);
+            let mates = view.ours.iter().filter(|mate| mate.id != who.id && mate.id != view.keeper);
+            let blocked = nearest(mates, lines_up).is_some_and(|(_, distance)| distance < BODIES);
+            let costs = CLEAR_TURN_COSTS * turn.unsigned_abs() as f32
+                + CLEAR_WAY_COSTS * who.position.distance(lines_up)
+                + if blocked { ROOM_ENOUGH } else { 0.0 };
+            Some((at, room, room - costs))
+        })
+        .reduce(|best, next| if next.2 > best.2 { next } else { best });
+    let (at, room) = best.map_or((Point::new(0.0, ball.position.y()), 0.0), |(at, room, _)| (at, room));
+    (at, clearing_kick(ball, at, room), room)
+}
+
 /// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
 fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
@@ -188,6 +218,17 @@ const ON_THE_GROUND: f32 = 0.1;
 const CLEAR_AHEAD: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
 const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
+/// The ways that a field player clears, to either side, in steps of so many degrees: up to 105° from straight out.
+const CLEAR_TURNS: i16 = 7;
+const CLEAR_STEP_DEG: f32 = 15.0;
+/// A step must gain more room than this, m.
+const CLEAR_TURN_COSTS: f32 = 0.02;
+/// So much room must be gained for a metre more to where it lines up.
+const CLEAR_WAY_COSTS: f32 = 0.6;
+/// Two robots side by side, m.
+const BODIES: f32 = 0.2;
+/// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
+const LINES_UP: f32 = 0.165;
 /// How far inside the side line, m.
 const CLEAR_INSIDE: f32 = 0.6;
 /// A mate nearer than this gains nothing from a clearance, m.

@@ -25,6 +25,10 @@ pub(super) struct Handling {
     height: f32,
     /// The light barrier, this very moment.
     contact: bool,
+    /// When this touch began.
+    since: Option<Instant>,
+    /// How long it has lasted, s.
+    held: f32,
 }
 
 impl Belief {
@@ -77,6 +81,11 @@ impl Belief {
         }
     }
 
+    /// For how long the ball has been at its front, s: until there is a visible gap.
+    pub fn held(&self) -> f32 {
+        self.handling.held
+    }
+
     /// Where a ball in its grip is.
     pub fn mouth(&self) -> Point<Field> {
         self.pose.position + Vector::polar(BALL_AT, self.pose.heading)
@@ -94,12 +103,15 @@ impl Belief {
         let mouth = self.mouth();
         if self.holds_ball {
             self.handling.from.get_or_insert(mouth);
+            let since = *self.handling.since.get_or_insert(now);
+            self.handling.held = now.since(since).as_secs_f32();
             // What the light barrier sees is where the ball is, sooner than any camera says so.
             if contact {
                 self.ball = Some(Ball { position: mouth, velocity: self.velocity, rest: mouth });
             }
         } else if shown.is_none_or(|at| at.distance(mouth) > VISIBLE_GAP) {
-            self.handling.from = None;
+            (self.handling.from, self.handling.since, self.handling.held) = (None, None, 0.0);
+            self.resolved = None;
         }
     }
 }

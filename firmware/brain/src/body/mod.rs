@@ -59,7 +59,7 @@ impl Intent {
     pub fn lets_go(&self) -> bool {
         match self {
             Self::Kick(_) => true,
-            Self::Drive(drive) => matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
+            Self::Drive(drive) => drive.armed && matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
             // What it wanted before was told before.
             Self::Onwards => false,
             Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {

@@ -2,6 +2,7 @@
 
 use protocol::Instant;
 use protocol::team::{AbortReason, Closure, Decision, Progress, Status};
+use rules::Phase;
 
 use super::Brain;
 use crate::body::Intent;
@@ -15,6 +16,17 @@ use crate::timer::Timer;
 impl Brain<'_> {
     /// What the body shall do in this step.
     pub(super) fn act(&mut self, now: Instant) -> Intent {
+        let intent = self.choose(now);
+        // Placing a ball is no play: it may be held and carried as long as it takes.
+        if cfg!(feature = "omni") && self.host.is_some() && self.belief.game.phase == Phase::Run {
+            wheels::let_go_in_time(&mut self.belief, intent)
+        } else {
+            intent
+        }
+    }
+
+    /// What the host's directive, a case or its own behaviour wants.
+    fn choose(&mut self, now: Instant) -> Intent {
         if cfg!(feature = "omni")
             && let Some(host) = &self.host
         {
@@ -28,12 +40,7 @@ impl Brain<'_> {
                 return wheels::go_to(self.belief.pose);
             }
         }
-        let intent = self.play(now);
-        if cfg!(feature = "omni") && self.host.is_some() {
-            wheels::let_go_in_time(&self.belief, intent)
-        } else {
-            intent
-        }
+        self.play(now)
     }
 
     /// Cases, or what it does by itself.

@@ -7,7 +7,7 @@
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 use protocol::robot_io::OmniKick;
 use protocol::team::{Role, Status};
-use protocol::{Duration, Instant, RobotId};
+use protocol::{Instant, RobotId};
 
 use crate::belief::{Ball, Belief};
 use crate::body::Intent;
@@ -21,7 +21,6 @@ use crate::skills::wheels as skills;
 #[derive(Clone, Debug, Default)]
 pub struct Reactive {
     role: Role,
-    held_since: Option<Instant>,
 }
 
 impl Reactive {
@@ -46,9 +45,6 @@ impl Reactive {
         freedom: Freedom,
     ) -> Intent {
         let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
-        if !belief.holds_ball {
-            self.held_since = None;
-        }
         let mine = freedom != Freedom::KeepNear && is_attacker(now, me, &ball, belief, mates, self.role);
         self.role = if mine { Role::Attacker } else { Role::Supporter };
         let goal = belief.league().field().goal_center(attacked);
@@ -58,7 +54,7 @@ impl Reactive {
         }
         if belief.holds_ball {
             return match freedom {
-                Freedom::Full => self.advance(now, belief, attacked),
+                Freedom::Full => advance(belief, attacked),
                 _ => skills::kick_held(belief, goal, OmniKick::None),
             };
         }
@@ -73,27 +69,24 @@ impl Reactive {
             Step::Done => Intent::Stand { face: None },
         }
     }
+}
 
-    /// With the ball: shoot, carry it on, or clear.
-    fn advance(&mut self, now: Instant, belief: &Belief, attacked: GoalEnd) -> Intent {
-        let since = *self.held_since.get_or_insert(now);
-        let held = now.since(since);
-        let goal = belief.league().field().goal_center(attacked);
-        let mouth = belief.mouth();
-        let (at, room) = skills::target(belief, mouth, attacked);
-        let near = mouth.distance(goal) < SHOOTS_FROM;
-        if near && room > OPEN {
-            return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
-        }
-        let ahead = Segment::new(mouth, mouth + (goal - mouth).clamped(LOOKS_AHEAD));
-        let blocked = belief.opponents.iter().any(|o| ahead.distance_to(*o) < BLOCKS);
-        let carries =
-            !blocked && held < HOLDS_FOR && belief.carried() < CARRIES && mouth.distance(goal) > TOO_NEAR;
-        if carries {
-            return Drive::holding(ahead.to, mouth.direction_to(goal)).into();
-        }
-        skills::clear_or_shoot(belief, attacked)
+/// With the ball: shoot, carry it on, or clear.
+fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
+    let goal = belief.league().field().goal_center(attacked);
+    let mouth = belief.mouth();
+    let (at, room) = skills::target(belief, mouth, attacked);
+    let near = mouth.distance(goal) < SHOOTS_FROM;
+    if near && room > OPEN {
+        return skills::kick_held(belief, at, OmniKick::Flat(SHOT));
     }
+    let ahead = Segment::new(mouth, mouth + (goal - mouth).clamped(LOOKS_AHEAD));
+    let blocked = belief.opponents.iter().any(|o| ahead.distance_to(*o) < BLOCKS);
+    let carries = !blocked && belief.carried() < CARRIES && mouth.distance(goal) > TOO_NEAR;
+    if carries {
+        return Drive::holding(ahead.to, mouth.direction_to(goal)).into();
+    }
+    skills::clear_or_shoot(belief, attacked)
 }
 
 /// Whether the ball is this robot's: it has it, or nobody else under the same directive has it sooner.
@@ -154,8 +147,6 @@ const LOOKS_AHEAD: f32 = 0.6;
 const BLOCKS: f32 = 0.25;
 /// A ball is carried no farther, m: the rules' metre, less what it takes to kick.
 const CARRIES: f32 = 0.55;
-/// And held no longer.
-const HOLDS_FOR: Duration = Duration::millis(3000);
 /// Nearer to the goal's centre carrying on gains nothing, m.
 const TOO_NEAR: f32 = 1.8;
 /// Who goes for the ball keeps that unless another is nearer by this, m.

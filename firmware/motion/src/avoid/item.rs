@@ -75,12 +75,14 @@ impl<'o, F: Copy> Scene<'o, F> {
 
     /// Routes keep [`SKIN`] from everything, but no more than start and goal do. Who leaves may go through all regions; a body that
     /// holds the start is taken to end just before it, so that no way leads into it. One that moves with the robot, as a ball that
-    /// rolls on before it, is left out: to brake would keep them together, and the exit leads away from it. Walls meet: what is kept from the one that is
-    /// nearest to the start is kept from all of them, else none could be followed around to the next.
+    /// rolls on beside it, is left out where the exit leads away from it: to brake would keep them together; one that lies before it
+    /// would be pushed along, and stays. Walls meet: what is kept from the one that is nearest to the start is kept from all of them,
+    /// else none could be followed around to the next.
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
         let mut wall = SKIN;
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
-            if leaves && (!obstacle.is_body || item.moves && gap(&obstacle.shape, from) < 0.0) {
+            let behind = || (goal - from).dot(item.center - from) <= 0.0;
+            if leaves && (!obstacle.is_body || item.moves && gap(&obstacle.shape, from) < 0.0 && behind()) {
                 item.leave_out();
                 continue;
             }

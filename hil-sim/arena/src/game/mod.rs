@@ -10,6 +10,7 @@
 
 mod config;
 mod hand;
+mod holds;
 pub mod penalty;
 mod recording;
 mod report;
@@ -17,6 +18,7 @@ mod side;
 mod story;
 
 pub use config::{GameConfig, TeamSetup};
+pub use holds::Hold;
 pub use recording::header;
 pub use report::{BlockedReport, GameReport, PerTeam, TeamReport};
 pub use story::{GameStory, sentence};
@@ -32,6 +34,7 @@ use protocol::{Instant, RobotId, Who};
 use rules::Colour;
 use ssl::Message;
 
+use holds::Holds;
 use side::Team;
 
 /// Steps of physics in a tick of brains.
@@ -62,6 +65,7 @@ pub struct Game<'a> {
     trace: TraceHash,
     tick: u32,
     events: Vec<Event>,
+    holds: Holds,
     config: GameConfig,
 }
 
@@ -115,6 +119,7 @@ impl<'a> Game<'a> {
             trace: TraceHash::default(),
             tick: 0,
             events: Vec::new(),
+            holds: Holds::default(),
             config: config.clone(),
         })
     }
@@ -147,6 +152,11 @@ impl<'a> Game<'a> {
     /// What happened in the last tick.
     pub fn events(&self) -> &[Event] {
         &self.events
+    }
+
+    /// Who held the ball in play, and for how long.
+    fn holds(&self) -> &Holds {
+        &self.holds
     }
 
     /// The hash of all ticks so far.
@@ -191,6 +201,9 @@ impl<'a> Game<'a> {
         self.tick += 1;
         let now = self.now();
         self.judge(now, watcher);
+        let mut holds = std::mem::take(&mut self.holds);
+        holds.look(self);
+        self.holds = holds;
         watcher.tick(self);
         Ok(())
     }

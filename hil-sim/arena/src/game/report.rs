@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use hil_sim::small_size::referee::{Blocked, Metrics};
+use hil_sim::small_size::referee::{Blocked, Event, Kind, Metrics};
 use host::strategy::Team;
 use host::strategy::tally::PlayTally;
 use rules::Colour;
 use serde::Serialize;
 
+use super::holds::{Hold, Holds};
 use super::{Game, GameConfig};
 
 /// A match in numbers.
@@ -23,6 +24,16 @@ pub struct GameReport {
     pub fouls: PerTeam<BTreeMap<&'static str, u32>>,
     /// Times at which the match stood for longer than the referee's patience.
     pub blocked: Vec<BlockedReport>,
+    /// The longest spell in play in which one robot held the ball (see [`Hold`]).
+    pub longest_hold_s: f32,
+    /// How many spells lasted for 2.5 s and longer.
+    pub holds_over_2_5s: u32,
+    /// Most turns to and fro in one of these.
+    pub most_reversals: u32,
+    /// These spells, oldest first.
+    pub long_holds: Vec<Hold>,
+    /// How often the referee stopped the match because the ball made no progress.
+    pub no_progress: u32,
     /// Who decided each side's open play.
     pub teams: PerTeam<Team>,
     /// What else was counted.
@@ -104,12 +115,16 @@ pub struct TeamReport {
     pub offence_ratio: Option<f32>,
     /// Own shots over the opponents'.
     pub attack_ratio: Option<f32>,
+    /// The longest spell in play in which one of its robots held the ball.
+    pub longest_hold_s: f32,
+    /// How many of its spells lasted for 2.5 s and longer.
+    pub holds_over_2_5s: u32,
     /// Passes of its restarts as its host followed them, planned free kicks, and changes of role.
     pub play: PlayTally,
 }
 
 impl TeamReport {
-    fn of(metrics: &Metrics, team: Colour, play: PlayTally) -> Self {
+    fn of(metrics: &Metrics, holds: &Holds, team: Colour, play: PlayTally) -> Self {
         let own = metrics.team(team);
         Self {
             possession_s: own.possession_s,
@@ -120,6 +135,8 @@ impl TeamReport {
             losses: own.losses,
             offence_ratio: metrics.offence_ratio(team),
             attack_ratio: metrics.attack_ratio(team),
+            longest_hold_s: holds.longest(team),
+            holds_over_2_5s: holds.over(team),
             play,
         }
     }
@@ -129,6 +146,8 @@ impl GameReport {
     /// Of a match as it stands.
     pub fn of(config: &GameConfig, game: &Game<'_>) -> Self {
         let (accounts, metrics) = (game.referee().accounts(), game.referee().metrics());
+        let holds = game.holds().closed();
+        let no_progress = |event: &&Event| event.what.kind() == Kind::NoProgress;
         Self {
             score: PerTeam::of(|team| accounts.of(team).score),
             duration_s: game.time(),
@@ -137,8 +156,13 @@ impl GameReport {
                 metrics.offences.team(team).map(|(kind, n)| (kind.word(), n)).collect()
             }),
             blocked: metrics.blocks.iter().map(BlockedReport::of).collect(),
+            longest_hold_s: COLOURS.map(|team| holds.longest(team)).into_iter().fold(0.0, f32::max),
+            holds_over_2_5s: COLOURS.map(|team| holds.over(team)).into_iter().sum(),
+            most_reversals: holds.long().iter().map(|hold| hold.reversals).max().unwrap_or(0),
+            long_holds: holds.long().to_vec(),
+            no_progress: game.referee().events().iter().filter(no_progress).count() as u32,
             teams: PerTeam::of(|team| config.plays(team)),
-            metrics: PerTeam::of(|team| TeamReport::of(metrics, team, *game.host(team).tally())),
+            metrics: PerTeam::of(|team| TeamReport::of(metrics, &holds, team, *game.host(team).tally())),
             league: config.league.name(),
             seed: config.seed,
             world: config.world.to_string(),
@@ -147,3 +171,5 @@ impl GameReport {
         }
     }
 }
+
+const COLOURS: [Colour; 2] = [Colour::Blue, Colour::Yellow];

@@ -1,6 +1,7 @@
 //! Who guards our goal? Keeper and two defenders on the ball's line; by threats, if the team plays them (Biswas et al. 2014 §5).
 
 use geometry::{Attack, Point};
+use protocol::{Duration, Instant, RobotId};
 use rules::Phase;
 
 use super::super::order::{Role, Task, Why};
@@ -8,6 +9,16 @@ use super::super::threat::{self, receiving::comes_at_goal};
 use super::super::view::{Ball, RobotSet, View};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
+
+/// A clearance under way: by whom, since when, from where.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clearing {
+    who: RobotId,
+    since: Instant,
+    from: Point<Attack>,
+    task: Task,
+    why: Why,
+}
 
 impl Coach {
     /// Keeper and defenders; while `attacked`, everybody free too if second-level threats are played.
@@ -44,20 +55,111 @@ impl Coach {
                 continue;
             }
             if id == view.keeper {
-                let (task, why) = keeper(view, assignment.at, why);
+                let (task, why) = self.keeper(view, assignment.at, why);
                 plan.order(id, Role::Keeper, task, why);
                 continue;
             }
             // A primary defender stays one where it blocks a second-level shot from the edge.
             let primary = self.defenders.iter().position(|defender| *defender == Some(id));
             let role = primary.map_or(Role::Marker(i as u8), |slot| Role::Defender(slot as u8));
-            plan.order(id, role, plan.facing_ball(plan.kept_off(assignment.at)), why);
+            let at = self.clear_of_clearance(view, id, plan.kept_off(assignment.at));
+            plan.order(id, role, plan.facing_ball(at), why);
         }
     }
 
-    /// Whether the ball before our area is left to our keeper.
-    pub(super) fn is_keepers(&self, view: &View, ball: &Ball) -> bool {
-        self.tactics.threats && view.our(view.keeper).is_some() && lies_before_our_area(view, ball)
+    /// Where a field player clears the ball before our area, the others leave it room to get behind the ball.
+    fn clear_of_clearance(&self, view: &View, id: RobotId, at: Point<Attack>) -> Point<Attack> {
+        let (Some(ball), Some(robot)) = (view.ball, view.our(id)) else { return at };
+        if self.keepers != Some(false) || at.distance(ball.position) >= CLEARER_NEEDS {
+            return at;
+        }
+        let away =
+            (robot.position - ball.position).unit().or_else(|| (ball.position - view.our_goal()).unit());
+        let at = ball.position + away.unwrap_or_default() * CLEARER_NEEDS;
+        threat::lawful(view, at, &threat::Settings::default())
+    }
+
+    /// Whether the ball before our area is left to our keeper: it is there first, or nobody else can get at it. Held until another
+    /// one is clearly sooner there.
+    pub(super) fn is_keepers(&mut self, view: &View, ball: &Ball) -> bool {
+        let keeper =
+            view.our(view.keeper).filter(|_| self.tactics.threats && lies_before_our_area(view, ball));
+        let Some(keeper) = keeper else {
+            self.keepers = None;
+            return false;
+        };
+        let home = ball.position.distance(view.our_goal());
+        let players = view.ours.iter().filter(|robot| robot.id != keeper.id && Some(robot.id) != self.barred);
+        let soonest = players
+            .map(|robot| {
+                // Who comes from the field goes around the ball first.
+                let around = if robot.position.distance(view.our_goal()) > home { AROUND } else { 0.0 };
+                roles::time_to(robot, ball.position) + around
+            })
+            .fold(f32::INFINITY, f32::min);
+        let worth = match self.keepers {
+            Some(true) => roles::WORTH,
+            Some(false) => -roles::WORTH,
+            None => 0.0,
+        };
+        let alone = view.in_our_area(ball.position, KEEPER_ALONE);
+        let is = alone || roles::time_to(keeper, ball.position) < soonest + worth;
+        self.keepers = Some(is);
+        is
+    }
+
+    /// What a field player that is first at a ball before our area does with it.
+    pub(super) fn clears_before_our_area(
+        &mut self,
+        view: &View,
+        who: RobotId,
+        ball: &Ball,
+    ) -> Option<(Task, Why)> {
+        let robot = view.our(who).filter(|_| self.keepers == Some(false))?;
+        Some(self.kept_clearance(view, who, ball, |view| {
+            let (at, kick, room) = defence::clearance_beside(view, robot, ball, OFF_OUR_AREA);
+            (Task::Kick { at, kick }, Why::BestTarget { room })
+        }))
+    }
+
+    /// The keeper at its place; clears what lies in our area, and meets a shot on its line.
+    fn keeper(&mut self, view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
+        let (task, usual) =
+            if view.phase == Phase::Run { defence::keeper(view) } else { (defence::keeper_line(view), why) };
+        let Some(ball) = view.ball else { return (task, why) };
+        if matches!(usual, Why::ClearsArea { .. }) {
+            return self.kept_clearance(view, view.keeper, &ball, |_| (task, usual));
+        }
+        if self.keepers == Some(true) && lies_before_our_area(view, &ball) {
+            return self.kept_clearance(view, view.keeper, &ball, |view| {
+                let (at, kick, room) = defence::clearance_outwards(view, &ball);
+                (Task::Kick { at, kick }, Why::ClearsArea { room })
+            });
+        }
+        if ball.velocity.norm() > COMES && comes_at_goal(view, ball.position, ball.velocity) {
+            return (task, why);
+        }
+        (Task::GoTo { at, face: at.direction_to(ball.position) }, why)
+    }
+
+    /// What was chosen a moment ago for a ball that still lies there: opponents who follow the robot's turns do not turn it back.
+    fn kept_clearance(
+        &mut self,
+        view: &View,
+        who: RobotId,
+        ball: &Ball,
+        choose: impl Fn(&View) -> (Task, Why),
+    ) -> (Task, Why) {
+        if let Some(kept) = &self.clearing
+            && kept.who == who
+            && kept.from.distance(ball.position) < MOVED
+            && view.now.since(kept.since) < KEPT
+        {
+            return (kept.task, kept.why);
+        }
+        let (task, why) = choose(view);
+        self.clearing = Some(Clearing { who, since: view.now, from: ball.position, task, why });
+        (task, why)
     }
 
     /// The two nearest to where defenders stand; who was one stays one.
@@ -74,27 +176,7 @@ impl Coach {
     }
 }
 
-/// The keeper at its place; clears what lies in our area, and meets a shot on its line.
-fn keeper(view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
-    let (task, usual) =
-        if view.phase == Phase::Run { defence::keeper(view) } else { (defence::keeper_line(view), why) };
-    if matches!(usual, Why::ClearsArea { .. }) {
-        return (task, usual);
-    }
-    if let Some(ball) = view.ball.filter(|ball| lies_before_our_area(view, ball)) {
-        let (at, kick, room) = defence::clearance_outwards(view, &ball);
-        return (Task::Kick { at, kick }, Why::ClearsArea { room });
-    }
-    match view.ball {
-        Some(ball) if ball.velocity.norm() > COMES && comes_at_goal(view, ball.position, ball.velocity) => {
-            (task, why)
-        }
-        Some(ball) => (Task::GoTo { at, face: at.direction_to(ball.position) }, why),
-        None => (task, why),
-    }
-}
-
-/// So near to our area that nobody but the keeper can be behind the ball, and slow enough to be kicked as it lies.
+/// So near to our area that there is hardly room behind the ball, and slow enough to be kicked as it lies.
 fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
     let inside = ball.position.x() > view.our_goal().x();
     view.phase == Phase::Run
@@ -103,8 +185,21 @@ fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
         && view.in_our_area(ball.position, KEEPERS)
 }
 
-/// Outside our area, but nearer to it than this, the keeper clears the ball, m: a field player's centre is 0.11 m behind the ball it
-/// kicks, 0.18 m when it lines up, and keeps 0.13 m off the area.
+/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first: a field player's centre is
+/// 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no room to go around it on the goal's side.
 const KEEPERS: f32 = 0.3;
+/// Nearer than this only the keeper gets behind the ball, m.
+const KEEPER_ALONE: f32 = 0.04;
+/// Where a field player lines up for such a ball its centre is this far off our area, m: bodies may be partly within it, and robots keep
+/// their centres 0.02 m off (`brain`'s surroundings).
+const OFF_OUR_AREA: f32 = 0.025;
+/// From such a ball to the nearest robot that only defends, m: who lines up is 0.17 m behind it, and two bodies are 0.18 m.
+const CLEARER_NEEDS: f32 = 0.4;
+/// What it costs to go around a ball, s: half a circle of 0.2 m radius at walking pace (estimate).
+const AROUND: f32 = 0.4;
+/// A clearance stands for so long, s: to walk around the ball, aim and kick; …
+const KEPT: Duration = Duration::millis(2500);
+/// … while the ball is within this of where it lay, m.
+const MOVED: f32 = 0.3;
 /// A ball that comes at our goal faster than this is met on its way, m/s: slower ones leave time to walk.
 const COMES: f32 = 0.5;

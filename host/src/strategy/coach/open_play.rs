@@ -20,6 +20,7 @@ impl Coach {
             plan.order(barred, Role::Barred, plan.facing_ball(at), Why::FreePlace { worth });
         }
         self.see_pass_leave(view);
+        let keepers = self.is_keepers(view, &ball);
         if let Some(pass) = self.pass
             && plan.take(pass.receiver)
         {
@@ -29,8 +30,7 @@ impl Coach {
             self.defend(plan, false);
             return plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
         }
-        let forbidden = view.in_their_area(ball.position, 0.0) || view.in_our_area(ball.position, 0.0);
-        let keepers = self.is_keepers(view, &ball);
+        let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
         if forbidden || keepers || is_shot_at_us(view, &ball) {
             // Nobody but a keeper may, or can, play it; whoever stands in the way of a shot stays there.
             self.first = None;
@@ -49,7 +49,8 @@ impl Coach {
         if let Some((id, seconds)) = soonest
             && plan.take(id)
         {
-            if let Some((task, why)) = self.attack(plan, id, &ball) {
+            let clears = self.clears_before_our_area(view, id, &ball);
+            if let Some((task, why)) = clears.or_else(|| self.attack(plan, id, &ball)) {
                 plan.order(id, Role::Player, task, why);
                 self.defend(plan, self.attacked);
                 return self.support(plan, ball.position);
@@ -91,5 +92,7 @@ fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
 
 /// A robot that plays a case counts as this much nearer to the ball, s: changing hands would end the case.
 const BOUND: f32 = 1.0;
+/// A ball this near their area is as good as in it, m: a robot that touches it from outside is 5 mm off the area, and cameras err by 3.
+const THEIRS: f32 = 0.008;
 /// A slower ball at our goal can be walked to, m/s.
 const SHOT: f32 = 1.0;

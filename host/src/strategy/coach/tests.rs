@@ -236,7 +236,7 @@ fn a_shot_at_our_goal_makes_nobody_leave_its_place_and_the_keeper_stays_one() {
 }
 
 #[test]
-fn a_ball_that_lies_before_our_area_is_the_keepers_because_nobody_else_can_be_behind_it() {
+fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_there_first() {
     let kicks = |ball: (f32, f32)| -> Vec<u8> {
         let orders = coach().decide(&view(ball, &OURS, &THEIRS));
         let plays = |order: &&Order| matches!(order.task, Task::Kick { .. } | Task::Gameplay);
@@ -246,6 +246,15 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_because_nobody_else_can_be_be
     assert_eq!(kicks((-3.3, 0.2)), [0]);
     assert_eq!(kicks((-4.2, 1.2)), [0]);
     assert!(!kicks((-3.1, 0.2)).contains(&0));
+    // A defender that is there first plays it, and lines up outside our area.
+    let mut ours = OURS;
+    ours[1] = (-3.15, 0.3);
+    let near = view((-3.3, 0.2), &ours, &THEIRS);
+    let orders = coach().decide(&near);
+    let Task::Kick { at, .. } = orders[1].task else { panic!("{:?}", orders[1]) };
+    assert!(matches!(orders[0].task, Task::GoTo { .. }), "{:?}", orders[0]);
+    let ball = Point::new(-3.3, 0.2);
+    assert!(!near.in_our_area(ball - (at - ball).unit().unwrap() * 0.165, 0.02), "{at:?}");
     // Without a keeper somebody tries.
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();

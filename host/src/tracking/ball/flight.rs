@@ -105,7 +105,8 @@ impl Launch {
         let (shift, error, [x, y, vx, vy, climb]) = best?;
         let freedoms = (2 * self.count).saturating_sub(UNKNOWNS).max(1) as f32;
         let mean = error / freedoms;
-        if !(CLIMB_MIN..=CLIMB_MAX).contains(&climb) {
+        let along = Vector::<Field>::new(vx, vy).norm();
+        if !(CLIMB_MIN..=CLIMB_MAX).contains(&climb) || climb > STEEPEST * along {
             return None;
         }
         if !decided && (mean > FIT_MAX || self.flat_error(sigma, slide) < error + FLAT_WORSE * (1.0 + mean)) {
@@ -241,6 +242,9 @@ const FROM_SIGMA: f32 = 0.01;
 /// Climbs that are flights, m/s: slower ones stay below 50 mm; a kick of 10 m/s straight up is no robot's.
 const CLIMB_MIN: f32 = 1.0;
 const CLIMB_MAX: f32 = 10.0;
+/// No kicker sends a ball off more steeply than this (tangent of 76°; chippers are built for 45°, and a launch's direction is known to
+/// some degrees after 60 ms).
+const STEEPEST: f32 = 4.0;
 /// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as told; the noise of
 /// cameras that disagree is larger).
 const FIT_MAX: f32 = 6.0;
@@ -285,6 +289,21 @@ mod tests {
         for count in 5..30 {
             let launch =
                 watched(|t| (Point::new(4.0 * t - 1.95 * t * t, 2.0 * t - 0.97 * t * t), 0.0), count);
+            assert_eq!(launch.flight(0.003, 3.9, false), None, "{count} glimpses");
+        }
+    }
+
+    #[test]
+    fn a_slow_ball_that_a_turning_robot_leads_around_does_not_fly() {
+        // On the front of a robot that turns with 3.5 rad/s: a circle of 0.095 m, speeding up from rest.
+        for count in 5..30 {
+            let launch = watched(
+                |t| {
+                    let turned = if t < 0.3 { 6.0 * t * t } else { 0.54 + 3.5 * (t - 0.3) };
+                    (Point::new(0.0945 * turned.sin(), 0.0945 * (1.0 - turned.cos())), 0.0)
+                },
+                count,
+            );
             assert_eq!(launch.flight(0.003, 3.9, false), None, "{count} glimpses");
         }
     }

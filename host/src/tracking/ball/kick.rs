@@ -230,6 +230,10 @@ impl Balls {
                 self.kicked = None;
                 self.air = Air::Down;
             }
+            // A ball that is led by a robot turns and speeds up without flying.
+            if matches!(&self.air, Air::Watched(launch) if now - launch.at > micros(CONTACT)) {
+                self.air = Air::Down;
+            }
             return;
         }
         let Some(contact) = self.contact else { return };

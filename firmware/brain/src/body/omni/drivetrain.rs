@@ -155,7 +155,8 @@ impl Drivetrain {
         };
         // The body turns while it moves: the velocity as seen from the heading half a step on.
         let linear = pose.vector_to_body(velocity).rotated(-half_turn(angular, step));
-        Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick: drive.kick }
+        let kick = if drive.armed { drive.kick } else { OmniKick::None };
+        Wanted { twist: Twist { linear, angular }, dribbler: drive.dribbler, kick }
     }
 }
 

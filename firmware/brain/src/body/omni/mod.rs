@@ -40,8 +40,10 @@ pub struct Drive {
     pub manner: Manner,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// What the kicker does as soon as the ball touches it.
+    /// What the kicker does as soon as the ball touches it, once it is armed.
     pub kick: OmniKick,
+    /// It is armed: the robot looks where the kick shall go.
+    pub armed: bool,
 }
 
 /// What the ball is to a robot on its way.
@@ -58,7 +60,15 @@ pub enum Manner {
 impl Drive {
     /// To a place, around the ball, as fast as may be.
     pub fn shy(to: Point<Field>, face: Angle) -> Self {
-        Self { to, face, speed: f32::INFINITY, manner: Manner::Shy, dribbler: 0.0, kick: OmniKick::None }
+        Self {
+            to,
+            face,
+            speed: f32::INFINITY,
+            manner: Manner::Shy,
+            dribbler: 0.0,
+            kick: OmniKick::None,
+            armed: true,
+        }
     }
 
     /// To a place on which the ball may be.

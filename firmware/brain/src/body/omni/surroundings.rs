@@ -4,7 +4,7 @@
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
-use rules::keep_out::{Forbidden, KeepOut, Situation, keep_out};
+use rules::keep_out::{Forbidden, KeepOut, Situation, Why, keep_out};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use rules::{Duty, FieldSpec, Phase, Side};
 
@@ -34,7 +34,20 @@ impl Surroundings {
         // The way it means to go, and the one on which it could come to rest.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
-        let grown = |region: &Forbidden| region.shape.grown(BODY + LAW);
+        // A robot at a ball that lies beside an area may be as near as the rules let it: no part of it in theirs, and part of it in its own.
+        let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
+        let at_ball = belief.game.phase == Phase::Run
+            && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
+        let grown = |region: &Forbidden| {
+            let law = match region.why {
+                Why::OpponentArea if at_ball => LAW_AT_BALL,
+                Why::OwnArea if at_ball => LAW_AT_BALL_OWN,
+                // It comes along with the ball.
+                Why::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
+                _ => LAW,
+            };
+            region.shape.grown(BODY + law)
+        };
         // Who must leave a region may have to leave by another way than the one it means to go: all of them count.
         let covers = |shape: Shape<Field>| shape.contains(me) || shape.contains(to);
         let leaves = forbidden.iter().any(|region| covers(grown(region)));
@@ -141,6 +154,18 @@ const SIXTH: f32 = 1.0 / 6.0;
 const BODY: f32 = ROBOT_RADIUS;
 /// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
 const LAW: f32 = 0.04;
+/// Beside the opponents' area at a ball that lies, m: what wheels overshoot at 0.35 m/s.
+const LAW_AT_BALL: f32 = 0.01;
+/// And beside the own one, m: a robot's centre stays outside; only to be in it entirely is an offence.
+const LAW_AT_BALL_OWN: f32 = 0.02 - BODY;
+/// A placement's stadium swings with the ball by what it rolls in so long, s: picture, radio, and what wheels take to follow; …
+const LEADS: f32 = 0.15;
+/// … no more than this, m: who stands where hosts send it is 0.15 m clear.
+const LEADS_MOST: f32 = 0.3;
+/// A slower ball lies, m/s.
+const LIES: f32 = 0.3;
+/// This near the ball its way ends, m: lining up behind it.
+const AT_BALL: f32 = 0.2;
 /// From the carpet's edge, m.
 const BORDER: f32 = 0.02;
 /// From goal walls, m.

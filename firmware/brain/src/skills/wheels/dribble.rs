@@ -11,6 +11,8 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, Manner};
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::get_ball;
+use crate::skills::wheels::kick::kick_held;
+use crate::skills::wheels::shoot::clear_or_shoot;
 
 /// Brings the ball to `pose`.
 pub fn dribble(belief: &Belief, pose: Pose<Field>) -> Intent {
@@ -35,15 +37,37 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
     Step::Running(Drive::holding(to - Vector::polar(BALL_AT, face), face).into())
 }
 
-/// What any skill wants, but with the ball let go before it was carried too far.
-pub fn let_go_in_time(belief: &Belief, intent: Intent) -> Intent {
+/// What any skill wants, but with the ball let go before it was held too long or carried too far.
+///
+/// Host, case and what the robot does by itself may all change their minds while the opponents move with it. So where the ball shall go
+/// is settled after [`SETTLES`] by what is wanted then, or after [`ACTS`] where nothing is, and stays; [`kick_held`] gets less exact from
+/// then on, and after [`LASTS`] the robot leaves the ball.
+pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
+    let held = belief.held();
+    if !belief.holds_ball {
+        return intent;
+    }
+    if belief.resolved.is_none() && held > SETTLES {
+        let mut meant = intent;
+        if held > ACTS && !aims(&meant) {
+            meant = clear_or_shoot(belief, belief.game.defending.opposite());
+        }
+        if let Intent::Drive(drive) = meant
+            && aims(&meant)
+        {
+            belief.resolved = Some((belief.pose.position + Vector::polar(AFAR, drive.face), drive.kick));
+        }
+    }
+    let intent = match belief.resolved {
+        Some((at, kick)) => kick_held(belief, at, kick),
+        None => intent,
+    };
     let Intent::Drive(drive) = intent else { return intent };
-    let kicks = matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_));
-    if drive.manner != Manner::Holding || kicks {
+    if drive.manner != Manner::Holding || intent.lets_go() {
         return intent;
     }
     let left = limit(belief.league()) - SPARE - belief.carried();
-    if left > 0.0 {
+    if left > 0.0 && held < LASTS {
         // Slow by then: what is let go while it moves rolls on.
         let slow = math::sqrt(2.0 * SLOWS * left) + CRAWL;
         return Drive { speed: drive.speed.min(slow), ..drive }.into();
@@ -52,11 +76,24 @@ pub fn let_go_in_time(belief: &Belief, intent: Intent) -> Intent {
     Drive { speed: AWAY, ..Drive::bold(back, belief.pose.heading) }.into()
 }
 
+/// It turns to where the ball shall go.
+fn aims(intent: &Intent) -> bool {
+    matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
+}
+
 /// How far that league's rules let a robot dribble, m.
 fn limit(league: League) -> f32 {
     league.limits().map_or(f32::INFINITY, |limits| limits.dribble)
 }
 
+/// Where the ball shall go is settled after so long with it, s: host and robots have looked several times by then.
+const SETTLES: f32 = 0.7;
+/// Who only carries or waits does something with it after so long, s: what 0.75 m take, and a pass waits for its receiver.
+const ACTS: f32 = 1.5;
+/// And who is kept from that lets it go after so long, s.
+const LASTS: f32 = 3.0;
+/// What is aimed at is about so far, m.
+const AFAR: f32 = 3.0;
 /// Let go so much before the limit, m: what the ball rolls on from a crawl, a robot's delay, and noise.
 const SPARE: f32 = 0.25;
 /// How fast it slows down towards that, m/s².
@@ -69,3 +106,78 @@ const STEP_BACK: f32 = 0.2;
 const AWAY: f32 = 0.8;
 /// Nearer than this it keeps its heading, m.
 const TURNS_FROM: f32 = 0.2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::Picture;
+    use crate::skills::wheels::testing::belief;
+    use geometry::{Angle, Twist};
+    use protocol::robot_io::{Health, SensorFrame};
+    use protocol::{Instant, RobotId};
+
+    /// A robot at the origin that has had the ball for so many ms.
+    fn holding(ms: u64) -> Belief {
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        let sensors = SensorFrame {
+            pose: None,
+            ball: None,
+            opponents: heapless::Vec::new(),
+            ball_contact: true,
+            busy: false,
+            odometry: Twist::default(),
+            health: Health::default(),
+        };
+        let picture = Picture::new(RobotId::new(1).unwrap());
+        for at in [0, ms] {
+            b.show(Instant(at * 1000), &picture, &sensors);
+        }
+        b
+    }
+
+    fn drive(intent: Intent) -> Drive {
+        match intent {
+            Intent::Drive(drive) => drive,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    const SHOT: OmniKick = OmniKick::Flat(6.0);
+
+    #[test]
+    fn what_is_aimed_at_after_a_while_stays_whatever_is_wanted_then() {
+        let left = Point::new(3.0, 2.0);
+        let mut b = holding(750);
+        let wanted = kick_held(&b, left, SHOT);
+        let first = drive(let_go_in_time(&mut b, wanted));
+        // Its opponent has moved: now the other side is roomier, and then its host wants it elsewhere.
+        let wanted = kick_held(&b, Point::new(3.0, -2.0), SHOT);
+        let second = drive(let_go_in_time(&mut b, wanted));
+        let third = drive(let_go_in_time(&mut b, Drive::holding(left, Angle::HALF_TURN).into()));
+        for kept in [second, third] {
+            assert!((kept.face - first.face).abs() < 1e-3 && kept.kick == SHOT, "{kept:?}");
+        }
+    }
+
+    #[test]
+    fn who_only_stands_with_the_ball_kicks_it_after_one_and_a_half_seconds() {
+        let stands = Intent::Stand { face: None };
+        assert_eq!(let_go_in_time(&mut holding(1400), stands), stands);
+        assert_ne!(drive(let_go_in_time(&mut holding(1600), stands)).kick, OmniKick::None);
+    }
+
+    #[test]
+    fn an_aim_gets_less_exact_with_time_and_at_last_the_ball_is_left() {
+        let aside = Point::new(3.0, 0.6);
+        let armed = |ms: u64| {
+            let mut b = holding(ms);
+            let wanted = kick_held(&b, aside, SHOT);
+            drive(let_go_in_time(&mut b, wanted))
+        };
+        assert!(!armed(1300).armed, "11 degrees off");
+        assert!(armed(2900).armed);
+        let mut b = holding(3100);
+        let wanted = kick_held(&b, Point::new(-3.0, 0.0), SHOT);
+        assert!(drive(let_go_in_time(&mut b, wanted)).to.x() < -0.1);
+    }
+}

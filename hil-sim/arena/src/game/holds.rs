@@ -1,0 +1,182 @@
+//! `holds`: who holds the ball in play, for how long, and how often it turns to and fro meanwhile? From the true world. s, m, rad.
+//!
+//! A robot holds the ball while the ball is on the carpet within [`NEAR`] of its front plate. A gap of up to [`GAP`] belongs to the
+//! spell: a ball that rolls off the roller and is taken again was not let go. A spell ends with the phase.
+
+use hil_sim::small_size::{Ball, Robot};
+use protocol::Who;
+use rules::{Colour, Phase};
+use serde::Serialize;
+
+use super::Game;
+
+/// One robot's time with the ball at its front.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hold {
+    /// Whose.
+    pub team: &'static str,
+    /// Which robot.
+    pub robot: u8,
+    /// From this simulated second.
+    pub from_s: f32,
+    /// For so long.
+    pub lasted_s: f32,
+    /// How often it changed the sense in which it turns, by more than 5° each.
+    pub reversals: u32,
+}
+
+/// All spells of a match.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Holds {
+    open: Vec<Spell>,
+    long: Vec<Hold>,
+    longest: [f32; 2],
+    over: [u32; 2],
+}
+
+/// A spell under way.
+#[derive(Clone, Copy, Debug)]
+struct Spell {
+    who: Who,
+    from: f64,
+    until: f64,
+    turning: Turning,
+}
+
+/// How a heading goes to and fro.
+#[derive(Clone, Copy, Debug)]
+struct Turning {
+    heading: f32,
+    /// The heading, unrolled, and its last extreme, rad.
+    sum: f32,
+    extreme: f32,
+    /// +1 or −1, the sense in which it turns; 0 before it is known.
+    sense: f32,
+    reversals: u32,
+}
+
+impl Turning {
+    fn new(heading: f32) -> Self {
+        Self { heading, sum: 0.0, extreme: 0.0, sense: 0.0, reversals: 0 }
+    }
+
+    fn look(&mut self, heading: f32) {
+        let off = heading - self.heading;
+        self.sum += off.sin().atan2(off.cos());
+        self.heading = heading;
+        let swing = self.sum - self.extreme;
+        if swing * self.sense > 0.0 {
+            self.extreme = self.sum;
+        } else if swing.abs() > SWING {
+            self.reversals += u32::from(self.sense != 0.0);
+            (self.sense, self.extreme) = (swing.signum(), self.sum);
+        }
+    }
+}
+
+impl Holds {
+    /// A tick of the match is over.
+    pub(super) fn look(&mut self, game: &Game<'_>) {
+        let now = game.time();
+        if game.referee().phase() != Phase::Run {
+            return self.end(f64::INFINITY);
+        }
+        let ball = &game.world().ball;
+        for robot in game.world().robots().iter().filter(|robot| robot.present && holds(robot, ball)) {
+            let heading = robot.pose.heading.radians();
+            match self.open.iter_mut().find(|spell| spell.who == robot.who) {
+                Some(spell) => {
+                    spell.until = now;
+                    spell.turning.look(heading);
+                }
+                None => {
+                    let turning = Turning::new(heading);
+                    self.open.push(Spell { who: robot.who, from: now, until: now, turning });
+                }
+            }
+        }
+        self.end(now);
+    }
+
+    /// Closes the spells that have not gone on for [`GAP`].
+    fn end(&mut self, now: f64) {
+        let (open, over): (Vec<_>, Vec<_>) = self.open.iter().partition(|spell| now - spell.until <= GAP);
+        self.open = open;
+        for spell in over {
+            self.close(&spell);
+        }
+    }
+
+    fn close(&mut self, spell: &Spell) {
+        let (team, lasted) = (spell.who.colour, (spell.until - spell.from) as f32);
+        let longest = &mut self.longest[team as usize];
+        *longest = longest.max(lasted);
+        if lasted >= LONG {
+            self.over[team as usize] += 1;
+            self.long.push(Hold {
+                team: team.word(),
+                robot: spell.who.id.number(),
+                from_s: spell.from as f32,
+                lasted_s: lasted,
+                reversals: spell.turning.reversals,
+            });
+        }
+    }
+
+    /// With the spells that are under way counted as over.
+    pub(super) fn closed(&self) -> Self {
+        let mut all = self.clone();
+        all.end(f64::INFINITY);
+        all
+    }
+
+    /// The longest spell of a team, s.
+    pub(super) fn longest(&self, team: Colour) -> f32 {
+        self.longest[team as usize]
+    }
+
+    /// How many of a team's spells lasted for [`LONG`] and longer.
+    pub(super) fn over(&self, team: Colour) -> u32 {
+        self.over[team as usize]
+    }
+
+    /// These spells, oldest first.
+    pub(super) fn long(&self) -> &[Hold] {
+        &self.long
+    }
+}
+
+/// Whether the ball is at the robot's front.
+fn holds(robot: &Robot, ball: &Ball) -> bool {
+    let at = robot.pose.to_body(ball.position);
+    let half = (robot.body.radius.powi(2) - robot.body.front.powi(2)).max(0.0).sqrt();
+    let gap = at.x() - robot.body.front - BALL_RADIUS;
+    ball.height < BODY_HEIGHT && at.x() > 0.0 && gap <= NEAR && at.y().abs() <= half + NEAR
+}
+
+/// The ball is at the front within this distance, m.
+const NEAR: f32 = 0.02;
+/// A spell goes on after a gap of so long, s: longer than a ball bounces off a roller, shorter than it takes to let go, back off and
+/// come again.
+const GAP: f64 = 0.25;
+/// From here on a spell is long, s: what the rivals' robots reach twice in ten minutes.
+const LONG: f32 = 2.5;
+/// A turn by less than this is none, rad: 5°.
+const SWING: f32 = 0.087;
+/// Ball and robots, m (rules).
+const BALL_RADIUS: f32 = rules::limits::BALL_RADIUS;
+const BODY_HEIGHT: f32 = 0.15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_heading_that_swings_to_and_fro_counts_each_turn_back_and_noise_counts_none() {
+        let mut turning = Turning::new(3.1);
+        for heading in [3.2, 3.4, 3.38, 3.41, 3.2, 3.0, 3.2, 3.5] {
+            turning.look(heading);
+        }
+        assert_eq!(turning.reversals, 2);
+    }
+}
