@@ -61,6 +61,8 @@ pub struct Game<'a> {
     trace: TraceHash,
     tick: u32,
     events: Vec<Event>,
+    /// Vision's packets reach no host.
+    blind: bool,
     config: GameConfig,
 }
 
@@ -113,6 +115,7 @@ impl<'a> Game<'a> {
             trace: TraceHash::default(),
             tick: 0,
             events: Vec::new(),
+            blind: false,
             config: config.clone(),
         })
     }
@@ -179,6 +182,9 @@ impl<'a> Game<'a> {
             }
             self.cameras.watch(&self.world);
             while let Some(packet) = self.cameras.poll(self.world.now()) {
+                if self.blind {
+                    continue;
+                }
                 let bytes = packet.encode_to_vec();
                 watcher.vision(now, &bytes);
                 for team in &mut self.teams {
