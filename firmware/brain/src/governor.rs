@@ -168,7 +168,8 @@ impl Governor {
 
     /// A frame of the host counts as heard at that time, never before the last: the host is back since the first after a long silence.
     pub fn hear_host(&mut self, heard: Instant) {
-        if self.last_frame.is_none_or(|last| heard.since(last) >= LONG_SILENCE) {
+        let back = self.last_frame.is_none_or(|last| heard.since(last) >= LONG_SILENCE);
+        if back || self.heard_since.is_none() {
             self.heard_since = Some(heard);
         }
         self.last_frame = Some(heard);
@@ -205,6 +206,10 @@ impl Governor {
         let mut why = Reasons::default();
         if let Some(hearing) = at.host {
             let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
+            // A frame that was long on its way counts as heard before it came: the silence lasted until then all the same.
+            if self.last_frame.is_some_and(|last| at.now.since(last) > LONG_SILENCE) {
+                self.heard_since = None;
+            }
             let disarmed = self.heard_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
             let silence = disarmed || silent(hearing.frame);
             why.add_if(silence, Why::Silence);
