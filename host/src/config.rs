@@ -12,6 +12,7 @@
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
 //! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
+//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command stands
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
 //!
@@ -29,7 +30,7 @@ use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
 
-use crate::referee::SourcePin;
+use crate::referee::{OnSilence, SourcePin};
 
 /// A team's settings: as a file or flags give them, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -57,6 +58,8 @@ pub struct TeamSettings {
     pub referee: Option<SocketAddr>,
     /// The only referee that is obeyed: see [`SourcePin`].
     pub referee_source: Option<String>,
+    /// `halt` or `go-on`: see [`OnSilence`].
+    pub referee_silence: Option<String>,
     /// Where tracker packets go.
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
@@ -106,6 +109,8 @@ pub struct TeamConfig {
     pub referee: SocketAddr,
     /// The only referee that is obeyed; none: the strictest of all.
     pub referee_source: Option<SourcePin>,
+    /// What robots do when the referee falls silent.
+    pub referee_silence: OnSilence,
     /// Where tracker packets go.
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
@@ -186,6 +191,7 @@ impl TeamSettings {
             vision: self.vision.or(below.vision),
             referee: self.referee.or(below.referee),
             referee_source: self.referee_source.or(below.referee_source),
+            referee_silence: self.referee_silence.or(below.referee_silence),
             tracker: self.tracker.or(below.tracker),
             game_controller: self.game_controller.or(below.game_controller),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
@@ -223,6 +229,7 @@ impl TeamSettings {
             vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
             referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
+            referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
             tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
             game_controller: self.game_controller,
             kick,
@@ -242,6 +249,13 @@ fn colour(word: &str) -> Result<Colour, ConfigError> {
 fn pin(text: &str) -> Result<SourcePin, ConfigError> {
     let words = "empty; an address such as 192.168.1.5, one with a port, or a referee's identifier";
     if text.trim().is_empty() { Err(error("referee_source", words)) } else { Ok(SourcePin::of(text.trim())) }
+}
+
+fn on_silence(word: &str) -> Result<OnSilence, ConfigError> {
+    let known = OnSilence::ALL.into_iter().find(|(known, _)| *known == word);
+    known.map(|(_, known)| known).ok_or_else(|| {
+        error("referee_silence", format!("`{word}` is none; halt (after 2 s) or go-on (by its last command)"))
+    })
 }
 
 fn robot_id(key: &str, number: u8) -> Result<RobotId, ConfigError> {
@@ -298,6 +312,7 @@ mod tests {
         assert_eq!(config.robots, RobotLink::Simulator("127.0.0.1".to_owned()));
         assert_eq!(config.kick[3], 1.06);
         assert_eq!(config.referee_source, Some(SourcePin::of("192.168.1.5")));
+        assert_eq!(config.referee_silence, OnSilence::Halt);
         assert_eq!(config.game_controller.unwrap().port(), 10_008);
     }
 
@@ -317,6 +332,7 @@ mod tests {
         assert!(refused("colour = \"red\"").to_string().contains("blue or yellow"));
         assert!(refused("keeper = 16").to_string().contains("0 to 15"));
         assert!(refused("referee_source = ' '").to_string().contains("192.168.1.5"));
+        assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
         for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {

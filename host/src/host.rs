@@ -20,7 +20,7 @@ use crate::hidden_ball::HiddenBall;
 use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::team_port::Request;
-use crate::referee::{self, Listener, SenderAddress, SourcePin};
+use crate::referee::{self, Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::{Bookkeeper, PlayTally};
@@ -44,6 +44,8 @@ pub struct HostSettings {
     pub kick: [f32; RobotId::COUNT],
     /// The only referee that is obeyed; none: every one, the strictest first.
     pub referee: Option<SourcePin>,
+    /// What robots do when the referee falls silent.
+    pub referee_silence: OnSilence,
     /// Who decides open play.
     pub team: Team,
     /// The radio's.
@@ -62,6 +64,7 @@ impl HostSettings {
             defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
             kick: [1.0; RobotId::COUNT],
             referee: None,
+            referee_silence: OnSilence::default(),
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
@@ -153,7 +156,8 @@ impl Host {
                 settings.league.limits().unwrap_or(LIMITS),
                 settings.referee.clone(),
                 now,
-            ),
+            )
+            .on_silence(settings.referee_silence),
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),

@@ -65,6 +65,7 @@ pub(super) fn run(
     let settings = HostSettings {
         keeper: config.keeper,
         referee: config.referee_source.clone(),
+        referee_silence: config.referee_silence,
         kick: config.kick,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
         ..usual

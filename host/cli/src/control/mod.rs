@@ -77,6 +77,10 @@ pub(crate) struct ControlArgs {
     /// are ignored and reported. Without it the strictest command of all of them is obeyed.
     #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
     referee_source: Option<String>,
+    /// What the robots do when nothing came from the referee for 2 s: `halt`, unless told, or `go-on` by its last command (a test day on
+    /// which the game controller is ended after a command). Before its first packet they halt either way.
+    #[arg(long, value_name = "halt|go-on")]
+    referee_silence: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
@@ -172,6 +176,7 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         vision: args.vision,
         referee: args.referee,
         referee_source: args.referee_source.clone(),
+        referee_silence: args.referee_silence.clone(),
         tracker: args.tracker,
         game_controller: args.game_controller,
         calibration: args.kicks.clone(),
