@@ -113,6 +113,8 @@ pub struct Undecodable {
     pub vision: u64,
     /// On the referee's port.
     pub referee: u64,
+    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
+    pub empty: u64,
 }
 
 /// A team's host.
@@ -131,6 +133,8 @@ pub struct Host {
     hidden: HiddenBall,
     orders: Orders,
     planned: Option<Instant>,
+    /// When the newest camera frame came.
+    imaged: Option<Instant>,
     /// When it was last planned because of the referee.
     replanned: Option<Instant>,
     /// The referee's phase in the newest orders.
@@ -167,6 +171,7 @@ impl Host {
             hidden: HiddenBall::default(),
             orders: Orders::new(),
             planned: None,
+            imaged: None,
             replanned: None,
             ordered: Phase::Halt,
             undecodable: Undecodable::default(),
@@ -253,6 +258,16 @@ impl Host {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
+    /// The field that vision told, once it did.
+    pub fn told_field(&self) -> Option<&FieldSpec> {
+        self.geometry.field()
+    }
+
+    /// When the newest camera frame came.
+    pub fn imaged(&self) -> Option<Instant> {
+        self.imaged
+    }
+
     /// Whether robots are told to halt now, by the referee or by `Host::halt`.
     pub fn is_halting(&self) -> bool {
         self.halted || self.listener.game().phase == Phase::Halt
@@ -293,12 +308,16 @@ impl Host {
             self.undecodable.vision += 1;
             return Verdict::Undecodable;
         };
+        self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
             // What cannot be a field is told by the geometry's own counts; the field before stands.
             let _told = self.geometry.hear(data);
         }
         let heard = self.tracker.handle(&packet, now);
         let news = !matches!(heard, tracking::Heard::NoImage | tracking::Heard::Repeated);
+        if news {
+            self.imaged = Some(now);
+        }
         if news && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
         }

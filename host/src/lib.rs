@@ -16,6 +16,7 @@ pub mod recheck;
 pub mod recording;
 pub mod referee;
 mod requests;
+pub mod sanity;
 pub mod shell;
 pub mod strategy;
 pub mod trace;

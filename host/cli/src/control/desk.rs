@@ -133,7 +133,7 @@ pub(super) fn run(
             looked = Instant::now();
             let now = desk.now();
             desk.watch.look(now, &desk.host, config, &mut desk.words);
-            desk.look_at_alarms(now, &mail);
+            desk.look_at_alarms(now, config, &mail);
             desk.look_at_recording();
             desk.look_at_radio(now);
             terminal.status(desk.status());
@@ -241,6 +241,7 @@ impl Desk {
             self.open(mail);
         }
         let now = self.now();
+        self.alarms.ran(now);
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.tell(now, Input::Timeout);
         }
@@ -251,7 +252,6 @@ impl Desk {
         match mail {
             Mail::Vision(bytes) => {
                 self.counts.vision += 1;
-                self.watch.vision_came(now);
                 if matches!(
                     self.tell(now, Input::Vision(&bytes)),
                     Verdict::Vision(Heard::Newest | Heard::Restarted)
@@ -324,7 +324,8 @@ impl Desk {
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
-        if board.look(now, &self.host, self.alarms.now()) {
+        let alarms = [self.alarms.now(), self.watch.missing()].concat();
+        if board.look(now, &self.host, alarms) {
             self.words.push("HALT was asked for on the page: the robots stand until the end".to_owned());
             self.tell(now, Input::Halt);
         }
@@ -349,8 +350,10 @@ impl Desk {
         }
     }
 
-    fn look_at_alarms(&mut self, now: protocol::Instant, inbox: &Inbox) {
-        self.words.extend(self.alarms.look(now, &self.host, inbox.dropped()));
+    fn look_at_alarms(&mut self, now: protocol::Instant, config: &TeamConfig, inbox: &Inbox) {
+        let way = self.watch.vision_way();
+        let vision = || format!("{}, {way}", config.vision);
+        self.words.extend(self.alarms.look(now, &self.host, inbox.dropped(), vision));
     }
 
     /// Whether the recording keeps up, and whether the disk takes it.
