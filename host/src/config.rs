@@ -19,6 +19,10 @@
 //! [[calibration]]                 # what a robot does otherwise than it is told
 //! robot = 3
 //! kick = 1.06                     # balls leave this much faster than ordered
+//! latency_ms = 45                 # from an order to its motion; shown, not used
+//!
+//! [ball]
+//! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //! ```
 
 use std::fmt;
@@ -67,6 +71,17 @@ pub struct TeamSettings {
     /// What robots do otherwise than told.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
+    /// How the ball moves on this field.
+    #[serde(default)]
+    pub ball: BallSettings,
+}
+
+/// How the ball moves on the field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BallSettings {
+    /// Deceleration of a rolling ball, m/s².
+    pub roll: Option<f32>,
 }
 
 /// What one robot does otherwise than it is told.
@@ -78,6 +93,9 @@ pub struct Calibration {
     /// Ball speed over speed ordered.
     #[serde(default = "one")]
     pub kick: f32,
+    /// From an order to its motion, ms: told by `control --learned`, used by nothing yet.
+    #[serde(default)]
+    pub latency_ms: Option<f32>,
 }
 
 fn one() -> f32 {
@@ -117,6 +135,8 @@ pub struct TeamConfig {
     pub game_controller: Option<SocketAddr>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// Deceleration of a rolling ball, m/s²; none: vision's.
+    pub roll: Option<f32>,
 }
 
 /// How robots are reached.
@@ -195,6 +215,7 @@ impl TeamSettings {
             tracker: self.tracker.or(below.tracker),
             game_controller: self.game_controller.or(below.game_controller),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
+            ball: BallSettings { roll: self.ball.roll.or(below.ball.roll) },
         }
     }
 
@@ -207,15 +228,21 @@ impl TeamSettings {
             })?,
         };
         let mut kick = [1.0; RobotId::COUNT];
-        for Calibration { robot, kick: factor } in self.calibration {
+        for Calibration { robot, kick: factor, .. } in self.calibration {
             let id = robot_id("calibration.robot", robot)?;
-            if !(0.5..=2.0).contains(&factor) {
+            if !KICK_RANGE.contains(&factor) {
                 return Err(error(
                     "calibration.kick",
-                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.5 to 2"),
+                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.4 to 2"),
                 ));
             }
             kick[id.index()] = factor;
+        }
+        if let Some(roll) = self.ball.roll.filter(|roll| !ROLL_RANGE.contains(roll)) {
+            return Err(error(
+                "ball.roll",
+                format!("{roll}; deceleration of a rolling ball, 0.05 to 1.5 m/s²"),
+            ));
         }
         Ok(TeamConfig {
             name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
@@ -233,10 +260,15 @@ impl TeamSettings {
             tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
             game_controller: self.game_controller,
             kick,
+            roll: self.ball.roll,
         })
     }
 }
 
+/// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
+const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
+/// What carpets do, m/s²: the same.
+const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 
 fn colour(word: &str) -> Result<Colour, ConfigError> {
@@ -310,7 +342,7 @@ mod tests {
         let config = TeamSettings::from_toml(&text).unwrap().complete().unwrap();
         assert_eq!(config.colour, Colour::Blue);
         assert_eq!(config.robots, RobotLink::Simulator("127.0.0.1".to_owned()));
-        assert_eq!(config.kick[3], 1.06);
+        assert_eq!((config.kick[3], config.roll), (1.06, Some(0.41)));
         assert_eq!(config.referee_source, Some(SourcePin::of("192.168.1.5")));
         assert_eq!(config.referee_silence, OnSilence::Halt);
         assert_eq!(config.game_controller.unwrap().port(), 10_008);
@@ -335,6 +367,7 @@ mod tests {
         assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
             assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
         }

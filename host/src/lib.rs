@@ -10,6 +10,7 @@ pub mod config;
 pub mod geometry;
 mod hidden_ball;
 mod host;
+pub mod learned;
 mod proposal;
 pub mod radio;
 pub mod recheck;

@@ -47,6 +47,12 @@ pub struct HostHeader {
     pub keeper: u8,
     /// Ball speed over speed ordered, by robot.
     pub kick: Vec<f32>,
+    /// Deceleration of a rolling ball that was set, m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f32>,
+    /// Whether it played by what it learned.
+    #[serde(default)]
+    pub learns: bool,
     /// When it began, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
@@ -140,6 +146,8 @@ impl HostHeader {
             defending: defending.word().to_owned(),
             keeper: keeper.number(),
             kick: kick.to_vec(),
+            roll: None,
+            learns: false,
             began_us: began.0,
             plays: Team::Ours,
             team: radio.team.0,
@@ -159,6 +167,8 @@ impl HostHeader {
         let who = (settings.us, settings.keeper, settings.defending);
         Self {
             plays: settings.team,
+            roll: settings.roll,
+            learns: settings.learns,
             referee_source: settings.referee.as_ref().map(ToString::to_string),
             referee_silence: Some(settings.referee_silence.word().to_owned()),
             tactics: settings.tactics,
@@ -181,6 +191,8 @@ impl HostHeader {
             keeper: self.keeper()?,
             defending: self.defending()?,
             kick: self.kick()?,
+            roll: self.roll.filter(|roll| (0.05..=1.5).contains(roll)),
+            learns: self.learns,
             referee: self.referee_source.as_deref().map(SourcePin::of),
             referee_silence: self.referee_silence()?,
             team: self.plays,
