@@ -12,12 +12,17 @@
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
 //! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
+//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command stands
 //! tracker = "224.5.23.2:10010"
 //! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
 //!
 //! [[calibration]]                 # what a robot does otherwise than it is told
 //! robot = 3
 //! kick = 1.06                     # balls leave this much faster than ordered
+//! latency_ms = 45                 # from an order to its motion; shown, not used
+//!
+//! [ball]
+//! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
 //! ```
 
 use std::fmt;
@@ -29,7 +34,7 @@ use protocol::RobotId;
 use rules::{Colour, League};
 use serde::Deserialize;
 
-use crate::referee::SourcePin;
+use crate::referee::{OnSilence, SourcePin};
 
 /// A team's settings: as a file or flags give them, everything may be left out.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -57,6 +62,8 @@ pub struct TeamSettings {
     pub referee: Option<SocketAddr>,
     /// The only referee that is obeyed: see [`SourcePin`].
     pub referee_source: Option<String>,
+    /// `halt` or `go-on`: see [`OnSilence`].
+    pub referee_silence: Option<String>,
     /// Where tracker packets go.
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
@@ -64,6 +71,17 @@ pub struct TeamSettings {
     /// What robots do otherwise than told.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
+    /// How the ball moves on this field.
+    #[serde(default)]
+    pub ball: BallSettings,
+}
+
+/// How the ball moves on the field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BallSettings {
+    /// Deceleration of a rolling ball, m/s².
+    pub roll: Option<f32>,
 }
 
 /// What one robot does otherwise than it is told.
@@ -75,6 +93,9 @@ pub struct Calibration {
     /// Ball speed over speed ordered.
     #[serde(default = "one")]
     pub kick: f32,
+    /// From an order to its motion, ms: told by `control --learned`, used by nothing yet.
+    #[serde(default)]
+    pub latency_ms: Option<f32>,
 }
 
 fn one() -> f32 {
@@ -106,12 +127,16 @@ pub struct TeamConfig {
     pub referee: SocketAddr,
     /// The only referee that is obeyed; none: the strictest of all.
     pub referee_source: Option<SourcePin>,
+    /// What robots do when the referee falls silent.
+    pub referee_silence: OnSilence,
     /// Where tracker packets go.
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// Deceleration of a rolling ball, m/s²; none: vision's.
+    pub roll: Option<f32>,
 }
 
 /// How robots are reached.
@@ -186,9 +211,11 @@ impl TeamSettings {
             vision: self.vision.or(below.vision),
             referee: self.referee.or(below.referee),
             referee_source: self.referee_source.or(below.referee_source),
+            referee_silence: self.referee_silence.or(below.referee_silence),
             tracker: self.tracker.or(below.tracker),
             game_controller: self.game_controller.or(below.game_controller),
             calibration: if self.calibration.is_empty() { below.calibration } else { self.calibration },
+            ball: BallSettings { roll: self.ball.roll.or(below.ball.roll) },
         }
     }
 
@@ -201,15 +228,21 @@ impl TeamSettings {
             })?,
         };
         let mut kick = [1.0; RobotId::COUNT];
-        for Calibration { robot, kick: factor } in self.calibration {
+        for Calibration { robot, kick: factor, .. } in self.calibration {
             let id = robot_id("calibration.robot", robot)?;
-            if !(0.5..=2.0).contains(&factor) {
+            if !KICK_RANGE.contains(&factor) {
                 return Err(error(
                     "calibration.kick",
-                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.5 to 2"),
+                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.4 to 2"),
                 ));
             }
             kick[id.index()] = factor;
+        }
+        if let Some(roll) = self.ball.roll.filter(|roll| !ROLL_RANGE.contains(roll)) {
+            return Err(error(
+                "ball.roll",
+                format!("{roll}; deceleration of a rolling ball, 0.05 to 1.5 m/s²"),
+            ));
         }
         Ok(TeamConfig {
             name: self.name.unwrap_or_else(|| "onetwo".to_owned()),
@@ -223,13 +256,19 @@ impl TeamSettings {
             vision: self.vision.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_006))),
             referee: self.referee.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 1], 10_003))),
             referee_source: self.referee_source.as_deref().map(pin).transpose()?,
+            referee_silence: self.referee_silence.as_deref().map_or(Ok(OnSilence::default()), on_silence)?,
             tracker: self.tracker.unwrap_or_else(|| SocketAddr::from(([224, 5, 23, 2], 10_010))),
             game_controller: self.game_controller,
             kick,
+            roll: self.ball.roll,
         })
     }
 }
 
+/// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
+const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
+/// What carpets do, m/s²: the same.
+const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 
 fn colour(word: &str) -> Result<Colour, ConfigError> {
@@ -242,6 +281,13 @@ fn colour(word: &str) -> Result<Colour, ConfigError> {
 fn pin(text: &str) -> Result<SourcePin, ConfigError> {
     let words = "empty; an address such as 192.168.1.5, one with a port, or a referee's identifier";
     if text.trim().is_empty() { Err(error("referee_source", words)) } else { Ok(SourcePin::of(text.trim())) }
+}
+
+fn on_silence(word: &str) -> Result<OnSilence, ConfigError> {
+    let known = OnSilence::ALL.into_iter().find(|(known, _)| *known == word);
+    known.map(|(_, known)| known).ok_or_else(|| {
+        error("referee_silence", format!("`{word}` is none; halt (after 2 s) or go-on (by its last command)"))
+    })
 }
 
 fn robot_id(key: &str, number: u8) -> Result<RobotId, ConfigError> {
@@ -296,8 +342,9 @@ mod tests {
         let config = TeamSettings::from_toml(&text).unwrap().complete().unwrap();
         assert_eq!(config.colour, Colour::Blue);
         assert_eq!(config.robots, RobotLink::Simulator("127.0.0.1".to_owned()));
-        assert_eq!(config.kick[3], 1.06);
+        assert_eq!((config.kick[3], config.roll), (1.06, Some(0.41)));
         assert_eq!(config.referee_source, Some(SourcePin::of("192.168.1.5")));
+        assert_eq!(config.referee_silence, OnSilence::Halt);
         assert_eq!(config.game_controller.unwrap().port(), 10_008);
     }
 
@@ -317,8 +364,10 @@ mod tests {
         assert!(refused("colour = \"red\"").to_string().contains("blue or yellow"));
         assert!(refused("keeper = 16").to_string().contains("0 to 15"));
         assert!(refused("referee_source = ' '").to_string().contains("192.168.1.5"));
+        assert!(refused("referee_silence = 'wait'").to_string().contains("halt (after 2 s) or go-on"));
         assert!(refused("league = \"four-legged\"").to_string().contains("division-b"));
         assert!(refused("[[calibration]]\nrobot = 1\nkick = 9.0").to_string().contains("calibration.kick"));
+        assert!(refused("[ball]\nroll = 9.0").to_string().contains("ball.roll"));
         for link in ["", "tcp://x:1", "udp://x", "udp://:1", "sim://", "serial:"] {
             assert!(RobotLink::parse(link).unwrap_err().to_string().contains("sim://HOST"), "{link}");
         }

@@ -17,10 +17,11 @@ use ssl::Message;
 
 use crate::geometry::VisionGeometry;
 use crate::hidden_ball::HiddenBall;
+use crate::learned::Learned;
 use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
 use crate::referee::team_port::Request;
-use crate::referee::{self, Listener, SenderAddress, SourcePin};
+use crate::referee::{self, Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::{Bookkeeper, PlayTally};
@@ -42,8 +43,14 @@ pub struct HostSettings {
     pub defending: GoalEnd,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
+    /// Deceleration of a rolling ball, m/s²; none: vision's, or the league's usual.
+    pub roll: Option<f32>,
+    /// It plays by what it learns of kickers and ball; it learns in either case.
+    pub learns: bool,
     /// The only referee that is obeyed; none: every one, the strictest first.
     pub referee: Option<SourcePin>,
+    /// What robots do when the referee falls silent.
+    pub referee_silence: OnSilence,
     /// Who decides open play.
     pub team: Team,
     /// The radio's.
@@ -61,7 +68,10 @@ impl HostSettings {
             keeper: RobotId::ZERO,
             defending: if us == Colour::Yellow { GoalEnd::Negative } else { GoalEnd::Positive },
             kick: [1.0; RobotId::COUNT],
+            roll: None,
+            learns: false,
             referee: None,
+            referee_silence: OnSilence::default(),
             team: Team::Ours,
             radio: RadioSettings { key: TeamKey::ZERO, ..RadioSettings::new(TeamId::of(us), epoch) },
             tactics: Tactics::default(),
@@ -110,6 +120,8 @@ pub struct Undecodable {
     pub vision: u64,
     /// On the referee's port.
     pub referee: u64,
+    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
+    pub empty: u64,
 }
 
 /// A team's host.
@@ -128,6 +140,8 @@ pub struct Host {
     hidden: HiddenBall,
     orders: Orders,
     planned: Option<Instant>,
+    /// When the newest camera frame came.
+    imaged: Option<Instant>,
     /// When it was last planned because of the referee.
     replanned: Option<Instant>,
     /// The referee's phase in the newest orders.
@@ -136,6 +150,9 @@ pub struct Host {
     halted: bool,
     books: Bookkeeper,
     requests: Requests,
+    learned: Learned,
+    /// The deceleration of a rolling ball by which it plays, where that is not vision's.
+    roll: Option<f32>,
 }
 
 /// What a robot of ours last said of itself.
@@ -148,12 +165,14 @@ struct Known {
 impl Host {
     /// A host that starts at `now`.
     pub fn new(settings: HostSettings, now: Instant) -> Self {
-        Self {
+        let roll = settings.roll;
+        let mut host = Self {
             listener: Listener::new(
                 settings.league.limits().unwrap_or(LIMITS),
                 settings.referee.clone(),
                 now,
-            ),
+            )
+            .on_silence(settings.referee_silence),
             radio: Radio::new(settings.radio),
             tracker: Tracker::default(),
             geometry: VisionGeometry::default(),
@@ -163,6 +182,7 @@ impl Host {
             hidden: HiddenBall::default(),
             orders: Orders::new(),
             planned: None,
+            imaged: None,
             replanned: None,
             ordered: Phase::Halt,
             undecodable: Undecodable::default(),
@@ -170,8 +190,14 @@ impl Host {
             books: Bookkeeper::default(),
             requests: Requests::default(),
             cases: cases_of(settings.league),
+            learned: Learned::default(),
+            roll: None,
             settings,
+        };
+        if let Some(roll) = roll {
+            host.roll_with(roll);
         }
+        host
     }
 
     /// Something came, or a deadline has.
@@ -249,6 +275,16 @@ impl Host {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
+    /// The field that vision told, once it did.
+    pub fn told_field(&self) -> Option<&FieldSpec> {
+        self.geometry.field()
+    }
+
+    /// When the newest camera frame came.
+    pub fn imaged(&self) -> Option<Instant> {
+        self.imaged
+    }
+
     /// Whether robots are told to halt now, by the referee or by `Host::halt`.
     pub fn is_halting(&self) -> bool {
         self.halted || self.listener.game().phase == Phase::Halt
@@ -274,6 +310,11 @@ impl Host {
         self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
     }
 
+    /// What it has learned of its robots and the field.
+    pub fn learned(&self) -> &Learned {
+        &self.learned
+    }
+
     /// Datagrams that were no messages.
     pub fn undecodable(&self) -> Undecodable {
         self.undecodable
@@ -289,12 +330,16 @@ impl Host {
             self.undecodable.vision += 1;
             return Verdict::Undecodable;
         };
+        self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
             // What cannot be a field is told by the geometry's own counts; the field before stands.
             let _told = self.geometry.hear(data);
         }
         let heard = self.tracker.handle(&packet, now);
         let news = !matches!(heard, tracking::Heard::NoImage | tracking::Heard::Repeated);
+        if news {
+            self.imaged = Some(now);
+        }
         if news && self.planned.is_none_or(|last| now.since(last) >= PLAN_EVERY) {
             self.plan(now);
         }
@@ -346,7 +391,8 @@ impl Host {
     /// Orders for the field as it is now, and out with them.
     fn plan(&mut self, now: Instant) {
         self.planned = Some(now);
-        self.world = self.tracker.world(now);
+        let picture = self.tracker.picture();
+        self.world = picture.at(now);
         // Only a ball that is seen can be seen to move: where a hidden one is put is a guess.
         self.listener.tick(now, plainly_seen(now, self.world.ball));
         self.remember_ball(now);
@@ -370,6 +416,13 @@ impl Host {
             directive: self.calibrated(order.robot, order.task.directive(flip)),
         };
         let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
+        self.learned.see(now, (&picture, us), game.phase, &commands);
+        if self.settings.learns
+            && let Some(known) = self.learned.friction()
+            && self.roll.is_none_or(|roll| (known.value - roll).abs() > roll * ROLL_CHANGES)
+        {
+            self.roll_with(known.value);
+        }
         self.ordered = self.listener.game().phase;
         let situation = Situation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
@@ -443,9 +496,21 @@ impl Host {
         proposal(&self.cases, &told, flip)
     }
 
+    /// Balls roll like that from now on.
+    fn roll_with(&mut self, roll: f32) {
+        self.roll = Some(roll);
+        self.coach.set_ground(self.tracker.set_roll(roll));
+    }
+
+    /// By how much that robot kicks harder than it is told: as it was learned, else as it was set.
+    fn kicks_by(&self, robot: RobotId) -> f32 {
+        let learned = self.learned.kick(robot).filter(|_| self.settings.learns);
+        learned.map_or(self.settings.kick[robot.index()], |known| known.value.clamp(GAIN_MIN, GAIN_MAX))
+    }
+
     /// The same directive for a kicker that kicks harder or softer than it is told.
     fn calibrated(&self, robot: RobotId, mut directive: Directive) -> Directive {
-        let factor = self.settings.kick[robot.index()];
+        let factor = self.kicks_by(robot);
         if factor != 1.0
             && let Directive::Kick { kick, .. } | Directive::Pass { kick, .. } = &mut directive
         {
@@ -470,9 +535,40 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 const PLAN_EVERY: Duration = Duration::millis(5);
 /// What a robot told of itself longer ago is not counted on.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
+/// A learned gain scales a kick's order by 0.8 to 1.7, not farther: what is beyond is a mistake of what was learned, or a broken kicker.
+const GAIN_MIN: f32 = 1.0 / 1.7;
+const GAIN_MAX: f32 = 1.0 / 0.8;
+/// Share by which a ball must roll otherwise before tables are made anew.
+const ROLL_CHANGES: f32 = 0.05;
 /// A ball that was not seen for longer is hidden: the cameras' delay and a few images.
 const PLAINLY: Duration = Duration::millis(120);
 /// The tracker's confidence in a ball that it has followed for a tenth of a second.
 const SURE: f32 = 0.6;
 /// As long as robots hold each other for present.
 const BEACON_LEASE: Duration = Duration::millis(400);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_learned_gain_scales_the_order_within_its_bounds_and_only_where_the_host_plays_by_it() {
+        let id = RobotId::new(3).unwrap();
+        let ordered = |gain: f32, learns: bool| {
+            let settings = HostSettings { learns, ..HostSettings::new(Colour::Blue, League::DivisionB, 1) };
+            let mut host = Host::new(settings, Instant(0));
+            host.learned = Learned::of_kick(id, gain);
+            let at = Point::<geometry::Field>::new(1.0, 0.0).into();
+            match host.calibrated(id, Directive::Kick { at, kick: KickOrder::Flat(300) }) {
+                Directive::Kick { kick: KickOrder::Flat(speed), .. } => speed,
+                other => panic!("{other:?}"),
+            }
+        };
+        let near =
+            |speed: u16, expected: u16| assert!(speed.abs_diff(expected) <= 1, "{speed}, not {expected}");
+        near(ordered(0.72, true), 417);
+        near(ordered(0.72, false), 300);
+        near(ordered(0.45, true), 510);
+        near(ordered(1.8, true), 240);
+    }
+}

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::HostSettings;
 use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
-use crate::referee::SourcePin;
+use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::{Tactics, Team};
 
 /// What a trace begins with.
@@ -50,6 +50,12 @@ pub struct HostHeader {
     pub keeper: u8,
     /// Ball speed over speed ordered, by robot.
     pub kick: Vec<f32>,
+    /// Deceleration of a rolling ball that was set, m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f32>,
+    /// Whether it played by what it learned.
+    #[serde(default)]
+    pub learns: bool,
     /// When it began, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
@@ -67,6 +73,9 @@ pub struct HostHeader {
     /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_source: Option<String>,
+    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command stood.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub referee_silence: Option<String>,
     /// Were frames sealed with a key other than zeros?
     #[serde(default)]
     pub keyed: bool,
@@ -140,6 +149,8 @@ impl HostHeader {
             defending: defending.word().to_owned(),
             keeper: keeper.number(),
             kick: kick.to_vec(),
+            roll: None,
+            learns: false,
             began_us: began.0,
             plays: Team::Ours,
             team: radio.team.0,
@@ -147,6 +158,7 @@ impl HostHeader {
             relay: relay.to_owned(),
             way_us: radio.way.0,
             referee_source: None,
+            referee_silence: None,
             keyed: radio.key != TeamKey::ZERO,
             tactics: Tactics::NONE,
             cases: None,
@@ -158,7 +170,10 @@ impl HostHeader {
         let who = (settings.us, settings.keeper, settings.defending);
         Self {
             plays: settings.team,
+            roll: settings.roll,
+            learns: settings.learns,
             referee_source: settings.referee.as_ref().map(ToString::to_string),
+            referee_silence: Some(settings.referee_silence.word().to_owned()),
             tactics: settings.tactics,
             cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
             ..Self::new(who, &settings.kick, &settings.radio, began)
@@ -179,11 +194,22 @@ impl HostHeader {
             keeper: self.keeper()?,
             defending: self.defending()?,
             kick: self.kick()?,
+            roll: self.roll.filter(|roll| (0.05..=1.5).contains(roll)),
+            learns: self.learns,
             referee: self.referee_source.as_deref().map(SourcePin::of),
+            referee_silence: self.referee_silence()?,
             team: self.plays,
             radio: self.radio(key)?,
             tactics: self.tactics,
         })
+    }
+
+    fn referee_silence(&self) -> Result<OnSilence, HeaderError> {
+        let Some(word) = &self.referee_silence else { return Ok(OnSilence::GoOn) };
+        let known = OnSilence::ALL.into_iter().find(|(known, _)| known == word);
+        known
+            .map(|(_, known)| known)
+            .ok_or_else(|| wrong(format!("referee_silence: `{word}` is none; halt or go-on")))
     }
 
     /// Its colour.

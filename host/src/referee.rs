@@ -13,7 +13,8 @@
 //!   both addresses; [`SourcePin`] ends it.
 //! - **HALT that ends without a STOP** of the source that is followed (the other source fell silent, a late copy) is left
 //!   through [`GRACE`] of STOP: people may stand on the field.
-//! - **Silence is not loss** (trap 5). The phase stands; [`Listener::silence`] says how long nothing came.
+//! - **Silence is not loss** (trap 5). The phase stands for [`HALT_AFTER`]; then robots halt ([`OnSilence::Halt`]) or go on by it
+//!   ([`OnSilence::GoOn`]). [`Listener::silence`] says how long nothing came.
 //!
 //! Only a change of command or counter is a command, and what the same command with a new counter means is for
 //! [`rules::state`] to say (trap 4). The referee's clock is Unix time, µs; ages of commands are differences on it.
@@ -47,13 +48,40 @@ pub use words::{command_of, stage_of};
 /// The operator is told that the referee is silent after this: it sends every 25 ms, pauses of 1.6 s were recorded on a
 /// loaded machine, and twice that is no pause any more. A source that is silent longer has no say.
 pub const SILENCE: Duration = Duration::millis(3_000);
+/// Where robots halt for want of a referee, they do so after this: 80 packets of the controller, and more than the longest pause
+/// recorded on a loaded machine (1.6 s).
+pub const HALT_AFTER: Duration = Duration::millis(2_000);
 /// Sources that are told apart. When full, the least strict one makes room, so that no flood of sources hides a HALT.
 const SOURCES_MAX: usize = 8;
+
+/// What robots do while nothing comes from a referee that was received before. Before the first packet they halt in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnSilence {
+    /// They halt after [`HALT_AFTER`], and play again after a STOP of [`GRACE`] when it is back.
+    #[default]
+    Halt,
+    /// They go on by its last command: for test days on which the controller is started for a command and ended.
+    GoOn,
+}
+
+impl OnSilence {
+    /// Both, with their words in `team.toml` and on the command line.
+    pub const ALL: [(&'static str, Self); 2] = [("halt", Self::Halt), ("go-on", Self::GoOn)];
+
+    /// The word for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Halt => "halt",
+            Self::GoOn => "go-on",
+        }
+    }
+}
 
 /// Receives the referee's packets.
 #[derive(Clone, Debug)]
 pub struct Listener {
     limits: Limits,
+    on_silence: OnSilence,
     pin: Option<SourcePin>,
     /// The first is followed.
     sources: Vec<Source>,
@@ -82,10 +110,11 @@ pub enum Silence {
 }
 
 impl Listener {
-    /// Starts to listen at `now`, to every source or only to the pinned one.
+    /// Starts to listen at `now`, to every source or only to the pinned one; a silent referee's last command stands.
     pub fn new(limits: Limits, pin: Option<SourcePin>, now: Instant) -> Self {
         Self {
             limits,
+            on_silence: OnSilence::GoOn,
             pin,
             sources: Vec::new(),
             excluded: Vec::new(),
@@ -96,6 +125,12 @@ impl Listener {
             counts: Counts::default(),
             started: now,
         }
+    }
+
+    /// The same, and that is what happens when the referee falls silent.
+    #[must_use]
+    pub fn on_silence(self, on_silence: OnSilence) -> Self {
+        Self { on_silence, ..self }
     }
 
     /// The game as it is to be obeyed.
@@ -259,6 +294,10 @@ impl Listener {
         } else {
             self.undecided = None;
         }
+        let newest = others.iter().map(|other| other.heard).fold(followed.heard, Instant::max);
+        if self.on_silence == OnSilence::Halt && now.since(newest) >= HALT_AFTER {
+            strictest = Strictness::Halt;
+        }
         let plays = !matches!(followed.state.phase(), Phase::Halt | Phase::Stop | Phase::Timeout(_));
         if self.imposed == Strictness::Halt && strictest < Strictness::Halt && plays {
             self.still_until = now + Duration::from_secs_f32(GRACE);
@@ -284,5 +323,7 @@ fn imposed_on(phase: Phase<Colour>, strictness: Strictness) -> Phase<Colour> {
 
 #[cfg(test)]
 mod attacks;
+#[cfg(test)]
+mod silent;
 #[cfg(test)]
 mod tests;

@@ -113,7 +113,7 @@ pub fn page(rows: &[Row], seeds: u64) -> String {
          broken.\n\n\
          - *finished*: of the gameplays that ended, those that all their robots played to the end; the rest somebody stopped.\n\
          - *stops*: how often a robot that was armed braked because its host was silent for 100 ms, in a robot's minute; *stood*: the \
-         share of the time for which it then stood (it takes half a second without a gap of 50 ms to be armed again).\n\
+         share of the time for which it then stood (after a silence of half a second it takes half a second to be armed again).\n\
          - *new cycle*: from the end of a gameplay until all robots know a newer cycle.\n\n\
          ![Gameplays finished, stops and time to a new cycle against loss](faults/loss.svg)\n",
         RUN_MS / 1000

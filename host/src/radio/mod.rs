@@ -18,7 +18,7 @@ mod quality;
 mod tally;
 mod warning;
 
-use protocol::frame::{Audience, Frame, Refusal, TeamKey};
+use protocol::frame::{Audience, Frame, Refusal, Sender, TeamKey};
 use protocol::host::{Command, HostMessage, PARTS_MAX, Telemetry};
 use protocol::host_link::{HostLink, Opened};
 use protocol::link::Packet;
@@ -200,8 +200,11 @@ impl Radio {
         let frame = Frame::parse(packet, self.settings.team);
         let opened = self.link.open(now, packet);
         if let Err(refusal) = opened {
-            let sender = frame.ok().and_then(|frame| frame.sender.robot());
-            self.refusals.refuse(now, refusal, sender);
+            let sender = frame.ok().map(|frame| (frame.sender, frame.epoch));
+            self.refusals.refuse(now, refusal, sender.and_then(|(sender, _)| sender.robot()));
+            if let Some((Sender::Host, epoch)) = sender.filter(|(_, epoch)| *epoch != self.link.epoch()) {
+                self.refusals.other_host(now, epoch);
+            }
         }
         let (robot, message) = match opened? {
             Opened::Believed(robot, message) => (robot, message),
@@ -261,6 +264,11 @@ impl Radio {
     /// What keeps robots and this host apart now, and what to do about it.
     pub fn warnings(&self, now: Instant) -> impl Iterator<Item = RadioWarning> {
         self.refusals.warnings(now, self.link.epoch())
+    }
+
+    /// When the last snapshot went out.
+    pub fn transmitted(&self) -> Option<Instant> {
+        self.last
     }
 
     /// Packets that nobody fetched in time.

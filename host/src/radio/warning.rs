@@ -23,6 +23,8 @@ pub enum RadioWarning {
     Refuses(RobotId, Why),
     /// Frames in that robot's name have a tag that is not its key's.
     WrongKey(RobotId),
+    /// Frames of another host of our team come in, with this epoch.
+    OtherHost(u32),
     /// Frames of another team's number come in.
     OtherTeam(TeamId),
     /// Frames of another version of the protocol come in.
@@ -96,6 +98,11 @@ impl fmt::Display for RadioWarning {
                 "frames of robot {robot} have a wrong tag: it holds another team's key, or is imitated; check --key-file, or write \
                  its page again (`onetwo firmware provision --robot {robot}`)"
             ),
+            Self::OtherHost(epoch) => write!(
+                f,
+                "frames of another host of our team (epoch {epoch}) come in: end one of the two hosts, or give it a key and a --colour \
+                 of its own"
+            ),
             Self::OtherTeam(team) => write!(
                 f,
                 "frames of team {} come in: a robot of the other team, or one of ours provisioned with its number (--team)",
@@ -152,6 +159,7 @@ struct OfRobot {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Refusals {
     robots: [OfRobot; RobotId::COUNT],
+    host: (Rising, u32),
     team: (Rising, u8),
     version: (Rising, u8),
 }
@@ -185,6 +193,12 @@ impl Refusals {
         }
     }
 
+    /// A frame came that names our team's host, with an epoch that is not ours. Ours come back from base stations that repeat them.
+    pub(super) fn other_host(&mut self, now: Instant, epoch: u32) {
+        self.host.0.add(now, 1);
+        self.host.1 = epoch;
+    }
+
     /// What goes on now, for a host of that epoch.
     pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
         let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
@@ -197,10 +211,11 @@ impl Refusals {
             let forged = known.forged.goes_on(now).then_some(RadioWarning::WrongKey(robot));
             later.into_iter().chain(whys.map(move |(why, _)| RadioWarning::Refuses(robot, why))).chain(forged)
         };
-        let (team, version) = (self.team, self.version);
+        let (host, team, version) = (self.host, self.team, self.version);
+        let host = host.0.goes_on(now).then_some(RadioWarning::OtherHost(host.1));
         let team = team.0.goes_on(now).then_some(RadioWarning::OtherTeam(TeamId(team.1)));
         let version = version.0.goes_on(now).then_some(RadioWarning::OtherVersion(version.1));
-        RobotId::all().zip(&self.robots).flat_map(of_robot).chain(team).chain(version)
+        RobotId::all().zip(&self.robots).flat_map(of_robot).chain(host).chain(team).chain(version)
     }
 }
 

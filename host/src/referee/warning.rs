@@ -9,7 +9,7 @@ use rules::state::Command;
 
 use super::identity::{SourceKey, SourcePin};
 use super::verdict::Doubt;
-use super::{Listener, SILENCE};
+use super::{HALT_AFTER, Listener, OnSilence, SILENCE};
 
 /// Something that is wrong with the referee's sources now.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,15 @@ pub enum Warning {
         /// By so many µs; negative: back.
         by: i64,
     },
+    /// Nothing came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
+    Silent {
+        /// Which was followed.
+        source: SourceKey,
+        /// For how long.
+        since: Duration,
+        /// What robots do meanwhile.
+        robots: OnSilence,
+    },
     /// A source is excluded by `--referee-source`.
     Excluded {
         /// Which.
@@ -69,6 +78,11 @@ impl Listener {
             warnings.extend(self.exclusions(now));
             return warnings;
         };
+        let newest = self.sources.iter().map(|source| source.heard).fold(followed.heard, Instant::max);
+        let since = now.since(newest);
+        if since >= HALT_AFTER {
+            warnings.push(Warning::Silent { source: followed.key.clone(), since, robots: self.on_silence });
+        }
         for other in others.iter().filter(|other| lately(other.heard)) {
             warnings.push(if other.command == followed.command {
                 Warning::Several { followed: followed.key.clone(), other: other.key.clone() }
@@ -122,6 +136,7 @@ impl Warning {
             Self::Several { followed, other } => format!("several {followed} {other}"),
             Self::OutOfOrder { source, .. } => format!("order {source}"),
             Self::ClockStepped { source, by } => format!("clock {source} {by}"),
+            Self::Silent { source, .. } => format!("silent {source}"),
             Self::Excluded { source, .. } => format!("excluded {source}"),
         }
     }
@@ -156,6 +171,21 @@ impl fmt::Display for Warning {
                 "the clock of {source} has stepped by {:+.1} s and is followed; is its machine set by NTP?",
                 *by as f64 * 1e-6
             ),
+            Self::Silent { source, since, robots } => {
+                let robots = match robots {
+                    OnSilence::Halt => {
+                        "the robots halt until it is back (--referee-silence go-on lets its last command stand)"
+                    }
+                    OnSilence::GoOn => {
+                        "its last command stands (--referee-silence halt lets the robots halt)"
+                    }
+                };
+                write!(
+                    f,
+                    "nothing came from {source} for {:.0} s: {robots}. Is the game controller running, and its network cable in?",
+                    since.as_secs_f32()
+                )
+            }
             Self::Excluded { source, pin } => {
                 write!(
                     f,

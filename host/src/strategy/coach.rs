@@ -127,6 +127,11 @@ impl Coach {
         }
     }
 
+    /// Balls move like that along this field's ground.
+    pub fn set_ground(&mut self, ground: BallModel) {
+        self.kicks = Kicks::new(*self.kicks.constants(), ground, ChipModel::default());
+    }
+
     /// Orders for all our robots of the view, one each, by id.
     pub fn decide(&mut self, view: &View) -> Orders {
         let stands = self.team == Team::Idle || matches!(view.phase, Phase::Halt | Phase::Timeout(_));

@@ -46,6 +46,7 @@ mod robots;
 mod scene;
 mod seen;
 
+use motion::ball::BallModel;
 use protocol::{Duration, Instant};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
@@ -260,6 +261,11 @@ impl Tracker {
         }
         let (scene, settings) = (&self.scene, &self.settings);
         self.timeline.put(&self.frame, &mut self.state, |state, frame| state.see(frame, scene, settings))
+    }
+
+    /// Balls roll with that deceleration, m/s², whatever vision says; gives how they move along the ground then.
+    pub fn set_roll(&mut self, roll: f32) -> BallModel {
+        self.scene.set_roll(roll)
     }
 
     /// The field when the newest image was taken; empty before the first.

@@ -2,6 +2,7 @@
 //! it, ready at hand. m.
 
 use geometry::{Field, Point};
+use motion::ball::BallModel;
 use ssl::vision::GeometryData;
 
 use super::seen::CAMERAS_MAX;
@@ -21,6 +22,8 @@ pub(super) struct Scene {
     pub(super) geometry: VisionGeometry,
     cameras: [Option<Camera>; CAMERAS_MAX],
     pub(super) models: BallModels,
+    /// How fast a rolling ball slows down, where it is better known than vision tells, m/s².
+    roll: Option<f32>,
 }
 
 impl Scene {
@@ -39,9 +42,17 @@ impl Scene {
                 *place = (height >= HEIGHT_MIN).then_some(Camera { above: Point::new(x, y), height });
             }
         }
-        self.models.ground = self.geometry.ground().unwrap_or(self.models.ground);
+        let ground = self.geometry.ground().unwrap_or(self.models.ground);
+        self.models.ground = BallModel { roll: self.roll.unwrap_or(ground.roll), ..ground };
         self.models.chip = self.geometry.chip().unwrap_or(self.models.chip);
         Ok(news)
+    }
+
+    /// Balls roll with that deceleration from now on.
+    pub(super) fn set_roll(&mut self, roll: f32) -> BallModel {
+        self.roll = Some(roll);
+        self.models.ground.roll = roll;
+        self.models.ground
     }
 
     /// Where that camera hangs, if it was told.

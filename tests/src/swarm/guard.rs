@@ -8,7 +8,7 @@
 //! |---|---|
 //! | always | numbers, rims within 5 m/s, dribbler 0–1, kicks within 6.3 m/s and only where the phase allows one |
 //! | no frame, or no command, for 100 ms; HALT or time-out told; odometry no number; tipped; spinning; battery low for 1 s | brakes: not faster than before, stands within a second; dribbler off, kicker discharged |
-//! | a silence of 100 ms, or a boot, and since then no half a second without a gap of 50 ms | brakes |
+//! | a silence of half a second, or a boot, less than half a second ago | brakes |
 //! | no frame for 50 ms | the limit shrinks to nothing at 100 ms |
 //! | STOP for 2 s | 1.5 m/s |
 
@@ -30,7 +30,7 @@ pub struct Guard {
     pub honest: Honest,
     born: u32,
     kinematics: Omni,
-    /// Moments, ms: the last frame, the last command, since when frames have come without a gap.
+    /// Moments, ms: the last frame, the last command, since when frames have come without a long silence.
     frame: Option<u32>,
     command: Option<u32>,
     good_since: Option<u32>,
@@ -48,7 +48,7 @@ pub struct Guard {
 pub enum Duty {
     /// The host has been silent.
     Silence,
-    /// Not heard well for half a second since.
+    /// Not heard for half a second since a long silence or a boot.
     NotArmed,
     /// The host has had nothing to say to it.
     NoCommand,
@@ -121,7 +121,7 @@ impl Guard {
         }
     }
 
-    /// Whether it has heard its host well enough to move since the last silence.
+    /// Whether it has heard its host for long enough to move since the last long silence.
     pub fn is_armed(&self) -> bool {
         self.armed
     }
@@ -145,7 +145,7 @@ impl Guard {
             self.stop_since = Some(ms);
         }
         self.phase = phase;
-        if self.frame.is_none_or(|last| ms - last > GAP + SLACK) {
+        if self.frame.is_none_or(|last| ms - last >= LONG_SILENCE + SLACK) {
             self.good_since = Some(ms);
         }
         self.frame = Some(ms);
@@ -226,7 +226,7 @@ impl Guard {
     /// Why it must brake now, as far as can be seen from outside.
     fn duty(&mut self, ms: u32, sensors: &SensorFrame) -> Option<Duty> {
         let silent = |last: Option<u32>| last.is_none_or(|last| ms - last >= SILENCE + SLACK);
-        if silent(self.frame) {
+        if self.frame.is_none_or(|last| ms - last >= LONG_SILENCE + SLACK) {
             self.armed = false;
             self.good_since = None;
         }
@@ -251,9 +251,10 @@ impl Guard {
 
 /// A tick of a brain on wheels, ms.
 const SLACK: u32 = 10;
-/// ms (DESIGN §6): limits shrink; brake; armed again.
+/// ms (DESIGN §6): limits shrink; brake; disarmed; armed again.
 const GAP: u32 = 50;
 const SILENCE: u32 = 100;
+const LONG_SILENCE: u32 = 500;
 const ARM_AFTER: u32 = 500;
 /// Slower than this a robot stands, m/s.
 const LETS_GO: f32 = 0.1;
@@ -343,12 +344,15 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_moves_at_once_after_a_silence_is_told() {
-        let mut guard = driving();
-        assert!(guard.judge(1_200, &sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
-        guard.hear(1_210, &frame());
+    fn a_robot_that_moves_at_once_after_a_long_silence_is_told_and_one_that_does_after_a_gap_is_not() {
         let moves = order(0.5, OmniKick::None);
-        assert_eq!(guard.judge(1_210, &sensors(), &moves), Err(Danger::Unbraked(Duty::NotArmed, moves)));
+        for (silence, judged) in [(210, Ok(())), (600, Err(Danger::Unbraked(Duty::NotArmed, moves)))] {
+            let mut guard = driving();
+            let until = 990 + silence;
+            assert!(guard.judge(until - 10, &sensors(), &order(0.0, OmniKick::Discharge)).is_ok());
+            guard.hear(until, &frame());
+            assert_eq!(guard.judge(until, &sensors(), &moves), judged, "{silence} ms");
+        }
     }
 
     #[test]

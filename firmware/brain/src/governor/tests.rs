@@ -129,7 +129,7 @@ fn a_body_that_has_stopped_is_not_driven_on_by_the_ramp() {
 }
 
 #[test]
-fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_half_a_second_of_good_link_arms_again() {
+fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_gap_moves_it_again() {
     let mut governor = driving(600, Phase::Run);
     let heard = Instant(600_000);
     let host = Some(Hearing { frame: Some(heard), command: Some(heard) });
@@ -146,32 +146,53 @@ fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_half_a_second_of_good_link
         }
     }
     assert!(speeds.windows(2).all(|pair| pair[1] <= pair[0]), "{speeds:?}");
-    let mut armed_after = None;
-    for t in (800..1600).step_by(10) {
-        governor.hear_host(Instant(t * 1000));
-        if governor.rule(&at(t, Phase::Run), &go(1.0)).1 == Ruling::Allowed {
-            armed_after = Some(t - 800);
-            break;
-        }
+    governor.hear_host(Instant(770_000));
+    assert_eq!(governor.rule(&at(770, Phase::Run), &go(1.0)).1, Ruling::Allowed);
+}
+
+/// After a silence of that many ms, ms from the first frame on until it may move again.
+fn moves_again_after(silence: u64) -> Option<u64> {
+    let mut governor = driving(600, Phase::Run);
+    let heard = Instant(600_000);
+    let host = Some(Hearing { frame: Some(heard), command: Some(heard) });
+    for t in (610..600 + silence).step_by(10) {
+        governor.rule(&Circumstances { host, ..at(t, Phase::Run) }, &go(1.0));
     }
-    assert_eq!(armed_after, Some(500));
+    (0..1000).step_by(10).find(|t| {
+        let t = 600 + silence + t;
+        governor.hear_host(Instant(t * 1000));
+        governor.rule(&at(t, Phase::Run), &go(1.0)).1 == Ruling::Allowed
+    })
 }
 
 #[test]
-fn a_gap_in_the_good_link_begins_the_half_second_anew() {
+fn gaps_end_with_the_first_frame_and_silences_of_half_a_second_with_half_a_second_of_hearing() {
+    for gap in [60, 100, 150, 300, 490] {
+        assert_eq!(moves_again_after(gap), Some(0), "{gap} ms");
+    }
+    for silence in [500, 510, 700, 3000] {
+        assert_eq!(moves_again_after(silence), Some(500), "{silence} ms");
+    }
+}
+
+#[test]
+fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps_there_are() {
     let mut governor = Governor::new(League::DivisionB);
-    let mut armed = None;
+    let (mut armed, mut frame) = (None, None);
     for t in (0..2000_u64).step_by(10) {
-        // 60 ms are missing at 300 ms.
-        if !(300..360).contains(&t) {
+        // Heard for 60 ms, then not for 150 ms, again and again.
+        if t % 210 < 60 {
             governor.hear_host(Instant(t * 1000));
+            frame = Some(Instant(t * 1000));
         }
-        let ruling = governor.rule(&at(t, Phase::Run), &go(1.0)).1;
+        let host = Some(Hearing { frame, command: frame });
+        let ruling = governor.rule(&Circumstances { host, ..at(t, Phase::Run) }, &go(1.0)).1;
         if armed.is_none() && ruling == Ruling::Allowed {
             armed = Some(t);
         }
     }
-    assert_eq!(armed, Some(860));
+    // 500 ms after the first, the newest was heard 30 ms before.
+    assert_eq!(armed, Some(500));
 }
 
 #[test]

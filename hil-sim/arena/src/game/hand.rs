@@ -93,6 +93,11 @@ impl<'a> Game<'a> {
         }
     }
 
+    /// Whether vision's packets are lost on their way to both hosts from now on.
+    pub fn blind(&mut self, blind: bool) {
+        self.blind = blind;
+    }
+
     /// A robot's computer ends, or one boots in its place with a clock at zero. False where no such robot plays.
     pub fn power(&mut self, who: Who, on: bool, backend: &mut dyn Backend<'a>) -> Result<bool, GameError> {
         let tick = self.tick;

@@ -66,6 +66,8 @@ pub struct Game<'a> {
     tick: u32,
     events: Vec<Event>,
     holds: Holds,
+    /// Vision's packets reach no host.
+    blind: bool,
     config: GameConfig,
 }
 
@@ -120,6 +122,7 @@ impl<'a> Game<'a> {
             tick: 0,
             events: Vec::new(),
             holds: Holds::default(),
+            blind: false,
             config: config.clone(),
         })
     }
@@ -191,6 +194,9 @@ impl<'a> Game<'a> {
             }
             self.cameras.watch(&self.world);
             while let Some(packet) = self.cameras.poll(self.world.now()) {
+                if self.blind {
+                    continue;
+                }
                 let bytes = packet.encode_to_vec();
                 watcher.vision(now, &bytes);
                 for team in &mut self.teams {

@@ -2,6 +2,7 @@
 //! [`AGAIN`] while it lasts. Times on the host's clock.
 
 use host::Host;
+use host::sanity::{Finding, Sanity};
 use protocol::{Duration, Instant};
 
 use super::inbox::Dropped;
@@ -26,6 +27,7 @@ pub(super) struct Alarm {
 /// What is wrong, and what of it was printed when.
 #[derive(Debug, Default)]
 pub(super) struct Alarms {
+    sanity: Sanity,
     printed: Vec<(String, Instant, Instant)>,
     dropped: Dropped,
     /// What was dropped lately, and until when that is shown.
@@ -35,6 +37,11 @@ pub(super) struct Alarms {
 }
 
 impl Alarms {
+    /// The host's loop runs: at least every 100 ms, or this computer stood still.
+    pub(super) fn ran(&mut self, now: Instant) {
+        self.sanity.ran(now);
+    }
+
     /// The robots' line is too slow.
     pub(super) fn slow(&mut self, now: Instant, words: String) {
         self.slow = Some((words, now));
@@ -45,8 +52,14 @@ impl Alarms {
         &self.now
     }
 
-    /// Looks at everything; gives the lines to print.
-    pub(super) fn look(&mut self, now: Instant, host: &Host, dropped: Dropped) -> Vec<String> {
+    /// Looks at everything; gives the lines to print. `vision` says where vision is received.
+    pub(super) fn look(
+        &mut self,
+        now: Instant,
+        host: &Host,
+        dropped: Dropped,
+        vision: impl Fn() -> String,
+    ) -> Vec<String> {
         let mut alarms: Vec<_> = (host.listener().warnings(now).iter())
             .map(|warning| Alarm {
                 matter: warning.matter(),
@@ -54,6 +67,14 @@ impl Alarms {
                 repeats: warning.is_urgent(),
             })
             .collect();
+        alarms.extend(self.sanity.look(now, host).into_iter().map(|finding| Alarm {
+            matter: finding.matter(),
+            words: match finding {
+                Finding::VisionPort(_) => format!("vision   {finding} [{}]", vision()),
+                _ => format!("{:<8} {finding}", finding.heading()),
+            },
+            repeats: finding.is_urgent(),
+        }));
         alarms.extend(self.drops(now, dropped));
         if let Some((words, _)) = self.slow.as_ref().filter(|(_, at)| now.since(*at) < LASTS) {
             alarms.push(Alarm { matter: "line".to_owned(), words: words.clone(), repeats: true });

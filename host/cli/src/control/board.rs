@@ -54,7 +54,7 @@ impl Board {
     }
 
     /// Shows the moment, if it is time; true: a viewer asks for HALT.
-    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: &[String]) -> bool {
+    pub(super) fn look(&mut self, now: protocol::Instant, host: &Host, alarms: Vec<String>) -> bool {
         let every = Duration::from_secs_f64(SCENE_EVERY_S);
         if self.shown.is_none_or(|shown| shown.elapsed() >= every) {
             self.shown = Some(Instant::now());
@@ -62,7 +62,7 @@ impl Board {
             let gauges = vec![tick(self.took)];
             let moment = Moment { t, now, eyes: host, hosts: &[host], truth: None, referee: None, gauges };
             let mut sketch = self.composer.compose(moment);
-            sketch.scene.alarms = alarms.to_vec();
+            sketch.scene.alarms = alarms;
             for happening in self.composer.take_happenings() {
                 self.page.tell(happening);
             }

@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use host::config::TeamConfig;
+use host::learned::Learned;
 use host::radio::RadioSettings;
 use host::recording::{HostHeader, RecordingHeader};
 use host::referee::team_port::Request;
@@ -37,22 +38,33 @@ use super::{Cases, identity, port_for_teams, simulator};
 use crate::Failure;
 use crate::live::PageArgs;
 use crate::net::Mouth;
-use crate::output::note;
+use crate::output::{note, shown};
 use crate::stop::stopped_by_hand;
 
 /// Looks at what is missing, and at Ctrl-C, at least this often.
 const LOOK: Duration = Duration::from_millis(100);
 /// HALT is sent so long before the program ends: thirty pictures, so that a lossy radio brings one of them.
 const HALTING: Duration = Duration::from_millis(300);
+/// A longer file is none of settings, bytes.
+const LEARNED_LEN_MAX: u64 = 1 << 20;
 /// One HALT after the other.
 const HALT_EVERY: Duration = Duration::from_millis(10);
+
+/// What is kept on the disk.
+pub(super) struct Keeps<'p> {
+    /// The match, as `onetwo replay` takes it.
+    pub(super) record: Option<&'p Path>,
+    /// What was learned, as lines of `team.toml`.
+    pub(super) learned: Option<&'p Path>,
+}
 
 /// Runs until somebody ends it.
 pub(super) fn run(
     config: &TeamConfig,
+    learns: bool,
     robots: &[RobotId],
     cases: Cases,
-    record: Option<&Path>,
+    keeps: &Keeps<'_>,
     duration: Option<f64>,
     page: Option<&PageArgs>,
 ) -> Result<ExitCode, Failure> {
@@ -65,11 +77,14 @@ pub(super) fn run(
     let settings = HostSettings {
         keeper: config.keeper,
         referee: config.referee_source.clone(),
+        referee_silence: config.referee_silence,
         kick: config.kick,
+        roll: config.roll,
+        learns,
         radio: RadioSettings { key, relay: link.relay(), ..usual.radio },
         ..usual
     };
-    let recorder = record.map(|stem| {
+    let recorder = keeps.record.map(|stem| {
         Recorder::begin(stem, &header(&settings))
             .and_then(BackgroundRecorder::start)
             .map_err(|error| Failure::Network(format!("--record {}: {error}", stem.display())))
@@ -132,7 +147,7 @@ pub(super) fn run(
             looked = Instant::now();
             let now = desk.now();
             desk.watch.look(now, &desk.host, config, &mut desk.words);
-            desk.look_at_alarms(now, &mail);
+            desk.look_at_alarms(now, config, &mail);
             desk.look_at_recording();
             desk.look_at_radio(now);
             terminal.status(desk.status());
@@ -148,6 +163,7 @@ pub(super) fn run(
     }
     terminal.close();
     desk.end_recording(recorder);
+    desk.words.extend(keeps.learned.map(|path| keep_learned(path, desk.host.learned())));
     desk.words.drain(..).for_each(|words| note!("{words}"));
     let Desk { counts, recording, .. } = desk;
     note!(
@@ -162,6 +178,25 @@ pub(super) fn run(
 }
 
 /// With what the host begins; its clock shows 0 now.
+/// What was learned goes to that file; words about it.
+fn keep_learned(path: &Path, learned: &Learned) -> String {
+    let write = || -> io::Result<()> {
+        let before = match foreign::read_text(path, LEARNED_LEN_MAX) {
+            Ok(text) => text,
+            Err(_) if !path.exists() => String::new(),
+            Err(error) => return Err(io::Error::other(error.to_string())),
+        };
+        // A crash while writing leaves the file as it was.
+        let beside = path.with_extension("new");
+        std::fs::write(&beside, host::learned::kept(&before, learned))?;
+        std::fs::rename(&beside, path)
+    };
+    match write() {
+        Ok(()) => format!("learned  what is known of kickers and ball is in {}", shown(path)),
+        Err(error) => format!("learned  {}: {error}; nothing is kept", shown(path)),
+    }
+}
+
 fn header(settings: &HostSettings) -> RecordingHeader {
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     RecordingHeader {
@@ -241,6 +276,7 @@ impl Desk {
             self.open(mail);
         }
         let now = self.now();
+        self.alarms.ran(now);
         if self.host.poll_timeout().is_some_and(|due| due <= now) {
             self.tell(now, Input::Timeout);
         }
@@ -251,7 +287,6 @@ impl Desk {
         match mail {
             Mail::Vision(bytes) => {
                 self.counts.vision += 1;
-                self.watch.vision_came(now);
                 if matches!(
                     self.tell(now, Input::Vision(&bytes)),
                     Verdict::Vision(Heard::Newest | Heard::Restarted)
@@ -324,7 +359,8 @@ impl Desk {
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
-        if board.look(now, &self.host, self.alarms.now()) {
+        let alarms = [self.alarms.now(), self.watch.missing()].concat();
+        if board.look(now, &self.host, alarms) {
             self.words.push("HALT was asked for on the page: the robots stand until the end".to_owned());
             self.tell(now, Input::Halt);
         }
@@ -349,8 +385,10 @@ impl Desk {
         }
     }
 
-    fn look_at_alarms(&mut self, now: protocol::Instant, inbox: &Inbox) {
-        self.words.extend(self.alarms.look(now, &self.host, inbox.dropped()));
+    fn look_at_alarms(&mut self, now: protocol::Instant, config: &TeamConfig, inbox: &Inbox) {
+        let way = self.watch.vision_way();
+        let vision = || format!("{}, {way}", config.vision);
+        self.words.extend(self.alarms.look(now, &self.host, inbox.dropped(), vision));
     }
 
     /// Whether the recording keeps up, and whether the disk takes it.

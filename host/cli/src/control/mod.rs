@@ -16,12 +16,12 @@ mod watch;
 
 use std::ffi::OsString;
 use std::net::{IpAddr, SocketAddr};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
 use hil_sim::small_size::Parameters;
-use host::config::{Calibration, RobotLink, TeamConfig, TeamSettings};
+use host::config::{BallSettings, Calibration, RobotLink, TeamConfig, TeamSettings};
 use protocol::RobotId;
 use rules::Colour;
 use ssl::net::addresses;
@@ -77,6 +77,10 @@ pub(crate) struct ControlArgs {
     /// are ignored and reported. Without it the strictest command of all of them is obeyed.
     #[arg(long, value_name = "ADDRESS|IDENTIFIER")]
     referee_source: Option<String>,
+    /// What the robots do when nothing came from the referee for 2 s: `halt`, unless told, or `go-on` by its last command (a test day on
+    /// which the game controller is ended after a command). Before its first packet they halt either way.
+    #[arg(long, value_name = "halt|go-on")]
+    referee_silence: Option<String>,
     /// Where our tracker's packets go: 224.5.23.2:10010.
     #[arg(long, value_name = "ADDRESS:PORT")]
     tracker: Option<SocketAddr>,
@@ -86,6 +90,13 @@ pub(crate) struct ControlArgs {
     /// How much faster than ordered a robot's kicks are, such as 3=1.06; may be repeated.
     #[arg(long = "kick", value_name = "ROBOT=FACTOR", value_parser = kick)]
     kicks: Vec<Calibration>,
+    /// Keep what is learned of kickers, latencies and the ball in this file, which may be the team.toml: what it holds is read at the start
+    /// (unless --config names it already), and what is known at the end replaces the lines that an earlier run wrote.
+    #[arg(long, value_name = "FILE")]
+    learned: Option<PathBuf>,
+    /// Do not play by what is learned (it is shown all the same): kicks are ordered by `--kick` and team.toml alone.
+    #[arg(long)]
+    no_learning: bool,
     #[command(flatten)]
     cases: CasesArgs,
     /// Keep the match as NAME.log.gz (for the league's tools) and NAME.trace (for `onetwo replay`).
@@ -124,7 +135,8 @@ pub(crate) fn run(args: &ControlArgs) -> Result<ExitCode, Failure> {
     };
     let page = (!args.headless).then_some(&args.page);
     let cases = Cases::choose(&args.cases, config.league)?;
-    desk::run(&config, &robots, cases, args.record.as_deref(), args.duration, page)
+    let keeps = desk::Keeps { record: args.record.as_deref(), learned: args.learned.as_deref() };
+    desk::run(&config, !args.no_learning, &robots, cases, &keeps, args.duration, page)
 }
 
 /// The cases, read, and how a robot of ours is told of them.
@@ -150,16 +162,24 @@ impl Cases {
 /// Longest file of settings that is read, bytes: one with every setting has 1 kB.
 const CONFIG_LEN_MAX: u64 = 1 << 20;
 
+/// A file of settings.
+fn read(path: &Path) -> Result<TeamSettings, Failure> {
+    let said = |words: String| Failure::Network(format!("{}: {words}", shown(path)));
+    let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
+    TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))
+}
+
 /// Flags over the file over what is usual.
 fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
-    let file = match &args.config {
-        None => TeamSettings::default(),
-        Some(path) => {
-            let said = |words: String| Failure::Network(format!("{}: {words}", shown(path)));
-            let text = foreign::read_text(path, CONFIG_LEN_MAX).map_err(|error| said(error.to_string()))?;
-            TeamSettings::from_toml(&text).map_err(|error| said(error.to_string()))?
-        }
-    };
+    let mut file = args.config.as_deref().map_or_else(|| Ok(TeamSettings::default()), read)?;
+    if let Some(learned) = args.learned.as_deref().filter(|path| args.config.as_deref() != Some(*path))
+        && learned.exists()
+    {
+        // What the team set itself comes later, and counts.
+        let TeamSettings { calibration, ball, .. } = read(learned)?;
+        file.calibration = [calibration, file.calibration].concat();
+        file.ball.roll = file.ball.roll.or(ball.roll);
+    }
     let flags = TeamSettings {
         name: args.name.clone(),
         colour: args.colour.clone(),
@@ -172,9 +192,11 @@ fn configure(args: &ControlArgs) -> Result<TeamConfig, Failure> {
         vision: args.vision,
         referee: args.referee,
         referee_source: args.referee_source.clone(),
+        referee_silence: args.referee_silence.clone(),
         tracker: args.tracker,
         game_controller: args.game_controller,
         calibration: args.kicks.clone(),
+        ball: BallSettings::default(),
     };
     let settings = flags.over(file);
     let told = settings.vision.is_some();
@@ -225,7 +247,7 @@ fn kick(text: &str) -> Result<Calibration, String> {
     let parts =
         text.split_once('=').and_then(|(robot, kick)| Some((robot.parse().ok()?, kick.parse().ok()?)));
     let (robot, kick) = parts.ok_or_else(|| "expected ROBOT=FACTOR, such as 3=1.06".to_owned())?;
-    Ok(Calibration { robot, kick })
+    Ok(Calibration { robot, kick, latency_ms: None })
 }
 
 #[cfg(test)]
@@ -264,7 +286,7 @@ mod tests {
 
     #[test]
     fn a_calibration_is_a_robot_and_a_factor() {
-        assert_eq!(kick("3=1.06"), Ok(Calibration { robot: 3, kick: 1.06 }));
+        assert_eq!(kick("3=1.06"), Ok(Calibration { robot: 3, kick: 1.06, latency_ms: None }));
         assert!(kick("3").is_err());
     }
 }

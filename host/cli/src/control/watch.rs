@@ -9,7 +9,7 @@ use super::threads::Source;
 
 /// A source is given this long after the start: words come within 2 s, and not before what is there had a chance.
 const AT_START: Duration = Duration::millis(1_000);
-/// Vision that is silent longer is told of: every robot brakes for want of pictures after half a second.
+/// Camera frames that come after a longer pause are told of; that they do not come is an alarm ([`super::alarms`]).
 const VISION_SILENT: Duration = Duration::millis(1_000);
 /// Robots take this long to boot where they are processes of ours.
 const ROBOTS_BOOT: Duration = Duration::millis(1_500);
@@ -20,7 +20,8 @@ pub(super) struct Watch {
     vision: Waiting,
     referee: Waiting,
     robots: Waiting,
-    last_vision: Option<Instant>,
+    /// What is missing now, for the page.
+    missing: Vec<String>,
     link_advice: String,
 }
 
@@ -53,7 +54,7 @@ impl Waiting {
 impl Watch {
     pub(super) fn new(link_advice: String) -> Self {
         let [vision, referee, robots] = <[Waiting; 3]>::default();
-        Self { vision, referee, robots, last_vision: None, link_advice }
+        Self { vision, referee, robots, missing: Vec::new(), link_advice }
     }
 
     /// A source is heard this way now.
@@ -67,9 +68,14 @@ impl Watch {
         format!("{}: {words}; it is tried again", source.name())
     }
 
-    /// Vision came.
-    pub(super) fn vision_came(&mut self, now: Instant) {
-        self.last_vision = Some(now);
+    /// How vision is received, or why it cannot be.
+    pub(super) fn vision_way(&self) -> &str {
+        &self.vision.way
+    }
+
+    /// What is missing now, each in a sentence.
+    pub(super) fn missing(&self) -> &[String] {
+        &self.missing
     }
 
     fn of(&mut self, source: Source) -> &mut Waiting {
@@ -85,37 +91,38 @@ impl Watch {
         if now.0 < AT_START.0 {
             return;
         }
-        let silent = self.last_vision.is_none_or(|last| now.since(last) > VISION_SILENT);
-        words.extend(self.vision.see(
-            silent,
-            |vision| {
-                format!(
-                    "waiting for vision at {} ({}): is SSL-Vision or a simulator running, and sends it there? \
-                     Cameras send to 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision); `onetwo simulate` is one",
-                    config.vision, vision.way
-                )
-            },
-            || format!("vision comes from {}", config.vision),
-        ));
+        self.missing.clear();
+        let silent = host.imaged().is_none_or(|last| now.since(last) > VISION_SILENT);
+        let came =
+            self.vision.see(silent, |_| String::new(), || format!("vision comes from {}", config.vision));
+        words.extend(came.filter(|words| !words.is_empty()));
         let silence = host.listener().silence(now);
-        words.extend(self.referee.see(
+        let waits = format!(
+            "waiting for the referee at {} ({}): robots halt until then; is the game controller running, and publishes it there \
+             (--referee)?",
+            config.referee, self.referee.way
+        );
+        let never = matches!(silence, Silence::Never(_));
+        self.missing.extend(never.then(|| waits.clone()));
+        // One that falls silent is an alarm.
+        let came = self.referee.see(
             !matches!(silence, Silence::Heard(_)),
-            |referee| {
-                let stands = if referee.ever { "what it said last stands" } else { "robots halt until then" };
+            |_| if never { waits } else { String::new() },
+            || {
                 format!(
-                    "waiting for the referee at {} ({}): {stands}; is the game controller running, and publishes it there \
-                     (--referee)?",
-                    config.referee, referee.way
+                    "the referee is heard: {}",
+                    host.listener().source().map_or_else(String::new, ToString::to_string)
                 )
             },
-            || format!("the referee is heard: {}", host.listener().source().map_or_else(String::new, ToString::to_string)),
-        ));
+        );
+        words.extend(came.filter(|words| !words.is_empty()));
         let there: Vec<_> = host.radio().present(now).map(|robot| robot.number().to_string()).collect();
         if !there.is_empty() || now.0 >= ROBOTS_BOOT.0 {
-            let advice = &self.link_advice;
+            let waits = format!("waiting for robots: none is heard; {}", self.link_advice);
+            self.missing.extend(there.is_empty().then(|| waits.clone()));
             words.extend(self.robots.see(
                 there.is_empty(),
-                |_| format!("waiting for robots: none is heard; {advice}"),
+                |_| waits,
                 || format!("robots are heard: {}", there.join(" ")),
             ));
         }

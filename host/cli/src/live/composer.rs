@@ -7,6 +7,7 @@ use hil_sim::small_size::World as Truth;
 use hil_sim::small_size::referee::InternalReferee;
 use host::Host;
 use host::referee::Game;
+use host::sanity::Sanity;
 use host::world::{Ball, World};
 use page::{Field, Gauge, Happening, Kind, Layer, Match, Robot, Scene, Shape, Sketch, TeamSheet, milli};
 use protocol::{CaseId, Instant};
@@ -86,6 +87,7 @@ pub(crate) struct Composer {
     cycles: [TeamCycles; 2],
     clocks: Clocks,
     faults: Faults,
+    sanity: [Sanity; 2],
     possession: Possession,
     painter: Painter,
     happenings: Vec<Happening>,
@@ -104,6 +106,7 @@ impl Composer {
             cycles: Default::default(),
             clocks: Clocks::default(),
             faults: Faults::default(),
+            sanity: Default::default(),
             possession: Possession::default(),
             painter: Painter::default(),
             happenings: Vec::new(),
@@ -142,6 +145,14 @@ impl Composer {
                     problem: None,
                 });
             }
+        }
+        let mut alarms = Vec::new();
+        for host in moment.hosts {
+            let us = host.settings().us;
+            let found = self.sanity[us as usize].look(now, host);
+            alarms.extend(
+                found.iter().map(|found| format!("{} host: {}: {found}", us.word(), found.heading())),
+            );
         }
         if let Some(referee) = moment.referee {
             self.news.referee(referee, t, &mut self.happenings);
@@ -204,6 +215,7 @@ impl Composer {
             cycles,
             layers,
             gauges,
+            alarms,
             ..Scene::default()
         };
         let picture = Picture {

@@ -59,6 +59,7 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
         out.push(gauge("vision", "undecodable", (lost.vision + lost.referee) as f32, "", Some(0.5)));
     }
     for host in hosts {
+        learned(&mut out, host);
         let group = format!("radio, {}", host.settings().us.word());
         let links: Vec<_> =
             RobotId::all().filter_map(|id| host.quality(id)).filter(|link| link.is_present(now)).collect();
@@ -86,6 +87,24 @@ pub(super) fn of_hosts(hosts: &[&Host], now: Instant, vision: f32) -> Vec<Gauge>
         }
     }
     out
+}
+
+/// What a host has learned of its robots and the field.
+fn learned(out: &mut Vec<Gauge>, host: &Host) {
+    let (known, us) = (host.learned(), host.settings().us.word());
+    let group = format!("learned, {us}");
+    for id in RobotId::all() {
+        if let Some(gain) = known.kick(id) {
+            out.push(gauge(&group, &format!("kick of robot {id} over order"), gain.value, "×", None));
+        }
+        if let Some(latency) = known.latency(id) {
+            let name = format!("robot {id}, order to motion");
+            out.push(gauge(&group, &name, latency.value * 1e3, "ms", None));
+        }
+    }
+    if let Some(roll) = known.friction() {
+        out.push(gauge(&group, "rolling ball slows by", roll.value, "m/s²", None));
+    }
 }
 
 /// What a tick takes of this machine's time.

@@ -1,0 +1,277 @@
+//! `gaps`: vision and radio that fail for 40–150 ms again and again, and real silences: who stands, and who brakes in time.
+//!
+//! A robot *stands* where its true speed is below 0.05 m/s while the game runs and it has an order to move: a place farther
+//! away than 0.15 m, or an order without a place (get the ball, a case) while its governor holds it back.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use arena::game::{Game, GameConfig, Nobody};
+use brain::governor::{Ruling, Why};
+use brain::{BrainConfig, Station};
+use casebase::CaseBase;
+use hil_sim::{Backend, Bursts, Mcu, McuError, Reply, Stream};
+use host::strategy::{Flip, Task};
+use protocol::lockstep::TickIn;
+use protocol::{Instant, Who};
+use rules::{Colour, League, Phase};
+
+/// What the governors said in the last tick, by team number and robot.
+type Rulings = Rc<RefCell<BTreeMap<(u8, u8), Ruling>>>;
+
+/// Native brains whose governors can be looked at.
+struct Watched {
+    base: CaseBase<'static>,
+    rulings: Rulings,
+}
+
+struct Computer {
+    station: Station<'static>,
+    who: (u8, u8),
+    rulings: Rulings,
+    reply: Reply,
+}
+
+impl Backend<'static> for Watched {
+    fn name(&self) -> &'static str {
+        "watched"
+    }
+
+    fn boot(&mut self, config: &BrainConfig) -> Result<Box<dyn Mcu + 'static>, McuError> {
+        let who = (config.team.0, config.robot.number());
+        let station = Station::new(Instant(0), config, self.base);
+        Ok(Box::new(Computer { station, who, rulings: self.rulings.clone(), reply: Reply::default() }))
+    }
+}
+
+impl Computer {
+    fn drain(&mut self, now: Instant) {
+        while let Some(packet) = self.station.poll_packet(now) {
+            let _dropped = self.reply.packets.push(packet);
+        }
+    }
+}
+
+impl Mcu for Computer {
+    fn post(&mut self, tick: &TickIn<'_>) -> Result<(), McuError> {
+        self.reply = Reply::default();
+        while let Some(due) = self.station.poll_timeout().filter(|due| *due <= tick.now) {
+            self.station.handle_timeout(due);
+            self.drain(due);
+        }
+        for packet in &tick.air {
+            self.station.handle_packet(tick.now, packet);
+            self.drain(tick.now);
+        }
+        self.station.handle_sensors(tick.now, &tick.sensors);
+        self.drain(tick.now);
+        self.reply.actuators = self.station.poll_actuators(tick.now);
+        self.rulings.borrow_mut().insert(self.who, self.station.brain().ruling());
+        Ok(())
+    }
+
+    fn collect(&mut self) -> Result<Reply, McuError> {
+        Ok(std::mem::take(&mut self.reply))
+    }
+}
+
+/// Good and dead stretches by turns, ticks of 10 ms.
+struct Gaps {
+    chance: Stream,
+    dead: bool,
+    left: u32,
+}
+
+impl Gaps {
+    fn new(seed: u64, name: &str) -> Self {
+        Self { chance: Stream::new(seed, name), dead: false, left: 100 }
+    }
+
+    /// Whether it is dead in the next tick: 40–150 ms, then good for 100–600 ms.
+    fn next(&mut self) -> bool {
+        if self.left == 0 {
+            self.dead = !self.dead;
+            self.left = if self.dead { self.chance.whole(4, 15) } else { self.chance.whole(10, 60) };
+        }
+        self.left -= 1;
+        self.dead
+    }
+}
+
+/// Robot-seconds in play with an order to move, those stood of them, and the longest time one robot stood.
+#[derive(Debug, Default)]
+struct Stood {
+    ordered_s: f64,
+    stood_s: f64,
+    held_s: f64,
+    longest_s: f64,
+}
+
+impl Stood {
+    fn share(&self) -> f64 {
+        self.stood_s / self.ordered_s
+    }
+}
+
+fn watched() -> (Watched, Rulings) {
+    let rulings = Rulings::default();
+    (Watched { base: case_library::division_b(), rulings: rulings.clone() }, rulings)
+}
+
+fn held(ruling: Ruling) -> bool {
+    matches!(ruling, Ruling::Braking(why) if [Why::Silence, Why::NoCommand, Why::Lost].iter().any(|w| why.has(*w)))
+}
+
+/// Which link fails.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fails {
+    Vision,
+    Radio,
+    /// Both, each at its own times.
+    Both,
+    /// Each direction between two stations by itself, for 95 ms on average.
+    EachLink,
+    /// No packet is lost; each takes 10–120 ms, so that many are overtaken.
+    Late,
+}
+
+/// A match in which that fails from 1 s on.
+fn play(seed: u64, seconds: f64, fails: Fails) -> Stood {
+    let mut config = GameConfig::new(League::DivisionB, seed, seconds);
+    match fails {
+        Fails::EachLink => config.air.bursts = Some(Bursts { share: 0.2, ticks: 9.5 }),
+        Fails::Late => config.air.delay = [1, 12],
+        Fails::Vision | Fails::Radio | Fails::Both => {}
+    }
+    let (mut backend, rulings) = watched();
+    let mut game = Game::new(&config, &mut backend).unwrap();
+    let mut vision_gaps = Gaps::new(seed, "vision gaps");
+    let mut radio_gaps = Gaps::new(seed, "radio gaps");
+    let (mut stood, mut runs) = (Stood::default(), BTreeMap::<Who, f64>::new());
+    for _ in 0..(seconds * 100.0) as u32 {
+        let (blind, deaf) = (vision_gaps.next(), radio_gaps.next());
+        game.blind(matches!(fails, Fails::Vision | Fails::Both) && blind);
+        game.lose(if matches!(fails, Fails::Radio | Fails::Both) && deaf { 1.0 } else { 0.0 });
+        game.step(&mut Nobody).unwrap();
+        for colour in [Colour::Yellow, Colour::Blue] {
+            look(&game, colour, &rulings, &mut stood, &mut runs);
+        }
+    }
+    stood
+}
+
+fn look(
+    game: &Game<'_>,
+    colour: Colour,
+    rulings: &Rulings,
+    stood: &mut Stood,
+    runs: &mut BTreeMap<Who, f64>,
+) {
+    let host = game.host(colour);
+    let flip = Flip::defending(host.game().own_goal(colour).unwrap_or(host.settings().defending));
+    for order in host.orders() {
+        let who = Who { colour, id: order.robot };
+        let Some(robot) = game.world().robot(who).filter(|robot| robot.present) else { continue };
+        let team = protocol::TeamId::of(colour).0;
+        let Some(ruling) = rulings.borrow().get(&(team, order.robot.number())).copied() else { continue };
+        let held = held(ruling);
+        let ordered = match &order.task {
+            Task::Stand => false,
+            Task::GoTo { at, .. } | Task::Receive { at, .. } => {
+                flip.to_field(*at).distance(robot.pose.position) > 0.15
+            }
+            _ => true,
+        };
+        let placed = matches!(order.task, Task::GoTo { .. } | Task::Receive { .. });
+        let stands = game.referee().phase() == Phase::Run
+            && ordered
+            && robot.velocity.norm() < 0.05
+            && (placed || held);
+        if game.referee().phase() == Phase::Run && ordered {
+            stood.ordered_s += 0.01;
+            stood.held_s += if held { 0.01 } else { 0.0 };
+        }
+        let run = runs.entry(who).or_default();
+        *run = if stands { *run + 0.01 } else { 0.0 };
+        if stands {
+            stood.stood_s += 0.01;
+            stood.longest_s = stood.longest_s.max(*run);
+        }
+    }
+}
+
+#[test]
+fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twentieth_of_the_time_in_play() {
+    for fails in [Fails::Vision, Fails::Radio, Fails::Both, Fails::EachLink, Fails::Late] {
+        for seed in [1, 2] {
+            let stood = play(seed, 60.0, fails);
+            println!("{fails:?}, seed {seed}: {:.1} % stood, {stood:.2?}", 100.0 * stood.share());
+            assert!(stood.ordered_s > 50.0, "{fails:?}, seed {seed}: {stood:?}");
+            // Stretches of random length may last half a second; that is a silence, after which a robot is armed again.
+            let longest_s = if fails == Fails::EachLink { 1.2 } else { 0.5 };
+            assert!(
+                stood.share() <= 0.05 && stood.longest_s <= longest_s,
+                "{fails:?}, seed {seed}: {stood:?}"
+            );
+        }
+    }
+}
+
+/// A match with gaps in vision and radio for 12 s; then `fail` is called, and the game goes on for so many ticks of 10 ms. Gives for each
+/// of them how many robots have an order and how many of them brake because their host is silent.
+fn silence(seed: u64, ticks: u32, fail: impl Fn(&mut Game<'static>, u32)) -> Vec<(usize, usize)> {
+    let config = GameConfig::new(League::DivisionB, seed, 60.0);
+    let (mut backend, rulings) = watched();
+    let mut game = Game::new(&config, &mut backend).unwrap();
+    let (mut vision_gaps, mut radio_gaps) = (Gaps::new(seed, "vision gaps"), Gaps::new(seed, "radio gaps"));
+    for _ in 0..1_200 {
+        game.blind(vision_gaps.next());
+        game.lose(if radio_gaps.next() { 1.0 } else { 0.0 });
+        game.step(&mut Nobody).unwrap();
+    }
+    // All is well for half a second, so that the silence begins with its first tick.
+    (game.blind(false), game.lose(0.0));
+    (0..50).for_each(|_| game.step(&mut Nobody).unwrap());
+    let mut seen = Vec::new();
+    for tick in 0..ticks {
+        fail(&mut game, tick);
+        game.step(&mut Nobody).unwrap();
+        let rulings = rulings.borrow();
+        seen.push((rulings.len(), rulings.values().filter(|ruling| held(**ruling)).count()));
+    }
+    seen
+}
+
+#[test]
+fn in_a_real_silence_of_the_radio_every_robot_brakes_before_what_it_heard_is_200_ms_old_and_goes_on_after_it()
+{
+    for seed in [1, 2, 3] {
+        // After a gap the first frame counts; after half a second of silence half a second of hearing, and a telemetry packet (10 Hz) by which
+        // the host knows the robot again.
+        for (dead_ticks, again_ticks) in [(30, 2), (45, 2), (100, 65)] {
+            let seen = silence(seed, dead_ticks + 70, |game, tick| {
+                game.lose(if tick < dead_ticks { 1.0 } else { 0.0 });
+            });
+            let at = |ms: u32| seen[(ms / 10) as usize];
+            assert_eq!(at(0), (12, 0), "seed {seed}");
+            // A frame of the tick before the silence is delivered in its first tick, at an age of 10 ms.
+            for ms in (180..10 * dead_ticks).step_by(10) {
+                assert_eq!(at(ms).0, at(ms).1, "seed {seed}: {ms} ms after the last frame left");
+            }
+            let again = 10 * (dead_ticks + again_ticks);
+            assert_eq!(at(again).1, 0, "seed {seed}: {again} ms");
+        }
+    }
+}
+
+#[test]
+fn without_vision_the_host_carries_its_snapshot_on_for_half_a_second_and_every_robot_brakes_within_200_ms_after()
+ {
+    for seed in [1, 2, 3] {
+        let seen = silence(seed, 170, |game, tick| game.blind(tick < 100));
+        assert_eq!(seen[40].1, 0, "seed {seed}");
+        assert!(seen[70..100].iter().all(|(all, held)| all == held), "seed {seed}: {seen:?}");
+        assert_eq!(seen[165].1, 0, "seed {seed}: {seen:?}");
+    }
+}

@@ -1,0 +1,132 @@
+//! `sanity`: a healthy match says nothing, and a field on which something does not fit is told within two seconds, for both divisions.
+
+use arena::game::{Game, GameConfig, Nobody};
+use geometry::{Angle, Point, Pose};
+use hil_sim::NativeBackend;
+use host::sanity::{Finding, Sanity, SideEvidence};
+use protocol::{RobotId, Who};
+use rules::{Colour, League};
+
+const DIVISIONS: [League; 2] = [League::DivisionA, League::DivisionB];
+
+/// Plays for so many seconds; every 100 ms what each host finds goes to `see`, with the time in ms.
+fn play(
+    config: &GameConfig,
+    seconds: u32,
+    mut hand: impl FnMut(&mut Game<'static>, u32),
+    mut see: impl FnMut(u32, Colour, Vec<Finding>),
+) {
+    let base = match config.league {
+        League::DivisionB => case_library::division_b(),
+        _ => casebase::CaseBase::default(),
+    };
+    let mut backend = NativeBackend::new(base);
+    let mut game = Game::new(config, &mut backend).unwrap();
+    let mut sanity = [Sanity::default(), Sanity::default()];
+    for tick in 0..seconds * 100 {
+        hand(&mut game, tick * 10);
+        game.step(&mut Nobody).unwrap();
+        if tick % 10 == 9 {
+            for colour in [Colour::Yellow, Colour::Blue] {
+                let now = game.now();
+                see((tick + 1) * 10, colour, sanity[colour as usize].look(now, game.host(colour)));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_healthy_match_of_either_division_says_nothing_ever() {
+    for (league, seconds, seeds) in [(League::DivisionB, 120, 1..=4), (League::DivisionA, 60, 1..=2)] {
+        for seed in seeds {
+            let config = GameConfig::new(league, seed, f64::from(seconds));
+            play(
+                &config,
+                seconds,
+                |_, _| (),
+                |ms, colour, found| {
+                    assert!(
+                        found.is_empty(),
+                        "{} seed {seed}, {ms} ms, {}: {found:?}",
+                        league.name(),
+                        colour.word()
+                    );
+                },
+            );
+        }
+    }
+}
+
+/// The time of the first finding that `is` it, ms, by both hosts.
+fn first(
+    config: &GameConfig,
+    hand: impl FnMut(&mut Game<'static>, u32),
+    is: impl Fn(&Finding) -> bool,
+) -> [Option<(u32, Finding)>; 2] {
+    let mut first = [None, None];
+    play(config, 12, hand, |ms, colour, found| {
+        let place = &mut first[colour as usize];
+        if place.is_none() {
+            *place = found.into_iter().find(|found| is(found)).map(|found| (ms, found));
+        }
+    });
+    first
+}
+
+#[test]
+fn a_robot_more_than_the_league_allows_is_told_by_both_hosts_within_two_seconds() {
+    for league in DIVISIONS {
+        let config = GameConfig::new(league, 1, 12.0);
+        let number = league.limits().unwrap().robots as u8;
+        let who = Who { colour: Colour::Blue, id: RobotId::new(number).unwrap() };
+        let hand = |game: &mut Game<'static>, ms| {
+            if ms == 5_000 {
+                let at = Point::new(0.5, league.field().width * 0.5 - 0.3);
+                game.put_robot(who, Pose { position: at, heading: Angle::ZERO });
+            }
+        };
+        let found = first(&config, hand, |found| matches!(found, Finding::Robots(_)));
+        for (colour, found) in [Colour::Yellow, Colour::Blue].into_iter().zip(found) {
+            let (ms, found) = found.expect("it is found");
+            assert!((5_000..=7_000).contains(&ms), "{}: {ms} ms", league.name());
+            let Finding::Robots(many) = &found else { unreachable!() };
+            assert_eq!((many.team, many.ours), (Colour::Blue, colour == Colour::Blue));
+            assert_eq!((many.on_field, many.allowed), (usize::from(number) + 1, usize::from(number)));
+            assert!(found.to_string().contains("allows"), "{found}");
+        }
+    }
+}
+
+#[test]
+fn teams_that_stand_at_each_others_goals_at_the_start_are_told_within_two_seconds() {
+    for league in DIVISIONS {
+        let config = GameConfig::new(league, 1, 12.0);
+        let field = league.field();
+        // People have put both teams into the wrong halves.
+        let hand = |game: &mut Game<'static>, ms: u32| {
+            if ms == 0 {
+                let robots: Vec<_> =
+                    game.world().robots().iter().map(|robot| (robot.who, robot.pose)).collect();
+                for (who, pose) in robots {
+                    let at = Point::new(-pose.position.x(), pose.position.y());
+                    let at = if who.id == RobotId::ZERO {
+                        Point::new(at.x().signum() * (field.length * 0.5 - 0.3), 0.0)
+                    } else {
+                        at
+                    };
+                    game.put_robot(who, Pose { position: at, heading: pose.heading });
+                }
+            }
+        };
+        let found = first(&config, hand, |found| matches!(found, Finding::Side(_)));
+        for found in found {
+            let (ms, found) = found.expect("it is found");
+            assert!(ms <= 2_000, "{}: {ms} ms", league.name());
+            let Finding::Side(wrong) = found else { unreachable!() };
+            assert!(
+                matches!(wrong.evidence, SideEvidence::OurKeeper(_) | SideEvidence::Halves(..)),
+                "{wrong:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! `latency`: how long after an order to go does a robot at rest begin to move? The onset is taken from when it has moved by 10 mm and
+//! by 90 mm: at any constant acceleration the second takes three times as long as the first, so t₀ = (3 t₁ − t₂) / 2. m, s.
+//!
+//! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and motors are.
+
+use geometry::{Field, Point};
+use protocol::host::{Command, Directive};
+use protocol::{Duration, Instant, RobotId, Who};
+use rules::{Colour, Phase, Side};
+
+use super::samples::{Estimate, Samples};
+use crate::world::World;
+
+/// All robots' latencies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Latencies {
+    robots: [Robot; RobotId::COUNT],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Robot {
+    samples: Samples<KEPT>,
+    /// Where it rests, and since when.
+    rests: Option<(Point<Field>, Instant)>,
+    /// Its last order was not to go anywhere.
+    was_idle: bool,
+    start: Option<Start>,
+}
+
+/// It was at rest and has been ordered to go.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    ordered: Instant,
+    from: Point<Field>,
+    /// Its newest place: way and time, s after the order.
+    newest: (f32, f32),
+    /// When it had moved by [`NEAR`].
+    near: Option<f32>,
+}
+
+impl Latencies {
+    pub(super) fn see(
+        &mut self,
+        now: Instant,
+        world: &World,
+        us: Colour,
+        phase: Phase<Side>,
+        commands: &[Command],
+    ) {
+        let may_go = !matches!(phase, Phase::Halt | Phase::Timeout(_));
+        for id in RobotId::all() {
+            let robot = &mut self.robots[id.index()];
+            let Some(seen) = world.robot(Who { colour: us, id }) else {
+                (robot.rests, robot.start) = (None, None);
+                continue;
+            };
+            let place = seen.pose.position;
+            robot.follow(world.time, place);
+            let to = commands.iter().find(|command| command.to == id).and_then(|command| {
+                match command.directive {
+                    Directive::GoTo { pose } if may_go => Some(geometry::Pose::<Field>::from(pose).position),
+                    _ => None,
+                }
+            });
+            robot.order(now, world.time, place, to);
+        }
+    }
+
+    pub(super) fn latency(&self, robot: RobotId) -> Option<Estimate> {
+        self.robots[robot.index()].samples.estimate(LEAST)
+    }
+}
+
+impl Robot {
+    /// It was seen there at that time.
+    fn follow(&mut self, at: Instant, place: Point<Field>) {
+        if let Some(mut start) = self.start.take() {
+            let (way, t) = (start.from.distance(place), signed(start.ordered, at));
+            let crossing = |mark: f32| {
+                let ((w0, t0), (w1, t1)) = (start.newest, (way, t));
+                (w0 < mark && w1 >= mark).then(|| t0 + (t1 - t0) * (mark - w0) / (w1 - w0))
+            };
+            start.near = start.near.or(crossing(NEAR));
+            let far = crossing(FAR);
+            start.newest = (way, t);
+            if let (Some(near), Some(far)) = (start.near, far) {
+                let onset = 0.5 * (3.0 * near - far);
+                if (ONSET_MIN..=ONSET_MAX).contains(&onset) {
+                    self.samples.add(onset.max(0.0));
+                }
+            } else if t < GIVEN_UP {
+                self.start = Some(start);
+            }
+        }
+        self.rests = match self.rests {
+            Some((rest, since)) if rest.distance(place) < STILL => Some((rest, since)),
+            _ => Some((place, at)),
+        };
+    }
+
+    /// It is ordered to that place now, or to none.
+    fn order(&mut self, now: Instant, at: Instant, place: Point<Field>, to: Option<Point<Field>>) {
+        let goes = to.is_some_and(|to| to.distance(place) > FAR_OFF);
+        let Some((from, since)) = self.rests else { return };
+        match (goes, self.start) {
+            // It has rested without an order to go for long enough, and now has one.
+            (true, None) if self.was_idle && at.since(since) >= RESTS_FOR => {
+                self.start = Some(Start { ordered: now, from, newest: (0.0, signed(now, at)), near: None });
+            }
+            // The order is taken back.
+            (false, Some(_)) => self.start = None,
+            _ => {}
+        }
+        self.was_idle = !goes;
+    }
+}
+
+/// From one moment to another, s; negative where the other is earlier.
+fn signed(from: Instant, to: Instant) -> f32 {
+    if to >= from { to.since(from).as_secs_f32() } else { -from.since(to).as_secs_f32() }
+}
+
+/// Samples kept for each robot.
+const KEPT: usize = 15;
+/// So many starts are needed.
+const LEAST: usize = 3;
+/// A robot whose place stays within this rests, m: noise of 3 mm.
+const STILL: f32 = 0.008;
+/// ... for so long.
+const RESTS_FOR: Duration = Duration::millis(300);
+/// A place farther off lets it start with its full acceleration, m.
+const FAR_OFF: f32 = 0.4;
+/// The marks by which the onset is known, m: above the noise, and nine times that.
+const NEAR: f32 = 0.010;
+const FAR: f32 = 0.090;
+/// No robot needs longer from order to motion, s; with less than none the clocks are wrong.
+const ONSET_MIN: f32 = -0.03;
+const ONSET_MAX: f32 = 0.3;
+/// A robot that has not gone 90 mm by then is held up, s after the order.
+const GIVEN_UP: f32 = 0.8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{self, BallModels};
+    use protocol::host::Duty;
+
+    const US: Colour = Colour::Yellow;
+
+    fn id() -> RobotId {
+        RobotId::new(2).unwrap()
+    }
+
+    /// Starts from rest with that acceleration, `latency` s after each order, seen at 60 Hz with 2 mm of noise, 20 ms late.
+    fn learn(latency: f32, acceleration: f32, starts: usize) -> Option<Estimate> {
+        let mut learned = Latencies::default();
+        let mut noise = 12_345_u32;
+        for n in 0..starts {
+            let begin = n as u64 * 10_000_000;
+            // The order changes between two frames.
+            let ordered = begin + 1_000_000 + n as u64 * 3_100;
+            for frame in 0..150_u64 {
+                let now = begin + frame * 16_667;
+                let captured = now.saturating_sub(20_000);
+                let moving = (captured as f32 - ordered as f32) * 1e-6 - latency;
+                let way = if moving > 0.0 { 0.5 * acceleration * moving * moving } else { 0.0 };
+                noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let jitter = 0.002 * ((noise >> 16) as f32 / 32_768.0 - 1.0);
+                let robot = world::Robot {
+                    who: Who { colour: US, id: id() },
+                    pose: geometry::Pose {
+                        position: Point::new(way + jitter, 0.0),
+                        ..geometry::Pose::default()
+                    },
+                    velocity: geometry::Vector::default(),
+                    angular: 0.0,
+                    confidence: 1.0,
+                    seen: Instant(captured),
+                };
+                let mut world = World::empty(Instant(captured), BallModels::default());
+                world.put(robot);
+                let x = if now >= ordered { 2.0 } else { 0.0 };
+                let pose = geometry::Pose { position: Point::new(x, 0.0), ..geometry::Pose::default() };
+                let command = Command {
+                    to: id(),
+                    defending: geometry::GoalEnd::Negative,
+                    phase: Phase::Stop,
+                    duty: Duty::Player,
+                    directive: Directive::GoTo { pose: pose.into() },
+                };
+                learned.see(Instant(now), &world, US, Phase::Stop, &[command]);
+            }
+        }
+        learned.latency(id())
+    }
+
+    #[test]
+    fn latencies_of_5_to_150_ms_are_known_within_15_ms_whatever_the_acceleration() {
+        for latency in [0.005_f32, 0.03, 0.06, 0.15] {
+            for acceleration in [1.5, 3.0, 5.0] {
+                let known = learn(latency, acceleration, 9).unwrap();
+                // Frames are 17 ms apart, and orders between two of them count from the next.
+                let off = known.value - latency;
+                assert!((-0.020..=0.015).contains(&off), "{latency} s, {acceleration} m/s²: {known:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_starts_are_too_few_and_a_robot_that_stays_teaches_nothing() {
+        assert_eq!(learn(0.05, 3.0, 2), None);
+        assert_eq!(learn(0.05, 0.0, 9), None);
+        assert_eq!(learn(0.6, 3.0, 9), None, "no robot is as late as that");
+    }
+}

@@ -1,0 +1,148 @@
+//! `field`: are there more robots than the league allows, and is this the league's field?
+
+use std::fmt;
+
+use protocol::{Duration, Instant};
+use rules::{Colour, FieldSpec, League, limits};
+
+use super::Lasting;
+use crate::Host;
+
+/// More robots of a team than its league allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyRobots {
+    /// Which team.
+    pub team: Colour,
+    /// It is ours.
+    pub ours: bool,
+    /// So many are inside the lines.
+    pub on_field: usize,
+    /// So many may be.
+    pub allowed: usize,
+    /// Whose rules these are.
+    pub league: League,
+}
+
+impl fmt::Display for TooManyRobots {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { team, on_field, allowed, league, .. } = self;
+        let (whose, remedy) = if self.ours {
+            ("ours", "take the others off the field, or the referee counts a foul")
+        } else {
+            ("theirs", "tell the referee; none is led by this host")
+        };
+        write!(
+            f,
+            "{on_field} {} robots ({whose}) are on the field, {} allows {allowed}: {remedy} (another division: --league)",
+            team.word(),
+            league.name()
+        )
+    }
+}
+
+/// Counts robots inside the lines.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Crowd {
+    teams: [Lasting; 2],
+}
+
+impl Crowd {
+    pub(super) fn look(
+        &mut self,
+        now: Instant,
+        host: &Host,
+        sees: bool,
+    ) -> impl Iterator<Item = TooManyRobots> {
+        let (league, us, field) = (host.settings().league, host.settings().us, host.field());
+        let allowed = league.limits().map_or(usize::MAX, |limits| limits.robots as usize);
+        let inside = |robot: &&crate::world::Robot| {
+            let at = robot.pose.position;
+            field.clamp(at, -limits::ROBOT_RADIUS) == at && host.world().time.since(robot.seen) < SEEN
+        };
+        let found = [Colour::Yellow, Colour::Blue].map(|team| {
+            let on_field = host.world().team(team).filter(inside).count();
+            let many = self.teams[team as usize].see(now, sees && on_field > allowed);
+            many.then_some(TooManyRobots { team, ours: team == us, on_field, allowed, league })
+        });
+        found.into_iter().flatten()
+    }
+}
+
+/// A field that vision tells of and that is not the league's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherField {
+    /// The league that was chosen.
+    pub league: League,
+    /// Length and width by vision, m.
+    pub told: [f32; 2],
+    /// The league whose field it is, if it is one's.
+    pub fits: Option<League>,
+}
+
+impl fmt::Display for OtherField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([length, width], own) = (self.told, self.league.field());
+        write!(
+            f,
+            "vision tells of a field of {length:.1} × {width:.1} m, {} has {:.1} × {:.1} m: ",
+            self.league.name(),
+            own.length,
+            own.width
+        )?;
+        match self.fits {
+            Some(league) => {
+                write!(f, "start with --league {}, or receive the vision of this field (--vision)", league.name())
+            }
+            None => f.write_str(
+                "vision's is played on; is its geometry calibrated for this field, and is this the right vision (--vision)?",
+            ),
+        }
+    }
+}
+
+/// What is wrong with the field that vision told, for that league.
+pub(super) fn other_field(league: League, told: &FieldSpec) -> Option<OtherField> {
+    let is = |league: League| {
+        let field = league.field();
+        let near = |told: f32, own: f32| (told - own).abs() <= own * TOLERANCE;
+        near(told.length, field.length) && near(told.width, field.width)
+    };
+    let other = || OtherField {
+        league,
+        told: [told.length, told.width],
+        fits: [League::DivisionB, League::DivisionA, League::Ssl2013].into_iter().find(|other| is(*other)),
+    };
+    (!is(league)).then(other)
+}
+
+/// A robot that was not seen for longer is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
+const SEEN: Duration = Duration::millis(170);
+/// Fields are laid out within this share of their size (an estimate; the rules allow 10 %, and the leagues' differ by a third).
+const TOLERANCE: f32 = 0.1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_league_has_its_own_field_and_the_right_one_is_named_for_another() {
+        let leagues = [League::DivisionA, League::DivisionB, League::Ssl2013];
+        for league in leagues {
+            for told in leagues {
+                let found = other_field(league, &told.field());
+                assert_eq!(found.map(|found| found.fits), (league != told).then_some(Some(told)));
+            }
+        }
+        let found = other_field(League::DivisionB, &League::DivisionA.field()).unwrap();
+        let words = found.to_string();
+        assert!(words.contains("12.0 × 9.0 m") && words.contains("--league division-a"), "{words}");
+    }
+
+    #[test]
+    fn a_field_laid_out_a_little_wrong_is_the_leagues_and_one_of_no_league_is_said_to_be_none() {
+        let own = League::DivisionB.field();
+        assert_eq!(other_field(League::DivisionB, &FieldSpec { length: 9.3, width: 5.8, ..own }), None);
+        let found = other_field(League::DivisionB, &FieldSpec { length: 4.5, width: 3.0, ..own }).unwrap();
+        assert!(found.fits.is_none() && found.to_string().contains("calibrated"), "{found}");
+    }
+}

@@ -1,0 +1,158 @@
+//! `sanity`: what on the field, in the network or in this computer does not fit what the host was started with, each with its
+//! evidence and the remedy in words. Sans-IO; times on the host's clock.
+//!
+//! | module | finds |
+//! |---|---|
+//! | `field` | more robots than the league allows; a field that is not the league's |
+//! | `side` | keepers or teams at the goals that the other team defends |
+//! | `second_host` | another host of the same team number |
+//! | `port` | no camera frames on vision's port, or another program's packets |
+//! | `stall` | this computer, vision or the radio stood still: which of them |
+//!
+//! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its cause and for as long as
+//! that lasts. A match in which everything fits has none.
+
+mod field;
+mod port;
+mod second_host;
+mod side;
+mod stall;
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+use protocol::{Duration, Instant};
+
+use crate::Host;
+
+pub use field::{OtherField, TooManyRobots};
+pub use port::VisionPort;
+pub use second_host::SecondHost;
+pub use side::{SideEvidence, WrongSide};
+pub use stall::Stall;
+
+/// [`Sanity::look`] is called at least this often, so that "within two seconds" holds.
+pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
+/// What is seen on the field must last this long before it is a finding: longer than a misread pattern is believed (0.2 s), and
+/// half of the two seconds.
+const LASTS: Duration = Duration::millis(1_000);
+
+/// Something that does not fit.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finding {
+    /// More robots than the league allows.
+    Robots(TooManyRobots),
+    /// Vision tells of a field that is not the league's.
+    Field(OtherField),
+    /// The teams stand at each other's goals.
+    Side(WrongSide),
+    /// Another host leads, or tries to lead, our robots.
+    SecondHost(SecondHost),
+    /// Vision's port brings no camera frames.
+    VisionPort(VisionPort),
+    /// Something stood still.
+    Stall(Stall),
+}
+
+impl Finding {
+    /// What it is about, without its figures: two findings of one matter are one finding at two times.
+    pub fn matter(&self) -> String {
+        match self {
+            Self::Robots(found) => format!("robots {:?}", found.team),
+            Self::Field(_) => "field".to_owned(),
+            Self::Side(_) => "side".to_owned(),
+            Self::SecondHost(_) => "second host".to_owned(),
+            Self::VisionPort(_) => "vision port".to_owned(),
+            Self::Stall(stall) => format!("stall {}", stall.place()),
+        }
+    }
+
+    /// Whose matter it is, in a word that heads a line: `field`, `robots`, `vision`, `radio` or `host`.
+    pub const fn heading(&self) -> &'static str {
+        match self {
+            Self::Robots(_) => "robots",
+            Self::Field(_) | Self::Side(_) => "field",
+            Self::SecondHost(_) => "radio",
+            Self::VisionPort(_) => "vision",
+            Self::Stall(stall) => stall.place(),
+        }
+    }
+
+    /// Whether it is said again while it lasts.
+    pub const fn is_urgent(&self) -> bool {
+        match self {
+            Self::Robots(_) | Self::Side(_) | Self::SecondHost(_) | Self::Stall(_) => true,
+            // A laboratory's own field, or a camera that is not switched on yet: saying it once is enough.
+            Self::Field(found) => found.fits.is_some(),
+            Self::VisionPort(_) => false,
+        }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robots(found) => found.fmt(f),
+            Self::Field(found) => found.fmt(f),
+            Self::Side(found) => found.fmt(f),
+            Self::SecondHost(found) => found.fmt(f),
+            Self::VisionPort(found) => found.fmt(f),
+            Self::Stall(found) => found.fmt(f),
+        }
+    }
+}
+
+/// Looks whether everything fits.
+#[derive(Clone, Debug, Default)]
+pub struct Sanity {
+    looked: Option<Instant>,
+    crowd: field::Crowd,
+    side: side::Sides,
+    port: port::Port,
+    stalls: stall::Stalls,
+}
+
+impl Sanity {
+    /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is the computer's.
+    /// A simulation in virtual time does not call it.
+    pub fn ran(&mut self, now: Instant) {
+        self.stalls.ran(now);
+    }
+
+    /// What does not fit now.
+    pub fn look(&mut self, now: Instant, host: &Host) -> Vec<Finding> {
+        if self.looked.is_some_and(|last| now < last) {
+            // A recording that is wound back, or a match that begins anew.
+            *self = Self::default();
+        }
+        self.looked = Some(now);
+        let mut found = Vec::new();
+        let sees = host.imaged().is_some_and(|at| now.since(at) < SEES);
+        let told = host.told_field().and_then(|told| field::other_field(host.settings().league, told));
+        found.extend(told.map(Finding::Field));
+        found.extend(self.crowd.look(now, host, sees).map(Finding::Robots));
+        found.extend(self.side.look(now, host, sees).map(Finding::Side));
+        found.extend(second_host::look(now, host).map(Finding::SecondHost));
+        found.extend(self.port.look(now, host).map(Finding::VisionPort));
+        found.extend(self.stalls.look(now, host).map(Finding::Stall));
+        found
+    }
+}
+
+/// Something that must last for [`LASTS`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Lasting {
+    since: Option<Instant>,
+}
+
+impl Lasting {
+    /// Whether it has held for long enough, if it `holds` now.
+    fn see(&mut self, now: Instant, holds: bool) -> bool {
+        self.since = holds.then(|| self.since.unwrap_or(now));
+        self.since.is_some_and(|since| now.since(since) >= LASTS)
+    }
+}
+
+/// The field is judged by what cameras saw within this time.
+const SEES: Duration = Duration::millis(300);

@@ -1,0 +1,150 @@
+//! `port`: do camera frames come on vision's port?
+
+use std::fmt;
+
+use protocol::{Duration, Instant};
+
+use crate::Host;
+
+/// What comes on vision's port instead of camera frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VisionPort {
+    /// Nothing at all, since the start.
+    Nothing,
+    /// Packets that hold neither camera frame nor field: another program's port.
+    Foreign {
+        /// How many since the last camera frame.
+        packets: u64,
+    },
+    /// The field's geometry, but no camera frame.
+    NoFrames,
+}
+
+impl fmt::Display for VisionPort {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nothing => f.write_str(
+                "waiting for vision: no packet has come; is SSL-Vision or a simulator running, and sends it there? Cameras send to \
+                 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision, --interface); `onetwo simulate` is one",
+            ),
+            Self::Foreign { packets } => write!(
+                f,
+                "waiting for vision: {packets} packets came on its port and none holds a camera frame or a field; another program sends \
+                 there. Cameras send to 224.5.23.2:10006, simulators to 224.5.23.2:10020 (--vision)"
+            ),
+            Self::NoFrames => f.write_str(
+                "waiting for vision: the field's geometry comes, but no camera frame; are the cameras on, and is capture started in \
+                 SSL-Vision?",
+            ),
+        }
+    }
+}
+
+/// Packets of vision's port, as the host counted them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Port {
+    began: Option<Instant>,
+    /// Foreign packets before the last camera frame, and now; when the newest came.
+    before: u64,
+    foreign: u64,
+    newest: Option<Instant>,
+}
+
+impl Port {
+    pub(super) fn look(&mut self, now: Instant, host: &Host) -> Option<VisionPort> {
+        let undecodable = host.undecodable();
+        self.see(
+            now,
+            host.imaged(),
+            undecodable.vision + undecodable.empty,
+            host.tracker().counts().packets() > undecodable.empty,
+        )
+    }
+
+    /// By the newest camera frame, the number of foreign packets, and whether any other packet came.
+    fn see(
+        &mut self,
+        now: Instant,
+        frame: Option<Instant>,
+        foreign: u64,
+        others: bool,
+    ) -> Option<VisionPort> {
+        let began = *self.began.get_or_insert(now);
+        if foreign > self.foreign {
+            (self.foreign, self.newest) = (foreign, Some(now));
+        }
+        if frame.is_some_and(|at| now.since(at) < PATIENCE) {
+            self.before = self.foreign;
+            return None;
+        }
+        if now.since(began) < PATIENCE {
+            return None;
+        }
+        let packets = self.foreign - self.before;
+        if packets >= FOREIGN_MIN && self.newest.is_some_and(|at| now.since(at) < OVER) {
+            return Some(VisionPort::Foreign { packets });
+        }
+        match frame {
+            // That it came and ceased is a stall.
+            Some(_) => None,
+            None if others => Some(VisionPort::NoFrames),
+            None => Some(VisionPort::Nothing),
+        }
+    }
+}
+
+/// Camera frames are waited for so long after the start, and after the last.
+const PATIENCE: Duration = Duration::millis(1_000);
+/// Another program that has sent nothing for so long has ended.
+const OVER: Duration = Duration::millis(2_000);
+/// Fewer packets are a program that looks for something.
+const FOREIGN_MIN: u64 = 3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is found every 100 ms of `seconds`, by camera frames and foreign packets a second; geometry where `others`.
+    fn found(frames: u64, foreign: u64, others: bool, seconds: u64) -> Vec<Option<VisionPort>> {
+        let mut port = Port::default();
+        let look = |n: u64| {
+            let now = Instant(n * 100_000);
+            let frame = (frames > 0).then_some(now);
+            port.see(now, frame, foreign * n / 10, others)
+        };
+        (0..10 * seconds).map(look).collect()
+    }
+
+    #[test]
+    fn no_packet_other_packets_and_geometry_alone_are_told_apart_within_two_seconds() {
+        for (foreign, others, expected) in [
+            (0, false, VisionPort::Nothing),
+            (100, false, VisionPort::Foreign { packets: 0 }),
+            (0, true, VisionPort::NoFrames),
+        ] {
+            let found = found(0, foreign, others, 5);
+            assert_eq!(found[9], None, "it is given a second");
+            for (n, found) in found.iter().enumerate().skip(20) {
+                let same = match (found, expected) {
+                    (Some(VisionPort::Foreign { packets }), VisionPort::Foreign { .. }) => {
+                        *packets == 10 * n as u64
+                    }
+                    (found, expected) => *found == Some(expected),
+                };
+                assert!(same, "{n}: {found:?}");
+            }
+        }
+        for words in [VisionPort::Nothing, VisionPort::Foreign { packets: 5_785 }, VisionPort::NoFrames] {
+            assert!(
+                words.to_string().contains("SSL-Vision") || words.to_string().contains("--vision"),
+                "{words}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_port_that_brings_camera_frames_is_the_right_one_whatever_else_comes() {
+        assert!(found(60, 0, true, 60).iter().all(Option::is_none));
+        assert!(found(60, 50, true, 60).iter().all(Option::is_none));
+    }
+}

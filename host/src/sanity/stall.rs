@@ -1,0 +1,276 @@
+//! `stall`: what stood still: this computer, vision or the radio? A stall of one makes the others look still: a computer that does not run
+//! receives nothing, and without vision the host sends nothing after half a second. So they are looked for in this order.
+
+use std::fmt;
+
+use protocol::{Duration, Instant};
+
+use crate::Host;
+use crate::radio::Radio;
+
+/// What stood still, and for how long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stall {
+    /// This computer did not run the host.
+    Host {
+        /// For how long.
+        lasted: Duration,
+    },
+    /// No camera frame comes though the computer runs.
+    Vision {
+        /// Since the last one, or since the computer runs again.
+        since: Duration,
+    },
+    /// No robot is received, though at least one was, the computer runs and vision comes.
+    RadioUp {
+        /// Since the last frame of any of them.
+        since: Duration,
+    },
+    /// Robots are received and none receives us, though snapshots go out.
+    RadioDown {
+        /// The shortest time for which one of them received nothing.
+        since: Duration,
+    },
+}
+
+impl Stall {
+    /// Where: `host`, `vision` or `radio`.
+    pub const fn place(&self) -> &'static str {
+        match self {
+            Self::Host { .. } => "host",
+            Self::Vision { .. } => "vision",
+            Self::RadioUp { .. } | Self::RadioDown { .. } => "radio",
+        }
+    }
+}
+
+impl fmt::Display for Stall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = |time: &Duration| time.as_secs_f32();
+        match self {
+            Self::Host { lasted } => write!(
+                f,
+                "host stall: this computer did not run the host for {:.1} s, robots brake after 0.1 s; close other programs, and switch \
+                 power saving and sleep off",
+                s(lasted)
+            ),
+            Self::Vision { since } => write!(
+                f,
+                "vision stall: no camera frame for {:.1} s while this computer and the radio go on, robots brake after 0.6 s; look at \
+                 SSL-Vision, its cameras and the network cable",
+                s(since)
+            ),
+            Self::RadioUp { since } => write!(
+                f,
+                "radio stall: no robot is received for {:.1} s while this computer and vision go on; look at the base station, its cable \
+                 and power, and the channel",
+                s(since)
+            ),
+            Self::RadioDown { since } => write!(
+                f,
+                "radio stall: robots are received but none receives us for {:.1} s, they brake after 0.1 s; look at the base station's \
+                 sender, and for another sender on the channel",
+                s(since)
+            ),
+        }
+    }
+}
+
+/// Remembers when what ran.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Stalls {
+    ran: Option<Instant>,
+    /// How long the computer did not run, and since when it runs again.
+    host: Option<(Duration, Instant)>,
+    /// Since when snapshots have gone out without a pause.
+    sends_since: Option<Instant>,
+    /// What stood still last, and until when that is shown.
+    shown: Option<(Stall, Instant)>,
+}
+
+/// What was received when.
+#[derive(Clone, Copy, Debug, Default)]
+struct Last {
+    /// The newest camera frame.
+    frame: Option<Instant>,
+    /// The newest frame of any robot.
+    robot: Option<Instant>,
+    /// The newest snapshot that went out.
+    sent: Option<Instant>,
+    /// Of robots whose telemetry is new, the shortest time for which one had received nothing.
+    unheard: Option<Duration>,
+}
+
+impl Last {
+    fn of(host: &Host, now: Instant) -> Self {
+        let radio = host.radio();
+        let heard = protocol::RobotId::all().filter_map(|id| radio.quality(id));
+        Self {
+            frame: host.imaged(),
+            robot: heard.filter_map(crate::radio::Quality::heard_at).max(),
+            sent: radio.transmitted(),
+            unheard: unheard(radio, now),
+        }
+    }
+}
+
+fn unheard(radio: &Radio, now: Instant) -> Option<Duration> {
+    let told = radio.present(now).filter_map(|id| radio.quality(id)?.telemetry());
+    let new = told.filter(|(at, told)| now.since(*at) < TELEMETRY_NEW && told.heard > 0);
+    new.map(|(at, told)| Duration(u64::from(told.silence) * 100 + now.since(*at).0)).min()
+}
+
+impl Stalls {
+    /// The host's loop runs now.
+    pub(super) fn ran(&mut self, now: Instant) {
+        if let Some(last) = self.ran.replace(now)
+            && now.since(last) >= HOST_STALL
+        {
+            self.host = Some((now.since(last), now));
+        }
+    }
+
+    pub(super) fn look(&mut self, now: Instant, host: &Host) -> Option<Stall> {
+        self.see(now, &Last::of(host, now))
+    }
+
+    fn see(&mut self, now: Instant, last: &Last) -> Option<Stall> {
+        let sends = last.sent.is_some_and(|at| now.since(at) < SENDS) && self.runs_again(now);
+        self.sends_since = sends.then(|| self.sends_since.unwrap_or(now));
+        if let Some(stall) = self.goes_on(now, last) {
+            self.shown = Some((stall, now + SHOWN));
+        }
+        self.shown.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
+    }
+
+    /// Whether the computer has not stood still just now.
+    fn runs_again(&self, now: Instant) -> bool {
+        self.host.is_none_or(|(_, since)| now.since(since) >= CATCHES_UP)
+    }
+
+    /// What stands still now.
+    fn goes_on(&self, now: Instant, last: &Last) -> Option<Stall> {
+        // What waited while the computer stood still comes within a moment.
+        let runs_since = self.host.map_or(Instant(0), |(_, since)| since);
+        if let Some((lasted, _)) = self.host.filter(|_| !self.runs_again(now)) {
+            return Some(Stall::Host { lasted });
+        }
+        let since = |at: Instant| now.since(at.max(runs_since));
+        if let Some(frame) = last.frame
+            && since(frame) >= VISION_STALL
+        {
+            return Some(Stall::Vision { since: since(frame) });
+        }
+        if let Some(robot) = last.robot
+            && since(robot) >= RADIO_STALL
+            && since(robot) < SWITCHED_OFF
+        {
+            return Some(Stall::RadioUp { since: since(robot) });
+        }
+        let long = self.sends_since.is_some_and(|since| now.since(since) >= SENDS_FOR);
+        let unheard = last.unheard.filter(|silent| silent.0 >= DOWN_STALL.0 && long);
+        unheard.map(|since| Stall::RadioDown { since })
+    }
+}
+
+/// The host's loop wakes at least every 100 ms; a computer that lets it wait twice as long makes robots brake.
+const HOST_STALL: Duration = Duration::millis(200);
+/// After a stall of the computer what waited for it is received within this time.
+const CATCHES_UP: Duration = Duration::millis(300);
+/// Twenty camera frames; teams report blackouts of 0.2 s, which the host bridges.
+const VISION_STALL: Duration = Duration::millis(300);
+/// A robot sends beacons at 20 Hz and telemetry at 10 Hz.
+const RADIO_STALL: Duration = Duration::millis(300);
+/// Robots that are not received for so long were switched off.
+const SWITCHED_OFF: Duration = Duration::millis(10_000);
+/// Robots brake at 100 ms; telemetry that says more than twice that is no single gap.
+const DOWN_STALL: Duration = Duration::millis(250);
+/// Telemetry that is older tells nothing of now; it comes at 10 Hz.
+const TELEMETRY_NEW: Duration = Duration::millis(250);
+/// Snapshots go out at 60 Hz or more.
+const SENDS: Duration = Duration::millis(50);
+/// Robots that receive nothing are the radio's matter once snapshots have gone out for so long: [`DOWN_STALL`] and the age of telemetry.
+const SENDS_FOR: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
+/// A stall that is over is shown for so long, so that it can be read.
+const SHOWN: Duration = Duration::millis(3_000);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is shown every 100 ms of 20 s, if the given thing stands still from 5 s to `until`, ms.
+    fn shown(until: u64, still: &str) -> Vec<(u64, Option<Stall>)> {
+        let mut stalls = Stalls::default();
+        let mut shown = Vec::new();
+        let (mut last, mut said) = (Last::default(), 0);
+        for ms in (0..20_000).step_by(10) {
+            let now = Instant(ms * 1_000);
+            let stands = |what: &str| still == what && (5_000..until).contains(&ms);
+            if stands("host") {
+                continue;
+            }
+            stalls.ran(now);
+            let quiet = last.frame.is_some_and(|at| now.since(at).0 > 500_000);
+            if !stands("vision") && !stands("all") {
+                last.frame = Some(now);
+            }
+            if !stands("up") && !stands("radio") {
+                last.robot = Some(now);
+            }
+            if !quiet {
+                last.sent = Some(now);
+            }
+            // Telemetry comes every 100 ms; between, what it said goes on.
+            let silent = last.sent.map_or(0, |at| now.since(at).0) / 1_000;
+            let silent = if stands("down") { ms - 5_000 } else { silent };
+            if ms.is_multiple_of(100) {
+                said = silent;
+            } else {
+                said += 10;
+            }
+            last.unheard = (!stands("up") && !stands("radio")).then_some(Duration::millis(said));
+            if ms.is_multiple_of(100) {
+                shown.push((ms, stalls.see(now, &last)));
+            }
+        }
+        shown
+    }
+
+    #[test]
+    fn each_stall_is_said_within_half_a_second_by_its_own_words_and_by_no_others() {
+        for (still, place, words) in [
+            ("host", "host", "this computer did not run"),
+            ("vision", "vision", "no camera frame"),
+            ("up", "radio", "no robot is received"),
+            ("radio", "radio", "no robot is received"),
+            ("down", "radio", "none receives us"),
+        ] {
+            let shown = shown(7_000, still);
+            let said: Vec<_> = shown.iter().filter_map(|(ms, stall)| Some((*ms, (*stall)?))).collect();
+            let first = said[0].0;
+            let latest = if still == "host" { 7_000 } else { 5_500 };
+            assert!((5_000..=latest).contains(&first), "{still}: {first} ms");
+            for (ms, stall) in &said {
+                assert!(
+                    stall.place() == place && stall.to_string().contains(words),
+                    "{still}, {ms}: {stall}"
+                );
+            }
+            assert!(said.last().unwrap().0 <= 10_500, "{still}: it is over");
+        }
+    }
+
+    #[test]
+    fn gaps_of_150_ms_are_no_stall() {
+        for still in ["host", "vision", "up", "radio", "down"] {
+            assert!(shown(5_150, still).iter().all(|(_, stall)| stall.is_none()), "{still}");
+        }
+    }
+
+    #[test]
+    fn robots_that_are_switched_off_are_no_stall_for_ever() {
+        let shown = shown(20_000, "radio");
+        assert!(shown.iter().any(|(ms, stall)| *ms < 6_000 && stall.is_some()));
+        assert!(shown.iter().all(|(ms, stall)| *ms < 18_500 || stall.is_none()));
+    }
+}
