@@ -206,7 +206,7 @@ impl Governor {
         if let Some(hearing) = at.host {
             let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
             // From the step on in which it came: a frame that was long on its way counts as heard before that.
-            let gone = self.last_frame.is_none_or(|last| at.now.since(last) > LONG_SILENCE);
+            let gone = hearing.frame.is_none_or(|last| at.now.since(last) > LONG_SILENCE);
             self.heard_since = if gone { None } else { Some(self.heard_since.unwrap_or(at.now)) };
             let disarmed = self.heard_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
             let silence = disarmed || silent(hearing.frame);
