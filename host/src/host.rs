@@ -5,10 +5,13 @@
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
 //! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
 
+mod calibration;
+mod input;
+
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
-use protocol::frame::{Refusal, TeamKey};
-use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
+use protocol::frame::TeamKey;
+use protocol::host::{Command, Condition, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -29,6 +32,8 @@ use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, World};
+
+pub use input::{Input, Undecodable, Verdict};
 
 /// What is fixed for a host's life.
 #[derive(Clone, Debug)]
@@ -77,51 +82,6 @@ impl HostSettings {
             tactics: Tactics::default(),
         }
     }
-}
-
-/// What came to the host.
-#[derive(Clone, Copy, Debug)]
-pub enum Input<'a> {
-    /// A datagram of the vision.
-    Vision(&'a [u8]),
-    /// A datagram of the referee, and where it came from.
-    Referee(&'a [u8], SenderAddress),
-    /// A frame of a robot.
-    Robot(&'a [u8]),
-    /// The operator halts our robots until the end of the program.
-    Halt,
-    /// A deadline that [`Host::poll_timeout`] announced.
-    Timeout,
-}
-
-/// What became of an input.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Verdict {
-    /// An image, or geometry.
-    Vision(tracking::Heard),
-    /// A packet of the referee.
-    Referee(Box<referee::Verdict>),
-    /// A robot spoke.
-    Robot(RobotId),
-    /// A frame that is not believed.
-    Refused(Refusal),
-    /// A datagram that is no message.
-    Undecodable,
-    /// A deadline.
-    Timeout,
-    /// Our robots halt until the end.
-    Halted,
-}
-
-/// Datagrams that were no messages.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Undecodable {
-    /// On vision's port.
-    pub vision: u64,
-    /// On the referee's port.
-    pub referee: u64,
-    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
-    pub empty: u64,
 }
 
 /// A team's host.
@@ -495,30 +455,6 @@ impl Host {
         let told: heapless::Vec<_, { RobotId::COUNT }> = fresh.collect();
         proposal(&self.cases, &told, flip)
     }
-
-    /// Balls roll like that from now on.
-    fn roll_with(&mut self, roll: f32) {
-        self.roll = Some(roll);
-        self.coach.set_ground(self.tracker.set_roll(roll));
-    }
-
-    /// By how much that robot kicks harder than it is told: as it was learned, else as it was set.
-    fn kicks_by(&self, robot: RobotId) -> f32 {
-        let learned = self.learned.kick(robot).filter(|_| self.settings.learns);
-        learned.map_or(self.settings.kick[robot.index()], |known| known.value.clamp(GAIN_MIN, GAIN_MAX))
-    }
-
-    /// The same directive for a kicker that kicks harder or softer than it is told.
-    fn calibrated(&self, robot: RobotId, mut directive: Directive) -> Directive {
-        let factor = self.kicks_by(robot);
-        if factor != 1.0
-            && let Directive::Kick { kick, .. } | Directive::Pass { kick, .. } = &mut directive
-        {
-            let (KickOrder::Flat(speed) | KickOrder::Chip(speed)) = kick;
-            *speed = (f32::from(*speed) / factor) as u16;
-        }
-        directive
-    }
 }
 
 /// Where a ball is that cameras see; where one that they do not see is taken to be is a guess.
@@ -535,9 +471,6 @@ const LIMITS: Limits = match League::DivisionB.limits() {
 const PLAN_EVERY: Duration = Duration::millis(5);
 /// What a robot told of itself longer ago is not counted on.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
-/// A learned gain scales a kick's order by 0.8 to 1.7, not farther: what is beyond is a mistake of what was learned, or a broken kicker.
-const GAIN_MIN: f32 = 1.0 / 1.7;
-const GAIN_MAX: f32 = 1.0 / 0.8;
 /// Share by which a ball must roll otherwise before tables are made anew.
 const ROLL_CHANGES: f32 = 0.05;
 /// A ball that was not seen for longer is hidden: the cameras' delay and a few images.
@@ -548,27 +481,4 @@ const SURE: f32 = 0.6;
 const BEACON_LEASE: Duration = Duration::millis(400);
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_learned_gain_scales_the_order_within_its_bounds_and_only_where_the_host_plays_by_it() {
-        let id = RobotId::new(3).unwrap();
-        let ordered = |gain: f32, learns: bool| {
-            let settings = HostSettings { learns, ..HostSettings::new(Colour::Blue, League::DivisionB, 1) };
-            let mut host = Host::new(settings, Instant(0));
-            host.learned = Learned::of_kick(id, gain);
-            let at = Point::<geometry::Field>::new(1.0, 0.0).into();
-            match host.calibrated(id, Directive::Kick { at, kick: KickOrder::Flat(300) }) {
-                Directive::Kick { kick: KickOrder::Flat(speed), .. } => speed,
-                other => panic!("{other:?}"),
-            }
-        };
-        let near =
-            |speed: u16, expected: u16| assert!(speed.abs_diff(expected) <= 1, "{speed}, not {expected}");
-        near(ordered(0.72, true), 417);
-        near(ordered(0.72, false), 300);
-        near(ordered(0.45, true), 510);
-        near(ordered(1.8, true), 240);
-    }
-}
+mod tests;

@@ -166,11 +166,10 @@ impl Governor {
         }
     }
 
-    /// A frame of the host counts as heard at that time, never before the last: the host is back since the first after a long silence.
+    /// A frame of the host counts as heard at that time, never before the last.
     pub fn hear_host(&mut self, heard: Instant) {
-        let back = self.last_frame.is_none_or(|last| heard.since(last) >= LONG_SILENCE);
-        if back || self.heard_since.is_none() {
-            self.heard_since = Some(heard);
+        if self.last_frame.is_some_and(|last| heard.since(last) >= LONG_SILENCE) {
+            self.heard_since = None;
         }
         self.last_frame = Some(heard);
     }
@@ -206,10 +205,9 @@ impl Governor {
         let mut why = Reasons::default();
         if let Some(hearing) = at.host {
             let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
-            // A frame that was long on its way counts as heard before it came: the silence lasted until then all the same.
-            if self.last_frame.is_some_and(|last| at.now.since(last) > LONG_SILENCE) {
-                self.heard_since = None;
-            }
+            // From the step on in which it came: a frame that was long on its way counts as heard before that.
+            let gone = hearing.frame.is_none_or(|last| at.now.since(last) > LONG_SILENCE);
+            self.heard_since = if gone { None } else { Some(self.heard_since.unwrap_or(at.now)) };
             let disarmed = self.heard_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
             let silence = disarmed || silent(hearing.frame);
             why.add_if(silence, Why::Silence);

@@ -5,6 +5,7 @@
 
 mod autoref;
 mod board;
+mod commanders;
 mod crew;
 mod hall;
 mod ports;

@@ -8,6 +8,8 @@ use hil_sim::small_size::server::{self, Server};
 use rules::Colour;
 use ssl::net::Port;
 
+use super::commanders::Commanders;
+
 /// A taken port is tried again this often.
 const AGAIN: Duration = Duration::from_secs(1);
 /// Datagrams of one port between two steps, at most: a flood of commands must not stop the world.
@@ -18,6 +20,8 @@ const AT_ONCE: usize = 64;
 pub(super) struct Ports {
     doors: Vec<Door>,
     tried: Instant,
+    commanders: Commanders,
+    began: Instant,
 }
 
 #[derive(Debug)]
@@ -39,6 +43,8 @@ impl Ports {
         let mut ports = Self {
             doors: vec![door(0, server::Port::Simulator), door(1, teams[0]), door(2, teams[1])],
             tried: Instant::now(),
+            commanders: Commanders::default(),
+            began: Instant::now(),
         };
         if base == 0 {
             ports.take_any();
@@ -97,7 +103,13 @@ impl Ports {
             let Some(socket) = &mut door.socket else { continue };
             for _ in 0..AT_ONCE {
                 match socket.receive(Duration::ZERO) {
-                    Ok(Some(datagram)) => server.handle(door.port, datagram.from, datagram.bytes),
+                    Ok(Some(datagram)) => {
+                        if let server::Port::Team(team) = door.port {
+                            let now = self.began.elapsed();
+                            words.extend(self.commanders.hear(now, team, datagram.from, datagram.bytes));
+                        }
+                        server.handle(door.port, datagram.from, datagram.bytes);
+                    }
                     Ok(None) => break,
                     Err(error) => {
                         words.push(format!("{}: {error}; it is opened again", door.name()));

@@ -1,0 +1,108 @@
+//! `commanders`: is a robot of the simulator commanded by two programs at once? Two teams' programs of one colour take turns then, and its
+//! robots shake between two wills. Times in the program's own.
+
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use rules::Colour;
+use ssl::Message;
+use ssl::simulation::RobotControl;
+
+/// Changes of the sender are counted over this time.
+const WINDOW: Duration = Duration::from_secs(1);
+/// So many in it are two programs: one that starts anew changes it once.
+const MANY: usize = 5;
+/// What lasts is said again after this.
+const AGAIN: Duration = Duration::from_secs(10);
+
+/// Who commands a robot.
+#[derive(Debug)]
+struct Commanded {
+    by: SocketAddr,
+    /// Who commanded it before, and when the sender changed lately.
+    before: SocketAddr,
+    changes: Vec<Duration>,
+}
+
+/// Who commands which robot.
+#[derive(Debug, Default)]
+pub(super) struct Commanders {
+    robots: BTreeMap<(Colour, u32), Commanded>,
+    said: BTreeMap<Colour, Duration>,
+}
+
+impl Commanders {
+    /// A datagram came on a team's port; words where another program commands the same robots.
+    pub(super) fn hear(
+        &mut self,
+        now: Duration,
+        team: Colour,
+        from: SocketAddr,
+        bytes: &[u8],
+    ) -> Option<String> {
+        let control = RobotControl::decode(bytes).ok()?;
+        let mut contested = None;
+        // A robot has a number below 16; others are refused by the simulator.
+        for command in control.robot_commands.iter().filter(|command| command.id < 16) {
+            let robot = self.robots.entry((team, command.id)).or_insert_with(|| Commanded {
+                by: from,
+                before: from,
+                changes: Vec::new(),
+            });
+            robot.changes.retain(|at| now.saturating_sub(*at) < WINDOW);
+            if robot.by != from {
+                robot.before = std::mem::replace(&mut robot.by, from);
+                robot.changes.push(now);
+            }
+            if robot.changes.len() >= MANY {
+                contested = Some((command.id, robot.before));
+            }
+        }
+        let (id, other) = contested?;
+        if self.said.get(&team).is_some_and(|at| now.saturating_sub(*at) < AGAIN) {
+            return None;
+        }
+        self.said.insert(team, now);
+        Some(format!(
+            "two programs command {} robot {id}: {other} and {from}; end one of them, or give it the other --colour",
+            team.word()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ssl::simulation::RobotCommand;
+
+    fn control(id: u32) -> Vec<u8> {
+        let command = RobotCommand { id, ..RobotCommand::default() };
+        RobotControl { robot_commands: vec![command] }.encode_to_vec()
+    }
+
+    /// What is said in 25 s, in which robot 3 is commanded 60 times a second from these ports by turns.
+    fn said(ports: impl Fn(u64) -> u16) -> Vec<(u128, String)> {
+        let mut commanders = Commanders::default();
+        let one = |n: u64| {
+            let now = Duration::from_millis(n * 1000 / 60);
+            let from = SocketAddr::from(([127, 0, 0, 1], ports(n)));
+            Some((now.as_millis(), commanders.hear(now, Colour::Blue, from, &control(3))?))
+        };
+        (0..25 * 60).filter_map(one).collect()
+    }
+
+    #[test]
+    fn two_programs_that_command_one_robot_are_told_within_two_seconds_and_every_ten() {
+        let said = said(|n| 4_000 + (n % 2) as u16);
+        assert_eq!(said.len(), 3, "{said:?}");
+        assert!(said[0].0 < 2_000 && said[0].1.contains("blue robot 3"), "{said:?}");
+        assert!(said[0].1.contains("127.0.0.1:4000") && said[0].1.contains("127.0.0.1:4001"), "{said:?}");
+    }
+
+    #[test]
+    fn one_program_and_one_that_starts_anew_are_in_order() {
+        assert!(said(|_| 4_000).is_empty());
+        assert!(said(|n| 4_000 + (n / 300) as u16).is_empty());
+    }
+}

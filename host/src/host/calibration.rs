@@ -1,0 +1,36 @@
+//! `calibration`: what robots and ball do otherwise than they are told, as it was set or learned, in a host's orders.
+
+use protocol::RobotId;
+use protocol::host::{Directive, KickOrder};
+
+use super::Host;
+
+impl Host {
+    /// Balls roll like that from now on.
+    pub(super) fn roll_with(&mut self, roll: f32) {
+        self.roll = Some(roll);
+        self.coach.set_ground(self.tracker.set_roll(roll));
+    }
+
+    /// By how much that robot kicks harder than it is told: as it was learned, else as it was set.
+    fn kicks_by(&self, robot: RobotId) -> f32 {
+        let learned = self.learned.kick(robot).filter(|_| self.settings.learns);
+        learned.map_or(self.settings.kick[robot.index()], |known| known.value.clamp(GAIN_MIN, GAIN_MAX))
+    }
+
+    /// The same directive for a kicker that kicks harder or softer than it is told.
+    pub(super) fn calibrated(&self, robot: RobotId, mut directive: Directive) -> Directive {
+        let factor = self.kicks_by(robot);
+        if factor != 1.0
+            && let Directive::Kick { kick, .. } | Directive::Pass { kick, .. } = &mut directive
+        {
+            let (KickOrder::Flat(speed) | KickOrder::Chip(speed)) = kick;
+            *speed = (f32::from(*speed) / factor) as u16;
+        }
+        directive
+    }
+}
+
+/// A learned gain scales a kick's order by 0.8 to 1.7, not farther: what is beyond is a mistake of what was learned, or a broken kicker.
+const GAIN_MIN: f32 = 1.0 / 1.7;
+const GAIN_MAX: f32 = 1.0 / 0.8;

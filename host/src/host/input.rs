@@ -1,0 +1,52 @@
+//! `input`: what comes to a host, and what became of it.
+
+use protocol::RobotId;
+use protocol::frame::Refusal;
+
+use crate::referee::{self, SenderAddress};
+use crate::tracking;
+
+/// What came to the host.
+#[derive(Clone, Copy, Debug)]
+pub enum Input<'a> {
+    /// A datagram of the vision.
+    Vision(&'a [u8]),
+    /// A datagram of the referee, and where it came from.
+    Referee(&'a [u8], SenderAddress),
+    /// A frame of a robot.
+    Robot(&'a [u8]),
+    /// The operator halts our robots until the end of the program.
+    Halt,
+    /// A deadline that [`Host::poll_timeout`] announced.
+    Timeout,
+}
+
+/// What became of an input.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// An image, or geometry.
+    Vision(tracking::Heard),
+    /// A packet of the referee.
+    Referee(Box<referee::Verdict>),
+    /// A robot spoke.
+    Robot(RobotId),
+    /// A frame that is not believed.
+    Refused(Refusal),
+    /// A datagram that is no message.
+    Undecodable,
+    /// A deadline.
+    Timeout,
+    /// Our robots halt until the end.
+    Halted,
+}
+
+/// Datagrams that were no messages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Undecodable {
+    /// On vision's port.
+    pub vision: u64,
+    /// On the referee's port.
+    pub referee: u64,
+    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
+    pub empty: u64,
+}
