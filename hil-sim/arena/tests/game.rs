@@ -192,10 +192,9 @@ impl Watcher for StandingAbout {
         if self.places.is_empty() {
             self.places.clone_from(&here);
         }
-        let stayed = |(now, first): &(&(Who, Point<geometry::Field>), &(Who, Point<geometry::Field>))| {
-            now.0 == first.0 && now.1.distance(first.1) < 0.01
-        };
-        self.unpushed = here.iter().zip(&self.places).filter(stayed).count();
+        let both = here.iter().zip(&self.places);
+        self.unpushed =
+            both.filter(|(now, first)| now.0 == first.0 && now.1.distance(first.1) < 0.01).count();
         self.touched |= game.world().robots().iter().any(|robot| robot.ball_contact && !robot.bystander);
     }
 }
@@ -203,7 +202,7 @@ impl Watcher for StandingAbout {
 #[test]
 fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_world() {
     let play_in = |world: &str, watcher: &mut dyn Watcher| {
-        let mut config = GameConfig::new(League::DivisionB, 1, 20.0);
+        let mut config = GameConfig::new(League::DivisionB, 1, 40.0);
         config.world = world.parse().unwrap();
         play(&config, &mut NativeBackend::new(case_library::division_b()), watcher).unwrap()
     };
