@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use arena::game::{GameConfig, GameReport, Nobody, play};
+use arena::game::{Game, GameConfig, GameReport, Watcher, play};
 use hil_sim::NativeBackend;
 use host::strategy::Team;
 use rayon::prelude::*;
-use rules::League;
+use rules::{League, Phase};
 
 fn main() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -18,21 +18,58 @@ fn main() -> Result<(), String> {
     let opponent = teams.into_iter().find(|team| team.word() == opponent).ok_or(usage)?;
     let number = |text: &str| text.parse::<u64>().map_err(|error| format!("{text}: {error}; {usage}"));
     let (first, count, seconds) = (number(first)?, number(count)?, number(seconds)?);
-    let reports: Vec<GameReport> = (first..first + count)
+    let played: Vec<(GameReport, Waiting)> = (first..first + count)
         .into_par_iter()
         .map(|seed| one(seed, seconds as f64, opponent))
         .collect::<Result<_, _>>()?;
+    let (reports, waiting): (Vec<_>, Vec<_>) = played.into_iter().unzip();
     for report in &reports {
         tell(report);
     }
     sum(&reports);
+    let ticks = waiting.iter().map(|waiting| waiting.ticks).sum::<u32>().max(1) as f32;
+    let speed = waiting.iter().map(|waiting| waiting.sum).sum::<f32>() / ticks;
+    let fast = waiting.iter().map(|waiting| waiting.fast).sum::<u32>() as f32 / ticks;
+    println!(
+        "robots that wait during placements, from 3 s on: {speed:.2} m/s, faster than 1 m/s {:.1} % of the time",
+        100.0 * fast
+    );
     Ok(())
 }
 
-fn one(seed: u64, seconds: f64, opponent: Team) -> Result<GameReport, String> {
+/// How those move who have nothing to do with a ball that is being placed.
+#[derive(Default)]
+struct Waiting {
+    since: Option<f64>,
+    ticks: u32,
+    sum: f32,
+    fast: u32,
+}
+
+impl Watcher for Waiting {
+    fn tick(&mut self, game: &Game<'_>) {
+        if !matches!(game.referee().phase(), Phase::BallPlacement(_)) {
+            self.since = None;
+            return;
+        }
+        let since = *self.since.get_or_insert(game.time());
+        let ball = game.world().ball.position;
+        let waits = game.world().robots().iter().filter(|robot| robot.pose.position.distance(ball) > 1.0);
+        for robot in waits.filter(|robot| robot.present && game.time() - since > 3.0) {
+            let speed = robot.velocity.norm();
+            self.ticks += 1;
+            self.sum += speed;
+            self.fast += u32::from(speed > 1.0);
+        }
+    }
+}
+
+fn one(seed: u64, seconds: f64, opponent: Team) -> Result<(GameReport, Waiting), String> {
     let config = GameConfig::new(League::DivisionB, seed, seconds).between(Team::Ours, opponent);
     let mut backend = NativeBackend::new(case_library::division_b());
-    play(&config, &mut backend, &mut Nobody).map_err(|error| error.to_string())
+    let mut waiting = Waiting::default();
+    let report = play(&config, &mut backend, &mut waiting).map_err(|error| error.to_string())?;
+    Ok((report, waiting))
 }
 
 fn fouls(report: &GameReport) -> BTreeMap<&'static str, u32> {

@@ -97,9 +97,8 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
         // are in nobody's way.
         Some(side) if side == Side::Theirs || !area => {
             let back = if side == Side::Ours { -1.0 } else { 1.0 };
-            let goal = -back * half_length;
-            let mark = goal + back * view.field.penalty_mark;
-            let x = view.ball.map_or(mark, |ball| ball.position.x()) + back * BEHIND_PENALTY;
+            // Where the ball will lie: a ball that is still on its way there tells nothing.
+            let x = restart::penalty_spot(view, side == Side::Ours).x() + back * BEHIND_PENALTY;
             let y = touch + view.field.margin * 0.5;
             (Point::new(x, y), Point::new(x + back * SPACING * BESIDE as f32, y))
         }

@@ -50,6 +50,16 @@ struct Pass {
     since: Instant,
 }
 
+/// Places for a pass that stand for a while.
+#[derive(Clone, Debug)]
+struct Settled {
+    /// Where the ball is, or will be.
+    from: Point<Attack>,
+    since: Instant,
+    /// With their worth.
+    places: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX>,
+}
+
 /// Chooses what everybody does; see [`Coach::decide`].
 #[derive(Clone, Debug)]
 pub struct Coach {
@@ -91,6 +101,8 @@ pub struct Coach {
     intent: Option<Intent>,
     /// Whether the ball that lies before our area is the keeper's.
     keepers: Option<bool>,
+    /// Where supporters stand while the ball is not in play.
+    settled: Option<Settled>,
     /// Where the ball is cleared to that lies in our area or before it.
     clearing: Option<Clearing>,
 }
@@ -123,6 +135,7 @@ impl Coach {
             barred: None,
             intent: None,
             keepers: None,
+            settled: None,
             clearing: None,
         }
     }
@@ -238,9 +251,23 @@ impl Coach {
         self.support(plan, from);
     }
 
-    /// Everybody left, to the best places for a pass from `from`.
+    /// Everybody left, to the best places for a pass from `from`. While the ball is not in play they are held for a while: the opponents
+    /// stand where ours are, and ours go where they are not, so that both would run for as long as it lasts.
     fn support(&mut self, plan: &mut Plan<'_>, from: Point<Attack>) {
-        let rated = support::places(plan.view, from, plan.free.len());
+        let (view, wanted) = (plan.view, plan.free.len());
+        let settled = self.settled.take().filter(|settled| {
+            view.phase != Phase::Run
+                && settled.places.len() >= wanted
+                && settled.from.distance(from) < SETTLED_FROM
+                && view.now.since(settled.since) < SETTLED_FOR
+        });
+        let settled = settled.unwrap_or_else(|| Settled {
+            from,
+            since: view.now,
+            places: support::places(view, from, wanted),
+        });
+        let rated = settled.places.clone();
+        self.settled = Some(settled);
         let places: heapless::Vec<_, ROBOTS_MAX> = rated.iter().map(|(at, _)| *at).collect();
         self.fill(plan, &places, |i| {
             (Role::Support(i as u8), Why::FreePlace { worth: rated.get(i).map_or(0.0, |(_, worth)| *worth) })
@@ -272,6 +299,10 @@ const PASS_BEGINS: Duration = Duration::millis(300);
 /// A ball slower than this goes nowhere any more, m/s.
 const PASS_STOPPED: f32 = 0.3;
 
+/// Places hold while the ball, or where it is placed, is within this of where it was, m …
+const SETTLED_FROM: f32 = 0.5;
+/// … and no longer than this: to walk half of division A's field and stand.
+const SETTLED_FOR: Duration = Duration::millis(6000);
 /// Searches for places start from it: one seed, one match.
 const SEARCH_SEED: u64 = 1;
 

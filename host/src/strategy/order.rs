@@ -147,6 +147,11 @@ pub enum Task {
         /// Facing.
         face: Angle,
     },
+    /// Have the ball, coming up to it so as to look over it at this point.
+    GetBall {
+        /// What to face.
+        face: Point<Attack>,
+    },
     /// Kick the ball at this point.
     Kick {
         /// Where to.
@@ -194,6 +199,7 @@ impl Task {
         match *self {
             Self::Stand => Directive::Stand,
             Self::GoTo { at, face } => Directive::GoTo { pose: flip.pose_to_wire(at, face) },
+            Self::GetBall { face } => Directive::GetBall { face: Some(flip.to_wire(face)) },
             Self::Kick { at, kick } => Directive::Kick { at: flip.to_wire(at), kick },
             Self::Pass { at, receiver, kick, ready } => {
                 Directive::Pass { at: flip.to_wire(at), receiver, kick, ready }

@@ -79,7 +79,7 @@ impl Coach {
         threat::lawful(view, at, &threat::Settings::default())
     }
 
-    /// Whether the ball before our area is left to our keeper: it is there first, or nobody else can get at it. Held until another
+    /// Whether the ball before our area is left to our keeper: it is there first. Held until another
     /// one is clearly sooner there.
     pub(super) fn is_keepers(&mut self, view: &View, ball: &Ball) -> bool {
         let keeper =
@@ -92,7 +92,7 @@ impl Coach {
         let players = view.ours.iter().filter(|robot| robot.id != keeper.id && Some(robot.id) != self.barred);
         let soonest = players
             .map(|robot| {
-                // Who comes from the field goes around the ball first.
+                // Who comes from the field goes around the ball first, or turns with it.
                 let around = if robot.position.distance(view.our_goal()) > home { AROUND } else { 0.0 };
                 roles::time_to(robot, ball.position) + around
             })
@@ -102,8 +102,7 @@ impl Coach {
             Some(false) => -roles::WORTH,
             None => 0.0,
         };
-        let alone = view.in_our_area(ball.position, KEEPER_ALONE);
-        let is = alone || roles::time_to(keeper, ball.position) < soonest + worth;
+        let is = roles::time_to(keeper, ball.position) < soonest + worth;
         self.keepers = Some(is);
         is
     }
@@ -116,8 +115,21 @@ impl Coach {
         ball: &Ball,
     ) -> Option<(Task, Why)> {
         let robot = view.our(who).filter(|_| self.keepers == Some(false))?;
+        if !view.in_our_area(ball.position, BEHIND_BALL) {
+            return Some(self.kept_clearance(view, who, ball, |view| {
+                let (at, kick, room) = defence::clearance_beside(view, robot, ball, OFF_OUR_AREA);
+                (Task::Kick { at, kick }, Why::BestTarget { room })
+            }));
+        }
+        // There is no room behind it: it is taken from the field, and turned.
+        let to_ball = ball.position - robot.position;
+        let has = to_ball.norm() < AT_FRONT && (to_ball.angle() - robot.heading).abs() < BEFORE_FRONT;
+        if !has {
+            let room = defence::room_along(view, robot.position, ball.position);
+            return Some((Task::GetBall { face: ball.position + to_ball }, Why::BestTarget { room }));
+        }
         Some(self.kept_clearance(view, who, ball, |view| {
-            let (at, kick, room) = defence::clearance_beside(view, robot, ball, OFF_OUR_AREA);
+            let (at, kick, room) = defence::clearance_outwards(view, ball);
             (Task::Kick { at, kick }, Why::BestTarget { room })
         }))
     }
@@ -188,11 +200,14 @@ fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
 /// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first: a field player's centre is
 /// 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no room to go around it on the goal's side.
 const KEEPERS: f32 = 0.3;
-/// Nearer than this only the keeper gets behind the ball, m.
-const KEEPER_ALONE: f32 = 0.04;
-/// Where a field player lines up for such a ball its centre is this far off our area, m: bodies may be partly within it, and robots keep
-/// their centres 0.02 m off (`brain`'s surroundings).
-const OFF_OUR_AREA: f32 = 0.025;
+/// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and what robots keep (`brain`'s
+/// surroundings: 0.01 m off the line's middle of 0.01 m).
+const OFF_OUR_AREA: f32 = 0.115;
+/// Nearer than this to our area no field player gets behind the ball or beside it, m.
+const BEHIND_BALL: f32 = 0.09;
+/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and noise.
+const AT_FRONT: f32 = 0.125;
+const BEFORE_FRONT: f32 = 0.4;
 /// From such a ball to the nearest robot that only defends, m: who lines up is 0.17 m behind it, and two bodies are 0.18 m.
 const CLEARER_NEEDS: f32 = 0.4;
 /// What it costs to go around a ball, s: half a circle of 0.2 m radius at walking pace (estimate).

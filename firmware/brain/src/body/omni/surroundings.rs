@@ -34,14 +34,13 @@ impl Surroundings {
         // The way it means to go, and the one on which it could come to rest.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
-        // A robot at a ball that lies beside an area may be as near as the rules let it: no part of it in theirs, and part of it in its own.
+        // A robot at a ball that lies beside an area may be as near as the rules let it.
         let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
         let at_ball = belief.game.phase == Phase::Run
             && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
         let grown = |region: &Forbidden| {
             let law = match region.why {
-                Why::OpponentArea if at_ball => LAW_AT_BALL,
-                Why::OwnArea if at_ball => LAW_AT_BALL_OWN,
+                Why::OpponentArea | Why::OwnArea if at_ball => LAW_AT_BALL,
                 // It comes along with the ball.
                 Why::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
                 _ => LAW,
@@ -154,10 +153,8 @@ const SIXTH: f32 = 1.0 / 6.0;
 const BODY: f32 = ROBOT_RADIUS;
 /// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
 const LAW: f32 = 0.04;
-/// Beside the opponents' area at a ball that lies, m: what wheels overshoot at 0.35 m/s.
+/// Beside areas at a ball that lies, m: what wheels overshoot at 0.35 m/s.
 const LAW_AT_BALL: f32 = 0.01;
-/// And beside the own one, m: a robot's centre stays outside; only to be in it entirely is an offence.
-const LAW_AT_BALL_OWN: f32 = 0.02 - BODY;
 /// A placement's stadium swings with the ball by what it rolls in so long, s: picture, radio, and what wheels take to follow; …
 const LEADS: f32 = 0.15;
 /// … no more than this, m: who stands where hosts send it is 0.15 m clear.

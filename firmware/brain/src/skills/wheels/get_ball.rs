@@ -125,8 +125,7 @@ fn time_in_field(belief: &Belief, ball: &Ball, path: &BallPath<Field>) -> f32 {
     path.time_to(v.norm() * out).unwrap_or(f32::INFINITY)
 }
 
-/// An opponent is at the ball, or about to be.
-pub(super) fn is_contested(belief: &Belief, ball: &Ball) -> bool {
+fn is_contested(belief: &Belief, ball: &Ball) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < CONTESTED)
 }
 

@@ -13,7 +13,7 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, SHOT};
 use crate::governor::may_kick;
 use crate::skills::Step;
-use crate::skills::wheels::get_ball::{Approach, approach, get_ball, is_contested};
+use crate::skills::wheels::get_ball::{Approach, approach, get_ball};
 
 /// Kicks the ball at a point.
 pub fn kick(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
@@ -30,8 +30,10 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
-    // Where an opponent stands at the ball there is often no room behind it: it is taken first, and turned.
-    if !once && (ball.velocity.norm() > LIES || is_contested(belief, &ball)) {
+    // Where an opponent stands behind the ball there is no room to line up: it is taken first, and turned.
+    let behind = ball.position - Vector::polar(LINES_UP, face);
+    let blocked = belief.nearest_opponent(behind).is_some_and(|(_, distance)| distance < BODIES);
+    if !once && (ball.velocity.norm() > LIES || blocked) {
         return match get_ball(belief, Some(face)) {
             Step::Running(intent) => intent,
             Step::Done => kick_held(belief, at, OmniKick::None),
@@ -87,6 +89,9 @@ fn sideways(belief: &Belief) -> f32 {
 
 /// A slower ball lies, m/s.
 const LIES: f32 = 0.25;
+/// From a ball to the centre of who lines up behind it, m (`get_ball`); and two bodies side by side.
+const LINES_UP: f32 = 0.165;
+const BODIES: f32 = 0.18;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// This near the ball it must look right before it goes on, m.
