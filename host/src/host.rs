@@ -8,7 +8,7 @@
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::frame::{Refusal, TeamKey};
-use protocol::host::{Command, Condition, Directive, KickOrder, Telemetry};
+use protocol::host::{Command, Condition, Directive, Duty, KickOrder, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -112,6 +112,9 @@ pub struct Undecodable {
     pub referee: u64,
 }
 
+/// Orders that take the place of the coach's: whom, its duty, and what to do.
+pub type Drill = heapless::Vec<(RobotId, Duty, Directive), { RobotId::COUNT }>;
+
 /// A team's host.
 #[derive(Clone, Debug)]
 pub struct Host {
@@ -134,6 +137,8 @@ pub struct Host {
     ordered: Phase<Colour>,
     undecodable: Undecodable,
     halted: bool,
+    /// Set in place of the coach's orders.
+    drill: Option<Drill>,
     books: Bookkeeper,
     requests: Requests,
 }
@@ -167,6 +172,7 @@ impl Host {
             ordered: Phase::Halt,
             undecodable: Undecodable::default(),
             halted: false,
+            drill: None,
             books: Bookkeeper::default(),
             requests: Requests::default(),
             cases: cases_of(settings.league),
@@ -197,6 +203,12 @@ impl Host {
             self.radio.hasten(now);
         }
         self.plan(now);
+    }
+
+    /// From the next plan on robots get these orders and no others, whatever the coach decides; `None`: the coach's again. Phase and
+    /// governor bind them as ever. For drills of single skills.
+    pub fn drill(&mut self, orders: Option<Drill>) {
+        self.drill = orders;
     }
 
     /// The next packet for the robots.
@@ -362,14 +374,20 @@ impl Host {
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
-        let command = |order: &crate::strategy::Order| Command {
-            to: order.robot,
+        let command = |(to, duty, directive): (RobotId, Duty, Directive)| Command {
+            to,
             defending: game.defending,
             phase: game.phase,
-            duty: order.role.duty(),
-            directive: self.calibrated(order.robot, order.task.directive(flip)),
+            duty,
+            directive: self.calibrated(to, directive),
         };
-        let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
+        let coached = |order: &crate::strategy::Order| {
+            command((order.robot, order.role.duty(), order.task.directive(flip)))
+        };
+        let commands: heapless::Vec<Command, { RobotId::COUNT }> = match &self.drill {
+            Some(drill) => drill.iter().cloned().map(command).collect(),
+            None => self.orders.iter().map(coached).collect(),
+        };
         self.ordered = self.listener.game().phase;
         let situation = Situation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
