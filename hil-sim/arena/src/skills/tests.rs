@@ -1,0 +1,1 @@
+//! Do tries succeed and fail by what truly happens, and come out the same each time?
