@@ -29,6 +29,9 @@ pub struct RecordingHeader {
     pub seed: Option<u64>,
     /// The league's name.
     pub league: String,
+    /// Which simulated world it was played in; none on a real field, and in recordings from before there were several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<String>,
     /// Unix time of the hosts' instant 0, µs, where it is known: what their clock shows is since then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_unix_us: Option<u64>,
@@ -251,6 +254,7 @@ mod tests {
             commit: "unknown".to_owned(),
             seed: Some(7),
             league: "division-b".to_owned(),
+            world: Some("random:7".to_owned()),
             zero_unix_us: None,
             hosts: vec![HostHeader::new(who, &kick, &radio, Instant(25))],
         }

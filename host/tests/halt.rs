@@ -189,6 +189,7 @@ fn same_again(settings: &HostSettings, records: &[Record]) -> bool {
         commit: String::new(),
         seed: None,
         league: League::DivisionB.name().to_owned(),
+        world: None,
         zero_unix_us: None,
         hosts: vec![HostHeader::of(settings, Instant(0))],
     };

@@ -42,7 +42,7 @@ use rules::League;
 use crate::rng::Stream;
 use senses::Senses;
 use surface::Slab;
-use worlds::WorldModel;
+use worlds::{Latency, LinkModel, RobotSpread, WorldModel};
 
 /// The true state of everything on the carpet.
 #[derive(Clone, Debug)]
@@ -58,6 +58,8 @@ pub struct World {
     pitch: Pitch,
     seed: u64,
     kicks: Stream,
+    spread: RobotSpread,
+    latency: Latency,
     events: Vec<Event>,
     last_touch: Option<(Who, u64)>,
     ball_drag: Option<BallDrag>,
@@ -100,6 +102,8 @@ impl World {
             pitch,
             seed,
             kicks: Stream::new(seed, "small size kicks"),
+            spread: RobotSpread::NONE,
+            latency: Latency::new(&LinkModel::IDEAL, seed),
             events: Vec::new(),
             last_touch: None,
             ball_drag: None,
@@ -118,9 +122,10 @@ impl World {
         world
     }
 
-    /// The same in a world of the family.
+    /// The same in a world of the family: robots differ, and what brains order comes late. Bystanders come when they are told to.
     pub fn of_model(league: League, model: &WorldModel, seed: u64) -> Self {
-        Self::new(league, &model.parameters, seed)
+        let world = Self::new(league, &model.parameters, seed);
+        Self { spread: model.robots, latency: Latency::new(&model.link, seed), ..world }
     }
 
     /// Another field under the same robots and ball.
@@ -141,7 +146,11 @@ impl World {
         let place = match self.place_of(who) {
             Ok(place) => place,
             Err(place) => {
-                self.robots.insert(place, Robot::new(who, pose, &self.parameters));
+                let mut robot = Robot::new(who, pose, &self.parameters);
+                if self.spread != RobotSpread::NONE {
+                    robot.set_traits(self.spread.of(self.seed, who));
+                }
+                self.robots.insert(place, robot);
                 self.senses.insert(place, Senses::new(self.parameters.noise, self.seed, who));
                 for (place, robot) in self.robots.iter().enumerate() {
                     self.places[robot.who.slot()] = Some(place as u8);
@@ -245,10 +254,14 @@ impl World {
         }
     }
 
-    /// What a robot's brain wants of its body; false where no such robot is.
+    /// What a robot's brain wants of its body, after the world's latency; false where no such robot is.
     pub fn command(&mut self, who: Who, frame: &ActuatorFrame) -> bool {
         let order = Order::from_actuators(frame, &self.parameters);
-        self.order(who, order)
+        if self.latency.is_none() {
+            return self.order(who, order);
+        }
+        self.latency.send(self.step, who, order);
+        self.robot(who).is_some_and(|robot| robot.present)
     }
 
     /// What a robot shall do; false where no such robot is.
@@ -269,6 +282,9 @@ impl World {
 
     /// 1 ms passes.
     pub fn step(&mut self) {
+        while let Some((who, order)) = self.latency.arrived(self.step) {
+            self.order(who, order);
+        }
         self.step += 1;
         let now = self.step;
         if now >= self.near_until || self.ball.position != self.ball_was {

@@ -27,7 +27,8 @@ impl World {
             let askew = self.kicks.normal_within(of.scatter_limit) * of.angle_sd_deg;
             let chip = kick.angle > 0.0;
             let most = robot.kick_limits[usize::from(chip)];
-            let speed = (kick.speed * (1.0 + scatter)).min(most);
+            let gain = robot.traits.kick_gain * if chip { robot.traits.chip_ratio } else { 1.0 };
+            let speed = (kick.speed * gain * (1.0 + scatter)).min(most);
             let (up, along) = math::sin_cos(kick.angle.clamp(0.0, math::FRAC_PI_2));
             let ahead = robot.to_field([1.0, 0.0]);
             let direction = ahead.rotated(Angle::degrees(askew));
@@ -142,7 +143,9 @@ fn pull(
     // Towards the robot only: what comes in is the front's business.
     let x = (wanted[0] - moves[0]).min(0.0);
     let y = wanted[1] - moves[1];
-    let strength = robot.order.dribbler * STEP;
+    // A roller whose rim is not much faster than the ball pulls less.
+    let left = if of.fade > 0.0 { (1.0 - of.fade * ball.velocity.norm()).max(0.0) } else { 1.0 };
+    let strength = robot.order.dribbler * robot.traits.pull * left * STEP;
     let (pull, side) = (of.pull * strength, of.side * strength);
     robot.to_field([x.max(-pull), y.clamp(-side, side)])
 }

@@ -122,6 +122,8 @@ numbers! {
         reach: 0.0, 0.1;
         /// m/s² towards the robot, at full speed.
         pull: 0.0, 1000.0;
+        /// Share of the pull lost for each m/s that the ball moves over the carpet.
+        fade: 0.0, 10.0;
         /// m/s² along the roller.
         side: 0.0, 1000.0;
         /// 1/s, how quickly a gap closes.

@@ -11,6 +11,7 @@ use protocol::robot_io::{ActuatorFrame, OmniKick};
 use super::STEP;
 use super::parameters::{BatteryParameters, BodyParameters, DriveParameters, Parameters};
 use super::wheels::Wheels;
+use super::worlds::Traits;
 
 /// What a robot's wheels shall do.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -111,6 +112,12 @@ pub struct Robot {
     limits: DriveParameters,
     /// m/s, its strongest flat and chip kick.
     pub kick_limits: [f32; 2],
+    /// Nobody commands it and no referee counts it: it stands about.
+    pub bystander: bool,
+    /// What it differs in from others of its make.
+    pub(super) traits: Traits,
+    /// Share of the wheels' motion that reaches the carpet.
+    grips: f32,
     pub(super) half_front: f32,
     pub(super) facing: [f32; 2],
     pub(super) order: Order,
@@ -177,6 +184,9 @@ impl Robot {
             body,
             limits: parameters.drive,
             kick_limits: [parameters.kick.flat, parameters.kick.chip],
+            bystander: false,
+            traits: Traits::NONE,
+            grips: 1.0,
             half_front: 0.0,
             facing: [1.0, 0.0],
             order: Order::default(),
@@ -215,6 +225,27 @@ impl Robot {
         let steps = |acceleration: f32| 1.0 / (acceleration * STEP);
         self.grip = [[steps(limits.forward), steps(limits.side)], [steps(limits.brake); 2]];
         self.limits = limits;
+    }
+
+    /// What it differs in from now on; its limits, as they are, take their shares.
+    pub(super) fn set_traits(&mut self, traits: Traits) {
+        let of = self.limits;
+        let [acceleration, speed] = [traits.acceleration, traits.speed];
+        self.set_limits(DriveParameters {
+            forward: of.forward * acceleration,
+            side: of.side * acceleration,
+            brake: of.brake * acceleration,
+            turn: of.turn * acceleration,
+            speed: of.speed * speed,
+            turn_speed: of.turn_speed * speed,
+            ..of
+        });
+        (self.traits, self.grips) = (traits, 1.0 - traits.slip);
+    }
+
+    /// What it differs in from others of its make.
+    pub fn traits(&self) -> &Traits {
+        &self.traits
     }
 
     /// Its wheels' limits.
@@ -325,7 +356,9 @@ impl Robot {
             self.measure(self.wanted.motion, battery);
             return;
         }
-        let meant = if settled { self.wanted.motion } else { self.turn_wheels(now) };
+        // Wheels that slip turn on as they were told and tell so: the body falls behind.
+        let rolled = if settled { self.wanted.motion } else { self.turn_wheels(now) };
+        let meant = rolled.map(|part| part * self.grips);
         let of = &self.limits;
         let ([c, s], (vx, vy)) = (self.facing, (self.velocity.x(), self.velocity.y()));
         let (own_x, own_y) = (c * vx + s * vy, c * vy - s * vx);
@@ -355,7 +388,7 @@ impl Robot {
         let turned = self.turning;
         let turning = bounded(turned + bounded(meant[2] - turned, of.turn * STEP), of.turn_speed);
         self.turning = turning;
-        self.measure([meant[0], meant[1], turning], battery);
+        self.measure([rolled[0], rolled[1], turning], battery);
         let turn = (turned + turning) * (0.5 * STEP);
         if turn != 0.0 {
             self.pose.heading = geometry::Angle::new(self.pose.heading.radians() + turn);

@@ -10,6 +10,7 @@ use arena::game::{self, Crowd, Game, GameConfig, GameReport, GameStory, Watcher}
 use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
+use hil_sim::small_size::worlds::WorldChoice;
 use host::shell::Recorder;
 use host::strategy::{Tactics, Team};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -45,6 +46,10 @@ pub(crate) struct PlayArgs {
     /// Field, robots and rules: ssl-2013, division-b or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
+    /// Which world of the family it is played in: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
+    /// weak-kickers or random:SEED (docs/fields.md).
+    #[arg(long, value_name = "WORLD", default_value_t)]
+    world: WorldChoice,
     /// Who plays blue: ours, reactive, marking, zone or idle.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
     blue: Team,
@@ -103,6 +108,7 @@ pub(crate) fn team(word: &str) -> Result<Team, String> {
 /// `onetwo play`.
 pub(crate) fn run(args: &PlayArgs) -> Result<ExitCode, Failure> {
     let mut config = GameConfig::new(args.league, args.seed, args.duration).between(args.blue, args.yellow);
+    config.world = args.world;
     let settings = args.settings.choose()?.settings;
     for team in &mut config.teams {
         team.settings = settings.clone();
@@ -157,7 +163,9 @@ fn on_page(
 ) -> Result<ExitCode, Failure> {
     let settings = args.settings.choose()?.settings;
     let oracle = CaseOracle::new(shelf_of(args.league, args.folder.library.as_deref())?, settings);
-    let title = format!("{}, seed {}", args.league.name(), args.seed);
+    let world =
+        if args.world == WorldChoice::Nominal { String::new() } else { format!(", world {}", args.world) };
+    let title = format!("{}, seed {}{world}", args.league.name(), args.seed);
     let page = args.page.open(title, false, Powers::Simulation, oracle)?;
     note!("playing  {}; Ctrl-C ends it", args.league.name());
     let mut theatre = Theatre::new(config, shelf, page, args.speed, args.record.is_some());

@@ -135,6 +135,7 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
         commit: "unknown".to_owned(),
         seed: None,
         league: League::DivisionB.name().to_owned(),
+        world: None,
         zero_unix_us: None,
         hosts: vec![HostHeader::of(&settings, Instant(0))],
     };

@@ -221,6 +221,7 @@ mod tests {
             commit: String::new(),
             seed: None,
             league: League::DivisionB.name().to_owned(),
+            world: None,
             zero_unix_us: None,
             hosts: vec![HostHeader::of(&settings, Instant(0))],
         };

@@ -104,6 +104,7 @@ impl<'a> Game<'a> {
         for setup in &config.teams {
             teams.push(Team::new(config, setup, &model.link, &mut world, backend)?);
         }
+        world.add_bystanders(model.bystanders);
         let Ok(teams) = <[Team<'a>; 2]>::try_from(teams) else { unreachable!("two set-ups give two teams") };
         let cameras = Cameras::of_model(Profile::Ours, 0.0, &world, model.vision, config.seed);
         Ok(Self {

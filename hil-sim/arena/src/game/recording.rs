@@ -36,6 +36,7 @@ pub fn header(version: &str, commit: &str, config: &GameConfig) -> RecordingHead
         commit: commit.to_owned(),
         seed: Some(config.seed),
         league: config.league.name().to_owned(),
+        world: Some(config.world.to_string()),
         zero_unix_us: None,
         hosts: hosts.map(|colour| HostHeader::of(&config.host_settings(colour), Instant(0))).to_vec(),
     }

@@ -31,6 +31,8 @@ pub struct GameReport {
     pub league: &'static str,
     /// See `league`.
     pub seed: u64,
+    /// The world it was played in, as `--world` takes it.
+    pub world: String,
     /// The hash of all ticks (DESIGN §2), 16 hexadecimal digits.
     pub trace_hash: String,
     /// The longest step of a brain, guest instructions; 0 where they cannot be counted.
@@ -139,6 +141,7 @@ impl GameReport {
             metrics: PerTeam::of(|team| TeamReport::of(metrics, team, *game.host(team).tally())),
             league: config.league.name(),
             seed: config.seed,
+            world: config.world.to_string(),
             trace_hash: game.trace().digits(),
             worst_step_instructions: game.worst_instructions(),
         }

@@ -76,6 +76,7 @@ impl MatchIdentity {
             (self.settings != other.settings, "settings"),
             (own.seed != theirs.seed, "seed"),
             (own.league != theirs.league, "league"),
+            (own.world != theirs.world, "world"),
             (own.duration_s.to_bits() != theirs.duration_s.to_bits(), "length of a match"),
             (own.pairings != theirs.pairings, "teams"),
             (own.matches != theirs.matches, "number of matches"),
@@ -102,6 +103,7 @@ impl Matches<'_> {
         let (blue, yellow) = planned.sides();
         let config = GameConfig::new(league, planned.seed, self.plan.duration_s);
         let mut config = config.between(blue.team, yellow.team);
+        config.world = self.plan.world.of_match(planned.seed);
         for team in &mut config.teams {
             team.settings = self.settings.clone();
             team.tactics = if team.colour == Colour::Blue { blue.tactics } else { yellow.tactics };

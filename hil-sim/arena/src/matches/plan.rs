@@ -1,6 +1,7 @@
 //! Which matches are played? Each pair of teams so many times, with the same chances for every pair, in turn as blue and as yellow.
 
 use hil_sim::Fnv;
+use hil_sim::small_size::worlds::WorldPlan;
 use rules::League;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +23,9 @@ pub struct Plan {
     pub seed: u64,
     /// Its name: field, robots and rules.
     pub league: String,
+    /// The world of each match; the league's own where an older file does not say.
+    #[serde(default)]
+    pub world: WorldPlan,
     /// Simulated seconds of a match.
     pub duration_s: f64,
     /// Who meets whom.
@@ -113,7 +117,14 @@ mod tests {
     fn pairs_meet_as_often_on_both_sides_with_the_same_seeds() {
         let pairings = Plan::round_robin(&[Team::Ours, Team::Reactive, Team::Zone].map(Entrant::from));
         assert_eq!(pairings.len(), 3);
-        let plan = Plan { seed: 1, league: "division-b".to_owned(), duration_s: 600.0, pairings, matches: 4 };
+        let plan = Plan {
+            seed: 1,
+            league: "division-b".to_owned(),
+            world: WorldPlan::RandomPerMatch,
+            duration_s: 600.0,
+            pairings,
+            matches: 4,
+        };
         let all: Vec<_> = (0..plan.len()).filter_map(|number| plan.get(number)).collect();
         assert_eq!((all.len(), plan.get(12)), (12, None));
         assert_eq!(all.iter().filter(|planned| planned.own_is_blue).count(), 6);

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
 use host::strategy::Team;
 
 use super::*;
@@ -27,6 +28,7 @@ impl Folder {
             plan: Plan {
                 seed: 4,
                 league: "division-b".to_owned(),
+                world: WorldPlan::default(),
                 duration_s: 4.0,
                 pairings: Plan::against(
                     Entrant::ours(),
@@ -68,6 +70,40 @@ fn threads_shards_and_interrupts_change_no_byte() {
     let bytes = fs::read(&file).unwrap();
     fs::write(&file, &bytes[..bytes.len() - 3]).unwrap();
     assert_eq!(hash(&alone.play(Shard::WHOLE, 2)), hash(&rows));
+}
+
+#[test]
+fn matches_of_different_worlds_are_of_different_evaluations_and_a_plan_keeps_its_world() {
+    let of = |world: WorldPlan| {
+        let plan = Plan {
+            seed: 4,
+            league: "division-b".to_owned(),
+            world,
+            duration_s: 4.0,
+            pairings: Plan::against(Entrant::ours(), &[Team::Reactive.into()]),
+            matches: 2,
+        };
+        Matches {
+            plan,
+            base: case_library::division_b(),
+            settings: Settings::default(),
+            program: "test".to_owned(),
+        }
+    };
+    let named: WorldPlan = "grsim".parse().unwrap();
+    let (nominal, grsim, random) = (of(WorldPlan::default()), of(named), of(WorldPlan::RandomPerMatch));
+    assert_eq!(nominal.identity().differences(&grsim.identity()), ["world"]);
+    assert_eq!(grsim.identity().differences(&random.identity()), ["world"]);
+    let planned = random.plan.get(1).unwrap();
+    assert_eq!(random.config(&planned).unwrap().world, WorldChoice::Random(planned.seed));
+    assert_eq!(grsim.config(&planned).unwrap().world.to_string(), "grsim");
+    for matches in [nominal, grsim, random] {
+        let json = serde_json::to_string(&matches.plan).unwrap();
+        assert_eq!(serde_json::from_str::<Plan>(&json).unwrap(), matches.plan);
+        // A file from before there were several worlds.
+        let older = json.replace(&format!("\"world\":\"{}\",", matches.plan.world), "");
+        assert_eq!(serde_json::from_str::<Plan>(&older).unwrap().world, WorldPlan::default());
+    }
 }
 
 fn row(number: usize, goals: [u32; 2], halves: [f32; 2], shots: [u32; 2]) -> MatchRow {
@@ -117,6 +153,7 @@ fn ratios_goals_and_intervals_are_those_counted_by_hand() {
     let plan = Plan {
         seed: 1,
         league: "ssl-2013".to_owned(),
+        world: WorldPlan::default(),
         duration_s: 600.0,
         pairings: Plan::against(Entrant::ours(), &[Team::Zone.into()]),
         matches: 3,
@@ -167,6 +204,7 @@ fn a_part_is_worth_what_the_side_with_it_was_ahead() {
     let plan = Plan {
         seed: 1,
         league: "division-b".to_owned(),
+        world: WorldPlan::default(),
         duration_s: 600.0,
         pairings: Plan::against(Entrant::ours(), &[without, Team::Zone.into()]),
         matches: 2,

@@ -4,6 +4,7 @@
 //! delay and is then due. Times on the wire are exact milliseconds of the simulation, on the clock that was asked for.
 
 mod field;
+mod mishaps;
 mod view;
 
 use std::collections::VecDeque;
@@ -14,6 +15,7 @@ use super::World;
 use super::parameters::{CameraParameters, NoiseParameters};
 use super::quirks::{Clock, GeometryStyle, Profile, Quirks};
 use super::worlds::VisionModel;
+use mishaps::Mishaps;
 use view::View;
 
 /// Everything that decides what cameras send.
@@ -37,13 +39,21 @@ pub struct Cameras {
     /// By the step they are due in.
     sent: VecDeque<(u64, WrapperPacket)>,
     next_geometry: u64,
+    mishaps: Mishaps,
     seed: u64,
 }
 
 impl Cameras {
     /// Cameras over `world`'s field; chance comes from `seed`.
     pub fn new(settings: CameraSettings, world: &World, seed: u64) -> Self {
-        let mut cameras = Self { settings, views: Vec::new(), sent: VecDeque::new(), next_geometry: 0, seed };
+        let mut cameras = Self {
+            settings,
+            views: Vec::new(),
+            sent: VecDeque::new(),
+            next_geometry: 0,
+            mishaps: Mishaps::new(VisionModel::IDEAL, seed),
+            seed,
+        };
         cameras.hang(world);
         cameras
     }
@@ -58,8 +68,9 @@ impl Cameras {
     }
 
     /// The same with what befalls frames in a world of the family.
-    pub fn of_model(profile: Profile, unix_now: f64, world: &World, _vision: VisionModel, seed: u64) -> Self {
-        Self::of(profile, unix_now, world, seed)
+    pub fn of_model(profile: Profile, unix_now: f64, world: &World, vision: VisionModel, seed: u64) -> Self {
+        let mishaps = Mishaps::new(vision, seed);
+        Self { mishaps, ..Self::of(profile, unix_now, world, seed) }
     }
 
     /// The settings.
@@ -91,14 +102,20 @@ impl Cameras {
             self.send(now, WrapperPacket { detection: None, geometry: Some(geometry), source: None });
         }
         let time = self.time(now);
+        self.mishaps.go_on(now, world, self.settings.camera.rate);
         for i in 0..self.views.len() {
             if self.views[i].due() > now {
                 continue;
             }
-            let detection = self.views[i].look(world, &self.settings, time);
+            let mut detection = self.views[i].look(world, &self.settings, time);
+            if self.mishaps.in_gap(now) {
+                continue;
+            }
+            self.mishaps.swap_ids(&mut detection);
             let geometry = self.attached(world, i, &detection);
             let late = (self.settings.camera.delay * 1000.0) as u64;
-            self.send(now + late, WrapperPacket { detection: Some(detection), geometry, source: None });
+            let due = self.mishaps.delayed(now + late);
+            self.send(due, WrapperPacket { detection: Some(detection), geometry, source: None });
         }
     }
 

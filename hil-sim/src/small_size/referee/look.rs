@@ -1,6 +1,6 @@
 //! How does the referee look at the simulated world, and how is done what it asks people for?
 
-use protocol::Instant;
+use protocol::{Instant, Who};
 
 use super::InternalReferee;
 use super::observation::{BallSeen, CrashSeen, Observation, RobotSeen};
@@ -30,7 +30,7 @@ impl Sight {
     pub(super) fn of(world: &World, events: &[Event], before: Option<Instant>) -> Self {
         let before = before.map(|at| at.0 / STEP_US);
         let since = |step: u64| before.is_some_and(|before| step > before);
-        let here = world.robots().iter().filter(|robot| robot.present);
+        let here = world.robots().iter().filter(|robot| robot.present && !robot.bystander);
         let robots = here
             .map(|robot| RobotSeen {
                 who: robot.who,
@@ -43,7 +43,9 @@ impl Sight {
         for event in events {
             match *event {
                 Event::Kicked { speed, .. } => fastest = speed.max(fastest),
-                Event::Crash { robots, velocities, .. } => {
+                Event::Crash { robots, velocities, .. }
+                    if !robots.iter().any(|who| stands_about(world, *who)) =>
+                {
                     crashes.push(CrashSeen { between: robots, velocities });
                 }
                 _ => {}
@@ -63,6 +65,10 @@ impl Sight {
             crashes: &self.crashes,
         }
     }
+}
+
+fn stands_about(world: &World, who: Who) -> bool {
+    world.robot(who).is_some_and(|robot| robot.bystander)
 }
 
 impl WorldOrder {

@@ -30,7 +30,8 @@ use ssl::simulation::{
 
 use super::camera::Cameras;
 use super::quirks::{Feedback, Profile};
-use super::{Order, Parameters, Who, World};
+use super::worlds::{WorldChoice, WorldModel};
+use super::{Order, Who, World};
 use crate::rng::Stream;
 
 pub use refusal::Refusal;
@@ -41,7 +42,7 @@ pub struct ServerSettings {
     /// Which field.
     pub league: League,
     /// How everything behaves.
-    pub parameters: Parameters,
+    pub model: WorldModel,
     /// Whose manners it has.
     pub profile: Profile,
     /// Robots of each team at the start.
@@ -57,9 +58,9 @@ pub struct ServerSettings {
 impl ServerSettings {
     /// A league as its file has it; `None` where no robots on wheels play.
     pub fn of(league: League, profile: Profile, seed: u64, unix_now: f64) -> Option<Self> {
-        let parameters = Parameters::of(league)?.clone();
-        let robots = parameters.robots;
-        Some(Self { league, parameters, profile, robots, seed, unix_now, vision_port: VISION_PORT })
+        let model = WorldModel::of(league, &WorldChoice::Nominal)?;
+        let robots = model.parameters.robots;
+        Some(Self { league, model, profile, robots, seed, unix_now, vision_port: VISION_PORT })
     }
 }
 
@@ -163,7 +164,7 @@ struct RadioRealism {
 impl Server {
     /// A field with both teams lined up in their halves, blue at −x, and the ball in the middle.
     pub fn new(settings: &ServerSettings) -> Self {
-        let mut world = World::new(settings.league, &settings.parameters, settings.seed);
+        let mut world = World::of_model(settings.league, &settings.model, settings.seed);
         let field = settings.league.field();
         for n in 0..settings.robots.min(RobotId::COUNT as u8) {
             let Some(id) = RobotId::new(n) else { continue };
@@ -173,13 +174,16 @@ impl Server {
             world.put(Who::blue(id), Pose::from_mm_deg(-depth * 1000.0, aside * 1000.0, 0.0));
             world.put(Who::yellow(id), Pose::from_mm_deg(depth * 1000.0, aside * 1000.0, 180.0));
         }
-        let cameras = Cameras::of(settings.profile, settings.unix_now, &world, settings.seed);
-        let answer_loss = cameras.settings().quirks.answer_loss;
+        world.add_bystanders(settings.model.bystanders);
+        let WorldModel { link, vision, .. } = &settings.model;
+        let cameras = Cameras::of_model(settings.profile, settings.unix_now, &world, *vision, settings.seed);
+        let answer_loss = cameras.settings().quirks.answer_loss.max(link.loss);
+        let (command_loss, delay) = (link.loss, u64::from(link.latency_ms));
         Self {
             world,
             cameras,
             profile: settings.profile,
-            radio: RadioRealism { answer_loss, ..RadioRealism::default() },
+            radio: RadioRealism { command_loss, answer_loss, delay },
             chance: Stream::new(settings.seed, "simulation server"),
             pace: 1.0,
             vision_port: settings.vision_port,

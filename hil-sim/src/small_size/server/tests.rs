@@ -12,7 +12,7 @@ use ssl::simulation::{
 use ssl::vision::WrapperPacket;
 
 use super::*;
-use crate::small_size::NoiseParameters;
+use crate::small_size::{NoiseParameters, Parameters};
 use geometry::Point;
 
 fn from() -> SocketAddr {
@@ -21,7 +21,7 @@ fn from() -> SocketAddr {
 
 fn server_like(profile: Profile) -> Server {
     let mut settings = ServerSettings::of(League::DivisionB, profile, 1, 1_795_220_511.0).unwrap();
-    settings.parameters.noise = NoiseParameters::NONE;
+    settings.model.parameters.noise = NoiseParameters::NONE;
     Server::new(&settings)
 }
 

@@ -3,8 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
+
 /// Which world is played in: `nominal`, a named profile, or `random:SEED`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub enum WorldChoice {
     /// The league's own file, as it is.
     #[default]
@@ -94,7 +97,8 @@ impl FromStr for WorldChoice {
 }
 
 /// Which world each match of many is played in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub enum WorldPlan {
     /// All in this one.
     Same(WorldChoice),
@@ -141,6 +145,32 @@ impl FromStr for WorldPlan {
             return Ok(Self::RandomPerMatch);
         }
         word.parse().map(Self::Same).map_err(|error| UnknownWorld { plan: true, ..error })
+    }
+}
+
+impl TryFrom<String> for WorldChoice {
+    type Error = UnknownWorld;
+    fn try_from(word: String) -> Result<Self, UnknownWorld> {
+        word.parse()
+    }
+}
+
+impl From<WorldChoice> for String {
+    fn from(choice: WorldChoice) -> Self {
+        choice.to_string()
+    }
+}
+
+impl TryFrom<String> for WorldPlan {
+    type Error = UnknownWorld;
+    fn try_from(word: String) -> Result<Self, UnknownWorld> {
+        word.parse()
+    }
+}
+
+impl From<WorldPlan> for String {
+    fn from(plan: WorldPlan) -> Self {
+        plan.to_string()
     }
 }
 

@@ -6,8 +6,19 @@
 //! `nominal` is the league's own file, a named profile changes it by `hil-sim/data/worlds/NAME.toml`, and `random:SEED` draws
 //! every number from its distribution. SI units; times of links and frames in ms.
 
+mod bystanders;
 mod choice;
+mod file;
+mod latency;
 mod model;
+mod random;
+
+#[cfg(test)]
+mod tests;
+
+pub(super) use latency::Latency;
 
 pub use choice::{NamedWorld, UnknownWorld, WorldChoice, WorldPlan};
-pub use model::{LinkModel, RobotSpread, VisionModel, WorldModel};
+pub use file::WorldError;
+pub use model::{LinkModel, RobotSpread, Traits, VisionModel, WorldModel};
+pub use random::{DRAWS, GAP_MS, Law, PERFECT_PULL, Quantity};

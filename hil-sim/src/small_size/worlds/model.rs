@@ -1,9 +1,12 @@
 //! One world of the family: what it consists of, and the league's own.
 
+use protocol::Who;
 use rules::League;
+use serde::{Deserialize, Serialize};
 
 use super::WorldChoice;
 use crate::air::AirSettings;
+use crate::rng::Stream;
 use crate::small_size::Parameters;
 
 /// A world of the family: physics, what robots differ in, command link, vision, bystanders.
@@ -24,7 +27,8 @@ pub struct WorldModel {
 }
 
 /// What robots differ in: each draws its own number, evenly from the first to the second, for as long as the world lasts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct RobotSpread {
     /// Share of the ordered speed with which a kick, flat or chip, leaves.
     pub kick_gain: [f32; 2],
@@ -41,7 +45,8 @@ pub struct RobotSpread {
 }
 
 /// Orders on their way to the wheels, and packets on the air.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct LinkModel {
     /// ms from a robot's computer to its wheels, kicker and dribbler; whole.
     pub latency_ms: u32,
@@ -52,7 +57,8 @@ pub struct LinkModel {
 }
 
 /// What befalls frames on their way from the cameras, besides rate, delay and noise of [`Parameters`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
 pub struct VisionModel {
     /// ms more than the cameras' delay, drawn for each frame evenly from 0 to this; frames keep their order.
     pub jitter_ms: u32,
@@ -69,8 +75,15 @@ pub struct VisionModel {
 impl WorldModel {
     /// That world in that league; `None` where no robots on wheels play.
     pub fn of(league: League, choice: &WorldChoice) -> Option<Self> {
-        let parameters = Parameters::of(league)?.clone();
-        Some(Self { name: choice.to_string(), ..Self::nominal(parameters) })
+        let parameters = Parameters::of(league)?;
+        let model = match choice {
+            WorldChoice::Nominal => Self::nominal(parameters.clone()),
+            WorldChoice::Named(named) => {
+                Self::from_toml(named.word(), named.text(), parameters).expect("a test reads every profile")
+            }
+            WorldChoice::Random(seed) => Self::random(parameters, *seed),
+        };
+        Some(Self { name: choice.to_string(), ..model })
     }
 
     /// Every name that can be chosen, but for `random:SEED`.
@@ -120,4 +133,65 @@ impl VisionModel {
     /// Every frame comes on time, with the right ids.
     pub const IDEAL: Self =
         Self { jitter_ms: 0, gap_every_s: 0.0, gap_ms: [0; 2], swap_every_s: 0.0, swap_frames: [0; 2] };
+}
+
+/// What one robot differs in from others of its make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traits {
+    /// Share of the ordered speed with which a kick leaves.
+    pub kick_gain: f32,
+    /// Share of that with which a chip leaves.
+    pub chip_ratio: f32,
+    /// Share of the world's accelerations.
+    pub acceleration: f32,
+    /// Share of the world's speeds.
+    pub speed: f32,
+    /// Share of the world's dribbler pull.
+    pub pull: f32,
+    /// Share of the wheels' motion that does not reach the carpet.
+    pub slip: f32,
+}
+
+impl Traits {
+    /// As the world's parameters say.
+    pub const NONE: Self =
+        Self { kick_gain: 1.0, chip_ratio: 1.0, acceleration: 1.0, speed: 1.0, pull: 1.0, slip: 0.0 };
+}
+
+impl RobotSpread {
+    /// Those of one robot: its own draw, whoever else is there.
+    pub fn of(&self, seed: u64, who: Who) -> Traits {
+        if *self == Self::NONE {
+            return Traits::NONE;
+        }
+        let draw = |name: &str, [low, high]: [f32; 2]| {
+            Stream::new(seed, &format!("robot {name} {}", who.slot())).between(low, high)
+        };
+        Traits {
+            kick_gain: draw("kick_gain", self.kick_gain),
+            chip_ratio: draw("chip_ratio", self.chip_ratio),
+            acceleration: draw("acceleration", self.acceleration),
+            speed: draw("speed", self.speed),
+            pull: draw("pull", self.pull),
+            slip: draw("slip", self.slip),
+        }
+    }
+}
+
+impl Default for RobotSpread {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Default for LinkModel {
+    fn default() -> Self {
+        Self::IDEAL
+    }
+}
+
+impl Default for VisionModel {
+    fn default() -> Self {
+        Self::IDEAL
+    }
 }

@@ -169,6 +169,7 @@ fn header(settings: &HostSettings) -> RecordingHeader {
         commit: env!("ONETWO_COMMIT").to_owned(),
         seed: None,
         league: settings.league.name().to_owned(),
+        world: None,
         zero_unix_us: Some(unix.as_micros() as u64),
         hosts: vec![HostHeader::of(settings, protocol::Instant(0))],
     }

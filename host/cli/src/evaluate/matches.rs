@@ -13,6 +13,7 @@ use arena::matches::{
 };
 use casebase::CaseBase;
 use clap::Args;
+use hil_sim::small_size::worlds::WorldPlan;
 use host::strategy::{Tactics, Team};
 use report::Picture;
 use rules::League;
@@ -32,6 +33,10 @@ pub(super) struct MatchesArgs {
     /// Field, robots and rules: division-b, ssl-2013 (the paper's) or division-a.
     #[arg(long, default_value = "division-b", value_parser = league)]
     league: League,
+    /// The world of all matches: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision, weak-kickers or
+    /// random:SEED; or random: each match in the random world of its own seed (docs/fields.md).
+    #[arg(long, value_name = "WORLD", default_value_t)]
+    world: WorldPlan,
     /// Matches of each pair of teams.
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     matches: u32,
@@ -125,6 +130,7 @@ impl MatchesArgs {
         Plan {
             seed: self.seed,
             league: self.league.name().to_owned(),
+            world: self.world,
             duration_s: self.duration,
             pairings,
             matches: self.matches,
@@ -203,11 +209,16 @@ impl<'a> Made<'a> {
         } else {
             "no cases come with this league: robots that the host leaves free play reactively".to_owned()
         };
+        let world = if plan.world == WorldPlan::default() {
+            String::new()
+        } else {
+            format!(", world {}", plan.world)
+        };
         let mut text = String::new();
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{} matches a pair of {} s on {} ({cases}), seed {}, csv hash {}, by {program}. `ours` plays {} of the second paper.\n\n\
+            "{} matches a pair of {} s on {} ({cases}), seed {}{world}, csv hash {}, by {program}. `ours` plays {} of the second paper.\n\n\
              ![Offence and attack ratios]({beside}{section}-ratios.svg)\n\n\
              ![P(receive) as predicted and seen]({beside}{section}-calibration.svg)\n\n{}",
             plan.matches,

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use foreign::{excerpt, printable};
+use hil_sim::small_size::worlds::WorldChoice;
 use host::Host;
 use host::recheck::Recheck;
 use host::recording::RecordingHeader;
@@ -224,6 +225,12 @@ impl Report<'_> {
         let mut out = format!("{file}: a trace from {first:.3} to {last:.3} s, {}", header.league);
         if let Some(seed) = header.seed {
             let _ = write!(out, ", seed {seed}");
+        }
+        // What a file says is shown as far as it can be a name.
+        if let Some(world) = header.world.as_ref().and_then(|world| world.parse::<WorldChoice>().ok())
+            && world != WorldChoice::Nominal
+        {
+            let _ = write!(out, ", world {world}");
         }
         let (version, commit) = (excerpt(&header.version, VERSION_LEN), excerpt(&header.commit, VERSION_LEN));
         let _ = writeln!(out, ", by onetwo {version} (commit {commit})");

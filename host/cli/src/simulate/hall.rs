@@ -54,10 +54,11 @@ pub(super) fn run(
     let mut whistle = Referee::new(args, unix_us)?;
     let mut tracker = args.tracker.map(|to| Tracked::new(to, args));
     note!(
-        "simulating {}, {} v {} robots, seed {}; Ctrl-C ends it",
+        "simulating {}, {} v {} robots, world {}, seed {}; Ctrl-C ends it",
         args.league.name(),
         settings.robots,
         settings.robots,
+        settings.model.name,
         args.seed
     );
     note!("control  {}", ports.words());

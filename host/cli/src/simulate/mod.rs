@@ -18,6 +18,7 @@ use clap::{Args, ValueEnum};
 use hil_sim::small_size::NoiseParameters;
 use hil_sim::small_size::quirks::Profile;
 use hil_sim::small_size::server::{Server, ServerSettings};
+use hil_sim::small_size::worlds::{WorldChoice, WorldModel};
 use rules::League;
 use ssl::net::addresses;
 
@@ -42,6 +43,10 @@ pub(crate) struct SimulateArgs {
     /// Whose manners it has on the wire: its own, or those of another simulator, to try a program against.
     #[arg(long, value_enum, default_value_t = ProfileWord::Ours)]
     profile: ProfileWord,
+    /// Which world of the family is simulated: nominal, grsim, erforce, erforce-none, sumatra, slow-dribbler, poor-vision,
+    /// weak-kickers or random:SEED (docs/fields.md). A profile other than ours has cameras and noise of its own.
+    #[arg(long, value_name = "WORLD", default_value_t)]
+    world: WorldChoice,
     /// Cameras: 1, 2 or 4; the league's or the profile's number unless told.
     #[arg(long, value_name = "N", value_parser = cameras)]
     cameras: Option<u32>,
@@ -137,13 +142,14 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<ExitCode, Failure> {
     let settings = ServerSettings::of(args.league, profile, args.seed, unix.as_secs_f64());
     let no_rules = || Failure::Network(format!("{} is not played on wheels", args.league.name()));
     let mut settings = settings.ok_or_else(no_rules)?;
+    settings.model = WorldModel::of(args.league, &args.world).ok_or_else(no_rules)?;
     settings.robots = args.robots.unwrap_or(settings.robots);
     settings.vision_port = args.vision.port();
     if let Some(count) = args.cameras {
-        settings.parameters.camera.count = count;
+        settings.model.parameters.camera.count = count;
     }
     if args.ideal {
-        settings.parameters.noise = NoiseParameters::NONE;
+        settings.model.parameters.noise = NoiseParameters::NONE;
     }
     let server = Server::new(&settings);
     hall::run(args, &settings, server, unix.as_micros() as u64)

@@ -119,7 +119,8 @@ impl Team {
     fn look(&mut self, game: &RemoteMatch, world: &World, colour: Colour) -> Option<Deed> {
         let (now, own) = (game.now, game.own_end(colour));
         let (field, ball) = (&game.field, world.ball.position);
-        let ours = || world.robots().iter().filter(|robot| robot.present && robot.who.colour == colour);
+        let counts = |robot: &&Robot| robot.present && !robot.bystander && robot.who.colour == colour;
+        let ours = || world.robots().iter().filter(counts);
         let behind = |robot: &&Robot| !field.counts(own, robot.pose.position);
         let here = ours().count() as u32;
         let on_field = ours().filter(|robot| !behind(robot)).count() as u32;

@@ -1,0 +1,230 @@
+//! `random:SEED`: every number of the family drawn from its own distribution, independently of all others; the table of [`DRAWS`].
+//!
+//! The bounds are the or the ends of what teams and simulators publish (`docs/fields.md` has the table and the
+//! sources). Each quantity has a stream of chance of its own, so that one more of them changes nothing else.
+
+use super::WorldModel;
+use crate::rng::Stream;
+use crate::small_size::Parameters;
+
+/// How a quantity is distributed between its bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Evenly.
+    Even,
+    /// Evenly in its logarithm: as often from 1 to 2 as from 2 to 4.
+    Log,
+    /// Half of all worlds have none of it, the others evenly.
+    Half,
+    /// Two draws, sorted: the robots of the world lie evenly between them.
+    Pair,
+}
+
+impl Law {
+    /// In the table of `docs/fields.md`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Even => "even",
+            Self::Log => "log-even",
+            Self::Half => "half none, half even",
+            Self::Pair => "per robot",
+        }
+    }
+}
+
+/// A quantity of the family.
+pub struct Quantity {
+    /// Its key in a profile.
+    pub name: &'static str,
+    /// Least and most.
+    pub bounds: [f32; 2],
+    /// How it is distributed.
+    pub law: Law,
+    /// Both numbers of a pair; else twice the same.
+    set: fn(&mut WorldModel, [f32; 2]),
+}
+
+macro_rules! quantity {
+    ($law:ident $name:literal $low:literal $high:literal, $($path:ident).+) => {
+        Quantity {
+            name: $name,
+            bounds: [$low, $high],
+            law: Law::$law,
+            set: |model, [value, _]| model.parameters.$($path).+ = value,
+        }
+    };
+}
+
+/// One of [`super::RobotSpread`].
+macro_rules! pair {
+    ($name:literal $low:literal $high:literal, $field:ident) => {
+        Quantity {
+            name: $name,
+            bounds: [$low, $high],
+            law: Law::Pair,
+            set: |model, values| model.robots.$field = values,
+        }
+    };
+}
+
+/// Every quantity that a random world draws; what is not here is the league's.
+pub const DRAWS: &[Quantity] = &[
+    quantity!(Even "ball.mass" 0.040 0.047, ball.mass),
+    quantity!(Log "ball.slide" 2.5 14.0, ball.slide),
+    quantity!(Log "ball.roll" 0.2 0.8, ball.roll),
+    quantity!(Even "ball.hop_along" 0.6 0.8, ball.hop_along),
+    quantity!(Even "ball.hop_along_later" 0.85 1.0, ball.hop_along_later),
+    quantity!(Even "ball.hop_up" 0.42 0.57, ball.hop_up),
+    quantity!(Even "bounce.hull" 0.2 0.6, bounce.hull),
+    quantity!(Even "bounce.front" 0.1 0.6, bounce.front),
+    quantity!(Even "bounce.dribbling" 0.0 0.3, bounce.dribbling),
+    quantity!(Even "bounce.wall" 0.3 0.6, bounce.wall),
+    quantity!(Even "bounce.friction" 0.1 0.4, bounce.friction),
+    quantity!(Even "robot.mass" 1.5 2.9, robot.mass),
+    quantity!(Even "robot.mouth" 0.025 0.045, robot.mouth),
+    quantity!(Even "drive.forward" 2.5 7.0, drive.forward),
+    quantity!(Even "drive.side" 2.0 6.0, drive.side),
+    quantity!(Even "drive.brake" 3.0 7.0, drive.brake),
+    quantity!(Even "drive.turn" 30.0 60.0, drive.turn),
+    quantity!(Even "drive.speed" 2.0 4.0, drive.speed),
+    quantity!(Even "drive.turn_speed" 6.0 20.0, drive.turn_speed),
+    quantity!(Even "kick.flat" 6.5 10.0, kick.flat),
+    quantity!(Even "kick.chip" 4.5 10.0, kick.chip),
+    quantity!(Even "kick.chip_deg" 38.0 52.0, kick.chip_deg),
+    quantity!(Even "kick.recharge" 0.1 1.0, kick.recharge),
+    quantity!(Even "kick.speed_sd" 0.0 0.05, kick.speed_sd),
+    quantity!(Even "kick.angle_sd_deg" 0.0 1.5, kick.angle_sd_deg),
+    quantity!(Even "dribbler.pull" 0.5 6.0, dribbler.pull),
+    quantity!(Even "dribbler.side" 0.5 4.0, dribbler.side),
+    quantity!(Half "dribbler.fade" 0.05 0.4, dribbler.fade),
+    quantity!(Even "dribbler.center" 0.0 10.0, dribbler.center),
+    Quantity {
+        name: "dribbler (none, perfect)",
+        bounds: [0.0, 1.0],
+        law: Law::Even,
+        set: |model, [value, _]| {
+            let of = &mut model.parameters.dribbler;
+            if value < NO_DRIBBLER {
+                (of.pull, of.side) = (0.0, 0.0);
+            } else if value > 1.0 - PERFECT_DRIBBLER {
+                (of.pull, of.side, of.fade) = (PERFECT_PULL, PERFECT_PULL, 0.0);
+            }
+        },
+    },
+    quantity!(Even "camera.rate" 50.0 100.0, camera.rate),
+    Quantity {
+        name: "camera.delay",
+        bounds: [0.010, 0.050],
+        law: Law::Even,
+        // What of it the packet tells stays as it is, as far as it fits.
+        set: |model, [value, _]| {
+            let of = &mut model.parameters.camera;
+            (of.delay, of.processing) = (value, of.processing.min(value));
+        },
+    },
+    quantity!(Even "noise.ball" 0.0 0.003, noise.ball),
+    quantity!(Even "noise.robot" 0.0 0.003, noise.robot),
+    quantity!(Even "noise.heading" 0.0 0.02, noise.heading),
+    quantity!(Even "noise.missing_ball" 0.0 0.10, noise.missing_ball),
+    quantity!(Even "noise.missing_robot" 0.0 0.05, noise.missing_robot),
+    quantity!(Half "noise.ghost_ball" 0.002 0.05, noise.ghost_ball),
+    quantity!(Even "noise.hidden_ball" 0.2 0.5, noise.hidden_ball),
+    quantity!(Even "noise.odometry" 0.0 0.05, noise.odometry),
+    quantity!(Even "noise.gyro" 0.0 0.05, noise.gyro),
+    pair!("spread.kick_gain" 0.6 1.1, kick_gain),
+    pair!("spread.chip_ratio" 0.8 1.1, chip_ratio),
+    pair!("spread.acceleration" 0.8 1.0, acceleration),
+    pair!("spread.speed" 0.85 1.0, speed),
+    pair!("spread.pull" 0.7 1.2, pull),
+    pair!("spread.slip" 0.0 0.1, slip),
+    Quantity {
+        name: "link.latency_ms",
+        bounds: [5.0, 60.0],
+        law: Law::Even,
+        set: |model, [value, _]| model.link.latency_ms = value as u32,
+    },
+    Quantity {
+        name: "link.jitter_ms",
+        bounds: [0.0, 10.0],
+        law: Law::Even,
+        set: |model, [value, _]| model.link.jitter_ms = value as u32,
+    },
+    Quantity {
+        name: "link.loss",
+        bounds: [0.0, 0.10],
+        law: Law::Even,
+        set: |model, [value, _]| model.link.loss = value,
+    },
+    Quantity {
+        name: "vision.jitter_ms",
+        bounds: [0.0, 15.0],
+        law: Law::Even,
+        set: |model, [value, _]| model.vision.jitter_ms = value as u32,
+    },
+    Quantity {
+        name: "vision.gap_every_s",
+        bounds: [2.0, 20.0],
+        law: Law::Half,
+        set: |model, [value, _]| (model.vision.gap_every_s, model.vision.gap_ms) = (value, GAP_MS),
+    },
+    Quantity {
+        name: "vision.swap_every_s",
+        bounds: [10.0, 60.0],
+        law: Law::Half,
+        set: |model, [value, _]| (model.vision.swap_every_s, model.vision.swap_frames) = (value, SWAP_FRAMES),
+    },
+    Quantity {
+        name: "bystanders",
+        bounds: [5.0, 11.999],
+        law: Law::Half,
+        set: |model, [value, _]| model.bystanders = value as u8,
+    },
+];
+
+/// Share of the worlds whose robots have no dribbler; estimate.
+const NO_DRIBBLER: f32 = 0.05;
+/// Share of the worlds whose dribblers never lose the ball, as in two of the league's simulators; estimate.
+const PERFECT_DRIBBLER: f32 = 0.15;
+/// m/s²: the ball follows the robot within a step whatever it does.
+pub const PERFECT_PULL: f32 = 1000.0;
+/// ms that gaps last: the issue's.
+pub const GAP_MS: [u32; 2] = [40, 150];
+/// Frames that numbers are swapped; estimate.
+const SWAP_FRAMES: [u32; 2] = [1, 5];
+
+impl WorldModel {
+    /// The world of this seed among those of a league.
+    pub(super) fn random(league: &Parameters, seed: u64) -> Self {
+        let mut model = Self::nominal(league.clone());
+        for quantity in DRAWS {
+            let mut chance = Stream::new(seed, &format!("world {}", quantity.name));
+            let values = quantity.draw(&mut chance);
+            (quantity.set)(&mut model, values);
+        }
+        model
+    }
+}
+
+impl Quantity {
+    fn draw(&self, chance: &mut Stream) -> [f32; 2] {
+        let [low, high] = self.bounds;
+        match self.law {
+            Law::Even => [chance.between(low, high); 2],
+            Law::Log => {
+                // Within the bounds whatever is rounded.
+                let share = chance.share();
+                let log = geometry::math::ln(low) * (1.0 - share) + geometry::math::ln(high) * share;
+                [geometry::math::exp(log).clamp(low, high); 2]
+            }
+            Law::Half => {
+                let has = chance.chance(0.5);
+                let value = chance.between(low, high);
+                [if has { value } else { 0.0 }; 2]
+            }
+            Law::Pair => {
+                let (one, other) = (chance.between(low, high), chance.between(low, high));
+                [one.min(other), one.max(other)]
+            }
+        }
+    }
+}
