@@ -42,6 +42,10 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
             order.dribbler,
             if order.kick.is_some() { ", kicks" } else { "" },
         );
+        let seen = host.world().robots().find(|seen| seen.who == robot.who);
+        if let Some(seen) = seen {
+            line += &format!(", seen {:.3} m off", seen.pose.position.distance(robot.pose.position));
+        }
         let given = host.orders().iter().find(|given| given.robot == robot.who.id);
         if let Some(given) = given {
             line += &format!("; {:?}", given.task.directive(Flip::defending(GoalEnd::Negative)));

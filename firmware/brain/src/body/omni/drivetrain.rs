@@ -211,7 +211,11 @@ fn held_or_free(belief: &Belief) -> Drive {
 }
 
 fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
-    let limits = if drive.manner == Manner::Holding { HOLDING } else { LIMITS };
+    let limits = if drive.manner == Manner::Holding {
+        FreeLimits { acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
+    } else {
+        LIMITS
+    };
     let stop = if belief.game.phase == Phase::Stop { STOP_SPEED - SLACK } else { f32::INFINITY };
     limits.slowed_to(drive.speed.min(stop))
 }

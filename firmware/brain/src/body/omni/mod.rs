@@ -42,6 +42,8 @@ pub struct Drive {
     pub dribbler: f32,
     /// What the kicker does as soon as the ball touches it.
     pub kick: OmniKick,
+    /// Share of the acceleration that a held ball is moved with.
+    pub gentle: f32,
 }
 
 /// What the ball is to a robot on its way.
@@ -58,7 +60,7 @@ pub enum Manner {
 impl Drive {
     /// To a place, around the ball, as fast as may be.
     pub fn shy(to: Point<Field>, face: Angle) -> Self {
-        Self { to, face, speed: f32::INFINITY, manner: Manner::Shy, dribbler: 0.0, kick: OmniKick::None }
+        Self { to, face, speed: f32::INFINITY, manner: Manner::Shy, dribbler: 0.0, kick: OmniKick::None, gentle: 1.0 }
     }
 
     /// To a place on which the ball may be.
