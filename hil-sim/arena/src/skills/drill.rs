@@ -205,6 +205,25 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
         world.put(Who { colour: US.other(), id: id(number) }, *pose);
     }
     world.put_ball(Ball::at(start.ball.position));
+    // Bystanders of the world stand where they like, but for where the try takes place.
+    let taken = |who: Who| match who.colour == US {
+        true => usize::from(who.id.number()) < usize::from(robots),
+        false => usize::from(who.id.number()) < start.theirs.len(),
+    };
+    let mut needed: Vec<Point<Field>> = start.ours.iter().map(|(_, pose)| pose.position).collect();
+    needed.extend(start.theirs.iter().map(|pose| pose.position));
+    needed.push(start.ball.position);
+    if let Says::Place(at) = start.says {
+        needed.push(at);
+    }
+    let in_the_way = |robot: &&Robot| {
+        let at = robot.pose.position;
+        robot.present && !taken(robot.who) && needed.iter().any(|place| place.distance(at) < BYSTANDERS_OFF)
+    };
+    let removed: Vec<Who> = world.robots().iter().filter(in_the_way).map(|robot| robot.who).collect();
+    for who in removed {
+        world.remove(who);
+    }
 }
 
 /// A referee that says what it is told to.
@@ -216,12 +235,14 @@ struct Whistle {
 
 impl Whistle {
     fn new(game: &Game<'_>) -> Self {
-        let packet = ssl::referee::Referee {
+        let mut packet = ssl::referee::Referee {
             stage: ssl::referee::Stage::NormalFirstHalf as i32,
             command: Command::Stop as i32,
             next_command: None,
             ..game.referee().packet()
         };
+        // Bystanders count as nobody's, or our robots would have to leave for them.
+        packet.yellow.max_allowed_bots = Some(u32::from(u8::MAX));
         Self { first_stamp: packet.packet_timestamp, packet, next: 0 }
     }
 
@@ -273,6 +294,8 @@ pub(super) fn team_size(league: League) -> u8 {
 const WARM_UP_TICKS: u32 = 80;
 /// Between two packets of the referee, µs: as the game controller's.
 const PERIOD_US: u64 = 25_000;
+/// Bystanders keep this far from where a try begins, m: a body's way round.
+const BYSTANDERS_OFF: f32 = 0.4;
 /// Ball and dribbler this near, m: as far as a light barrier sees, and a little.
 const HAS: f32 = 0.025;
 /// Beside the middle of the front, m: a dribbler's half width and a little.

@@ -3,6 +3,8 @@
 use geometry::GoalEnd;
 use host::strategy::Flip;
 
+use protocol::Who;
+
 use super::drill::US;
 use crate::game::Game;
 
@@ -13,7 +15,8 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
     }
     let (world, host) = (game.world(), game.host(US));
     let ball = &world.ball;
-    let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US);
+    let led = |who: Who| host.orders().iter().any(|given| given.robot == who.id);
+    let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US && led(robot.who));
     let near = ours.min_by(|a, b| {
         a.pose.position.distance(ball.position).total_cmp(&b.pose.position.distance(ball.position))
     });

@@ -63,7 +63,9 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
         return Approach::Around(Drive { speed: SIDESTEP, ..Drive::bold(to, face) });
     }
     let behind = ball.position - ahead * (BALL_AT + STAND_OFF) + ball.velocity * LEAD;
-    Approach::Around(Drive::shy(behind, face))
+    // Slow at its end, or what the robot is behind in time takes it past.
+    let speed = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
+    Approach::Around(Drive { speed, ..Drive::shy(behind, face) })
 }
 
 /// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
@@ -164,6 +166,8 @@ const BESIDE: f32 = 0.015;
 const SIDESTEPS: f32 = 0.1;
 /// How fast, m/s: what it is behind in time makes it overshoot a faster step.
 const SIDESTEP: f32 = 0.25;
+/// How fast the rest of a way is gone, 1/s.
+const SETTLES: f32 = 4.0;
 /// And so much wider a metre farther back.
 const WIDENS: f32 = 0.2;
 /// It looks the right way within this, rad.

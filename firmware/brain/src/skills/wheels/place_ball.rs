@@ -127,7 +127,8 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
         Placing::Pushing => {
             let face = ball.position.direction_to(at);
             // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
-            let speed = math::sqrt(2.0 * ROLLS * ball.position.distance(at)) + CREEP;
+            let rolls = if placement.slips == 0 { HELD_ROLLS } else { ROLLS };
+            let speed = math::sqrt(2.0 * rolls * ball.position.distance(at)) + CREEP;
             let most = PUSH / (1.0 + 0.15 * f32::from(placement.slips));
             let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
             Drive { speed: speed.min(most), ..Drive::holding(to, face) }.into()
@@ -282,7 +283,7 @@ fn facing(belief: &Belief, ball: &Ball) -> Angle {
 }
 
 /// How fast a ball is pulled, m/s.
-const PULL: f32 = 1.3;
+const PULL: f32 = 1.4;
 /// How fast a robot backs off from it, m/s.
 const LEAVE: f32 = 0.6;
 /// How fast it comes to the ball, m/s.
@@ -325,9 +326,11 @@ const OFF_WALL: f32 = 2.0;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
 const KICKS_ASKEW: f32 = 0.7;
 /// How fast a ball is pushed at first, m/s.
-const PUSH: f32 = 1.2;
+const PUSH: f32 = 1.4;
 /// A pushed ball is slowed down by no more than this on the way, m/s²: less than carpets do, so that it stays at the front.
 const ROLLS: f32 = 0.2;
+/// The same of one that the dribbler has held so far, m/s².
+const HELD_ROLLS: f32 = 0.5;
 /// The slowest push, m/s.
 const CREEP: f32 = 0.15;
 /// A push aims this far ahead on the ball's way, m.
