@@ -60,7 +60,15 @@ pub enum Manner {
 impl Drive {
     /// To a place, around the ball, as fast as may be.
     pub fn shy(to: Point<Field>, face: Angle) -> Self {
-        Self { to, face, speed: f32::INFINITY, manner: Manner::Shy, dribbler: 0.0, kick: OmniKick::None, gentle: 1.0 }
+        Self {
+            to,
+            face,
+            speed: f32::INFINITY,
+            manner: Manner::Shy,
+            dribbler: 0.0,
+            kick: OmniKick::None,
+            gentle: 1.0,
+        }
     }
 
     /// To a place on which the ball may be.

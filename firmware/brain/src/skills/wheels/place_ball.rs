@@ -86,6 +86,10 @@ impl Placement {
         self.slips >= SLIPS_TO_KICK && !self.slips.is_multiple_of(2) && wall.is_some_and(alone)
     }
 
+    fn kick(self, wall: Option<Angle>) -> OmniKick {
+        if self.kicks(wall) { OmniKick::Flat(OFF_WALL) } else { OmniKick::None }
+    }
+
     fn slipped(&mut self) -> Placing {
         self.slips = self.slips.saturating_add(1);
         Placing::Fetching
@@ -102,15 +106,18 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
     }
     placement.placing = next;
     match placement.placing {
-        Placing::Fetching | Placing::Feeling => fetch(placement, belief, &ball, at),
+        Placing::Fetching => fetch(placement, belief, &ball, at),
+        // Cameras do not see a ball so near: the robot goes on to where it must be.
+        Placing::Feeling => {
+            let kick = placement.kick(at_wall(belief, &ball, placement.room()));
+            Drive { speed: GO_IN_AT_WALL, kick, ..press(belief) }.into()
+        }
         Placing::Revealing { facing } => {
             let back = ball.position - Vector::polar(BALL_AT + REVEALS, facing);
             Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into()
         }
         // It slips: brake, and it comes.
-        Placing::Pulling { felt } if now.since(felt) > FLICKERS => {
-            Drive::holding(me, belief.pose.heading).into()
-        }
+        Placing::Pulling { felt } if now.since(felt) > FLICKERS => press(belief).into(),
         Placing::Pulling { .. } => {
             let wall = at_wall(belief, &ball, placement.room());
             let face = match wall {
@@ -129,7 +136,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
             let rolls = if placement.slips == 0 { HELD_ROLLS } else { ROLLS };
             let speed = math::sqrt(2.0 * rolls * ball.position.distance(at)) + CREEP;
-            let most = PUSH / (1.0 + 0.15 * f32::from(placement.slips));
+            let most = PUSH / (1.0 + 0.05 * f32::from(placement.slips));
             let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
             Drive { speed: speed.min(most), ..Drive::holding(to, face) }.into()
         }
@@ -167,7 +174,8 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
             Placing::Revealing { facing: belief.pose.heading }
         }
         Placing::Fetching | Placing::Feeling if belief.holds_ball && !kicks => {
-            if placement.pushes(belief, ball, at) { Placing::Pushing } else { Placing::Pulling { felt: now } }
+            let askew = (ball.position.direction_to(at) - belief.pose.heading).abs();
+            if askew < ASKEW { Placing::Pushing } else { Placing::Pulling { felt: now } }
         }
         // Not so: another way.
         Placing::Fetching if clear < NEAR && age > FETCHES => {
@@ -181,9 +189,7 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
             Placing::Revealing { facing: belief.pose.heading }
         }
         Placing::Revealing { .. } if belief.holds_ball && !kicks => Placing::Pulling { felt: now },
-        Placing::Revealing { .. } if clear > REVEALS - GAP || age > FEELS => {
-            Placing::Fetching
-        }
+        Placing::Revealing { .. } if clear > REVEALS - GAP || age > FEELS => Placing::Fetching,
         Placing::Fetching if off < NEAR_ENOUGH && slow && clear > GAP => {
             Placing::Leaving { facing: facing(belief, ball) }
         }
@@ -193,7 +199,11 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
             Placing::Letting
         }
         // It follows so badly that it is pushed as soon as there is room for that.
-        Placing::Pulling { .. } if placement.slips > 0 && at_wall(belief, ball, placement.room()).is_none() => Placing::Letting,
+        Placing::Pulling { .. }
+            if placement.slips > 0 && at_wall(belief, ball, placement.room()).is_none() =>
+        {
+            Placing::Letting
+        }
         Placing::Pulling { felt } if belief.contact() => {
             if now.since(felt) > FLICKERS {
                 placement.slipped();
@@ -203,15 +213,18 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
         Placing::Pulling { felt } if now.since(felt) > REGAINS => placement.slipped(),
         Placing::Pushing if off < PUSHED => Placing::Letting,
         Placing::Pushing if strays(belief, ball, at) => placement.slipped(),
-        Placing::Letting if age > RUNS_OUT => {
-            Placing::Leaving { facing: belief.pose.heading }
-        }
+        Placing::Letting if age > RUNS_OUT => Placing::Leaving { facing: belief.pose.heading },
         Placing::Leaving { .. } | Placing::Done if off > NEAR_ENOUGH && slow && clear > GAP => {
             Placing::Fetching
         }
         Placing::Leaving { .. } if clear + BALL_AT > OFF - 0.05 => Placing::Done,
         same => same,
     }
+}
+
+/// On ahead with the ball, by a finger's breadth.
+fn press(belief: &Belief) -> Drive {
+    Drive::holding(belief.pose.position + Vector::polar(AT_MOUTH, belief.pose.heading), belief.pose.heading)
 }
 
 /// A pushed ball has got beside the robot, or the robot beside its way.
@@ -223,11 +236,12 @@ fn strays(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
 
 /// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to it.
 fn fetch(placement: &Placement, belief: &Belief, ball: &Ball, at: Point<Field>) -> Intent {
-    if ball.velocity.norm() > ROLLING {
-        return meet(belief, ball).into();
-    }
     let wall = at_wall(belief, ball, placement.room());
     let kicks = placement.kicks(wall);
+    if ball.velocity.norm() > ROLLING {
+        // One that it has just kicked comes off the wall by itself.
+        return if kicks { Intent::Stand { face: None } } else { meet(belief, ball).into() };
+    }
     let face = match wall {
         // To the side where the place is.
         Some(out) if kicks => {
@@ -242,9 +256,7 @@ fn fetch(placement: &Placement, belief: &Belief, ball: &Ball, at: Point<Field>) 
     let speed = if wall.is_some() { GO_IN_AT_WALL } else { GO_IN };
     match approach(belief, ball, face, speed) {
         Approach::Around(drive) => drive.into(),
-        Approach::In(drive) if kicks => {
-            Drive { kick: OmniKick::Flat(OFF_WALL), ..drive }.into()
-        }
+        Approach::In(drive) if kicks => Drive { kick: OmniKick::Flat(OFF_WALL), ..drive }.into(),
         Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
     }
 }
@@ -321,8 +333,8 @@ const GENTLEST: f32 = 0.08;
 const SLIPS_TO_KICK: u8 = 3;
 /// Product of a direction's shares along two walls, beyond which it points into their corner.
 const IN_CORNER: f32 = 0.2;
-/// With this, m/s: it leaves a board with 0.6 across and rests within a metre.
-const OFF_WALL: f32 = 2.0;
+/// With this, m/s: it leaves a board with 1 across and rests within two metres.
+const OFF_WALL: f32 = 3.5;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
 const KICKS_ASKEW: f32 = 0.7;
 /// How fast a ball is pushed at first, m/s.
@@ -350,7 +362,7 @@ const OFF: f32 = 0.75;
 /// A ball this near a wall leaves no room for a body beside it, m.
 const WALL_ROOM: f32 = 0.16;
 /// And none for one behind it and its way, m.
-const WALL_ROOM_TO_PUSH: f32 = 0.3;
+const WALL_ROOM_TO_PUSH: f32 = 0.28;
 /// The same beyond a post, m: a body across and its way around.
 const BESIDE_POST: f32 = 0.3;
 /// How far it is pulled off a wall before anything else, m.
@@ -404,7 +416,8 @@ mod tests {
     #[test]
     fn the_ball_is_fetched_from_the_side_of_the_place() {
         let b = belief((0.0, 0.0, 0.0), (1.0, 0.0));
-        let Intent::Drive(drive) = fetch(&Placement::default(), &b, &b.ball.unwrap(), Point::new(1.0, -1.0)) else {
+        let Intent::Drive(drive) = fetch(&Placement::default(), &b, &b.ball.unwrap(), Point::new(1.0, -1.0))
+        else {
             panic!("drives")
         };
         // South of the ball, looking north.
