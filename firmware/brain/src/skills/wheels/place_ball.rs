@@ -116,8 +116,10 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             let back = ball.position - Vector::polar(BALL_AT + REVEALS, facing);
             Drive { speed: LEAVE, ..Drive::bold(back, facing) }.into()
         }
-        // It slips: brake, and it comes.
-        Placing::Pulling { felt } if now.since(felt) > FLICKERS => press(belief).into(),
+        // Not yet sure in the grip; or it slips: brake, and it comes.
+        Placing::Pulling { felt } if now.since(felt) > FLICKERS || now.since(placement.since) < SEATS => {
+            press(belief).into()
+        }
         Placing::Pulling { .. } => {
             let wall = at_wall(belief, &ball, placement.room());
             let face = match wall {
@@ -136,7 +138,7 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
             // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
             let rolls = if placement.slips == 0 { HELD_ROLLS } else { ROLLS };
             let speed = math::sqrt(2.0 * rolls * ball.position.distance(at)) + CREEP;
-            let most = PUSH / (1.0 + 0.05 * f32::from(placement.slips));
+            let most = PUSH / (1.0 + 0.02 * f32::from(placement.slips));
             let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
             Drive { speed: speed.min(most), ..Drive::holding(to, face) }.into()
         }
@@ -204,12 +206,16 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
         {
             Placing::Letting
         }
-        Placing::Pulling { felt } if belief.contact() => {
-            if now.since(felt) > FLICKERS {
-                placement.slipped();
+        Placing::Pulling { felt } if belief.contact() && now.since(felt) > FLICKERS => {
+            let again = placement.slipped();
+            placement.since = now;
+            if placement.kicks(at_wall(belief, ball, placement.room())) {
+                again
+            } else {
+                Placing::Pulling { felt: now }
             }
-            Placing::Pulling { felt: now }
         }
+        Placing::Pulling { .. } if belief.contact() => Placing::Pulling { felt: now },
         Placing::Pulling { felt } if now.since(felt) > REGAINS => placement.slipped(),
         Placing::Pushing if off < PUSHED => Placing::Letting,
         Placing::Pushing if strays(belief, ball, at) => placement.slipped(),
@@ -323,6 +329,8 @@ const REVEALS: f32 = 0.3;
 const GAP: f32 = 0.04;
 /// The light barrier may miss a ball on the roller for so long.
 const FLICKERS: Duration = Duration::millis(30);
+/// A ball that is felt may still be out of the roller's reach: it is pressed for so long.
+const SEATS: Duration = Duration::millis(120);
 /// A ball that slipped off rolls on after the robot that brakes; it is felt again within this, or lost.
 const REGAINS: Duration = Duration::millis(500);
 /// Share of the acceleration with which a ball is pulled from a wall once it slipped off, and from then on: a roller that holds it at
@@ -338,11 +346,11 @@ const OFF_WALL: f32 = 3.5;
 /// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
 const KICKS_ASKEW: f32 = 0.7;
 /// How fast a ball is pushed at first, m/s.
-const PUSH: f32 = 1.4;
-/// A pushed ball is slowed down by no more than this on the way, m/s²: less than carpets do, so that it stays at the front.
-const ROLLS: f32 = 0.2;
+const PUSH: f32 = 1.5;
+/// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
+const ROLLS: f32 = 0.35;
 /// The same of one that the dribbler has held so far, m/s².
-const HELD_ROLLS: f32 = 0.5;
+const HELD_ROLLS: f32 = 0.6;
 /// The slowest push, m/s.
 const CREEP: f32 = 0.15;
 /// A push aims this far ahead on the ball's way, m.
