@@ -16,7 +16,8 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
     let (world, host) = (game.world(), game.host(US));
     let ball = &world.ball;
     let led = |who: Who| host.orders().iter().any(|given| given.robot == who.id);
-    let ours = world.robots().iter().filter(|robot| robot.present && robot.who.colour == US && led(robot.who));
+    let ours =
+        world.robots().iter().filter(|robot| robot.present && robot.who.colour == US && led(robot.who));
     let near = ours.min_by(|a, b| {
         a.pose.position.distance(ball.position).total_cmp(&b.pose.position.distance(ball.position))
     });

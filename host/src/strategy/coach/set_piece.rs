@@ -23,9 +23,8 @@ impl Coach {
             let stuck = self.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_PATIENCE);
             let chosen = self.age(view) > PLACER_CHOSEN && !stuck;
             let worth = if chosen { PLACER_WORTH } else { roles::WORTH };
-            let first = roles::choose(field_players, self.first, worth, |robot| {
-                roles::time_to(robot, ball.position)
-            });
+            let first =
+                roles::choose(field_players, self.first, worth, |robot| roles::time_to(robot, ball.position));
             self.first = first.map(|(id, _)| id);
             if let Some((id, seconds)) = first
                 && plan.take(id)

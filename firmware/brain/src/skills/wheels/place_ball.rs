@@ -208,19 +208,17 @@ fn next(now: Instant, placement: &mut Placement, belief: &Belief, ball: &Ball, a
         }
         Placing::Pulling { felt } if belief.contact() && now.since(felt) > FLICKERS => {
             let again = placement.slipped();
-            placement.since = now;
-            if placement.kicks(at_wall(belief, ball, placement.room())) {
-                again
-            } else {
-                Placing::Pulling { felt: now }
-            }
+            // On the way it goes on; a ball that has not even come along is taken again.
+            if belief.velocity.norm() < AT_REST { again } else { Placing::Pulling { felt: now } }
         }
         Placing::Pulling { .. } if belief.contact() => Placing::Pulling { felt: now },
         Placing::Pulling { felt } if now.since(felt) > REGAINS => placement.slipped(),
         Placing::Pushing if off < PUSHED => Placing::Letting,
         Placing::Pushing if strays(belief, ball, at) => placement.slipped(),
         Placing::Letting if age > RUNS_OUT => Placing::Leaving { facing: belief.pose.heading },
-        Placing::Leaving { .. } | Placing::Done if off > NEAR_ENOUGH && slow && clear > GAP => {
+        Placing::Leaving { .. } | Placing::Done
+            if off > NEAR_ENOUGH && (slow || off > OFF) && clear > GAP =>
+        {
             Placing::Fetching
         }
         Placing::Leaving { .. } if clear + BALL_AT > OFF - 0.05 => Placing::Done,
