@@ -11,7 +11,7 @@ mod input;
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
 use protocol::frame::TeamKey;
-use protocol::host::{Command, Condition, Telemetry};
+use protocol::host::{Command, Condition, Directive, Duty, Telemetry};
 use protocol::link::Packet;
 use protocol::team::{Beacon, Progress};
 use protocol::{Duration, Instant, RobotId, TeamId};
@@ -84,6 +84,9 @@ impl HostSettings {
     }
 }
 
+/// Orders that take the place of the coach's: whom, its duty, and what to do.
+pub type Drill = heapless::Vec<(RobotId, Duty, Directive), { RobotId::COUNT }>;
+
 /// A team's host.
 #[derive(Clone, Debug)]
 pub struct Host {
@@ -108,6 +111,8 @@ pub struct Host {
     ordered: Phase<Colour>,
     undecodable: Undecodable,
     halted: bool,
+    /// Set in place of the coach's orders.
+    drill: Option<Drill>,
     books: Bookkeeper,
     requests: Requests,
     learned: Learned,
@@ -147,6 +152,7 @@ impl Host {
             ordered: Phase::Halt,
             undecodable: Undecodable::default(),
             halted: false,
+            drill: None,
             books: Bookkeeper::default(),
             requests: Requests::default(),
             cases: cases_of(settings.league),
@@ -183,6 +189,12 @@ impl Host {
             self.radio.hasten(now);
         }
         self.plan(now);
+    }
+
+    /// From the next plan on robots get these orders and no others, whatever the coach decides; `None`: the coach's again. Phase and
+    /// governor bind them as ever. For drills of single skills.
+    pub fn drill(&mut self, orders: Option<Drill>) {
+        self.drill = orders;
     }
 
     /// The next packet for the robots.
@@ -369,14 +381,20 @@ impl Host {
         }
         let flip = Flip::defending(game.defending);
         self.books.note((&self.world, &view, &view.field), (us, flip), &self.orders, self.coach.take_sent());
-        let command = |order: &crate::strategy::Order| Command {
-            to: order.robot,
+        let command = |(to, duty, directive): (RobotId, Duty, Directive)| Command {
+            to,
             defending: game.defending,
             phase: game.phase,
-            duty: order.role.duty(),
-            directive: self.calibrated(order.robot, order.task.directive(flip)),
+            duty,
+            directive: self.calibrated(to, directive),
         };
-        let commands: heapless::Vec<Command, { RobotId::COUNT }> = self.orders.iter().map(command).collect();
+        let coached = |order: &crate::strategy::Order| {
+            command((order.robot, order.role.duty(), order.task.directive(flip)))
+        };
+        let commands: heapless::Vec<Command, { RobotId::COUNT }> = match &self.drill {
+            Some(drill) => drill.iter().cloned().map(command).collect(),
+            None => self.orders.iter().map(coached).collect(),
+        };
         self.learned.see(now, (&picture, us), game.phase, &commands);
         if self.settings.learns
             && let Some(known) = self.learned.friction()

@@ -24,5 +24,5 @@ pub mod trace;
 pub mod tracking;
 pub mod world;
 
-pub use host::{Host, HostSettings, Input, Undecodable, Verdict};
+pub use host::{Drill, Host, HostSettings, Input, Undecodable, Verdict};
 pub use proposal::cases_of;

@@ -131,6 +131,12 @@ static CHORES: [Chore; 18] = [
         |context, words| evaluation::write_matches(context, words.iter().any(|word| word == "--fresh")),
     ),
     chore(
+        "skills",
+        "",
+        "try single skills in the nominal world and in random worlds, and write docs/skills.md; some minutes of one core",
+        |context, _| evaluation::write_skills(context),
+    ),
+    chore(
         "budgets",
         "",
         "count trial, game, strategy and simulator as below, and write docs/budgets.md",

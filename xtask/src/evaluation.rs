@@ -25,6 +25,16 @@ const MATCHES: [(&str, &str); 5] = [
     ("ssl-2013", "--league ssl-2013 --matches 10"),
 ];
 
+/// Tries single skills in the league's own world and in random ones, and writes the tables of `docs/skills.md`.
+pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
+    for (section, words) in [("nominal", "--tries 100"), ("random", "--world random --worlds 200 --tries 5")]
+    {
+        let line = format!("evaluate skills {words} --markdown docs/skills.md --section {section}");
+        run(&mut context.cargo(&format!("run --release -- {line}")))?;
+    }
+    Ok(())
+}
+
 /// Plays the paper's evaluation and the ablations, and puts tables and plots into the documentation; what is not committed, the
 /// reports with everything in them, stays under `out`.
 pub(crate) fn write(context: &Context) -> Result<(), Failure> {

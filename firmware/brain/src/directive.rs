@@ -8,19 +8,19 @@ use protocol::robot_io::OmniKick;
 use crate::belief::Belief;
 use crate::body::Intent;
 use crate::skills::Step;
-use crate::skills::wheels::{self, Placing};
+use crate::skills::wheels::{self, Placement};
 
 /// The running directive's memory.
 #[derive(Clone, Debug, Default)]
 pub struct Errand {
-    placing: Placing,
+    placement: Placement,
 }
 
 impl Errand {
     /// What is wanted of the body for `directive`; `None` where the robots choose for themselves.
     pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
         if !matches!(directive, Directive::PlaceBall { .. }) {
-            self.placing = Placing::default();
+            self.placement = Placement::default();
         }
         if belief.game.barred && touches(directive) {
             return Some(wheels::keep_off(belief));
@@ -34,7 +34,7 @@ impl Errand {
             Directive::Receive { at, then } => wheels::receive(belief, at.into(), then.map(Point::from)),
             Directive::Dribble { pose } => wheels::dribble(belief, Pose::from(pose)),
             Directive::Block { from, to } => wheels::block(belief, Segment::new(from.into(), to.into())),
-            Directive::PlaceBall { at } => wheels::place_ball(now, &mut self.placing, belief, at.into()),
+            Directive::PlaceBall { at } => wheels::place_ball(now, &mut self.placement, belief, at.into()),
             Directive::Gameplay { .. } => return None,
         })
     }

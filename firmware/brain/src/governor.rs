@@ -301,7 +301,12 @@ pub fn ball_speed(league: League) -> f32 {
 
 /// Whether we may kick a ball in that phase.
 pub fn may_kick(phase: Phase<Side>) -> bool {
-    matches!(phase, Phase::Run | Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::Penalty(_))
+    // Who places the ball may kick it, as off a wall (rules: ball placement asks only where it comes to rest).
+    let ours = matches!(
+        phase,
+        Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::BallPlacement(Side::Ours)
+    );
+    ours || matches!(phase, Phase::Run | Phase::Penalty(_))
 }
 
 fn is_finite(twist: Twist<Body>) -> bool {

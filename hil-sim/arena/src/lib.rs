@@ -10,6 +10,8 @@
 //!
 //! [`mod@matches`] plays many of them and says what they came to, as the second paper's Table 2 does.
 //!
+//! [`skills`] plays tries of single skills through the whole loop, in worlds of any physics.
+//!
 //! [`evaluation`] plays the paper's thousands of trials and makes its tables of them.
 //!
 //! **Invariants.** Watching changes nothing; what is reported comes from the carpet and the air, never from inside a brain.
@@ -26,6 +28,7 @@ mod picture;
 mod recording;
 mod rehearsal;
 mod report;
+pub mod skills;
 mod story;
 mod trial;
 

@@ -118,10 +118,14 @@ pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
     let aside = ball.y().abs() - field.goal_width * 0.5 - field.goal_wall;
     let room = field.goal_line_margin - field.goal_depth - field.goal_wall;
     let hidden = behind > 0.0 && aside < 0.0 && room < 2.0 * ROBOT_RADIUS + ROOM_TO_PASS;
-    let off = behind + field.goal_depth > field.goal_line_margin
-        || ball.y().abs() - field.width * 0.5 > field.margin;
+    // A ball pressed against a board is seen a little beyond it.
+    let off = behind + field.goal_depth > field.goal_line_margin + PRESSED
+        || ball.y().abs() - field.width * 0.5 > field.margin + PRESSED;
     hidden || off
 }
+
+/// A robot reaches a ball this far beyond the carpet's edge, m: as the league's simulators let one be.
+const PRESSED: f32 = 0.03;
 
 /// `at`, moved out of the circle that nobody may be in around the ball, and out of the way of a ball being placed.
 pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {

@@ -234,7 +234,7 @@ fn the_table_of_kicks_by_phase() {
         (Timeout(Ours), None),
         (Timeout(Theirs), None),
         (Stop, Some(OmniKick::None)),
-        (BallPlacement(Ours), Some(OmniKick::None)),
+        (BallPlacement(Ours), Some(OmniKick::Flat(6.3))),
         (BallPlacement(Theirs), Some(OmniKick::None)),
         (PrepareKickoff(Ours), Some(OmniKick::None)),
         (PrepareKickoff(Theirs), Some(OmniKick::None)),

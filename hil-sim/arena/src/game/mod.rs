@@ -179,6 +179,17 @@ impl<'a> Game<'a> {
 
     /// 10 ms: brains think and order, then physics moves, cameras look and the referee judges.
     pub fn step(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
+        self.advance(watcher)?;
+        self.judge(watcher);
+        let mut holds = std::mem::take(&mut self.holds);
+        holds.look(self);
+        self.holds = holds;
+        watcher.tick(self);
+        Ok(())
+    }
+
+    /// The same without the referee, as drills have one of their own.
+    pub(crate) fn advance(&mut self, watcher: &mut dyn Watcher) -> Result<(), GameError> {
         let (tick, now) = (self.tick, self.now());
         self.trace.small_size_tick(tick, &self.world);
         for team in &mut self.teams {
@@ -205,33 +216,44 @@ impl<'a> Game<'a> {
             }
         }
         self.tick += 1;
-        let now = self.now();
-        self.judge(now, watcher);
-        let mut holds = std::mem::take(&mut self.holds);
-        holds.look(self);
-        self.holds = holds;
-        watcher.tick(self);
+        self.world.take_events(&mut self.events);
         Ok(())
     }
 
-    fn judge(&mut self, now: Instant, watcher: &mut dyn Watcher) {
-        self.world.take_events(&mut self.events);
+    fn judge(&mut self, watcher: &mut dyn Watcher) {
+        let now = self.now();
         self.referee.look(&self.world, &self.events);
         while let Some(packet) = self.referee.poll_packet() {
-            let bytes = packet.encode_to_vec();
-            watcher.referee(now, &bytes);
-            for team in &mut self.teams {
-                team.tell(
-                    self.tick,
-                    now,
-                    host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL),
-                    watcher,
-                );
-            }
+            self.announce(now, &packet, watcher);
         }
         while let Some(order) = self.referee.poll_order() {
             order.carry_out(&mut self.world);
         }
+    }
+
+    /// A packet of the referee reaches both teams.
+    pub(crate) fn announce(
+        &mut self,
+        now: Instant,
+        packet: &ssl::referee::Referee,
+        watcher: &mut dyn Watcher,
+    ) {
+        let bytes = packet.encode_to_vec();
+        watcher.referee(now, &bytes);
+        for team in &mut self.teams {
+            let input = host::Input::Referee(&bytes, host::referee::SenderAddress::INTERNAL);
+            team.tell(self.tick, now, input, watcher);
+        }
+    }
+
+    /// The true world, to put things into for a drill.
+    pub(crate) fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// A team's robots get these orders in place of its coach's; `None`: the coach's again.
+    pub(crate) fn drill(&mut self, team: Colour, orders: Option<host::Drill>) {
+        self.teams[team as usize].host.drill(orders);
     }
 }
 

@@ -8,6 +8,7 @@ mod judge;
 mod matches;
 mod merge;
 mod report;
+mod skills;
 mod tables;
 mod work;
 
@@ -40,6 +41,8 @@ enum EvaluateVerb {
     Ablations(ablations::AblationsArgs),
     /// Play matches against other teams and say what they come to: the second paper's Table 2.
     Matches(Box<matches::MatchesArgs>),
+    /// Try single skills in one world or a family of them: how often they succeed, and how fast.
+    Skills(skills::SkillsArgs),
 }
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
@@ -50,5 +53,6 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<ExitCode, Failure> {
         Some(EvaluateVerb::Judge(args)) => judge::run(args),
         Some(EvaluateVerb::Ablations(args)) => ablations::run(args),
         Some(EvaluateVerb::Matches(args)) => matches::run(args),
+        Some(EvaluateVerb::Skills(args)) => skills::run(args),
     }
 }

@@ -3,6 +3,7 @@
 mod common;
 mod matches;
 mod report;
+mod skills;
 
 use std::fs;
 use std::path::Path;

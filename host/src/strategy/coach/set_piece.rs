@@ -19,9 +19,12 @@ impl Coach {
             && !self.gives_up_placing(view, &ball, at)
         {
             let field_players = view.ours.iter().filter(|robot| robot.id != view.keeper);
-            let first = roles::choose(field_players, self.first, roles::WORTH, |robot| {
-                roles::time_to(robot, ball.position)
-            });
+            // Who backs off with the ball seems to get away from it: nobody takes over from one that gets on.
+            let stuck = self.placing.is_some_and(|(_, since)| view.now.since(since) > PLACER_PATIENCE);
+            let chosen = self.age(view) > PLACER_CHOSEN && !stuck;
+            let worth = if chosen { PLACER_WORTH } else { roles::WORTH };
+            let first =
+                roles::choose(field_players, self.first, worth, |robot| roles::time_to(robot, ball.position));
             self.first = first.map(|(id, _)| id);
             if let Some((id, seconds)) = first
                 && plan.take(id)
@@ -175,6 +178,12 @@ const MATES_GET_READY: Duration = Duration::millis(200);
 const AIM_STANDS: Duration = Duration::millis(3000);
 /// Nearer to our goal than this the defenders are the wall, m.
 const WALL_BEYOND: f32 = 2.2;
+/// How much sooner another robot must be at the ball to take a placement over, s: as long as fetching it takes; and as usual of one
+/// that has not brought the ball nearer for so long.
+const PLACER_WORTH: f32 = 4.0;
+const PLACER_PATIENCE: Duration = Duration::millis(6_000);
+/// Who brings the ball is chosen afresh for so long: before, it was for a stop.
+const PLACER_CHOSEN: Duration = Duration::millis(100);
 /// A ball that has come nearer to its place by this much is on its way, m.
 const PLACING_GAINS: f32 = 0.1;
 /// A ball that has not for this long is given up: of the 30 s of a placement, twice what a robot takes across division B's field and

@@ -44,6 +44,8 @@ pub struct Drive {
     pub kick: OmniKick,
     /// It is armed: the robot looks where the kick shall go.
     pub armed: bool,
+    /// Share of the acceleration that a held ball is moved with.
+    pub gentle: f32,
 }
 
 /// What the ball is to a robot on its way.
@@ -68,6 +70,7 @@ impl Drive {
             dribbler: 0.0,
             kick: OmniKick::None,
             armed: true,
+            gentle: 1.0,
         }
     }
 

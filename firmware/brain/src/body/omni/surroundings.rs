@@ -29,7 +29,8 @@ impl Surroundings {
     /// Takes in what matters to this robot on its way to `to`.
     pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, manner: Manner) {
         let KeepOut { forbidden, within } = keep_out(&situation(belief, field));
-        self.within = within.grown(-BODY - BORDER);
+        // Who goes for the ball may touch the boards: one in a corner is had no other way.
+        self.within = within.grown(if manner == Manner::Shy { -BODY - BORDER } else { -BODY });
         let me = belief.pose.position;
         // The way it means to go, and the one on which it could come to rest.
         let way = Segment::new(me, to);

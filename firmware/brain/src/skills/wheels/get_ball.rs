@@ -57,8 +57,15 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
         let to = to + ball.velocity * LEAD;
         return Approach::In(Drive { speed: speed + 2.0 * room.max(0.0), ..Drive::bold(to, face) });
     }
+    if room > 0.0 && room < GO_IN_FROM && beside.abs() < SIDESTEPS && off < ALIGNED {
+        // Nearly behind it: a step aside, not all the way back and around.
+        let to = ball.position - ahead * (BALL_AT + room.max(PRESS)) + ball.velocity * LEAD;
+        return Approach::Around(Drive { speed: SIDESTEP, ..Drive::bold(to, face) });
+    }
     let behind = ball.position - ahead * (BALL_AT + STAND_OFF) + ball.velocity * LEAD;
-    Approach::Around(Drive::shy(behind, face))
+    // Slow at its end, or what the robot is behind in time takes it past.
+    let speed = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
+    Approach::Around(Drive { speed, ..Drive::shy(behind, face) })
 }
 
 /// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
@@ -155,6 +162,12 @@ const STAND_OFF: f32 = 0.07;
 const PRESS: f32 = 0.02;
 /// Beside the line over the ball: half of the mouth's half width, m.
 const BESIDE: f32 = 0.015;
+/// So far beside it a robot before the ball steps aside to it, m.
+const SIDESTEPS: f32 = 0.1;
+/// How fast, m/s: what it is behind in time makes it overshoot a faster step.
+const SIDESTEP: f32 = 0.25;
+/// How fast the rest of a way is gone, 1/s.
+const SETTLES: f32 = 4.0;
 /// And so much wider a metre farther back.
 const WIDENS: f32 = 0.2;
 /// It looks the right way within this, rad.

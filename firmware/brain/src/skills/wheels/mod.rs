@@ -19,6 +19,6 @@ pub use dribble::{carry_to, dribble, let_go_in_time};
 pub use get_ball::{Approach, approach, get_ball};
 pub use go_to::{go_to, keep_off};
 pub use kick::{kick, kick_held, pass, pass_speed};
-pub use place_ball::{Placing, place_ball};
+pub use place_ball::{Placement, place_ball};
 pub use receive::{receive, take_pass};
 pub use shoot::{clear_or_shoot, shoot, target};

@@ -1,0 +1,271 @@
+//! `get-ball`, `receive`, `dribble` and `turn-with-ball`: having the ball, and keeping it. Judged by where ball and robot truly are.
+
+use geometry::{Angle, Field, Point, Vector};
+use hil_sim::small_size::Ball;
+use protocol::host::{Directive, Duty};
+use rules::League;
+
+use super::drill::{Judge, Moment, Says, Start, State, player, pose};
+use super::places::Places;
+
+/// Our robot in all of these.
+const ROBOT: u8 = 1;
+
+/// For how long, without a break, the robot has had the ball.
+#[derive(Clone, Copy, Debug, Default)]
+struct Had {
+    since: Option<f32>,
+}
+
+impl Had {
+    /// Whether it has had the ball for [`KEEPS`].
+    fn look(&mut self, moment: &Moment<'_>) -> bool {
+        if !moment.has(ROBOT) {
+            self.since = None;
+            return false;
+        }
+        moment.time - *self.since.get_or_insert(moment.time) >= KEEPS
+    }
+}
+
+fn words_of_gap(moment: &Moment<'_>) -> String {
+    match moment.at_dribbler(ROBOT) {
+        Some([gap, beside]) => format!("the ball is {gap:.2} m before the dribbler, {beside:.2} m beside it"),
+        None => "the robot is gone".to_owned(),
+    }
+}
+
+/// Get a ball that rests, rolls, lies at a board or beside an opponent.
+pub(super) struct GetBall {
+    start: Start,
+    had: Had,
+}
+
+impl GetBall {
+    pub(super) fn new(league: League, number: u32, seed: u64) -> Self {
+        let mut places = Places::new(league, seed);
+        let mut theirs = Vec::new();
+        let (ball, kind) = match number % GET_KINDS {
+            0 => (Ball::at(places.in_play(0.2, 0.2)), "rests"),
+            1 => {
+                let from = places.in_play(0.5, 0.3);
+                let to = places.in_play(0.5, 0.3);
+                let speed = places.chance.between(0.5, 2.0);
+                (Ball::rolling(from, Vector::polar(speed, from.direction_to(to))), "rolls")
+            }
+            2 => (Ball::at(places.at_side()), "lies at a board"),
+            _ => {
+                let at = places.in_play(0.5, 0.3);
+                let away = places.direction();
+                let other = at + Vector::polar(places.chance.between(0.115, 0.2), away);
+                theirs.push(pose(other, away + Angle::HALF_TURN));
+                (Ball::at(at), "lies before an opponent")
+            }
+        };
+        let mut robot = places.in_play(0.2, 0.2);
+        while !(0.5..2.5).contains(&robot.distance(ball.position)) {
+            robot = places.in_play(0.2, 0.2);
+        }
+        let at = ball.position;
+        let words = format!("ball {kind} at ({:.2}, {:.2})", at.x(), at.y());
+        let ours = vec![(ROBOT, pose(robot, places.direction()))];
+        let start = Start { words, ours, theirs, ball, says: Says::Run, limit: GET_LIMIT };
+        Self { start, had: Had::default() }
+    }
+}
+
+impl Judge for GetBall {
+    fn start(&self) -> &Start {
+        &self.start
+    }
+
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+        player(ROBOT, Directive::GetBall { face: None })
+    }
+
+    fn judge(&mut self, moment: &Moment<'_>) -> State {
+        if self.had.look(moment) { State::Succeeded(moment.time) } else { State::Going }
+    }
+
+    fn lacks(&self, moment: &Moment<'_>) -> String {
+        words_of_gap(moment)
+    }
+}
+
+/// Take a pass of some speed that comes a little askew.
+pub(super) struct Receive {
+    start: Start,
+    at: Point<Field>,
+    had: Had,
+}
+
+impl Receive {
+    pub(super) fn new(league: League, seed: u64) -> Self {
+        let mut places = Places::new(league, seed);
+        let (mut from, mut at) = (places.in_play(0.5, 0.3), places.in_play(0.5, 0.3));
+        while !(1.5..4.0).contains(&from.distance(at)) {
+            (from, at) = (places.in_play(0.5, 0.3), places.in_play(0.5, 0.3));
+        }
+        let speed = places.chance.between(2.0, 5.5);
+        let askew = places.chance.between(-ASKEW_DEG, ASKEW_DEG);
+        let velocity = Vector::polar(speed, from.direction_to(at) + Angle::degrees(askew));
+        // It stands about where it shall have the ball, facing anywhere within a right angle of it.
+        let turned = Angle::degrees(places.chance.between(-90.0, 90.0));
+        let robot = pose(at, at.direction_to(from) + turned);
+        let words = format!("pass of {speed:.1} m/s over {:.1} m, {askew:.0}° askew", from.distance(at));
+        let ball = Ball { velocity, ..Ball::at(from) };
+        let ours = vec![(ROBOT, robot)];
+        let start = Start { words, ours, theirs: Vec::new(), ball, says: Says::Run, limit: RECEIVE_LIMIT };
+        Self { start, at, had: Had::default() }
+    }
+}
+
+impl Judge for Receive {
+    fn start(&self) -> &Start {
+        &self.start
+    }
+
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+        player(ROBOT, Directive::Receive { at: self.at.into(), then: None })
+    }
+
+    fn judge(&mut self, moment: &Moment<'_>) -> State {
+        if self.had.look(moment) { State::Succeeded(moment.time) } else { State::Going }
+    }
+
+    fn lacks(&self, moment: &Moment<'_>) -> String {
+        words_of_gap(moment)
+    }
+}
+
+/// Carry the ball a metre, and no farther at a time than the rules let.
+pub(super) struct Dribble {
+    start: Start,
+    to: Point<Field>,
+    heading: Angle,
+}
+
+impl Dribble {
+    pub(super) fn new(league: League, seed: u64) -> Self {
+        let mut places = Places::new(league, seed);
+        let ball = places.in_play(1.8, 0.5);
+        let heading = places.direction();
+        let to = ball + Vector::polar(CARRIES, places.direction());
+        let robot = pose(ball - Vector::polar(AT_DRIBBLER + 0.02, heading), heading);
+        let words = format!("ball at ({:.2}, {:.2}) to ({:.2}, {:.2})", ball.x(), ball.y(), to.x(), to.y());
+        let ours = vec![(ROBOT, robot)];
+        let start =
+            Start { words, ours, theirs: Vec::new(), ball: Ball::at(ball), says: Says::Run, limit: LIMIT };
+        Self { start, to, heading: ball.direction_to(to) }
+    }
+}
+
+impl Judge for Dribble {
+    fn start(&self) -> &Start {
+        &self.start
+    }
+
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+        let stands = pose(self.to - Vector::polar(AT_DRIBBLER, self.heading), self.heading);
+        player(ROBOT, Directive::Dribble { pose: stands.into() })
+    }
+
+    fn judge(&mut self, moment: &Moment<'_>) -> State {
+        let ball = &moment.world.ball;
+        let from = moment.ours(ROBOT).and_then(|robot| robot.dribbling_from);
+        if let Some(far) = from.map(|from| from.distance(ball.position)).filter(|far| *far > LAWFUL) {
+            return State::Failed(format!("dribbled {far:.2} m"));
+        }
+        let there = ball.position.distance(self.to) < THERE && ball.speed() < STILL;
+        if there { State::Succeeded(moment.time) } else { State::Going }
+    }
+
+    fn lacks(&self, moment: &Moment<'_>) -> String {
+        format!("the ball is {:.2} m off", moment.world.ball.position.distance(self.to))
+    }
+}
+
+/// Take the ball, and look the other way with it.
+pub(super) struct Turn {
+    start: Start,
+    lay: Point<Field>,
+    heading: Angle,
+    had: Had,
+    /// The turn began, s.
+    turns: Option<f32>,
+}
+
+impl Turn {
+    pub(super) fn new(league: League, seed: u64) -> Self {
+        let mut places = Places::new(league, seed);
+        let (lay, heading) = (places.in_play(1.0, 0.3), places.direction());
+        let robot = pose(lay - Vector::polar(AT_DRIBBLER + 0.1, heading), heading);
+        let words = format!("at ({:.2}, {:.2}), from {:.0}°", lay.x(), lay.y(), heading.to_degrees());
+        let ours = vec![(ROBOT, robot)];
+        let start =
+            Start { words, ours, theirs: Vec::new(), ball: Ball::at(lay), says: Says::Run, limit: LIMIT };
+        Self { start, lay, heading, had: Had::default(), turns: None }
+    }
+}
+
+impl Judge for Turn {
+    fn start(&self) -> &Start {
+        &self.start
+    }
+
+    fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
+        let way = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
+        let face = self.lay + Vector::polar(FAR, way);
+        player(ROBOT, Directive::GetBall { face: Some(face.into()) })
+    }
+
+    fn judge(&mut self, moment: &Moment<'_>) -> State {
+        let had = self.had.look(moment);
+        let Some(began) = self.turns else {
+            if had {
+                (self.turns, self.had) = (Some(moment.time), Had::default());
+            }
+            return State::Going;
+        };
+        let rolled = moment.world.ball.position.distance(self.lay);
+        if rolled > ROLLS_OFF {
+            return State::Failed(format!("the ball was lost: {rolled:.2} m off"));
+        }
+        let off = moment.ours(ROBOT).map(|robot| (robot.pose.heading - self.heading).abs());
+        let turned = off.is_some_and(|off| off > TURNED_DEG.to_radians());
+        if turned && had { State::Succeeded(moment.time - began) } else { State::Going }
+    }
+
+    fn lacks(&self, moment: &Moment<'_>) -> String {
+        let off = moment.ours(ROBOT).map_or(0.0, |robot| (robot.pose.heading - self.heading).to_degrees());
+        format!("turned by {off:.0}°, {}", words_of_gap(moment))
+    }
+}
+
+/// The ball is had after so long without a break, s.
+const KEEPS: f32 = 0.3;
+/// Kinds of balls to get, which take turns.
+const GET_KINDS: u32 = 4;
+/// s.
+const GET_LIMIT: f32 = 8.0;
+/// A pass misses its place by as much as this, degrees.
+const ASKEW_DEG: f32 = 5.0;
+/// For the slowest pass and its keeping, s.
+const RECEIVE_LIMIT: f32 = 4.0;
+/// From a robot's centre to a ball at its dribbler, m.
+const AT_DRIBBLER: f32 = brain::body::omni::BALL_AT;
+/// How far the ball is carried, m.
+const CARRIES: f32 = 1.0;
+/// The rules' limit, m.
+const LAWFUL: f32 = 1.0;
+/// Carried there, m; and as good as at rest, m/s.
+const THERE: f32 = 0.15;
+const STILL: f32 = 0.1;
+/// For dribble and turn, s.
+const LIMIT: f32 = 8.0;
+/// A point to look at, m.
+const FAR: f32 = 3.0;
+/// A ball this far from where it lay was lost, m.
+const ROLLS_OFF: f32 = 0.5;
+/// Half a turn but for what aiming errs.
+const TURNED_DEG: f32 = 172.0;

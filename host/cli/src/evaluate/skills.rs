@@ -1,0 +1,163 @@
+//! `onetwo evaluate skills`: how often and how fast does each skill succeed, in one world or a family of them?
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use arena::skills::{Skill, SkillPlan, SkillRow, TryResult, rows};
+use clap::Args;
+use hil_sim::small_size::worlds::{WorldChoice, WorldPlan};
+use rules::League;
+
+use super::report::insert;
+use super::work;
+use crate::Failure;
+use crate::play::league;
+
+/// Which tries, and how they are told.
+#[derive(Debug, Args)]
+pub(super) struct SkillsArgs {
+    /// Field, robots, ball and rules: division-b, ssl-2013 or division-a.
+    #[arg(long, default_value = "division-b", value_parser = league)]
+    league: League,
+    /// Physics: nominal, a profile's name, random:SEED, or random for the --worlds worlds from --seed on.
+    #[arg(long, default_value = "nominal", value_name = "WORLD")]
+    world: WorldPlan,
+    /// How many random worlds.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    worlds: u32,
+    /// Tries of each skill in each world.
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    tries: u32,
+    /// Where all chance comes from.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only these skills, with commas between: placement, get-ball, receive, dribble, turn-with-ball, kick, chip, save.
+    #[arg(long = "skill", value_name = "LIST", value_delimiter = ',', value_parser = skill)]
+    skills: Vec<Skill>,
+    /// Number of the first try of each skill, to repeat one.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    first: u32,
+    /// Threads; as many as there are cores unless told.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Print a JSON list, a row a skill, and nothing else.
+    #[arg(long, conflicts_with_all = ["failures", "story", "markdown"])]
+    json: bool,
+    /// List every try that failed: its start, what was wrong, and the command that repeats it.
+    #[arg(long)]
+    failures: bool,
+    /// Tell every try, a line for each tenth of a second.
+    #[arg(long)]
+    story: bool,
+    /// Put the table between the markers of this Markdown file.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Which markers: those of that name.
+    #[arg(long, value_name = "NAME", default_value = "skills", requires = "markdown")]
+    section: String,
+}
+
+fn skill(word: &str) -> Result<Skill, String> {
+    Skill::from_word(word).ok_or_else(|| format!("take {}", Skill::ALL.map(Skill::word).join(", ")))
+}
+
+pub(super) fn run(args: &SkillsArgs) -> Result<ExitCode, Failure> {
+    let plan = args.plan();
+    if args.story {
+        return story(&plan);
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.jobs.map_or(0, usize::from)).build();
+    let pool = pool.map_err(|error| Failure::Threads(error.to_string()))?;
+    let results = pool.install(|| plan.play()).map_err(|error| Failure::Game(error.to_string()))?;
+    let table = rows(&plan, &results);
+    if args.json {
+        let json = serde_json::to_string(&table).map_err(|error| Failure::Output(error.into()))?;
+        work::say(&format!("{json}\n"))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut text = words(&table);
+    if let Some(file) = &args.markdown {
+        insert(file, ("skills", &args.section), |_| words(&table), Vec::new())?;
+    }
+    if args.failures {
+        text += &failures(&results);
+    }
+    work::say(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl SkillsArgs {
+    fn plan(&self) -> SkillPlan {
+        let worlds = match self.world {
+            WorldPlan::Same(world) => vec![world],
+            WorldPlan::RandomPerMatch => {
+                (0..u64::from(self.worlds)).map(|i| WorldChoice::Random(self.seed.wrapping_add(i))).collect()
+            }
+        };
+        SkillPlan {
+            league: self.league,
+            world: self.world.to_string(),
+            worlds,
+            tries: self.tries,
+            first: self.first,
+            seed: self.seed,
+            skills: if self.skills.is_empty() { Skill::ALL.to_vec() } else { self.skills.clone() },
+        }
+    }
+}
+
+/// The table as Markdown.
+fn words(rows: &[SkillRow]) -> String {
+    let mut text = String::from(
+        "| skill | league | world | worlds | tries | succeeded | share | median time | 95 % within |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    let seconds = |time: Option<f64>| time.map_or(String::new(), |time| format!("{time:.2} s"));
+    for row in rows {
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} | {} | {:.1} % | {} | {} |",
+            row.skill,
+            row.league,
+            row.world,
+            row.worlds,
+            row.tries,
+            row.succeeded,
+            100.0 * row.succeeded as f64 / row.tries.max(1) as f64,
+            seconds(row.time_median_s),
+            seconds(row.time_p95_s)
+        );
+    }
+    text
+}
+
+/// Tries that failed, two lines each.
+fn failures(results: &[TryResult]) -> String {
+    let mut text = String::new();
+    for result in results {
+        if let Err(what) = &result.end {
+            let TryResult { tried, start, .. } = result;
+            let (skill, world, number) = (tried.skill.word(), tried.world, tried.number);
+            let _ = writeln!(text, "\n{skill} {number} in {world}: {start}: {what}\n  {}", tried.command());
+        }
+    }
+    text
+}
+
+/// Every try of the plan, one after the other.
+fn story(plan: &SkillPlan) -> Result<ExitCode, Failure> {
+    for tried in plan.tries() {
+        let mut lines = Vec::new();
+        let result = tried.play(&mut lines).map_err(|error| Failure::Game(error.to_string()))?;
+        let end = match &result.end {
+            Ok(time) => format!("succeeded after {time:.2} s"),
+            Err(what) => format!("failed: {what}"),
+        };
+        let TryResult { tried, start, .. } = &result;
+        let head = format!("{} {} in {}: {start}", tried.skill.word(), tried.number, tried.world);
+        work::say(&format!("{head}\n{}\n{end}\n", lines.join("\n")))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
