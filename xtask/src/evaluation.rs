@@ -26,7 +26,7 @@ const MATCHES: [(&str, &str); 5] = [
 
 /// Tries single skills in the league's own world and in random ones, and writes the tables of `docs/skills.md`.
 pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
-    for (section, words) in [("nominal", "--tries 100"), ("random", "--world random --worlds 200 --tries 5")] {
+    for (section, words) in [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")] {
         let line = format!("evaluate skills {words} --markdown docs/skills.md --section {section}");
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
     }
