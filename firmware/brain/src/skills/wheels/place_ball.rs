@@ -419,7 +419,8 @@ mod tests {
             tried_again += u32::from(placing == Placing::Fetching && before != placing);
         }
         assert!(revealed >= 2 && tried_again >= 2, "{revealed}, {tried_again}");
-        // Felt in time, it is pulled.
+        // Felt at the first try, it is pulled.
+        let mut placement = Placement::default();
         b.holds_ball = true;
         place_ball(Instant(20_000_000), &mut placement, &b, Point::new(-2.0, 0.0));
         place_ball(Instant(20_010_000), &mut placement, &b, Point::new(-2.0, 0.0));
