@@ -421,6 +421,7 @@ mod tests {
         assert!(revealed >= 2 && tried_again >= 2, "{revealed}, {tried_again}");
         // Felt at the first try, it is pulled.
         let mut placement = Placement::default();
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         b.holds_ball = true;
         place_ball(Instant(20_000_000), &mut placement, &b, Point::new(-2.0, 0.0));
         place_ball(Instant(20_010_000), &mut placement, &b, Point::new(-2.0, 0.0));
