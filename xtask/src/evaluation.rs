@@ -1,5 +1,4 @@
-//! `cargo xtask evaluation`: figures of `docs/evaluation.md`. From here: `cargo xtask evaluation` plays every
-//! trial and writes them.
+//! `evaluation`: `cargo xtask evaluation`: figures of `docs/evaluation.md`, and of the tables of matches and skills.
 
 use crate::context::{Context, Failure, run};
 
@@ -27,8 +26,7 @@ const MATCHES: [(&str, &str); 5] = [
 
 /// Tries single skills in the league's own world and in random ones, and writes the tables of `docs/skills.md`.
 pub(crate) fn write_skills(context: &Context) -> Result<(), Failure> {
-    for (section, words) in [("nominal", "--tries 100"), ("random", "--world random --worlds 200 --tries 5")]
-    {
+    for (section, words) in [("nominal", "--tries 50"), ("random", "--world random --worlds 60 --tries 5")] {
         let line = format!("evaluate skills {words} --markdown docs/skills.md --section {section}");
         run(&mut context.cargo(&format!("run --release -- {line}")))?;
     }

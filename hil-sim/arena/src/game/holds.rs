@@ -84,15 +84,12 @@ impl Holds {
         let ball = &game.world().ball;
         for robot in game.world().robots().iter().filter(|robot| robot.present && holds(robot, ball)) {
             let heading = robot.pose.heading.radians();
-            match self.open.iter_mut().find(|spell| spell.who == robot.who) {
-                Some(spell) => {
-                    spell.until = now;
-                    spell.turning.look(heading);
-                }
-                None => {
-                    let turning = Turning::new(heading);
-                    self.open.push(Spell { who: robot.who, from: now, until: now, turning });
-                }
+            if let Some(spell) = self.open.iter_mut().find(|spell| spell.who == robot.who) {
+                spell.until = now;
+                spell.turning.look(heading);
+            } else {
+                let turning = Turning::new(heading);
+                self.open.push(Spell { who: robot.who, from: now, until: now, turning });
             }
         }
         self.end(now);

@@ -107,10 +107,12 @@ pub fn place_ball(now: Instant, placement: &mut Placement, belief: &Belief, at: 
     placement.placing = next;
     match placement.placing {
         Placing::Fetching => fetch(placement, belief, &ball, at),
-        // Cameras do not see a ball so near: the robot goes on to where it must be.
+        // Cameras do not see a ball so near, and where it is taken to be errs by two centimetres: on to where it must be.
         Placing::Feeling => {
             let kick = placement.kick(at_wall(belief, &ball, placement.room()));
-            Drive { speed: GO_IN_AT_WALL, kick, ..press(belief) }.into()
+            let facing = belief.pose.heading;
+            let to = ball.position - Vector::polar(BALL_AT - FEELS_INTO, facing);
+            Drive { speed: GO_IN_AT_WALL, kick, ..Drive::holding(to, facing) }.into()
         }
         Placing::Revealing { facing } => {
             let back = ball.position - Vector::polar(BALL_AT + REVEALS, facing);
@@ -242,10 +244,13 @@ fn strays(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
 fn fetch(placement: &Placement, belief: &Belief, ball: &Ball, at: Point<Field>) -> Intent {
     let wall = at_wall(belief, ball, placement.room());
     let kicks = placement.kicks(wall);
-    if ball.velocity.norm() > ROLLING {
-        // One that it has just kicked comes off the wall by itself.
-        return if kicks { Intent::Stand { face: None } } else { meet(belief, ball).into() };
+    let rolls = ball.velocity.norm() > ROLLING;
+    if rolls && placement.slips == 0 {
+        return meet(belief, ball).into();
     }
+    // Chased, a ball that the dribbler does not hold is only driven on: it is waited for where it will rest.
+    let resting = Ball { position: ball.rest, velocity: Vector::default(), rest: ball.rest };
+    let ball = if rolls { &resting } else { ball };
     let face = match wall {
         // To the side where the place is.
         Some(out) if kicks => {
@@ -316,6 +321,8 @@ const NEAR_ENOUGH: f32 = 0.1;
 const THERE: f32 = 0.03;
 /// Where the ball is shown this near the mouth, it should be felt, m.
 const AT_MOUTH: f32 = 0.04;
+/// It goes so far into where the ball is shown, m: not so far that it is past it.
+const FEELS_INTO: f32 = 0.035;
 /// A robot that feels no ball there for so long does not press on: the ball is elsewhere, or its barrier is blind.
 const FEELS: Duration = Duration::millis(1000);
 /// One that is this near and does not get the ball for so long tries another way, m.
@@ -412,7 +419,9 @@ mod tests {
             tried_again += u32::from(placing == Placing::Fetching && before != placing);
         }
         assert!(revealed >= 2 && tried_again >= 2, "{revealed}, {tried_again}");
-        // Felt in time, it is pulled.
+        // Felt at the first try, it is pulled.
+        let mut placement = Placement::default();
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         b.holds_ball = true;
         place_ball(Instant(20_000_000), &mut placement, &b, Point::new(-2.0, 0.0));
         place_ball(Instant(20_010_000), &mut placement, &b, Point::new(-2.0, 0.0));
