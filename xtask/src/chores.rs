@@ -82,7 +82,7 @@ const fn handed_on(
     Chore { name, takes, what, run, free: true }
 }
 
-static CHORES: [Chore; 18] = [
+static CHORES: [Chore; 19] = [
     handed_on(
         "swarm",
         "[--plan faults|referee] [--seeds N] [--first N] [--jobs J] [--record STEM]",

@@ -29,6 +29,10 @@ pub(super) struct Handling {
     since: Option<Instant>,
     /// How long it has lasted, s.
     held: f32,
+    /// Since when this robot and an opponent have both been at the ball.
+    disputed: Option<Instant>,
+    /// For how long they have, s.
+    dispute: f32,
 }
 
 impl Belief {
@@ -86,12 +90,27 @@ impl Belief {
         self.handling.held
     }
 
+    /// For how long this robot and an opponent have both been at a slow ball, s: however often it changes hands meanwhile.
+    pub fn disputed(&self) -> f32 {
+        self.handling.dispute
+    }
+
     /// Where a ball in its grip is.
     pub fn mouth(&self) -> Point<Field> {
         self.pose.position + Vector::polar(BALL_AT, self.pose.heading)
     }
 
+    pub(crate) fn dispute(&mut self, now: Instant) {
+        let both = self.ball.is_some_and(|ball| {
+            let opponent = self.nearest_opponent(ball.position).is_some_and(|(_, off)| off < AT_BALL);
+            opponent && self.pose.position.distance(ball.position) < AT_BALL && ball.velocity.norm() < SLOW
+        });
+        self.handling.disputed = both.then_some(self.handling.disputed.unwrap_or(now));
+        self.handling.dispute = self.handling.disputed.map_or(0.0, |since| now.since(since).as_secs_f32());
+    }
+
     fn handle(&mut self, now: Instant, contact: bool) {
+        self.dispute(now);
         self.handling.contact = contact;
         if contact {
             self.handling.touched = Some(now);
@@ -140,6 +159,10 @@ fn is_at_mouth(pose: Pose<Field>, ball: Point<Field>) -> bool {
 const BEYOND: f32 = 0.1;
 /// The light barrier may miss the ball for so long: a few of its turns on the roller.
 const BRIDGED: Duration = Duration::millis(60);
+/// A robot whose centre is so near to the ball is at it, m: half a body more than where it touches.
+const AT_BALL: f32 = 0.2;
+/// A faster ball is not stuck between two robots, m/s.
+const SLOW: f32 = 0.5;
 /// A gap between ball and mouth that the rules call visible, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.

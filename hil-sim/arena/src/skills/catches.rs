@@ -80,7 +80,7 @@ impl Judge for GetBall {
     }
 
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
-        player(ROBOT, Directive::GetBall { face: None })
+        Some(player(ROBOT, Directive::GetBall { face: None }))
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {
@@ -126,7 +126,7 @@ impl Judge for Receive {
     }
 
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
-        player(ROBOT, Directive::Receive { at: self.at.into(), then: None })
+        Some(player(ROBOT, Directive::Receive { at: self.at.into(), then: None }))
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {
@@ -167,7 +167,7 @@ impl Judge for Dribble {
 
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
         let stands = pose(self.to - Vector::polar(AT_DRIBBLER, self.heading), self.heading);
-        player(ROBOT, Directive::Dribble { pose: stands.into() })
+        Some(player(ROBOT, Directive::Dribble { pose: stands.into() }))
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {
@@ -216,7 +216,7 @@ impl Judge for Turn {
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
         let way = if self.turns.is_some() { self.heading + Angle::HALF_TURN } else { self.heading };
         let face = self.lay + Vector::polar(FAR, way);
-        player(ROBOT, Directive::GetBall { face: Some(face.into()) })
+        Some(player(ROBOT, Directive::GetBall { face: Some(face.into()) }))
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {

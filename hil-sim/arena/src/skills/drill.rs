@@ -133,7 +133,7 @@ fn judge_of(tried: &Try, seed: u64) -> Box<dyn Judge> {
 /// A game with our robots only; theirs are bodies that stand.
 fn config(tried: &Try, seed: u64, robots: u8) -> GameConfig {
     let mut config = GameConfig::new(tried.league, seed, 60.0);
-    config.world = tried.world.clone();
+    config.world = tried.world;
     config.referee.blue_on_positive_half = true;
     for team in &mut config.teams {
         let ours = team.colour == US;
@@ -144,9 +144,9 @@ fn config(tried: &Try, seed: u64, robots: u8) -> GameConfig {
 }
 
 /// Plays a try to its end.
-pub(super) fn play<'a>(
+pub(super) fn play(
     tried: Try,
-    backend: &mut dyn Backend<'a>,
+    backend: &mut dyn Backend<'_>,
     told: &mut Vec<String>,
 ) -> Result<TryResult, GameError> {
     let seed = seed_of(&tried);
@@ -206,9 +206,12 @@ fn place(game: &mut Game<'_>, start: &Start, robots: u8) {
     }
     world.put_ball(Ball::at(start.ball.position));
     // Bystanders of the world stand where they like, but for where the try takes place.
-    let taken = |who: Who| match who.colour == US {
-        true => usize::from(who.id.number()) < usize::from(robots),
-        false => usize::from(who.id.number()) < start.theirs.len(),
+    let taken = |who: Who| {
+        if who.colour == US {
+            usize::from(who.id.number()) < usize::from(robots)
+        } else {
+            usize::from(who.id.number()) < start.theirs.len()
+        }
     };
     let mut needed: Vec<Point<Field>> = start.ours.iter().map(|(_, pose)| pose.position).collect();
     needed.extend(start.theirs.iter().map(|pose| pose.position));
@@ -281,8 +284,8 @@ pub(super) fn pose(at: Point<Field>, heading: Angle) -> Pose<Field> {
 }
 
 /// A field player's directive.
-pub(super) fn player(number: u8, directive: Directive) -> Option<Vec<(u8, Duty, Directive)>> {
-    Some(vec![(number, Duty::Player, directive)])
+pub(super) fn player(number: u8, directive: Directive) -> Vec<(u8, Duty, Directive)> {
+    vec![(number, Duty::Player, directive)]
 }
 
 /// Robots of a full team of that league.

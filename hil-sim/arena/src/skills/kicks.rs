@@ -61,7 +61,7 @@ impl Judge for Kick {
     fn orders(&mut self, _: &Moment<'_>) -> Option<Vec<(u8, Duty, Directive)>> {
         // Once is enough: who kicked stands.
         let kicks = Directive::Kick { at: self.target.into(), kick: self.order };
-        player(1, if self.kicked.is_some() { Directive::Stand } else { kicks })
+        Some(player(1, if self.kicked.is_some() { Directive::Stand } else { kicks }))
     }
 
     fn judge(&mut self, moment: &Moment<'_>) -> State {

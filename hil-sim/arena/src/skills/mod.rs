@@ -136,7 +136,7 @@ impl SkillPlan {
                 all.extend((first..first + self.tries).map(|number| Try {
                     skill,
                     league: self.league,
-                    world: world.clone(),
+                    world: *world,
                     number,
                     seed: self.seed,
                 }));

@@ -1,5 +1,7 @@
 //! `story`: a try, a line for every tenth of a second: the ball, who is near it, what it was told and does.
 
+use std::fmt::Write as _;
+
 use geometry::GoalEnd;
 use host::strategy::Flip;
 
@@ -10,7 +12,7 @@ use crate::game::Game;
 
 /// A line, when one is due.
 pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
-    if (time * 100.0).round() as u32 % EVERY != 0 {
+    if !((time * 100.0).round() as u32).is_multiple_of(EVERY) {
         return;
     }
     let (world, host) = (game.world(), game.host(US));
@@ -27,13 +29,15 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
         ball.position.y(),
         ball.speed()
     );
+    // Writing to a String cannot fail.
     if let Some(seen) = host.world().ball {
-        line += &format!(", seen {:.3} m off", seen.position.distance(ball.position));
+        let _ = write!(line, ", seen {:.3} m off", seen.position.distance(ball.position));
     }
     if let Some(robot) = near {
         let at = robot.pose.to_body(ball.position);
         let order = robot.order();
-        line += &format!(
+        let _ = write!(
+            line,
             "; {} at ({:.3}, {:.3}) {:.0}°, {:.2} m/s, ball {:.3} ahead {:.3} left{}, dribbler {:.2}{}",
             robot.who.id,
             robot.pose.position.x(),
@@ -48,11 +52,11 @@ pub(super) fn tell(told: &mut Vec<String>, time: f32, game: &Game<'_>) {
         );
         let seen = host.world().robots().find(|seen| seen.who == robot.who);
         if let Some(seen) = seen {
-            line += &format!(", seen {:.3} m off", seen.pose.position.distance(robot.pose.position));
+            let _ = write!(line, ", seen {:.3} m off", seen.pose.position.distance(robot.pose.position));
         }
         let given = host.orders().iter().find(|given| given.robot == robot.who.id);
         if let Some(given) = given {
-            line += &format!("; {:?}", given.task.directive(Flip::defending(GoalEnd::Negative)));
+            let _ = write!(line, "; {:?}", given.task.directive(Flip::defending(GoalEnd::Negative)));
         }
     }
     told.push(line);

@@ -8,7 +8,7 @@ use rules::League;
 
 use crate::belief::Belief;
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, Manner};
+use crate::body::omni::{BALL_AT, Drive, Manner, SHOT};
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::get_ball;
 use crate::skills::wheels::kick::kick_held;
@@ -44,6 +44,11 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
 /// then on, and after [`LASTS`] the robot leaves the ball.
 pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     let held = belief.held();
+    if belief.disputed() > DISPUTES
+        && let Intent::Drive(drive) = intent
+    {
+        return break_free(belief, drive).into();
+    }
     if !belief.holds_ball {
         return intent;
     }
@@ -76,6 +81,14 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     Drive { speed: AWAY, ..Drive::bold(back, belief.pose.heading) }.into()
 }
 
+/// Two robots that press the ball against each other get nowhere: the first touch is a kick, unless it looks at its own goal.
+fn break_free(belief: &Belief, drive: Drive) -> Drive {
+    let own = belief.league().field().goal_center(belief.game.defending);
+    let off = (belief.pose.position.direction_to(own) - belief.pose.heading).abs();
+    let kick = if off > OWN_GOAL { OmniKick::Flat(SHOT) } else { drive.kick };
+    Drive { kick, armed: true, ..drive }
+}
+
 /// It turns to where the ball shall go.
 fn aims(intent: &Intent) -> bool {
     matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
@@ -92,6 +105,10 @@ const SETTLES: f32 = 0.7;
 const ACTS: f32 = 1.5;
 /// And who is kept from that lets it go after so long, s.
 const LASTS: f32 = 3.0;
+/// So long two robots dispute the ball before one kicks it whichever way it lies, s: longer than a tackle takes.
+const DISPUTES: f32 = 1.0;
+/// No such kick within so much of the direction of the own goal, rad.
+const OWN_GOAL: f32 = 0.8;
 /// What is aimed at is about so far, m.
 const AFAR: f32 = 3.0;
 /// Let go so much before the limit, m: what the ball rolls on from a crawl, a robot's delay, and noise.
@@ -116,10 +133,8 @@ mod tests {
     use protocol::robot_io::{Health, SensorFrame};
     use protocol::{Instant, RobotId};
 
-    /// A robot at the origin that has had the ball for so many ms.
-    fn holding(ms: u64) -> Belief {
-        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
-        let sensors = SensorFrame {
+    fn holding_sensors() -> SensorFrame {
+        SensorFrame {
             pose: None,
             ball: None,
             opponents: heapless::Vec::new(),
@@ -127,7 +142,13 @@ mod tests {
             busy: false,
             odometry: Twist::default(),
             health: Health::default(),
-        };
+        }
+    }
+
+    /// A robot at the origin that has had the ball for so many ms.
+    fn holding(ms: u64) -> Belief {
+        let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        let sensors = holding_sensors();
         let picture = Picture::new(RobotId::new(1).unwrap());
         for at in [0, ms] {
             b.show(Instant(at * 1000), &picture, &sensors);
@@ -142,20 +163,20 @@ mod tests {
         }
     }
 
-    const SHOT: OmniKick = OmniKick::Flat(6.0);
+    const KICK: OmniKick = OmniKick::Flat(6.0);
 
     #[test]
     fn what_is_aimed_at_after_a_while_stays_whatever_is_wanted_then() {
         let left = Point::new(3.0, 2.0);
         let mut b = holding(750);
-        let wanted = kick_held(&b, left, SHOT);
+        let wanted = kick_held(&b, left, KICK);
         let first = drive(let_go_in_time(&mut b, wanted));
         // Its opponent has moved: now the other side is roomier, and then its host wants it elsewhere.
-        let wanted = kick_held(&b, Point::new(3.0, -2.0), SHOT);
+        let wanted = kick_held(&b, Point::new(3.0, -2.0), KICK);
         let second = drive(let_go_in_time(&mut b, wanted));
         let third = drive(let_go_in_time(&mut b, Drive::holding(left, Angle::HALF_TURN).into()));
         for kept in [second, third] {
-            assert!((kept.face - first.face).abs() < 1e-3 && kept.kick == SHOT, "{kept:?}");
+            assert!((kept.face - first.face).abs() < 1e-3 && kept.kick == KICK, "{kept:?}");
         }
     }
 
@@ -171,13 +192,31 @@ mod tests {
         let aside = Point::new(3.0, 0.6);
         let armed = |ms: u64| {
             let mut b = holding(ms);
-            let wanted = kick_held(&b, aside, SHOT);
+            let wanted = kick_held(&b, aside, KICK);
             drive(let_go_in_time(&mut b, wanted))
         };
         assert!(!armed(1300).armed, "11 degrees off");
         assert!(armed(2900).armed);
         let mut b = holding(3100);
-        let wanted = kick_held(&b, Point::new(-3.0, 0.0), SHOT);
+        let wanted = kick_held(&b, Point::new(-3.0, 0.0), KICK);
         assert!(drive(let_go_in_time(&mut b, wanted)).to.x() < -0.1);
+    }
+
+    #[test]
+    fn a_ball_that_two_robots_dispute_is_kicked_as_it_is_touched_but_not_at_the_own_goal() {
+        let disputed = |heading: f32, ms: u64| {
+            let mut b = belief((0.0, 0.0, heading), (BALL_AT, 0.0));
+            let picture = Picture::new(RobotId::new(1).unwrap());
+            let sensors = holding_sensors();
+            b.show(Instant(0), &picture, &sensors);
+            let _ = b.opponents.push(b.mouth() + Vector::polar(0.1, b.pose.heading));
+            [0, ms].into_iter().for_each(|at| b.dispute(Instant(at * 1000)));
+            let wanted = kick_held(&b, Point::new(0.0, 3.0), KICK);
+            drive(let_go_in_time(&mut b, wanted))
+        };
+        assert!(!disputed(0.0, 900).armed, "it still turns to where the ball shall go");
+        let kicks = disputed(0.0, 1100);
+        assert!(kicks.armed && kicks.kick == OmniKick::Flat(super::SHOT), "{kicks:?}");
+        assert_eq!(disputed(180.0, 1100).kick, KICK, "towards the own goal nothing but what is wanted");
     }
 }
