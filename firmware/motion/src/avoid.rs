@@ -259,7 +259,7 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
 }
 
 /// Most obstacles that are regarded: 21 other robots, the rules' 12 shapes, and some to spare.
-pub const OBSTACLES_MAX: usize = 40;
+pub const OBSTACLES_MAX: usize = 38;
 /// Most straight pieces that a search looks at.
 pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.

@@ -210,7 +210,9 @@ mod tests {
             let sensors = holding_sensors();
             b.show(Instant(0), &picture, &sensors);
             let _ = b.opponents.push(b.mouth() + Vector::polar(0.1, b.pose.heading));
-            [0, ms].into_iter().for_each(|at| b.dispute(Instant(at * 1000)));
+            for at in [0, ms] {
+                b.dispute(Instant(at * 1000));
+            }
             let wanted = kick_held(&b, Point::new(0.0, 3.0), KICK);
             drive(let_go_in_time(&mut b, wanted))
         };
