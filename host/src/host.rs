@@ -1,5 +1,4 @@
-//! How do vision, referee and robots' words become commands? The host as a value: datagrams and times in, packets out
-//! (DESIGN §3).
+//! `host`: sans-IO core of the host. The host as a value: datagrams and times in, packets out (DESIGN §3).
 //!
 //! One mutation, then drain: after every [`Host::handle`] call [`Host::poll_packet`] until `None`, then ask [`Host::poll_timeout`] when
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
@@ -7,6 +6,7 @@
 
 mod calibration;
 mod input;
+mod state;
 
 use casebase::CaseBase;
 use geometry::{GoalEnd, Point};
@@ -22,12 +22,12 @@ use crate::geometry::VisionGeometry;
 use crate::hidden_ball::HiddenBall;
 use crate::learned::Learned;
 use crate::proposal::{cases_of, proposal};
-use crate::radio::{self, Quality, Radio, RadioSettings, Situation, To};
+use crate::radio::{self, Radio, RadioSettings, Situation, To};
 use crate::referee::team_port::Request;
-use crate::referee::{self, Listener, OnSilence, SenderAddress, SourcePin};
+use crate::referee::{Listener, OnSilence, SenderAddress, SourcePin};
 use crate::requests::Requests;
 use crate::strategy::pass::bridge::CasePass;
-use crate::strategy::tally::{Bookkeeper, PlayTally};
+use crate::strategy::tally::Bookkeeper;
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
 use crate::tracking::{self, Tracker};
@@ -210,91 +210,6 @@ impl Host {
     /// When [`Input::Timeout`] is wanted, if nothing comes before.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.radio.poll_timeout()
-    }
-
-    /// The field as it was when it was last planned for.
-    pub fn world(&self) -> &World {
-        &self.world
-    }
-
-    /// What was counted of our passes, free kicks and roles.
-    pub fn tally(&self) -> &PlayTally {
-        self.books.tally()
-    }
-
-    /// What everybody was told last, and why.
-    pub fn orders(&self) -> &Orders {
-        &self.orders
-    }
-
-    /// The game as the referee has it.
-    pub fn game(&self) -> &referee::Game {
-        self.listener.game()
-    }
-
-    /// The referee's listener, to look at.
-    pub fn listener(&self) -> &Listener {
-        &self.listener
-    }
-
-    /// The tracker, to look at and to publish.
-    pub fn tracker(&self) -> &Tracker {
-        &self.tracker
-    }
-
-    /// The field: vision's, or the league's until vision has told.
-    pub fn field(&self) -> FieldSpec {
-        self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
-    }
-
-    /// The field that vision told, once it did.
-    pub fn told_field(&self) -> Option<&FieldSpec> {
-        self.geometry.field()
-    }
-
-    /// When the newest camera frame came.
-    pub fn imaged(&self) -> Option<Instant> {
-        self.imaged
-    }
-
-    /// Whether robots are told to halt now, by the referee or by `Host::halt`.
-    pub fn is_halting(&self) -> bool {
-        self.halted || self.listener.game().phase == Phase::Halt
-    }
-
-    /// The radio, to look at.
-    pub fn radio(&self) -> &Radio {
-        &self.radio
-    }
-
-    /// The link to a robot of ours.
-    pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
-        self.radio.quality(robot)
-    }
-
-    /// What a robot of ours last told of itself.
-    pub fn telemetry(&self, robot: RobotId) -> Option<Telemetry> {
-        self.robots[robot.index()].telemetry.map(|(_, telemetry)| telemetry)
-    }
-
-    /// What a robot of ours last told its mates.
-    pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
-        self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
-    }
-
-    /// What it has learned of its robots and the field.
-    pub fn learned(&self) -> &Learned {
-        &self.learned
-    }
-
-    /// Datagrams that were no messages.
-    pub fn undecodable(&self) -> Undecodable {
-        self.undecodable
-    }
-
-    /// What is fixed for its life.
-    pub fn settings(&self) -> &HostSettings {
-        &self.settings
     }
 
     fn see(&mut self, now: Instant, bytes: &[u8]) -> Verdict {

@@ -1,5 +1,5 @@
-//! `friction`: how fast does a rolling ball slow down here? A parabola through the places of a ball on the ground that no robot is near,
-//! along its line. m, s.
+//! `friction`: estimate of a rolling ball's deceleration. A parabola through the places of a ball on the
+//! ground that no robot is near, along its line. m, s.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! `kick`: how fast does the ball leave a robot that was ordered to kick it with some speed? From flat kicks that the host ordered with a
-//! speed and that the tracker saw, by the ball's places 0.05–0.3 s after the kick. m, m/s, s.
+//! `kick`: estimate of each robot's kick gain. From flat kicks that the host ordered with a speed and that
+//! the tracker saw, by the ball's places 0.05–0.3 s after the kick. m, m/s, s.
 
 use geometry::{Field, Point, Vector};
 use protocol::host::{Command, Directive, KickOrder};

@@ -1,5 +1,6 @@
-//! `latency`: how long after an order to go does a robot at rest begin to move? The onset is taken from when it has moved by 10 mm and
-//! by 90 mm: at any constant acceleration the second takes three times as long as the first, so t₀ = (3 t₁ − t₂) / 2. m, s.
+//! `latency`: estimate of each robot's latency. The onset is taken from when it has moved by 10 mm and by 90
+//! mm: at any constant acceleration the second takes three times as long as the first, which gives
+//! t₀ = (3 t₁ − t₂) / 2. m, s.
 //!
 //! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and motors are.
 

@@ -1,4 +1,4 @@
-//! `field`: are there more robots than the league allows, and is this the league's field?
+//! `field`: check of the number of robots and of the field's dimensions against the league.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! `port`: do camera frames come on vision's port?
+//! `port`: check that camera frames come on vision's port.
 
 use std::fmt;
 

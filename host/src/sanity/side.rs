@@ -1,5 +1,5 @@
-//! `side`: do the teams stand at the goals that they defend? The referee names the sides; where it names them wrong, or not at
-//! all, our robots would cross the field and shoot at their own goal.
+//! `side`: check that the teams stand at the goals that they defend. The referee names the sides; where it
+//! names them wrong, or not at all, our robots would cross the field and shoot at their own goal.
 
 use std::fmt;
 

@@ -1,5 +1,6 @@
-//! `stall`: what stood still: this computer, vision or the radio? A stall of one makes the others look still: a computer that does not run
-//! receives nothing, and without vision the host sends nothing after half a second. So they are looked for in this order.
+//! `stall`: distinction of stalls of this computer, of vision and of the radio. A stall of one makes the
+//! others look still: a computer that does not run receives nothing, and without vision the host sends
+//! nothing after half a second. So they are looked for in this order.
 
 use std::fmt;
 

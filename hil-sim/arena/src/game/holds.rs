@@ -1,4 +1,5 @@
-//! `holds`: who holds the ball in play, for how long, and how often it turns to and fro meanwhile? From the true world. s, m, rad.
+//! `holds`: spells in which a robot holds the ball in play: how long, and how often it turns to and fro. From
+//! the true world. s, m, rad.
 //!
 //! A robot holds the ball while the ball is on the carpet within [`NEAR`] of its front plate. A gap of up to [`GAP`] belongs to the
 //! spell: a ball that rolls off the roller and is taken again was not let go. A spell ends with the phase.

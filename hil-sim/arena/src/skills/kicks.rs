@@ -1,4 +1,4 @@
-//! `kick` and `chip`: does the ball pass a point near enough, and over a robot?
+//! `kicks`: tries of `kick` and `chip`: the ball passes a point near enough, and over a robot.
 
 use geometry::{Field, Point, Segment, Vector};
 use hil_sim::small_size::{Ball, Event};

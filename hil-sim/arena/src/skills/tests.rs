@@ -1,4 +1,4 @@
-//! Do tries succeed and fail by what truly happens, and come out the same each time?
+//! Tests: tries succeed and fail by what truly happens, and repeat exactly.
 
 use hil_sim::small_size::worlds::WorldChoice;
 use rules::League;

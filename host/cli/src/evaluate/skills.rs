@@ -1,4 +1,4 @@
-//! `onetwo evaluate skills`: how often and how fast does each skill succeed, in one world or a family of them?
+//! `onetwo evaluate skills`: how often and how fast each skill succeeds, in one world or a family of them.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

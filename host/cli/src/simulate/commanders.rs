@@ -1,5 +1,5 @@
-//! `commanders`: is a robot of the simulator commanded by two programs at once? Two teams' programs of one colour take turns then, and its
-//! robots shake between two wills. Times in the program's own.
+//! `commanders`: detection of two programs that command one robot of the simulator. Two teams' programs of
+//! one colour take turns then, and its robots shake between two wills. Times in the program's own.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;

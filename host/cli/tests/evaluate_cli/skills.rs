@@ -1,4 +1,4 @@
-//! Does the built `onetwo evaluate skills` print what it promises, and the same for any number of threads?
+//! `skills`: tests of `onetwo evaluate skills`: format, and equal output for any number of threads.
 
 use serde_json::Value;
 

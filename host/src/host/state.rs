@@ -1,0 +1,102 @@
+//! `state`: read access to what the host knows.
+
+use protocol::host::Telemetry;
+use protocol::team::Beacon;
+use protocol::{Instant, RobotId};
+use rules::{FieldSpec, Phase};
+
+use super::{Host, HostSettings, Undecodable};
+use crate::learned::Learned;
+use crate::radio::{Quality, Radio};
+use crate::referee::{self, Listener};
+use crate::strategy::Orders;
+use crate::strategy::tally::PlayTally;
+use crate::tracking::Tracker;
+use crate::world::World;
+
+impl Host {
+    /// The field as it was when it was last planned for.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// What was counted of our passes, free kicks and roles.
+    pub fn tally(&self) -> &PlayTally {
+        self.books.tally()
+    }
+
+    /// What everybody was told last, and why.
+    pub fn orders(&self) -> &Orders {
+        &self.orders
+    }
+
+    /// The game as the referee has it.
+    pub fn game(&self) -> &referee::Game {
+        self.listener.game()
+    }
+
+    /// The referee's listener, to look at.
+    pub fn listener(&self) -> &Listener {
+        &self.listener
+    }
+
+    /// The tracker, to look at and to publish.
+    pub fn tracker(&self) -> &Tracker {
+        &self.tracker
+    }
+
+    /// The field: vision's, or the league's until vision has told.
+    pub fn field(&self) -> FieldSpec {
+        self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
+    }
+
+    /// The field that vision told, once it did.
+    pub fn told_field(&self) -> Option<&FieldSpec> {
+        self.geometry.field()
+    }
+
+    /// When the newest camera frame came.
+    pub fn imaged(&self) -> Option<Instant> {
+        self.imaged
+    }
+
+    /// Whether robots are told to halt now, by the referee or by `Host::halt`.
+    pub fn is_halting(&self) -> bool {
+        self.halted || self.listener.game().phase == Phase::Halt
+    }
+
+    /// The radio, to look at.
+    pub fn radio(&self) -> &Radio {
+        &self.radio
+    }
+
+    /// The link to a robot of ours.
+    pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
+        self.radio.quality(robot)
+    }
+
+    /// What a robot of ours last told of itself.
+    pub fn telemetry(&self, robot: RobotId) -> Option<Telemetry> {
+        self.robots[robot.index()].telemetry.map(|(_, telemetry)| telemetry)
+    }
+
+    /// What a robot of ours last told its mates.
+    pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
+        self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
+    }
+
+    /// What it has learned of its robots and the field.
+    pub fn learned(&self) -> &Learned {
+        &self.learned
+    }
+
+    /// Datagrams that were no messages.
+    pub fn undecodable(&self) -> Undecodable {
+        self.undecodable
+    }
+
+    /// What is fixed for its life.
+    pub fn settings(&self) -> &HostSettings {
+        &self.settings
+    }
+}
