@@ -8,7 +8,7 @@ use geometry::{Field, Point, Pose, Vector};
 use motion::ball::BallModel;
 use protocol::robot_io::SensorFrame;
 use protocol::{Duration, Instant};
-use rules::{FieldSpec, Side};
+use rules::{FieldSpec, Phase, Side};
 
 use crate::belief::{Ball, Belief, Other};
 use crate::body::omni::{BALL_AT, FRONT};
@@ -88,6 +88,11 @@ impl Belief {
     /// For how long the ball has been at its front, s: until there is a visible gap.
     pub fn held(&self) -> f32 {
         self.handling.held
+    }
+
+    /// The ball is being placed by us: there is time to do it carefully.
+    pub fn is_placing(&self) -> bool {
+        self.game.phase == Phase::BallPlacement(Side::Ours)
     }
 
     /// For how long this robot and an opponent have both been at a slow ball, s: however often it changes hands meanwhile.

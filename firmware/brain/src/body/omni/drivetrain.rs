@@ -146,7 +146,9 @@ impl Drivetrain {
         let mut turning = if drive.manner == Manner::Holding { HOLDING_TURN } else { TURN };
         let angular = match face {
             Some(face) if (face - pose.heading).abs() > FACED || self.angular.abs() > FACED_RATE => {
-                turning.rate = math::min(turning.rate, SETTLES * (face - pose.heading).abs());
+                if belief.is_placing() {
+                    turning.rate = math::min(turning.rate, SETTLES * (face - pose.heading).abs());
+                }
                 turning.plan(pose.heading, self.angular, face).at(step).1
             }
             Some(_) => 0.0,
@@ -231,7 +233,7 @@ const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking:
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
 /// ω² · 95 mm stays below 1.2 m/s².
 const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
-/// The last bit of a turn, 1/s: orders that arrive 0.1 s late make a faster one swing to and fro about its goal.
+/// The last bit of a turn while a ball is placed, 1/s: orders that arrive 0.1 s late make a faster one swing about its goal.
 const SETTLES: f32 = 5.0;
 /// Below the governor's limit in STOP, m/s: it shall not need to say anything.
 const SLACK: f32 = 0.1;

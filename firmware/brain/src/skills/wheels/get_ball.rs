@@ -57,15 +57,16 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
         let to = to + ball.velocity * LEAD;
         return Approach::In(Drive { speed: speed + 2.0 * room.max(0.0), ..Drive::bold(to, face) });
     }
-    if room > 0.0 && room < GO_IN_FROM && beside.abs() < SIDESTEPS && off < ALIGNED {
+    if belief.is_placing() && room > 0.0 && room < GO_IN_FROM && beside.abs() < SIDESTEPS && off < ALIGNED {
         // Nearly behind it: a step aside, not all the way back and around.
         let to = ball.position - ahead * (BALL_AT + room.max(PRESS)) + ball.velocity * LEAD;
         return Approach::Around(Drive { speed: SIDESTEP, ..Drive::bold(to, face) });
     }
     let behind = ball.position - ahead * (BALL_AT + STAND_OFF) + ball.velocity * LEAD;
-    // Slow at its end, or what the robot is behind in time takes it past.
-    let speed = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
-    Approach::Around(Drive { speed, ..Drive::shy(behind, face) })
+    let drive = Drive::shy(behind, face);
+    // Slow at its end where there is time, or what the robot is behind in time takes it past.
+    let settles = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
+    Approach::Around(Drive { speed: if belief.is_placing() { settles } else { drive.speed }, ..drive })
 }
 
 /// Goes for a ball that rolls: from behind where it rolls away before the robot, else beyond it on its way, facing it.
