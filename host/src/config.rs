@@ -233,7 +233,11 @@ impl TeamSettings {
             if !KICK_RANGE.contains(&factor) {
                 return Err(error(
                     "calibration.kick",
-                    format!("{factor} for robot {robot}; speed seen over speed ordered, 0.4 to 2"),
+                    format!(
+                        "{factor} for robot {robot}; speed seen over speed ordered, {} to {}",
+                        KICK_RANGE.start(),
+                        KICK_RANGE.end()
+                    ),
                 ));
             }
             kick[id.index()] = factor;
@@ -266,7 +270,7 @@ impl TeamSettings {
 }
 
 /// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
-const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
+pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
 /// What carpets do, m/s²: the same.
 const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];

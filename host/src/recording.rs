@@ -13,6 +13,7 @@ use rules::{Colour, League};
 use serde::{Deserialize, Serialize};
 
 use crate::HostSettings;
+use crate::config::KICK_RANGE;
 use crate::proposal::cases_of;
 use crate::radio::{RadioSettings, Relay};
 use crate::referee::{OnSilence, SourcePin};
@@ -236,11 +237,11 @@ impl HostHeader {
 
     /// Ball speed over speed ordered, by robot.
     pub fn kick(&self) -> Result<[f32; RobotId::COUNT], HeaderError> {
-        let good = self.kick.iter().all(|factor| (0.5..=2.0).contains(factor));
-        <[f32; RobotId::COUNT]>::try_from(&self.kick[..])
-            .ok()
-            .filter(|_| good)
-            .ok_or_else(|| wrong(format!("kick: {} factors of 0.5 to 2, one for each robot", RobotId::COUNT)))
+        let good = self.kick.iter().all(|factor| KICK_RANGE.contains(factor));
+        <[f32; RobotId::COUNT]>::try_from(&self.kick[..]).ok().filter(|_| good).ok_or_else(|| {
+            let (count, low, high) = (RobotId::COUNT, KICK_RANGE.start(), KICK_RANGE.end());
+            wrong(format!("kick: {count} factors of {low} to {high}, one for each robot"))
+        })
     }
 
     /// When it began.
@@ -352,7 +353,7 @@ mod tests {
         );
         assert!(faulty(|h| h.keeper = 16).keeper().unwrap_err().to_string().contains("0 to 15"));
         assert!(faulty(|h| h.kick.truncate(15)).kick().unwrap_err().to_string().contains("16"));
-        assert!(faulty(|h| h.kick[0] = f32::NAN).kick().unwrap_err().to_string().contains("0.5 to 2"));
+        assert!(faulty(|h| h.kick[0] = f32::NAN).kick().unwrap_err().to_string().contains("0.4 to 2"));
         assert!(
             faulty(|h| h.relay = "x".into()).radio(TeamKey::ZERO).unwrap_err().to_string().contains("to-all")
         );

@@ -185,7 +185,7 @@ fn wrong_settings_are_refused_with_what_would_be_right() {
         (vec!["control", "--colour", "red"], "blue or yellow"),
         (vec!["control", "--robots", "tcp://x"], "sim://HOST"),
         (vec!["control", "--config", "no-such.toml"], "no-such.toml"),
-        (vec!["control", "--kick", "3=9"], "0.5 to 2"),
+        (vec!["control", "--kick", "3=9"], "0.4 to 2"),
     ] {
         let out = Command::new(env!("CARGO_BIN_EXE_onetwo")).args(&arguments).output().expect("it starts");
         assert_eq!(out.status.code(), Some(1), "{arguments:?}");
