@@ -356,6 +356,7 @@ impl Host {
             .allowing(self.allowed(us))
             .allowing_them(self.allowed(us.other()))
             .proposing(self.proposed(now, Flip::defending(game.defending)));
+        let view = View { strangers: self.strangers(&view.field, game.defending), ..view };
         self.orders = self.coach.decide(&view);
         if !self.halted {
             self.requests.look(&view, self.listener.game().team(us).substitutions_left);
@@ -373,6 +374,16 @@ impl Host {
         self.ordered = self.listener.game().phase;
         let situation = Situation { us, phase: game.phase, placement: game.placement };
         self.radio.offer(now, &self.world, situation, &commands);
+    }
+
+    /// Robots of our colour on the field that have said nothing since this host began.
+    fn strangers(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
+        let stands = |robot: &&crate::world::Robot| field.counts(defending, robot.pose.position);
+        let silent = |robot: &&crate::world::Robot| {
+            let known = &self.robots[robot.who.id.index()];
+            known.telemetry.is_none() && known.beacon.is_none()
+        };
+        self.world.ours(self.settings.us).filter(stands).filter(silent).count()
     }
 
     /// A ball that no camera sees is put where it must be.

@@ -175,3 +175,44 @@ fn a_hand_moves_ball_and_robots_whether_the_match_runs_or_stands() {
     }
     assert!(game.world().ball.position.distance(elsewhere) < 0.3, "{:?}", game.world().ball.position);
 }
+
+/// How far robots that stand about went, how many of them there are, and whether a robot of ours went to the ball.
+#[derive(Default)]
+struct StandingAbout {
+    /// Where each stood first.
+    places: Vec<(Who, Point<geometry::Field>)>,
+    unpushed: usize,
+    touched: bool,
+}
+
+impl Watcher for StandingAbout {
+    fn tick(&mut self, game: &Game<'_>) {
+        let here = game.world().robots().iter().filter(|robot| robot.bystander);
+        let here: Vec<_> = here.map(|robot| (robot.who, robot.pose.position)).collect();
+        if self.places.is_empty() {
+            self.places.clone_from(&here);
+        }
+        let both = here.iter().zip(&self.places);
+        self.unpushed =
+            both.filter(|(now, first)| now.0 == first.0 && now.1.distance(first.1) < 0.01).count();
+        self.touched |= game.world().robots().iter().any(|robot| robot.ball_contact && !robot.bystander);
+    }
+}
+
+#[test]
+fn a_match_among_bystanders_is_played_without_them_and_is_had_again_from_its_world() {
+    let play_in = |world: &str, watcher: &mut dyn Watcher| {
+        let mut config = GameConfig::new(League::DivisionB, 1, 40.0);
+        config.world = world.parse().unwrap();
+        play(&config, &mut NativeBackend::new(case_library::division_b()), watcher).unwrap()
+    };
+    let mut standing = StandingAbout::default();
+    let report = play_in("random:3", &mut standing);
+    assert_eq!((standing.places.len(), &*report.world), (10, "random:3"));
+    // Players may run into one or two.
+    assert!(standing.unpushed >= 7, "{} of 10 stand where they stood", standing.unpushed);
+    assert!(standing.touched, "somebody took the kick-off");
+    assert!(!report.fouls.blue.contains_key("too_many_robots"), "{:?}", report.fouls);
+    assert_eq!(play_in("random:3", &mut Nobody).trace_hash, report.trace_hash);
+    assert_ne!(play_in("nominal", &mut Nobody).trace_hash, report.trace_hash);
+}

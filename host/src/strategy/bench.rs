@@ -27,7 +27,10 @@ impl Bench {
     /// The keeper is never sent. Who is off stays off, so that a card costs one way out and one way back.
     pub(super) fn choose(&mut self, view: &View, first: Option<RobotId>) -> &[RobotId] {
         self.off.retain(|id| *id != view.keeper && view.our(*id).is_some());
-        let surplus = (view.ours.len() + view.uncommanded).saturating_sub(view.allowed);
+        // Robots that never answered cannot leave, and a team that leaves in their place is off the field for nothing: people, who
+        // put them there, carry them off.
+        let silent = view.uncommanded.saturating_sub(view.strangers);
+        let surplus = (view.ours.len() + silent).saturating_sub(view.allowed);
         while self.off.len() < surplus {
             let Some(id) = self.next(view, first) else { break };
             // Never full: as many places as robots.

@@ -129,6 +129,8 @@ pub struct View {
     pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
     /// How many more of our robots count on the field although they cannot be commanded.
     pub uncommanded: usize,
+    /// How many of those have never answered this start of the host: robots that stand about.
+    pub strangers: usize,
     /// Theirs, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, as the referee knows it.
@@ -180,6 +182,7 @@ impl View {
                 .ours(us)
                 .filter(|robot| !fit.has(robot.who.id) && field.counts(game.defending, robot.pose.position))
                 .count(),
+            strangers: 0,
             theirs: world.theirs(us).map(robot).collect(),
             keeper: game.keeper,
             their_keeper: game.their_keeper,
@@ -208,6 +211,7 @@ impl View {
             ball: Some(Ball::at_rest(ball)),
             ours: RobotId::all().zip(ours).map(robot).collect(),
             uncommanded: 0,
+            strangers: 0,
             theirs: RobotId::all().zip(theirs).map(robot).collect(),
             keeper: RobotId::ZERO,
             their_keeper: RobotId::ZERO,

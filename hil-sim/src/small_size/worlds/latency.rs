@@ -11,7 +11,7 @@ use crate::small_size::{Order, SLOTS};
 /// The orders under way in a world.
 #[derive(Clone, Debug)]
 pub(in crate::small_size) struct Latency {
-    latency: u64,
+    steps: u64,
     jitter: u32,
     chance: Stream,
     /// By the step they were due in; those of one robot in the order they were given.
@@ -23,7 +23,7 @@ pub(in crate::small_size) struct Latency {
 impl Latency {
     pub(in crate::small_size) fn new(link: &LinkModel, seed: u64) -> Self {
         Self {
-            latency: u64::from(link.latency_ms),
+            steps: u64::from(link.latency_ms),
             jitter: link.jitter_ms,
             chance: Stream::new(seed, "command latency"),
             coming: VecDeque::new(),
@@ -33,12 +33,12 @@ impl Latency {
 
     /// Orders take effect in the step after they were given.
     pub(in crate::small_size) fn is_none(&self) -> bool {
-        self.latency == 0 && self.jitter == 0
+        self.steps == 0 && self.jitter == 0
     }
 
     /// An order is given after step `now`.
     pub(in crate::small_size) fn send(&mut self, now: u64, who: Who, order: Order) {
-        let drawn = now + self.latency + u64::from(self.chance.whole(0, self.jitter));
+        let drawn = now + self.steps + u64::from(self.chance.whole(0, self.jitter));
         let due = drawn.max(self.last[who.slot()]);
         self.last[who.slot()] = due;
         let place = self.coming.partition_point(|(other, ..)| *other <= due);

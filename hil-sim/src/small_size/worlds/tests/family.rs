@@ -45,7 +45,7 @@ fn random_worlds_fill_their_ranges() {
     near(of(|model| model.robots.kick_gain[0]), [0.6, 0.746, 1.1 * 1.0]);
     let (least, _, most) = of(|model| model.parameters.dribbler.pull);
     assert_eq!((least, most), (0.0, PERFECT_PULL), "some have none, some are perfect");
-    let stand: Vec<u8> = (0..400).map(|seed| random(seed).bystanders).collect();
+    let stand: Vec<u32> = (0..400).map(|seed| u32::from(random(seed).bystanders)).collect();
     assert!(stand.iter().all(|n| *n == 0 || (5..=11).contains(n)));
     assert!([0, 5, 11].iter().all(|n| stand.contains(n)));
     let none = stand.iter().filter(|n| **n == 0).count();
