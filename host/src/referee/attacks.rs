@@ -432,6 +432,25 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
         }
     };
     assert!(taken.counter_restarted && now - PERIOD <= WINDOW.0, "{now}");
+    assert_eq!(
+        listener.warnings(Instant(now)),
+        [],
+        "the league's controller does so when it begins a match anew"
+    );
+}
+
+#[test]
+fn a_goal_that_the_controller_announces_with_its_next_commands_counter_is_in_order() {
+    let mut listener = listener(None);
+    let mut genuine = Program::new("gc", 1);
+    genuine.counter = 40;
+    listener.hear(&genuine.packet(0, 0, Wire::ForceStart), genuine.address, Instant(0), None);
+    genuine.counter = 41;
+    for (now, command) in [(PERIOD, Wire::GoalBlue), (2 * PERIOD, Wire::Halt), (3 * PERIOD, Wire::Halt)] {
+        let verdict = listener.hear(&genuine.packet(now, 0, command), genuine.address, Instant(now), None);
+        assert!(matches!(verdict, Verdict::Taken(_)), "{command:?}: {verdict:?}");
+    }
+    assert_eq!((listener.game().phase, listener.warnings(Instant(3 * PERIOD))), (Phase::Halt, vec![]));
 }
 
 #[test]

@@ -18,22 +18,26 @@ use geometry::{Field, Point};
 use protocol::{Duration, Instant};
 use rules::Limits;
 use rules::state::{Command, GameState};
-use ssl::referee::Referee;
+use ssl::referee::{Command as Wire, Referee};
 
 use super::identity::SourceKey;
 use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
-use super::{Game, words};
+use super::{Game, SILENCE, words};
 
 /// HALT or STOP out of order restrains for so long: 12 periods of the controller, and twice `COPY`, so that a referee
 /// whose stamps stand still restrains without a gap.
 pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
+/// Packets that are not in order are told of for so long after the last one, and belong to one spell.
+const REPORTED: Duration = SILENCE;
 /// The same packet once more within this time is a copy.
 const COPY: Duration = Duration::millis(150);
 /// Packets that are remembered to know copies: [`COPY`] at ten times the controller's rate.
 const REMEMBERED: usize = 64;
+/// The old commands with which the controller announces a goal, once each.
+const GOALS: [i32; 2] = [Wire::GoalYellow as i32, Wire::GoalBlue as i32];
 /// A command without a time, as the controller's first HALT, is taken for new, µs.
 const NO_TIME: u64 = 0;
 
@@ -68,8 +72,8 @@ pub(super) struct Source {
     pub(super) game: Game,
     /// Its newest command in order.
     pub(super) command: Command,
-    /// Why a packet of it was not in order, and when that was.
-    pub(super) doubted: Option<(Doubt, Instant)>,
+    /// Why its last packet that was not in order was none; none once a clock or counter that stepped is followed.
+    doubted: Option<Doubted>,
     /// Its clock stepped by so many µs, and when that was followed.
     pub(super) stepped: Option<(i64, Instant)>,
     newest: Stamped,
@@ -99,12 +103,24 @@ impl Stamped {
         self.command == other.command && self.counter == other.counter
     }
 
-    /// Commands given since `before`; none where the counter contradicts: it fell, or stands though the command changed.
+    /// Commands given since `before`; none where the counter contradicts: it fell, or stands though the command changed. A GOAL
+    /// of the league's controller has the counter of the command that it repeats after it.
     fn steps(self, before: Self) -> Option<u32> {
         // A counter of 2³² commands may wrap; a step back of half of that is a restart.
         let steps = self.counter.wrapping_sub(before.counter);
-        (self.same_command(before) || (1..=u32::MAX / 2).contains(&steps)).then_some(steps)
+        let after_goal = steps == 0 && GOALS.contains(&before.command);
+        (self.same_command(before) || after_goal || (1..=u32::MAX / 2).contains(&steps)).then_some(steps)
     }
+}
+
+/// Packets that were not in order.
+#[derive(Clone, Copy, Debug)]
+struct Doubted {
+    /// Why the last one was not.
+    doubt: Doubt,
+    /// When the first and the last of this spell came.
+    first: Instant,
+    last: Instant,
 }
 
 /// A clock or counter that a source may have stepped to.
@@ -168,7 +184,9 @@ impl Source {
         let mut taken = Taken::default();
         if let Some(doubt) = self.doubt(came, now) {
             if !self.confirmed(came, doubt, now) {
-                self.doubted = Some((doubt, now));
+                let goes_on = self.doubted.filter(|before| now.since(before.last).0 < REPORTED.0);
+                self.doubted =
+                    Some(Doubted { doubt, first: goes_on.map_or(now, |before| before.first), last: now });
                 return Outcome::Doubted { doubt, restrains: self.restrain(packet, now) };
             }
             taken.counter_restarted = came.steps(self.newest).is_none();
@@ -197,6 +215,18 @@ impl Source {
             () if now < self.halt_until => Strictness::Halt,
             () if now < self.stop_until => Strictness::Stop,
             () => Strictness::Play,
+        }
+    }
+
+    /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets that were overtaken,
+    /// as two networks bring them, nor for a counter that is contradicted for less than [`CONFIRM`], as by the league's controller
+    /// when it begins a match anew.
+    pub(super) fn doubt_to_tell(&self, now: Instant) -> Option<Doubt> {
+        let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
+        match doubt {
+            Doubt::Old(_) => None,
+            Doubt::Counter if last.since(first).0 <= CONFIRM.0 => None,
+            other => Some(other),
         }
     }
 
@@ -255,6 +285,7 @@ impl Source {
             self.stepped = Some((by, now));
         }
         self.clock = candidate.clock;
+        self.doubted = None;
     }
 
     /// HALT and STOP are obeyed whatever their stamp. True: it was one.

@@ -88,11 +88,7 @@ impl Listener {
             {
                 warnings.push(Warning::ClockStepped { source: source.key.clone(), by });
             }
-            // One that was overtaken on its way is what two networks bring.
-            if let Some((doubt, at)) = source.doubted
-                && !matches!(doubt, Doubt::Old(_))
-                && lately(at)
-            {
+            if let Some(doubt) = source.doubt_to_tell(now) {
                 warnings.push(Warning::OutOfOrder { source: source.key.clone(), doubt });
             }
         }
