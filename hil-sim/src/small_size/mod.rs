@@ -1,4 +1,5 @@
-//! What happens on a Small Size field? Robots on wheels and a golf ball in three dimensions, 1 ms a step (DESIGN §2, §7).
+//! `small_size`: physics of the Small Size League. Robots on wheels and a golf ball in three dimensions, 1 ms
+//! a step (DESIGN §2, §7).
 //!
 //! A step of the [`World`]: wheels drive (`robot`), bodies part (`crowd`), kickers and dribblers act (`mouth`), the ball
 //! moves (`ball`) and bounces (`contact`), light barriers look. What happened comes out as [`Event`]s. SI units, field
@@ -13,6 +14,7 @@ mod contact;
 mod crowd;
 mod event;
 mod mouth;
+mod order;
 mod parameters;
 mod pitch;
 pub mod quirks;
@@ -27,12 +29,13 @@ pub mod worlds;
 
 pub use ball::Ball;
 pub use event::Event;
+pub use order::{Drive, Kick, Order};
 pub use parameters::{
     BallParameters, BatteryParameters, BodyParameters, BounceParameters, CameraParameters,
     DribblerParameters, DriveParameters, FieldParameters, KickParameters, NoiseParameters, Parameters,
 };
 pub use pitch::Pitch;
-pub use robot::{Drive, Kick, Order, Robot};
+pub use robot::Robot;
 
 use geometry::{Angle, Field, Point, Pose, Vector};
 use protocol::robot_io::ActuatorFrame;

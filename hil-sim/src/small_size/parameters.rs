@@ -1,4 +1,5 @@
-//! How does the Small Size world behave? A league's numbers, read from one file, checked, with their sources beside them.
+//! `parameters`: parameters of the Small Size simulator. A league's numbers, read from one file, checked,
+//! with their sources beside them.
 //!
 //! `hil-sim/data/{ssl-2013,division-b,division-a}.toml` are those files; SI units, degrees where a name says so. Fields are
 //! crate `rules`'; nothing else in this module's physics types a physical number in.

@@ -1,4 +1,4 @@
-//! How does the referee look at the simulated world, and how is done what it asks people for?
+//! `look`: the referee's view of the simulated world, and the manual acts that it asks for.
 
 use protocol::{Instant, Who};
 

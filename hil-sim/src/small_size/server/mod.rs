@@ -1,4 +1,5 @@
-//! How do other programs use the simulator? The league's simulation protocol, bytes in and bytes out (DESIGN §7).
+//! `server`: server of the league's simulation protocol. The league's simulation protocol, bytes in and bytes
+//! out (DESIGN §7).
 //!
 //! | port | takes | answers |
 //! |---|---|---|

@@ -1,4 +1,5 @@
-//! Does the server do what the league's simulation protocol says, and answer what it cannot? Bytes in, bytes out.
+//! Tests: the server follows the league's simulation protocol and answers what it cannot do. Bytes in, bytes
+//! out.
 
 mod codes;
 mod legacy;

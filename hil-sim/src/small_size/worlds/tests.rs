@@ -1,4 +1,4 @@
-//! Does the physics show what a world of the family says? One sentence a quantity, by hand calculations.
+//! Tests: the physics shows what a world of the family says. One sentence a quantity, by hand calculations.
 
 mod family;
 mod robots;

@@ -78,7 +78,7 @@ fn jitter_delays_up_to_its_bound_and_frames_keep_their_order() {
     assert!(frames.windows(2).all(|pair| pair[0].1.frame_number < pair[1].1.frame_number));
     // Ours are 35 ms late without it.
     let late: Vec<u64> =
-        frames.iter().map(|(now, frame)| now - (frame.t_capture * 1e3).round() as u64).collect();
+        frames.iter().map(|(now, frame)| now - (frame.t_capture * 1e3 + 0.5) as u64).collect();
     assert_eq!((late.iter().min(), late.iter().max()), (Some(&35), Some(&50)));
 }
 
