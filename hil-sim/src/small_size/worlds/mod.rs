@@ -1,6 +1,6 @@
 //! The family of worlds: physics, robots, links and cameras as distributions, so that no skill is tried at one point alone.
 //!
-//! A [`WorldModel`] is one world: the league's [`Parameters`], changed, and what they do not tell: what robots of a team differ
+//! A [`WorldModel`] is one world: the league's [`Parameters`](super::Parameters), changed, and what they do not tell: what robots of a team differ
 //! in ([`RobotSpread`]), orders on their way to the wheels ([`LinkModel`]), frames that come late, not at all or with robots'
 //! ids swapped ([`VisionModel`]), and robots that nobody commands ([`WorldModel::bystanders`]). A [`WorldChoice`] names one:
 //! `nominal` is the league's own file, a named profile changes it by `hil-sim/data/worlds/NAME.toml`, and `random:SEED` draws
