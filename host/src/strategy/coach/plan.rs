@@ -5,7 +5,7 @@ use protocol::RobotId;
 use rules::{Duty, Phase};
 
 use super::super::order::{Order, Role, Task, Why};
-use super::super::view::{Robot, View};
+use super::super::view::{ROBOTS_MAX, Robot, View};
 use super::super::{defence, restart, threat};
 use super::{Free, Orders};
 
@@ -22,7 +22,8 @@ impl<'v> Plan<'v> {
         Self { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() }
     }
 
-    /// The robot's order. While the ball is not in play none is sent where the rules do not let it stand: it would not go there.
+    /// The robot's order. While the ball is not in play none is sent where the rules do not let it stand, nor where another one is
+    /// sent: it would not get there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
         let duty = match role {
             Role::Taker => Duty::Taker,
@@ -31,12 +32,23 @@ impl<'v> Plan<'v> {
         };
         let task = match task {
             Task::GoTo { at, face } if self.view.phase != Phase::Run => {
-                Task::GoTo { at: threat::lawful_for(self.view, duty, at, &threat::Settings::default()), face }
+                let taken = self.places();
+                let settings = threat::Settings::default();
+                Task::GoTo { at: threat::lawful_for(self.view, duty, at, &taken, &settings), face }
             }
             other => other,
         };
         // One order a robot, and as many places as robots.
         let _ = self.orders.push(Order { robot, role, task, why });
+    }
+
+    /// The places that are taken.
+    fn places(&self) -> heapless::Vec<Point<Attack>, ROBOTS_MAX> {
+        let place = |order: &Order| match order.task {
+            Task::GoTo { at, .. } => Some(at),
+            _ => None,
+        };
+        self.orders.iter().filter_map(place).collect()
     }
 
     /// Takes a robot out of those without an order; false if it is not among them.

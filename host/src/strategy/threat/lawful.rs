@@ -13,11 +13,17 @@ use super::edge::Edge;
 /// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge), and off
 /// everything else that the phase forbids.
 pub fn lawful(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
-    lawful_for(view, Duty::Player, at, settings)
+    lawful_for(view, Duty::Player, at, &[], settings)
 }
 
-/// The same for a robot of that duty: a keeper may stay in our area, a taker near the ball.
-pub fn lawful_for(view: &View, duty: Duty, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
+/// The same for a robot of that duty (a keeper may stay in our area, a taker near the ball), a body clear of the `taken` places.
+pub fn lawful_for(
+    view: &View,
+    duty: Duty,
+    at: Point<Attack>,
+    taken: &[Point<Attack>],
+    settings: &Settings,
+) -> Point<Attack> {
     let ours = Edge::of(&view.field, settings.off_area);
     let more =
         if matches!(view.phase, Phase::Stop | Phase::FreeKick(_)) { OPPONENT_AREA_DISTANCE } else { 0.0 };
@@ -43,6 +49,7 @@ pub fn lawful_for(view: &View, duty: Duty, at: Point<Attack>, settings: &Setting
     let free = |place: &Point<Attack>| {
         let body = Point::new(place.x(), place.y());
         rules.offence(body, ROBOT_RADIUS + margin).is_none()
+            && taken.iter().all(|other| other.distance(*place) >= SIDE_BY_SIDE)
     };
     if free(&place) {
         return place;
@@ -81,6 +88,8 @@ const MARGIN: f32 = 0.01;
 /// While the ball is not in play, m: as robots do themselves (0.04, `brain`'s surroundings), less rounding. A place that is nearer is
 /// none for them: they would stand elsewhere.
 const MARGIN_STOPPED: f32 = 0.038;
+/// Two places nearer than that are one, m: two bodies and the gap that two defenders of one line leave (`defence`, `SHOULDER`).
+const SIDE_BY_SIDE: f32 = 0.2;
 /// m.
 const RING: f32 = 0.1;
 const RINGS: u32 = 15;
@@ -131,5 +140,22 @@ mod tests {
             }
         }
         assert!(moved > asked / 20 && moved < asked / 2, "{moved} of {asked}");
+    }
+
+    #[test]
+    fn a_place_that_a_teammate_is_sent_to_is_taken() {
+        let mut view = view((-3.1, 0.4), &[], &[]);
+        view.phase = Phase::Stop;
+        let settings = Settings::default();
+        let mut taken = Vec::new();
+        // Seven robots are sent between the ball and the goal, where its circle meets our area.
+        for _ in 0..7 {
+            let place = lawful_for(&view, Duty::Player, Point::new(-3.4, 0.2), &taken, &settings);
+            let near = taken.iter().map(|other| place.distance(*other)).fold(f32::MAX, f32::min);
+            assert!(near >= 2.0 * ROBOT_RADIUS, "{place:?} is {near} m from one of {taken:?}");
+            let body = Point::<Field>::new(place.x(), place.y());
+            assert_eq!(forbidden_to(&view, Duty::Player).offence(body, ROBOT_RADIUS), None, "{place:?}");
+            taken.push(place);
+        }
     }
 }
