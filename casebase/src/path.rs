@@ -1,5 +1,5 @@
-//! `path`: the free-path test: is the ball's path, as the case describes it, clear of opponents? (Ros et al.
-//! 2009, §3.3.1)
+//! `path`: the free-path test: a ball path as the case describes it must be clear of opponents (Ros et al.
+//! 2009, §3.3.1).
 //!
 //! The ball runs through a sequence of legs; each is a fuzzy set that widens from r_min at the foot to r_max at the
 //! end: μ = exp(−(v/ρ)²), u along and v across the leg, 0 ≤ u ≤ l. One opponent above the threshold in any of them,

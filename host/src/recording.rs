@@ -1,4 +1,5 @@
-//! With what did the hosts of a recording begin, so that they can be built again? The header of a trace, as JSON (DESIGN §7).
+//! `recording`: header of a trace, as JSON (DESIGN §7): the settings from which the hosts of a recording can
+//! be rebuilt.
 //!
 //! A team's key stands in no file that is handed on: the header says only that there was one ([`HostHeader::keyed`]), and whoever
 //! builds the host again brings it.

@@ -9,12 +9,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use match_tests::workspace::{Finding, Manifest, Source, members, root, rust_sources, text_sources};
 
 #[test]
-fn every_file_opens_by_telling_which_question_it_answers() {
+fn every_file_opens_with_a_line_that_names_it_and_asks_nothing() {
     check(&rust_sources(), |source| {
-        let opens = source.text.lines().take(OPENING_LINES).any(|line| line.starts_with("//!"));
-        let finding =
-            source.at(1, "no `//!` at the top", "open with a sentence: which question does the file answer?");
-        if opens { vec![] } else { vec![finding] }
+        let hint = "open with `//! `NAME`: what it is and does. Units, frame.`";
+        match source.text.lines().take(OPENING_LINES).find(|line| line.starts_with("//!")) {
+            None => vec![source.at(1, "no `//!` at the top", hint)],
+            Some(line) if line.contains('?') => vec![source.at(1, "its first line is a question", hint)],
+            Some(_) => vec![],
+        }
     });
 }
 
@@ -22,7 +24,7 @@ fn every_file_opens_by_telling_which_question_it_answers() {
 fn no_file_is_longer_than_a_reader_holds_in_mind() {
     check(&rust_sources(), |source| {
         let lines = source.text.lines().count();
-        let mend = "split it along its questions; 100 to 400 lines read best";
+        let mend = "split it along its purposes; 100 to 400 lines read best";
         if lines <= LINES_MAX { vec![] } else { vec![source.at(lines, &format!("{lines} lines"), mend)] }
     });
 }

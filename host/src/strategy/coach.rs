@@ -1,4 +1,5 @@
-//! Which plan does the phase of the game ask for? One order per robot of ours, every time the picture changes (DESIGN §3).
+//! `coach`: the plan for each phase of the game: one order per robot of ours, every time the world model
+//! changes (DESIGN §3).
 //!
 //! In open play the keeper guards, two defenders stand before the area, and whoever is first at the ball shoots or passes where that is
 //! worth it; else it and everybody left play cases, which the robots choose among themselves. While the ball is not in play everything is said from here. The coach remembers who had which role (so that nobody

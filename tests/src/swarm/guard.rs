@@ -1,5 +1,5 @@
-//! Is a robot on wheels ever more dangerous than it may be? Its orders against what it heard and felt, seen from outside the
-//! brain (DESIGN §6).
+//! `guard`: safety monitor of a wheeled robot: its actuator orders against what it received and sensed, seen
+//! from outside the brain (DESIGN §6).
 //!
 //! The guard knows the packets a robot was handed, what an [`Honest`] listener believes of them, its sensors and its
 //! orders. Limits are the published ones; where a clock that runs 100 ppm off and ticks of 10 ms blur them, the robot has one tick more.

@@ -1,4 +1,4 @@
-//! `barrier`: bench test of the break-beam sensor: does it see the ball?
+//! `barrier`: bench test of the break-beam sensor.
 //!
 //! Connect: lamp and receiver of the light barrier.
 //! See: `free`, and what the receiver sees with the lamp lit and dark; with a ball, or a hand, in the beam `ball`, as long as it is

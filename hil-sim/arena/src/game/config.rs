@@ -1,4 +1,5 @@
-//! What decides a match? League, seed, length, and each side's robots; equal configurations play equally.
+//! `config`: configuration of a match: league, seed, length, and each side's robots; equal configurations
+//! play equally.
 
 use brain::{Approach, BrainConfig};
 use casebase::Settings;

@@ -1,5 +1,6 @@
-//! How do two teams play a match? Simulated field, cameras, referee and radio; on each side a host and its robots' brains
-//! (DESIGN §3, §7, §8). Deterministic: a seed gives the same match to the bit, on any machine.
+//! `game`: a match between two teams: simulated field, cameras, referee and radio; on each side a host and
+//! its robots' brains (DESIGN §3, §7, §8). Deterministic: a seed gives the same match to the bit, on any
+//! machine.
 //!
 //! ```text
 //! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world

@@ -1,4 +1,4 @@
-//! Who plays the ball, who defends and who is free for cases while the ball is in play?
+//! `open_play`: assignment while the ball is in play: player, defenders, robots free for cases.
 
 use geometry::{Attack, Point};
 

@@ -1,4 +1,4 @@
-//! What is a robot on wheels like, and how does it do what the case language asks for? SI.
+//! `omni`: abilities of the wheeled robot, and how it carries out the case language's actions. SI.
 //!
 //! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] says what it keeps out of, the skills are in
 //! [`skills::wheels`](crate::skills::wheels).

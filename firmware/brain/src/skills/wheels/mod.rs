@@ -1,4 +1,4 @@
-//! Which skills does a robot on wheels have, and how does each go? One file each; belief in, intent and verdict out.
+//! `wheels`: skills of the wheeled robot, one file each; belief in, intent and verdict out.
 //!
 //! They remember nothing, but for what is written in their types ([`Placing`], [`Reception`](crate::skills::Reception)). Whatever they
 //! want passes the governor; what they must keep out of is the drivetrain's. Field frame, SI.
