@@ -1,5 +1,4 @@
-//! `cells`: 32-bit occupancy mask around the ball; rejects empty opponent scopes cheaply. A coarse picture of
-//! what lies around the ball, in one word.
+//! `cells`: 32-bit occupancy mask around the ball; rejects empty opponent scopes cheaply.
 //!
 //! The plane around the ball is cut into squares, which repeat every 8 along x and every 4 along y, so that 32 bits
 //! name them all. Where the squares an opponent scope reaches into and those that hold opponents have none in common,

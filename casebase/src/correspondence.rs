@@ -1,5 +1,4 @@
-//! `correspondence`: assignment of case robots to present robots. The cheapest injective map from case robots
-//! to present robots (paper §3.2).
+//! `correspondence`: assignment of case robots to present robots: the cheapest injective map (paper §3.2).
 //!
 //! Exact and bounded: present robots are taken one after the other, and for every set of parts the cheapest way to
 //! fill it so far is kept: 16 sets, at most 11 robots, at most 352 steps for 4 parts. Distances are summed as whole

@@ -1,4 +1,4 @@
-//! `host`: the host of a Small Size team. Vision and referee in, commands to robots out. Runs on the PC.
+//! `host`: the host of a Small Size team: vision and referee in, commands to robots out. Runs on the PC.
 //!
 //! Sans-IO: bytes and times come from the caller, frames go back to it; sockets and serial lines are the shell's.
 //!

@@ -1,6 +1,5 @@
-//! `sweep`: cost of packet loss for a team. Gameplays that come to their end, robots that stop for want of
-//! their host, and the time to a new cycle, from no loss to half of everything; independent and in stretches.
-//! Everything else is as it should be.
+//! `sweep`: cost of packet loss for a team: finished gameplays, robots that stop for want of their host, and
+//! the time to a new cycle, from no loss to half of all packets, independent and in bursts.
 
 use std::fmt::Write as _;
 

@@ -24,7 +24,7 @@ fn every_file_opens_with_a_line_that_names_it_and_asks_nothing() {
 fn no_file_is_longer_than_a_reader_holds_in_mind() {
     check(&rust_sources(), |source| {
         let lines = source.text.lines().count();
-        let mend = "split it along its questions; 100 to 400 lines read best";
+        let mend = "split it along its purposes; 100 to 400 lines read best";
         if lines <= LINES_MAX { vec![] } else { vec![source.at(lines, &format!("{lines} lines"), mend)] }
     });
 }

@@ -1,5 +1,6 @@
-//! Does a serial line that drops, delays, doubles and corrupts bytes ever make a robot dangerous, and does the robot play again when the
-//! line is good? The host's radio and a robot's station with COBS between them, over an adversary of single bytes (DESIGN §6).
+//! `uart`: tests: a serial line that drops, delays, doubles and corrupts bytes never makes a robot dangerous,
+//! and the robot plays again when the line is good. The host's radio and a robot's station with COBS between
+//! them, over an adversary of single bytes (DESIGN §6).
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! `field`: the field under a case drawing. Carpet, lines and goals of a league; the goals in the paper's
+//! `field`: the field under a case drawing: surface, lines and goals of a league; the goals in the paper's
 //! colours.
 
 use casebase::FieldMm;

@@ -1,5 +1,5 @@
-//! `belief`: a robot's belief about the world. From its own senses and its mates' beacons, never from
-//! anybody's truth.
+//! `belief`: a robot's belief about the world, from its own sensors and its teammates' beacons, never from
+//! the true state.
 //!
 //! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the mate nearest
 //! the ball stands in (its information is the most accurate, paper §4.1). A fresh picture of the host overrides both

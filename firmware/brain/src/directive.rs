@@ -1,4 +1,4 @@
-//! `directive`: execution of the host's directive. Each to its skill, with the small memory that some need.
+//! `directive`: execution of the host's directive: each has its skill, with the little memory that some need.
 
 use geometry::{Field, Point, Pose, Segment};
 use protocol::Instant;

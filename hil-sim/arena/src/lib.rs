@@ -1,5 +1,5 @@
-//! `arena`: trials and matches. Simulator and brains put together: trials, their reports, stories and
-//! pictures. Runs on the PC.
+//! `arena`: trials and matches of simulator and brains, their reports, text logs and pictures. Runs on the
+//! PC.
 //!
 //! [`run`] plays one trial of Ros et al. 2009 and gives its [`TrialReport`] (DESIGN §8). Whoever wants to see more than the report
 //! watches: a [`Watcher`] is shown every tick, as somebody at the field's edge with a radio receiver would see it; [`Story`]

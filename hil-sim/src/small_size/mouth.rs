@@ -1,4 +1,4 @@
-//! `mouth`: dribbler, kicker and break-beam sensor. Dribbler, kicker, light barrier; m, s, field frame.
+//! `mouth`: dribbler, kicker and break-beam sensor. m, s, field frame.
 //!
 //! The dribbler pulls the ball towards the front and the middle of its roller, no harder than `pull` and `side`: a robot that
 //! jerks away loses it, one that is gentle keeps it, and no force pushes it away. A kick leaves along the robot's heading with

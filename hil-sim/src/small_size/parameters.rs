@@ -328,7 +328,8 @@ impl CameraParameters {
     }
 }
 
-fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
+/// `value` if it lies between the bounds, else an error that names it.
+pub(super) fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
     if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
 }
 

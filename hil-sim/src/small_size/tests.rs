@@ -35,6 +35,17 @@ fn world() -> World {
     world
 }
 
+/// The same world with six robots a side on the field and the ball at (1, 1).
+pub(super) fn six_a_side(mut world: World) -> World {
+    for n in 0..6 {
+        let x = 300.0 * f32::from(n);
+        world.put(yellow(n), Pose::from_mm_deg(-x, 500.0, 10.0));
+        world.put(blue(n), Pose::from_mm_deg(x + 100.0, -500.0, 170.0));
+    }
+    world.put_ball(Ball::at(Point::new(1.0, 1.0)));
+    world
+}
+
 fn run(world: &mut World, steps: u32) -> Vec<Event> {
     for _ in 0..steps {
         world.step();

@@ -432,11 +432,7 @@ fn a_counter_that_starts_again_is_followed_once_it_stays() {
         }
     };
     assert!(taken.counter_restarted && now - PERIOD <= WINDOW.0, "{now}");
-    assert_eq!(
-        listener.warnings(Instant(now)),
-        [],
-        "the league's controller does so when it begins a match anew"
-    );
+    assert_eq!(listener.warnings(Instant(now)), [], "the league's controller does so when it resets a match");
 }
 
 #[test]

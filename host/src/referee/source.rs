@@ -30,7 +30,7 @@ use super::{Game, SILENCE, words};
 pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
-/// Packets that are not in order are told of for so long after the last one, and belong to one spell.
+/// Packets that are not in order are reported for this time after the last one, and belong to one spell.
 const REPORTED: Duration = SILENCE;
 /// The same packet once more within this time is a copy.
 const COPY: Duration = Duration::millis(150);
@@ -72,7 +72,7 @@ pub(super) struct Source {
     pub(super) game: Game,
     /// Its newest command in order.
     pub(super) command: Command,
-    /// Why its last packet that was not in order was none; none once a clock or counter that stepped is followed.
+    /// Why its last packet out of order was so; none once a clock or counter that stepped is followed.
     doubted: Option<Doubted>,
     /// Its clock stepped by so many µs, and when that was followed.
     pub(super) stepped: Option<(i64, Instant)>,
@@ -220,8 +220,8 @@ impl Source {
 
     /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets that were overtaken,
     /// as two networks bring them, nor for a counter that is contradicted for less than [`CONFIRM`], as by the league's controller
-    /// when it begins a match anew.
-    pub(super) fn doubt_to_tell(&self, now: Instant) -> Option<Doubt> {
+    /// when it resets a match.
+    pub(super) fn reportable_doubt(&self, now: Instant) -> Option<Doubt> {
         let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
         match doubt {
             Doubt::Old(_) => None,

@@ -102,7 +102,7 @@ impl Listener {
             {
                 warnings.push(Warning::ClockStepped { source: source.key.clone(), by });
             }
-            if let Some(doubt) = source.doubt_to_tell(now) {
+            if let Some(doubt) = source.reportable_doubt(now) {
                 warnings.push(Warning::OutOfOrder { source: source.key.clone(), doubt });
             }
         }

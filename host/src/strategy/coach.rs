@@ -1,4 +1,4 @@
-//! `coach`: the coach: one plan per phase of the game. One order per robot of ours, every time the picture
+//! `coach`: the plan for each phase of the game: one order per robot of ours, every time the world model
 //! changes (DESIGN §3).
 //!
 //! In open play the keeper guards, two defenders stand before the area, and whoever is first at the ball shoots or passes where that is

@@ -1,6 +1,5 @@
-//! `defence`: places of keeper and defenders. Between ball and goal: the keeper before the mouth, defenders
-//! at the area's edge (Biswas et al. 2014 §5, its first step; threats beyond the ball are strategy's next
-//! part). Attack frame, m.
+//! `defence`: places of keeper and defenders between ball and goal: the keeper before the goal, defenders at
+//! the area's edge (Biswas et al. 2014 §5, its first step). Attack frame, m.
 
 use geometry::{Angle, Attack, Point, Vector};
 use protocol::host::KickOrder;

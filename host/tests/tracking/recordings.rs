@@ -1,5 +1,6 @@
-//! Does tracking agree with the recordings of the league's programs: with a dumb oracle over the raw images, with what an
-//! independent decoder read in single packets, and with the tracker that was recorded beside?
+//! `recordings`: tests: tracking agrees with the recordings of the league's programs: with a naive oracle
+//! over the raw frames, with an independent decoder's reading of single packets, and with the tracker that
+//! was recorded beside.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,5 @@
-//! `log_seek`: tests: a moment of a match is found, with an index, without one, with a broken one, and in a
-//! gzipped file. And is it always the same place?
+//! `log_seek`: tests: a moment of a match is found, always the same one, with an index, without one, with a
+//! broken one, and in a gzipped file.
 
 #[path = "support/recordings.rs"]
 mod recordings;

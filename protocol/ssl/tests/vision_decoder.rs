@@ -1,5 +1,5 @@
-//! `vision_decoder`: tests: the allocation-free decoder gives what a plain decode gives. And does it take no
-//! memory?
+//! `vision_decoder`: tests: the allocation-free decoder gives what a plain decode gives, and does not
+//! allocate.
 
 #[path = "support/messages.rs"]
 mod messages;

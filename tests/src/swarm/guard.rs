@@ -1,4 +1,4 @@
-//! `guard`: safety monitor of wheeled robots in a swarm run. Its orders against what it heard and felt, seen
+//! `guard`: safety monitor of a wheeled robot: its actuator orders against what it received and sensed, seen
 //! from outside the brain (DESIGN §6).
 //!
 //! The guard knows the packets a robot was handed, what an [`Honest`] listener believes of them, its sensors and its

@@ -1,5 +1,4 @@
-//! `dog`: independent watchdog. The chip's independent watchdog, which has an oscillator of its own and
-//! cannot be stopped.
+//! `dog`: the chip's independent watchdog, which has an oscillator of its own and cannot be stopped.
 
 use embassy_stm32::Peri;
 use embassy_stm32::peripherals::IWDG1;

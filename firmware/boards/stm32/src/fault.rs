@@ -1,5 +1,4 @@
-//! `fault`: fault handler: everything off, crash record kept and reported, restart. Everything off, the place
-//! kept and told, and a new life (DESIGN §6).
+//! `fault`: fault handler: everything off, crash record kept and reported, restart (DESIGN §6).
 //!
 //! The record lies in the calendar's backup registers: a reset leaves them alone, and unlike memory they have no check bits that a
 //! power-up would leave wrong.

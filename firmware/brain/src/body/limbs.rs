@@ -1,4 +1,4 @@
-//! `limbs`: actuation: turns an intent into actuator orders. Legs as they are, wheels through drivetrain,
+//! `limbs`: actuation: turns an intent into actuator orders; legs directly, wheels through drivetrain,
 //! governor and kinematics.
 
 use geometry::Twist;

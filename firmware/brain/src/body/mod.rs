@@ -1,5 +1,6 @@
-//! `body`: interface between brain and body, the same for all bodies. Intents, a sheet of numbers, and the
-//! skills of the case language behind one face ([`Body`]); a module per body turns intents into actuators.
+//! `body`: interface between brain and body, the same for all bodies: intents, a table of numbers, and the
+//! skills of the case language behind one trait ([`Body`]); a module per body turns intents into actuator
+//! orders.
 
 pub mod kind;
 pub mod legged;

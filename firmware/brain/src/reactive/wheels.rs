@@ -1,4 +1,4 @@
-//! `wheels`: reactive behaviour of wheeled robots without a case. Simple and lawful.
+//! `wheels`: reactive behaviour of wheeled robots without a case; simple and rule-compliant.
 //!
 //! Who has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on while there is room and the
 //! rules let it, else kicks it up the freer wing. The others take places ahead of the ball and behind it, one each. SI,

@@ -1,4 +1,4 @@
-//! `config`: configuration of a match. League, seed, length, and each side's robots; equal configurations
+//! `config`: configuration of a match: league, seed, length, and each side's robots; equal configurations
 //! play equally.
 
 use brain::{Approach, BrainConfig};

@@ -1,6 +1,5 @@
-//! `hand`: changes to a match under way. Ball and robots, the referee's word, robots' computers, the air. A
-//! match that nobody touches is the same to the bit; one that somebody did touch is not to be had again from
-//! its seed.
+//! `hand`: changes to a match under way: ball and robots, the referee's commands, robots' computers, the air.
+//! A match without them is the same to the bit; one with them cannot be repeated from its seed.
 
 use geometry::{Field, Point, Pose, Vector};
 use hil_sim::Backend;

@@ -1,4 +1,4 @@
-//! `game`: a match between two teams. Simulated field, cameras, referee and radio; on each side a host and
+//! `game`: a match between two teams: simulated field, cameras, referee and radio; on each side a host and
 //! its robots' brains (DESIGN §3, §7, §8). Deterministic: a seed gives the same match to the bit, on any
 //! machine.
 //!

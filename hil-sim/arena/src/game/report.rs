@@ -1,4 +1,4 @@
-//! `report`: result of a match. DESIGN §8's JSON of `play`, filled by the referee's books.
+//! `report`: result of a match: DESIGN §8's JSON of `play`, filled from the referee's accounts.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! What befalls frames on their way in a world of the family: gaps, swapped ids, jitter; times in steps of 1 ms.
+//! `mishaps`: faults of camera frames in a world of the family: gaps, swapped ids, jitter. Times in steps of
+//! 1 ms.
 
 use geometry::math;
 use protocol::Who;

@@ -1,5 +1,5 @@
-//! `camera`: cameras and their vision packets. Cameras with a frame rate, delay and noise of their own, in
-//! packets as SSL-Vision's.
+//! `camera`: cameras and their vision packets, with a frame rate, delay and noise of their own, in
+//! SSL-Vision's format.
 //!
 //! Each camera takes its pictures by itself, numbers them by itself and errs by its own stream of chance; a packet waits its
 //! delay and is then due. Times on the wire are exact milliseconds of the simulation, on the clock that was asked for.

@@ -8,17 +8,11 @@ use protocol::{RobotId, Who};
 use rules::League;
 
 use super::*;
+use crate::small_size::tests::six_a_side;
 use crate::small_size::{Ball, Parameters};
 
 fn world(league: League) -> World {
-    let mut world = World::new(league, Parameters::of(league).unwrap(), 1);
-    for n in 0..6 {
-        let (id, x) = (RobotId::new(n).unwrap(), 300.0 * f32::from(n));
-        world.put(Who::yellow(id), Pose::from_mm_deg(-x, 500.0, 10.0));
-        world.put(Who::blue(id), Pose::from_mm_deg(x + 100.0, -500.0, 170.0));
-    }
-    world.put_ball(Ball::at(Point::new(1.0, 1.0)));
-    world
+    six_a_side(World::new(league, Parameters::of(league).unwrap(), 1))
 }
 
 fn clear(world: &World) -> CameraSettings {

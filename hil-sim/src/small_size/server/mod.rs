@@ -1,5 +1,4 @@
-//! `server`: server of the league's simulation protocol. The league's simulation protocol, bytes in and bytes
-//! out (DESIGN §7).
+//! `server`: server of the league's simulation protocol, bytes in and bytes out (DESIGN §7).
 //!
 //! | port | takes | answers |
 //! |---|---|---|

@@ -1,9 +1,9 @@
-//! Robots that stand about: seen by every camera, met by ball and robots, commanded by no computer and counted by no referee.
+//! `bystanders`: robots that stand about: seen by every camera, obstacles to ball and robots, commanded by no
+//! computer and counted by no referee.
 //!
 //! They are robots of both teams by turns with the highest numbers that are free, as are left standing on simulators and
 //! fields alike. Where they stand is drawn once: outside the lines, or on the field where no rule puts ball or robots down. A real
-//! referee would have them carried off, as he would count them; here he looks through them, so that the match goes on as it does
-//! where nobody cares.
+//! referee would have them carried off, as he would count them; here he looks through them, so that the match goes on.
 
 use geometry::{Angle, Field, Point, Pose};
 use protocol::{RobotId, Who};
@@ -65,7 +65,7 @@ impl World {
 const ON_FIELD: f32 = 0.4;
 /// m to the lines and areas: the nearest places where balls are put down are 0.2 m from them, and two robots fit between.
 const CLEAR_OF_LINES: f32 = 0.7;
-/// m to the ball, the circle and the goals: more than a robot's width, so that whoever plays there gets round.
+/// m to the ball, the circle and the goals: more than a robot's width, so that a robot that plays there gets round.
 const CLEAR: f32 = 0.3;
 /// m between a bystander beside the field and the line.
 const BESIDE: f32 = 0.02;

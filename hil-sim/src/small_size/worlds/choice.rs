@@ -1,4 +1,4 @@
-//! Names of worlds: one world for a match, or a plan that gives each match its own.
+//! `choice`: names of worlds: one world for a match, or a plan that gives each match its own.
 
 use std::fmt;
 use std::str::FromStr;

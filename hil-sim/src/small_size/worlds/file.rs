@@ -1,4 +1,5 @@
-//! A named profile: what a file of `hil-sim/data/worlds` changes in a league's parameters, checked; each number with its source there.
+//! `file`: named profiles: what a file of `hil-sim/data/worlds` changes in a league's parameters, checked;
+//! each number with its source there.
 //!
 //! Tables `ball`, `field`, `bounce`, `robot`, `drive`, `kick`, `dribbler`, `battery`, `camera` and `noise` hold keys of the league's
 //! file; `spread`, `link` and `vision` those of [`RobotSpread`], [`LinkModel`] and [`VisionModel`]; `bystanders` is a number.
@@ -12,6 +13,7 @@ use toml::{Table, Value};
 use super::{LinkModel, NamedWorld, RobotSpread, VisionModel, WorldModel};
 use crate::parameters::ParameterError;
 use crate::small_size::Parameters;
+use crate::small_size::parameters::within;
 
 impl NamedWorld {
     /// Its file.
@@ -90,10 +92,6 @@ impl WorldModel {
         within("vision.swap_every_s", vision.swap_every_s, 0.0, 1e6)?;
         within("bystanders", f32::from(self.bystanders), 0.0, 20.0)
     }
-}
-
-fn within(name: &'static str, value: f32, low: f32, high: f32) -> Result<(), ParameterError> {
-    if (low..=high).contains(&value) { Ok(()) } else { Err(ParameterError::Range { name, value, low, high }) }
 }
 
 /// Why a profile cannot be used.

@@ -1,4 +1,5 @@
-//! Orders on their way from a robot's computer to its wheels: each takes effect some ms later, in the order given.
+//! `latency`: orders on their way from a robot's computer to its wheels: each takes effect some ms later, in
+//! the order given.
 
 use std::collections::VecDeque;
 

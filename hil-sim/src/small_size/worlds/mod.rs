@@ -1,8 +1,9 @@
-//! The family of worlds: physics, robots, links and cameras as distributions, so that no skill is tried at one point alone.
+//! `worlds`: the family of worlds: physics, robots, links and cameras as distributions, so that no skill is
+//! tried at one point alone.
 //!
 //! A [`WorldModel`] is one world: the league's [`Parameters`](super::Parameters), changed, and what they do not tell: what robots of a team differ
 //! in ([`RobotSpread`]), orders on their way to the wheels ([`LinkModel`]), frames that come late, not at all or with robots'
-//! ids swapped ([`VisionModel`]), and robots that nobody commands ([`WorldModel::bystanders`]). A [`WorldChoice`] names one:
+//! ids swapped ([`VisionModel`]), and robots without a computer ([`WorldModel::bystanders`]). A [`WorldChoice`] names one:
 //! `nominal` is the league's own file, a named profile changes it by `hil-sim/data/worlds/NAME.toml`, and `random:SEED` draws
 //! every number from its distribution. SI units; times of links and frames in ms.
 

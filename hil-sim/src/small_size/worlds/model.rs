@@ -1,4 +1,4 @@
-//! One world of the family: what it consists of, and the league's own.
+//! `model`: one world of the family: what it consists of, and the league's own.
 
 use protocol::Who;
 use rules::League;
@@ -22,7 +22,7 @@ pub struct WorldModel {
     pub link: LinkModel,
     /// What befalls frames on their way.
     pub vision: VisionModel,
-    /// Robots that stand about and that nobody commands, of both teams together.
+    /// Robots of both teams together that stand about without a computer.
     pub bystanders: u8,
 }
 
@@ -84,11 +84,6 @@ impl WorldModel {
             WorldChoice::Random(seed) => Self::random(parameters, *seed),
         };
         Some(Self { name: choice.to_string(), ..model })
-    }
-
-    /// Every name that can be chosen, but for `random:SEED`.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        WorldChoice::names()
     }
 
     /// These physics, with robots that are all alike, orders that take effect at once, and every frame on time.
@@ -159,7 +154,7 @@ impl Traits {
 }
 
 impl RobotSpread {
-    /// Those of one robot: its own draw, whoever else is there.
+    /// Those of one robot: its own draw, independent of which others are there.
     pub fn of(&self, seed: u64, who: Who) -> Traits {
         if *self == Self::NONE {
             return Traits::NONE;

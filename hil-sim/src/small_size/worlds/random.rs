@@ -1,6 +1,6 @@
 //! `random:SEED`: every number of the family drawn from its own distribution, independently of all others; the table of [`DRAWS`].
 //!
-//! The bounds are the or the ends of what teams and simulators publish (`docs/fields.md` has the table and the
+//! The bounds are required ranges of the project or the ends of what teams and simulators publish (`docs/fields.md` has the table and the
 //! sources). Each quantity has a stream of chance of its own, so that one more of them changes nothing else.
 
 use super::WorldModel;
@@ -187,7 +187,7 @@ const NO_DRIBBLER: f32 = 0.05;
 const PERFECT_DRIBBLER: f32 = 0.15;
 /// m/s²: the ball follows the robot within a step whatever it does.
 pub const PERFECT_PULL: f32 = 1000.0;
-/// ms that gaps last: the issue's.
+/// ms that gaps last: a required range.
 pub const GAP_MS: [u32; 2] = [40, 150];
 /// Frames that numbers are swapped; estimate.
 const SWAP_FRAMES: [u32; 2] = [1, 5];

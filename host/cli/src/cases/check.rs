@@ -1,5 +1,5 @@
 //! `onetwo cases check`: soundness of a library. Every error and warning as `file:line: error[CODE]: message;
-//! mend`, then one line of summary a league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on
+//! hint`, then one line of summary a league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on
 //! errors, and with `--strict` on warnings.
 
 use std::io::{self, Write};

@@ -1,5 +1,5 @@
-//! `watch`: what the host waits for, and what the operator should do about it. Each said once when it begins,
-//! and once when it is over.
+//! `watch`: what the host waits for, and what the operator should do about it; each reported once when it
+//! begins, and once when it is over.
 
 use host::Host;
 use host::config::TeamConfig;

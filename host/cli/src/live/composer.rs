@@ -1,5 +1,5 @@
-//! `composer`: composition of the page's scene. One scene from hosts and whatever else is at hand; it
-//! remembers only what has to be told over time.
+//! `composer`: composition of the page's scene from hosts and other sources; it remembers only what has to be
+//! told over time.
 
 use std::collections::VecDeque;
 

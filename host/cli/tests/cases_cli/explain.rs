@@ -1,5 +1,5 @@
-//! Does `onetwo cases explain` name for every case under the goal the first check it fails, with its margin, and for
-//! candidates the rank? (DESIGN §4.3, §8)
+//! `explain`: tests: `onetwo cases explain` names for every case under the goal the first check it fails,
+//! with its margin, and for candidates the rank (DESIGN §4.3, §8).
 
 use std::path::PathBuf;
 

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::common::{cases, library as scratch};
 
-/// Problems put to the program, as the issue of the spine has it.
+/// Problems put to the program, as many as the project requires.
 const PROBLEMS: usize = 1000;
 
 #[test]

@@ -1,4 +1,4 @@
-//! `defence`: defence of our goal. Keeper and two defenders on the ball's line; by threats, if the team plays
+//! `defence`: defence of our goal: keeper and two defenders on the ball's line; by threats, if the team plays
 //! them (Biswas et al. 2014 §5).
 
 use geometry::{Attack, Point};

@@ -1,4 +1,4 @@
-//! `set_piece`: restarts. Ours with a taker and mates to pass to, theirs with a wall.
+//! `set_piece`: restarts: ours with a kicker and teammates to pass to, theirs with a wall.
 
 use geometry::{Attack, Point};
 use protocol::Duration;

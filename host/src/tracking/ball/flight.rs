@@ -1,4 +1,4 @@
-//! `flight`: detection and prediction of chipped balls. m, m/s, s.
+//! `flight`: detection of chipped balls, and prediction of where they come down. m, m/s, s.
 //!
 //! Vision takes every ball to lie on the carpet: one at height z below a camera at (c, H) seems to be at
 //! a = c + (p − c) · H / (H − z), which is the same as p + (a − c) · z / H = a. With p = p₀ + v t and

@@ -1,4 +1,4 @@
-//! `kick`: detection of kicks. m, m/s; times on vision's clock, µs.
+//! `kick`: detection of kicks: by whom, how fast, flat or chipped. m, m/s; times on vision's clock, µs.
 //!
 //! A kick is a turn that made the ball faster, or that a robot's front made of it; any other turn is a bounce. After a kick
 //! the flight is sought (see [`super::flight`]); found, it stands until the ball touches the ground, then the known bounces

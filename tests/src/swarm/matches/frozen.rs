@@ -29,7 +29,7 @@ pub struct Frozen {
     pub at: Point<Field>,
 }
 
-/// So long no robot stands that has to move, s (the bound).
+/// So long no robot stands that has to move, s (required bound).
 pub const LONGEST: f32 = 5.0;
 /// A robot that stays this near to where it was has not moved, m: less than half its radius.
 const STILL: f32 = 0.04;

@@ -42,7 +42,7 @@ pub fn grace(why: Why, phase: Phase<Side>) -> Option<Grace> {
 
 /// The way out of division A's area at 1.5 m/s, 1.8 m and the robot's radius, from rest, and as much again around teammates, s.
 const LEAVE_OWN_AREA: f32 = 4.0;
-/// What no robot may stay beyond its grace, s (the bound).
+/// What no robot may stay beyond its grace, s (required bound).
 pub const BOUND: f32 = 0.5;
 /// Robots nearer than that to a region's border are not in it, m: a camera's noise on a robot that touches the border.
 const TOLERANCE: f32 = 0.005;

@@ -19,7 +19,7 @@ use super::{Broken, Found, Outcome};
 
 /// So long the match may stand, s: division A is 12 m long, and 1.5 m/s the speed of STOP; twice that with a way around others.
 pub const BLOCKED_LONGEST: f32 = 20.0;
-/// A robot that is sent farther than this has to move, m (the issue's).
+/// A robot that is sent farther than this has to move, m (required bound).
 const SENT: f32 = 0.1;
 /// A robot faster than this moves, m/s, in HALT for longer than [`PUSHED`].
 const STANDS: f32 = 0.05;

@@ -1,5 +1,4 @@
-//! `console`: diagnostic output over semihosting. A line on stderr over semihosting, without the formatting
-//! of `core::fmt`.
+//! `console`: diagnostic output: a line on stderr over semihosting, without the formatting of `core::fmt`.
 
 use cortex_m_semihosting::hio;
 

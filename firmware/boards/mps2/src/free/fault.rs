@@ -1,5 +1,4 @@
-//! `fault`: fault handler: motors off, crash record kept and reported, restart. Motors off, the place kept
-//! and told, and a new life (DESIGN §6).
+//! `fault`: fault handler: motors off, crash record kept and reported, restart (DESIGN §6).
 //!
 //! A record in memory that no start clears outlives the reset: how often the robot was started since power came, and what
 //! ended the last life.

@@ -1,5 +1,5 @@
-//! `drivetrain`: velocity of the wheeled body in the next control step. Intents to a way around everything,
-//! and from there to a twist.
+//! `drivetrain`: velocity of the wheeled body in the next control step: from an intent to a path around all
+//! obstacles, and from there to a twist.
 //!
 //! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
 //! they do not, from the measured one); one with no time to look for a way keeps the last one ([`Intent::Onwards`]). SI, body frame

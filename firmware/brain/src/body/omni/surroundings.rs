@@ -1,5 +1,5 @@
-//! `surroundings`: obstacles of a wheeled robot. Everybody else, the rules' shapes, goal walls, the ball
-//! where it is shy of it.
+//! `surroundings`: obstacles of a wheeled robot: all other robots, the rules' shapes, goal walls, and the
+//! ball where it avoids it.
 //!
 //! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
 

@@ -1,4 +1,4 @@
-//! `wheels`: skills of the wheeled robot. One file each; belief in, intent and verdict out.
+//! `wheels`: skills of the wheeled robot, one file each; belief in, intent and verdict out.
 //!
 //! They remember nothing, but for what is written in their types ([`Placing`], [`Reception`](crate::skills::Reception)). Whatever they
 //! want passes the governor; what they must keep out of is the drivetrain's. Field frame, SI.

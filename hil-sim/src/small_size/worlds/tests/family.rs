@@ -1,4 +1,4 @@
-//! Random worlds, and the nominal one.
+//! `family`: tests of random worlds and of the nominal one.
 
 use super::*;
 use crate::small_size::Parameters;
@@ -116,7 +116,7 @@ fn the_document_tells_every_quantity_with_its_bounds_and_law() {
         let row = format!("| `{}` | {low}–{high} | {} |", quantity.name, quantity.law.word());
         assert!(document.contains(&row), "docs/fields.md lacks: {row}");
     }
-    for name in WorldModel::names() {
+    for name in WorldChoice::names() {
         assert!(document.contains(&format!("| `{name}` |")), "docs/fields.md lacks the world {name}");
     }
 }

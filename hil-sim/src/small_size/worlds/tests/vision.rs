@@ -1,4 +1,4 @@
-//! What befalls frames: rate, gaps, jitter, swapped numbers, ghosts and misses.
+//! `vision`: tests of faults of camera frames: rate, gaps, jitter, swapped numbers, ghosts and misses.
 
 use std::collections::BTreeSet;
 
@@ -7,17 +7,11 @@ use ssl::vision::DetectionFrame;
 use super::*;
 use crate::small_size::camera::Cameras;
 use crate::small_size::quirks::Profile;
+use crate::small_size::tests::six_a_side;
 
 /// Six a side, the ball, one camera over all.
 fn lined_up(model: &WorldModel) -> World {
-    let mut world = World::of_model(League::DivisionB, model, 1);
-    for n in 0..6 {
-        let (id, x) = (RobotId::new(n).unwrap(), 300.0 * f32::from(n));
-        world.put(Who::yellow(id), Pose::from_mm_deg(-x, 500.0, 10.0));
-        world.put(Who::blue(id), Pose::from_mm_deg(x + 100.0, -500.0, 170.0));
-    }
-    world.put_ball(Ball::at(Point::new(1.0, 1.0)));
-    world
+    six_a_side(World::of_model(League::DivisionB, model, 1))
 }
 
 /// All frames of so many seconds, with the step each came in.
