@@ -64,7 +64,9 @@ impl World {
             let i = usize::from(self.near_ball[k]);
             let robot = &self.robots[i];
             let turns = robot.order.dribbler > 0.0 && !robot.tipped;
-            if !turns || !robot.is_led(self.step) {
+            // A ball that has just been kicked is not caught again on its way out, however hard the roller of this world pulls.
+            let leaves = robot.kicked.is_some_and(|(at, _)| self.step - at < LEAVES);
+            if !turns || leaves || !robot.is_led(self.step) {
                 continue;
             }
             let Some([gap, aside]) = self.place_in_mouth(robot) else { continue };
@@ -152,6 +154,8 @@ fn pull(
 
 /// Change of a solid sphere's spin (as the velocity at which it would roll) over that of its velocity, by a push at its surface: m r² / I.
 const SOLID_SPHERE: f32 = 2.5;
+/// Steps in which a kicked ball is past the roller: 1.5 m/s, the slowest kick, for a reach of 12 mm and a ball's radius.
+const LEAVES: u64 = 22;
 /// m: the plunger meets a ball no higher.
 const KICKABLE_HEIGHT: f32 = 0.02;
 /// m: the roller and the light barrier meet a ball no higher.
