@@ -144,7 +144,7 @@ impl Body for Wheeled {
 }
 
 /// The fastest kick wanted, m/s; the governor has the last word.
-pub const SHOT: f32 = 6.3;
+pub const SHOT: f32 = 5.8;
 /// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
 const ROLLS_ON: f32 = 0.3;
 

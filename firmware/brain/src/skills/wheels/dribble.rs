@@ -2,13 +2,13 @@
 //!
 //! Near the limit the ball is let go: dribbler still, a step back, until everybody sees the gap; then it may be taken anew.
 
-use geometry::{Field, Point, Pose, Vector, math};
+use geometry::{Angle, Field, Point, Pose, Vector, math};
 use protocol::robot_io::OmniKick;
 use rules::League;
 
 use crate::belief::Belief;
 use crate::body::Intent;
-use crate::body::omni::{BALL_AT, Drive, Manner, SHOT};
+use crate::body::omni::{BALL_AT, Drive, Manner};
 use crate::skills::Step;
 use crate::skills::wheels::get_ball::get_ball;
 use crate::skills::wheels::kick::kick_held;
@@ -44,7 +44,11 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
 /// then on, and after [`LASTS`] the robot leaves the ball.
 pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     let held = belief.held();
-    if belief.disputed() > DISPUTES
+    if belief.disputed() > TURNS && belief.holds_ball {
+        // Both turn the same way: their fronts part, and the ball goes with one of them, which kicks it a little farther round.
+        let aside = belief.pose.position + Vector::polar(AFAR, belief.pose.heading + Angle::new(TURN));
+        belief.resolved = Some((aside, OmniKick::Flat(FREED)));
+    } else if belief.disputed() > DISPUTES
         && let Intent::Drive(drive) = intent
     {
         return break_free(belief, drive).into();
@@ -85,7 +89,7 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
 fn break_free(belief: &Belief, drive: Drive) -> Drive {
     let own = belief.league().field().goal_center(belief.game.defending);
     let off = (belief.pose.position.direction_to(own) - belief.pose.heading).abs();
-    let kick = if off > OWN_GOAL { OmniKick::Flat(SHOT) } else { drive.kick };
+    let kick = if off > OWN_GOAL { OmniKick::Flat(FREED) } else { drive.kick };
     Drive { kick, armed: true, ..drive }
 }
 
@@ -106,7 +110,13 @@ const ACTS: f32 = 1.5;
 /// And who is kept from that lets it go after so long, s.
 const LASTS: f32 = 3.0;
 /// So long two robots dispute the ball before one kicks it whichever way it lies, s: longer than a tackle takes.
-const DISPUTES: f32 = 1.0;
+const DISPUTES: f32 = 0.8;
+/// And after so long it turns away with it, s: two or three kicks.
+const TURNS: f32 = 1.3;
+/// It kicks so much farther round than where the ball came free, rad: past the other robot.
+const TURN: f32 = 0.8;
+/// How fast that kick is, m/s: out of reach, not out of the field.
+const FREED: f32 = 2.5;
 /// No such kick within so much of the direction of the own goal, rad.
 const OWN_GOAL: f32 = 0.8;
 /// What is aimed at is about so far, m.
@@ -129,7 +139,7 @@ mod tests {
     use super::*;
     use crate::picture::Picture;
     use crate::skills::wheels::testing::belief;
-    use geometry::{Angle, Twist};
+    use geometry::Twist;
     use protocol::robot_io::{Health, SensorFrame};
     use protocol::{Instant, RobotId};
 
@@ -216,9 +226,12 @@ mod tests {
             let wanted = kick_held(&b, Point::new(0.0, 3.0), KICK);
             drive(let_go_in_time(&mut b, wanted))
         };
-        assert!(!disputed(0.0, 900).armed, "it still turns to where the ball shall go");
-        let kicks = disputed(0.0, 1100);
-        assert!(kicks.armed && kicks.kick == OmniKick::Flat(super::SHOT), "{kicks:?}");
-        assert_eq!(disputed(180.0, 1100).kick, KICK, "towards the own goal nothing but what is wanted");
+        assert!(!disputed(0.0, 600).armed, "it still turns to where the ball shall go");
+        let kicks = disputed(0.0, 900);
+        assert!(kicks.armed && kicks.kick == OmniKick::Flat(FREED), "{kicks:?}");
+        let turns = disputed(0.0, 1400);
+        assert!(turns.kick == OmniKick::Flat(FREED) && !turns.armed, "{turns:?}");
+        assert!((turns.face.radians() - TURN).abs() < 1e-3, "{turns:?}");
+        assert_eq!(disputed(180.0, 900).kick, KICK, "towards the own goal nothing but what is wanted");
     }
 }
