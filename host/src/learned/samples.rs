@@ -11,6 +11,14 @@ pub struct Estimate {
     pub samples: usize,
 }
 
+impl Estimate {
+    /// The median's standard error, were the samples normally distributed, in the quantity's unit.
+    pub fn error(&self) -> f32 {
+        // A normal sample's σ is 1.48 median distances, and the median of n has 1.25 times the mean's error.
+        1.48 * 1.25 * self.spread / (self.samples.max(1) as f32).sqrt()
+    }
+}
+
 /// The last `N` samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Samples<const N: usize> {
