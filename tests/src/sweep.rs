@@ -106,6 +106,7 @@ pub fn sweep(seeds: u64) -> Result<Vec<Row>, (u64, Found)> {
 pub fn page(rows: &[Row], seeds: u64) -> String {
     let mut text = format!(
         "# What loss costs\n\n\
+         How much of its play a team loses when radio packets are lost: gameplays, stops, time to a new cycle. \
          Written by `cargo xtask faults --write`: {seeds} runs a row, {} s each under loss and 3 s without after it, native brains. \
          Walking robots play by themselves, robots on wheels under a host that says `Gameplay` 75 times a second. Lost is \
          what any one receiver does not hear: each packet by itself, or everything of one direction between two stations in \

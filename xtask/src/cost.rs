@@ -103,8 +103,8 @@ pub(crate) fn write(context: &Context) -> Result<(), Failure> {
 const HEAD: &str = "\
 # What it costs
 
-Instructions counted by valgrind's callgrind on x86-64 in a release build; `cargo xtask budgets` writes this page again. What
-happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the
+What simulator, trials, strategy and host cost on a PC: instructions counted by valgrind's callgrind on x86-64 in a
+release build. `cargo xtask budgets` writes this page again. What happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the
 budget of [architecture.md §9](architecture.md#9-budgets).
 ";
 
