@@ -26,7 +26,10 @@ fn the_two_commands_come_first_and_are_the_ones_we_check() {
 fn every_command_in_a_shell_block_runs_the_program_or_is_xtasks() {
     let xtask = read("xtask/src/readme.rs");
     for page in PAGES {
-        assert!(xtask.contains(&format!("\"{page}\"")), "{page} is not run by `cargo xtask test --only readme`");
+        assert!(
+            xtask.contains(&format!("\"{page}\"")),
+            "{page} is not run by `cargo xtask test --only readme`"
+        );
         for command in shell_blocks(&read(page)).concat() {
             let known =
                 ["cargo run --release -- ", "cargo xtask "].iter().any(|start| command.starts_with(start));

@@ -6,7 +6,8 @@ use std::fs;
 use crate::context::{Context, Failure, run};
 
 /// What holds when the step passes.
-pub(crate) const WHAT: &str = "the commands of README and docs/commands.md run, README's first one among them";
+pub(crate) const WHAT: &str =
+    "the commands of README and docs/commands.md run, README's first one among them";
 
 /// Runs every `cargo run` of the pages' shell blocks; the chores beside them are this very program.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {

@@ -69,6 +69,8 @@ impl Known {
             command.split_whitespace().skip_while(|word| *word == "$").take_while(ends).collect();
         match words.as_slice() {
             ["onetwo", rest @ ..] => self.of_program(rest),
+            // A command that goes on with `…` names several.
+            ["cargo", "xtask", rest @ ..] if command.contains('…') && self.begins(&rest.join(" ")) => None,
             ["cargo", "xtask", rest @ ..] => self.of_xtask(rest),
             ["cargo", "run" | "test", rest @ ..] => {
                 let (own, program) = match rest.iter().position(|word| *word == "--") {
@@ -98,6 +100,10 @@ impl Known {
             flag == "help" || self.program.contains(&field) || self.program.contains(&format!("\"{flag}\""))
         };
         unknown_flag(rest, known)
+    }
+
+    fn begins(&self, line: &str) -> bool {
+        self.chores.iter().any(|chore| chore.starts_with(&format!("{line} ")))
     }
 
     fn of_xtask(&self, words: &[&str]) -> Option<String> {
@@ -201,6 +207,7 @@ mod tests {
             "cargo xtask test --only STEP",
             "cargo xtask bench retrieval --write",
             "cargo xtask …",
+            "cargo xtask bench …",
             "cargo test -p match-tests --test tidy",
             "cargo test --release -p match-tests --features qemu --test qemu_*",
             "cargo run --release -p host --example track -- --x",

@@ -71,7 +71,8 @@ fn clean(path: &Path) -> PathBuf {
     clean
 }
 
-/// Names of files in code quotes, `host/src/host.rs` or `host/src/host.rs: item`, that are not there or lack the item.
+/// Files named in code quotes, as `path` or `path: item`, that are not there or lack the item. From the root, or from the
+/// folder of the file that names them.
 pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (number, quoted) in Quoted::of(source).spans {
@@ -79,7 +80,9 @@ pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding>
         if !names_a_file(path) {
             continue;
         }
-        match files.text(Path::new(path.trim_end_matches('/'))) {
+        let name = Path::new(path.trim_end_matches('/'));
+        let folder = Path::new(&source.path).parent().unwrap_or(Path::new(""));
+        match files.text(name).or_else(|| files.text(&folder.join(name))) {
             None => findings.push(source.at(number, &format!("`{path}` is not there"), "name what is")),
             Some(text) if !item.is_empty() && !text.contains(item) => {
                 findings.push(source.at(number, &format!("{path} has no `{item}`"), "name what it has"));
@@ -95,6 +98,7 @@ fn names_a_file(path: &str) -> bool {
     let first = path.split('/').next().unwrap_or_default();
     path.contains('/')
         && TOP.contains(&first)
+        && !path.contains("NAME")
         && path.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '/'))
 }
 

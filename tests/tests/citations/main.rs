@@ -71,9 +71,23 @@ fn every_term_stands_once_in_the_glossary_and_names_what_exists() {
     check(&[page], |source| glossary::faults(source, &glossary::Names::read()));
 }
 
-/// What people read: Markdown files.
+#[test]
+fn the_version_to_cite_is_the_workspaces() {
+    let version = |path: &str, begin: &str| {
+        let text = sections::page(path).text;
+        let line = text.lines().find_map(|line| line.strip_prefix(begin));
+        line.unwrap_or_default().trim_matches('"').to_owned()
+    };
+    assert_eq!(version("CITATION.cff", "version: "), version("Cargo.toml", "version = "));
+}
+
+/// What people read: Markdown files, without the forms that a new issue is filled into.
 fn documents() -> Vec<Source> {
-    text_sources().into_iter().filter(is_document).collect()
+    text_sources()
+        .into_iter()
+        .filter(is_document)
+        .filter(|source| !source.path.starts_with(".github/"))
+        .collect()
 }
 
 fn is_document(source: &Source) -> bool {
