@@ -137,7 +137,7 @@ impl Known {
         let value = |flag: &str| words.windows(2).find(|pair| pair[0] == flag).map(|pair| pair[1]);
         let placeholder = |name: &str| name.chars().all(|c| c.is_ascii_uppercase());
         let package = value("-p").or_else(|| value("--package")).filter(|name| !placeholder(name));
-        let Some(package) = package else { return None };
+        let package = package?;
         let Some(folder) = self.packages.get(package) else { return Some(format!("no package `{package}`")) };
         for (flag, sub) in [("--test", "tests"), ("--example", "examples"), ("--bench", "benches")] {
             let Some(name) = value(flag).filter(|name| !placeholder(name) && !name.contains('*')) else {

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use match_tests::workspace::{Finding, Source, root};
 
+use crate::is_document;
+
 /// The numbered sections of a page, by its path from the root.
 pub(crate) struct Sections(BTreeMap<String, BTreeSet<String>>);
 
@@ -158,15 +160,12 @@ fn joined(source: &Source) -> String {
     for line in source.text.lines() {
         let bare = line.trim_start();
         let comment = ["//! ", "/// ", "// ", "# "].into_iter().find_map(|sign| bare.strip_prefix(sign));
-        match comment.filter(|_| !text.is_empty() && !source.path.ends_with(".md")) {
-            Some(words) => {
-                text.push(NEWLINE);
-                text.push_str(words);
-            }
-            None => {
-                text.push('\n');
-                text.push_str(line);
-            }
+        if let Some(words) = comment.filter(|_| !text.is_empty() && !is_document(source)) {
+            text.push(NEWLINE);
+            text.push_str(words);
+        } else {
+            text.push('\n');
+            text.push_str(line);
         }
     }
     text
