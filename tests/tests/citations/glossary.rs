@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use match_tests::workspace::{Finding, Source, members, rust_sources};
 
+use crate::prose::Quoted;
+
 /// What each crate defines, by the crate's name in paths.
 pub(crate) struct Names(BTreeMap<String, BTreeSet<String>>);
 
@@ -67,6 +69,17 @@ pub(crate) fn faults(source: &Source, names: &Names) -> Vec<Finding> {
     findings
 }
 
+/// Paths such as `casebase::Case` whose crate is ours and whose last name it does not define.
+pub(crate) fn unknown(source: &Source, names: &Names) -> Vec<Finding> {
+    let spans = Quoted::of(source).spans.into_iter();
+    let is_path = |span: &String| {
+        let plain = span.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | ':'));
+        plain && span.split_once("::").is_some_and(|(name, _)| names.0.contains_key(name))
+    };
+    let paths = spans.filter(|(_, span)| is_path(span) && !names.has(span));
+    paths.map(|(line, path)| source.at(line, &format!("no `{path}`"), "name what the crate has")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,5 +92,11 @@ mod tests {
         let page = Source { path: "docs/glossary.md".into(), text: text.into() };
         let lines: Vec<_> = faults(&page, &names).iter().map(|finding| finding.line).collect();
         assert_eq!(lines, [5, 6, 7]);
+        let text = "`casebase::Case`, `std::fmt`, `casebase::{walk, x}`\n`casebase::Leg`\n";
+        let lines: Vec<_> = unknown(&Source { text: text.into(), ..page }, &names)
+            .iter()
+            .map(|finding| finding.line)
+            .collect();
+        assert_eq!(lines, [2]);
     }
 }

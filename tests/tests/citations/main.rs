@@ -72,6 +72,12 @@ fn every_term_stands_once_in_the_glossary_and_names_what_exists() {
 }
 
 #[test]
+fn every_item_of_a_crate_that_a_document_names_exists() {
+    let names = glossary::Names::read();
+    check(&documents(), |source| glossary::unknown(source, &names));
+}
+
+#[test]
 fn the_version_to_cite_is_the_workspaces() {
     let version = |path: &str, begin: &str| {
         let text = sections::page(path).text;
