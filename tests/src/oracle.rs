@@ -48,8 +48,8 @@ pub struct Candidate {
     pub adapted: Vec<Point>,
 }
 
-/// The settings of docs/case-format.md §3.2 that change which answer is right, as far as the agreement says
-/// how.
+/// The settings of docs/case-format.md §3.2 that change which answer is right, as far as that section
+/// says how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
     /// Furthest way to an adapted position, mm (`thr_c`; paper, Algorithm 1).

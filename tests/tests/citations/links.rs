@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use match_tests::workspace::{Finding, Source, root};
 
+use crate::is_document;
 use crate::prose::Quoted;
 
 /// The repository's files; a test puts others in their place.
@@ -77,7 +78,7 @@ pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding>
     let mut findings = Vec::new();
     for (number, quoted) in Quoted::of(source).spans {
         let (path, item) = quoted.split_once(": ").unwrap_or((&quoted, ""));
-        if !names_a_file(path) {
+        if !names_a_file(path, is_document(source)) {
             continue;
         }
         let name = Path::new(path.trim_end_matches('/'));
@@ -93,11 +94,11 @@ pub(crate) fn missing_files(source: &Source, files: &dyn Lookup) -> Vec<Finding>
     findings
 }
 
-/// A path from the root, written out: no pattern, no place to be filled in.
-fn names_a_file(path: &str) -> bool {
+/// A path from the root, in a document also from its own folder, written out: no pattern, no place to be filled in.
+fn names_a_file(path: &str, in_document: bool) -> bool {
     let first = path.split('/').next().unwrap_or_default();
     path.contains('/')
-        && TOP.contains(&first)
+        && (TOP.contains(&first) || in_document && OWN.contains(&first))
         && !path.contains("NAME")
         && path.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '/'))
 }
@@ -114,6 +115,9 @@ pub(crate) fn opens_with_a_summary(text: &str) -> bool {
 /// The repository's folders that files are named from.
 const TOP: [&str; 10] =
     ["casebase", "docs", "firmware", "hil-sim", "host", "protocol", "tests", "xtask", ".ci", ".github"];
+
+/// A crate's folders that its README names files from.
+const OWN: [&str; 9] = ["bench", "benches", "data", "drawing", "examples", "library", "src", "tools", "web"];
 
 #[cfg(test)]
 mod tests {
