@@ -1,4 +1,4 @@
-//! `action`: actions of a case's robots, and kick kinds (Ros et al. 2009, §2.2; DESIGN §4.1, §4.4).
+//! `action`: actions of a case's robots, and kick kinds (Ros et al. 2009, §2.2; docs/case-format.md §1, §4).
 //!
 //! Points are the case's own coordinates, mm; whoever plays the case adapts them with `Case::shift`.
 
@@ -78,7 +78,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// Does the ball play a part in it? (DESIGN §4.3: "ball action")
+    /// Does the ball play a part in it? (docs/case-format.md §3.1: "ball action")
     pub const fn concerns_ball(self) -> bool {
         !matches!(self, Self::Wait | Self::GoToPoint(_) | Self::Turn(_))
     }

@@ -1,4 +1,5 @@
-//! `explain`: reason why each case is a candidate or not (DESIGN §4.3: the first failure with its margin).
+//! `explain`: reason why each case is a candidate or not (docs/case-format.md §3.3: the first failure with
+//! its margin).
 //!
 //! Every case listed under the problem's goal is looked at, lowest id first, in the fixed order ball, robot count,
 //! field (where the settings ask), travel, free path. No index and no short cut: tests hold retrieval against this.

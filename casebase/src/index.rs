@@ -1,5 +1,5 @@
-//! `index`: index of the cases that can have the ball in their scope. A grid over the ball's position (DESIGN
-//! §4.3).
+//! `index`: index of the cases that can have the ball in their scope. A grid over the ball's position
+//! (docs/case-format.md §3).
 //!
 //! The grid covers the half of the field where y ≥ 0. Each of its cells lists the cases defending the negative goal whose
 //! ball scope (at the paper's threshold) reaches into it; cells at the border reach to infinity. What is near a ball

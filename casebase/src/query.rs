@@ -1,5 +1,5 @@
-//! `query`: tests of one stored case against one problem. The checks of DESIGN §4.3 one by one, everything
-//! relative to the ball, mm.
+//! `query`: tests of one stored case against one problem. The checks of docs/case-format.md §3 one by one,
+//! everything relative to the ball, mm.
 //!
 //! Retrieval and explanation put the same questions, in their own order.
 

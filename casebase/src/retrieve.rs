@@ -1,4 +1,4 @@
-//! `retrieve`: case retrieval (Ros et al. 2009, §3, Algorithms 1 and 2; DESIGN §4.3).
+//! `retrieve`: case retrieval (Ros et al. 2009, §3, Algorithms 1 and 2; docs/case-format.md §3).
 //!
 //! A case is a candidate if the ball lies in its ball scope, the robots are near enough to their adapted positions
 //! and the ball's path is free; candidates are ranked by [`rank_order`](crate::rank_order). Cheap checks come

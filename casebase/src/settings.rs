@@ -1,5 +1,5 @@
-//! `settings`: the named settings of retrieval (DESIGN §4.3), one for each reading of the paper, each
-//! declared once.
+//! `settings`: the named settings of retrieval (docs/case-format.md §3.2), one for each reading of the paper,
+//! each declared once.
 //!
 //! `--set name=value` reaches [`Settings::set`]; [`Settings::describe`] is what gets recorded with every result.
 

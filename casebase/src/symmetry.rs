@@ -1,4 +1,4 @@
-//! `symmetry`: the symmetric copies of a case (Ros et al. 2009, §2.4; DESIGN §4.2).
+//! `symmetry`: the symmetric copies of a case (Ros et al. 2009, §2.4; docs/case-format.md §2).
 //!
 //! Positions and points mirror, scopes and radii keep. Headings and offsets of kicks are told relative to the
 //! direction of attack: a single reflection negates them, the double one (a turn by 180°) keeps them.

@@ -1,4 +1,4 @@
-//! `hash`: FNV-1a hash. FNV-1a, 64 bits: the hash DESIGN §2 names for traces.
+//! `hash`: FNV-1a hash. FNV-1a, 64 bits: the hash docs/architecture.md §2.5 names for traces.
 
 use core::fmt;
 

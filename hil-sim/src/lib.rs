@@ -1,5 +1,5 @@
-//! `hil_sim`: simulator of field, radio and microcontrollers. A deterministic simulator (DESIGN §7). Runs on
-//! the PC.
+//! `hil_sim`: simulator of field, radio and microcontrollers. A deterministic simulator
+//! (docs/architecture.md §7). Runs on the PC.
 //!
 //! ```text
 //! scenario ─► world (ball, walkers) ─► senses ─► Mcu: native, or the image under QEMU ─► orders ─► world

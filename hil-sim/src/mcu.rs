@@ -1,5 +1,5 @@
-//! `mcu`: interface of a robot's computer in the simulator. Something that answers a tick (DESIGN §7):
-//! natively, or as an image under QEMU.
+//! `mcu`: interface of a robot's computer in the simulator. Something that answers a tick
+//! (docs/architecture.md §7.2): natively, or as an image under QEMU.
 //!
 //! A tick is split into [`Mcu::post`] and [`Mcu::collect`], so that all robots of a team can think at the same time where they
 //! are processes. A crash is a dropped `Mcu`; a return is a new one with a larger epoch, whose clock starts at zero.

@@ -1,5 +1,6 @@
 //! `meter`: measurement of the robots' computers. A back end around another that keeps each step's
-//! instructions and the deepest stack (DESIGN §9), and one that gives a team computers of its own kind.
+//! instructions and the deepest stack (docs/architecture.md §9), and one that gives a team computers of its
+//! own kind.
 
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -1,6 +1,6 @@
 //! `native`: a brain that runs in the simulator's process. The same [`Station`] as on a board, driven in the
-//! same order (DESIGN §7): deadlines due by the tick's time, each at its own time; then the tick's packets;
-//! then its senses; every word sent as it is said.
+//! same order (docs/architecture.md §7.2): deadlines due by the tick's time, each at its own time; then the
+//! tick's packets; then its senses; every word sent as it is said.
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;

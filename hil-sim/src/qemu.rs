@@ -1,4 +1,5 @@
-//! `qemu`: a brain that runs as the firmware image in a QEMU of its own, one frame a tick (DESIGN §7).
+//! `qemu`: a brain that runs as the firmware image in a QEMU of its own, one frame a tick
+//! (docs/architecture.md §7.2).
 //!
 //! The simulator holds one end of a pair of datagram sockets, the emulator has the other as its standard input and
 //! connects it to the board's Ethernet controller: no ports, no files. The image's clock is in the ticks, so a slow

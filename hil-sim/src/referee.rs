@@ -1,4 +1,4 @@
-//! `referee`: outcome and possession of a trial. Ros et al. 2009 §5.1.4, checklist R32–R35.
+//! `referee`: outcome and possession of a trial. Ros et al. 2009 §5.1.4, docs/papers.md R32–R35.
 //!
 //! A trial ends when the ball has crossed a line with all of itself, when the goalie touches it (defender and goalie), when
 //! it enters the attacked penalty area (two defenders; the paper calls that "to goal", the outcome here is `goal`), or
@@ -115,7 +115,7 @@ pub struct Referee {
 struct Contact {
     /// When it last touched the ball, s.
     at: Option<f32>,
-    /// How many times it had it (checklist R33).
+    /// How many times it had it (docs/papers.md R33).
     possessions: u32,
 }
 

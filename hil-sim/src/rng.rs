@@ -2,7 +2,7 @@
 //! another.
 //!
 //! The generator is xoshiro128++ (a published stream, the same everywhere); what is made of its bits goes through
-//! `geometry::math` (DESIGN §2).
+//! `geometry::math` (docs/architecture.md §2.4).
 
 use geometry::math;
 use rand_core::{RngCore, SeedableRng};

@@ -1,4 +1,4 @@
-//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, checklist R31),
+//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, docs/papers.md R31),
 //! and random ones.
 //!
 //! The paper gives no coordinates: `hil-sim/data/scenarios/*.toml` say what was estimated from its text and figures.

@@ -1,7 +1,7 @@
 //! `sensors`: perception of a walking robot. Everything as it is by default; with a noise profile, blurred
-//! (checklist R39, R40).
+//! (docs/papers.md R39, R40).
 //!
-//! This is where noise enters, and only here (DESIGN §3). m, rad, field frame.
+//! This is where noise enters, and only here (docs/architecture.md §3.2). m, rad, field frame.
 
 use geometry::{Angle, Field, Point, Pose, Twist, Vector};
 use protocol::Duration;

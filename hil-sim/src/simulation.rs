@@ -1,5 +1,5 @@
 //! `simulation`: main loop of a trial. Tick by tick: faults, senses, computers, air, opponents, physics,
-//! referee (DESIGN §2, §7).
+//! referee (docs/architecture.md §2.3, §7.1).
 //!
 //! In tick n at n · 40 ms: what is scheduled happens; every robot that runs is handed its senses and its packets, all robots
 //! think (in parallel where they are processes), their answers are taken in the order of ids; packets go into the air and are heard in
@@ -360,7 +360,7 @@ fn seconds(tick: u32, step: u32) -> f32 {
     (tick * TICK_MS + step * (TICK_MS / STEPS_PER_TICK)) as f32 * 0.001
 }
 
-/// A brain's tick, ms (DESIGN §2: four-legged, every 40 ms).
+/// A brain's tick, ms (docs/architecture.md §2.3: four-legged, every 40 ms).
 const TICK_MS: u32 = 40;
 /// The same in µs.
 pub const TICK_US: u64 = TICK_MS as u64 * 1000;

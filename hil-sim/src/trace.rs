@@ -1,4 +1,5 @@
-//! `trace`: trace hash of a trial. A hash of everything that matters, tick by tick, as DESIGN §2 lists it.
+//! `trace`: trace hash of a trial. A hash of everything that matters, tick by tick, as
+//! docs/architecture.md §2.5 lists it.
 //!
 //! Per tick, in order: the tick's number (u32); the ball's place and velocity; every robot's pose and velocity in its own frame,
 //! attackers by id and then opponents in their order (f32 bits); every order to a body (robot id, postcard bytes); every packet

@@ -1,4 +1,4 @@
-//! `config`: the team's configuration: `team.toml`, and the flags that overrule it (DESIGN §8).
+//! `config`: the team's configuration: `team.toml`, and the flags that overrule it (docs/case-format.md §5).
 //!
 //! ```toml
 //! name = "onetwo"                 # as the game controller knows the team

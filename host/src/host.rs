@@ -1,4 +1,4 @@
-//! `host`: sans-IO core of the host: datagrams and times in, packets out (DESIGN §3).
+//! `host`: sans-IO core of the host: datagrams and times in, packets out (docs/architecture.md §3.1).
 //!
 //! One mutation, then drain: after every [`Host::handle`] call [`Host::poll_packet`] until `None`, then ask [`Host::poll_timeout`] when
 //! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a

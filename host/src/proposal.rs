@@ -1,5 +1,5 @@
 //! `proposal`: the pass proposed by the case that our robots play. What they say of their cycle, looked up in
-//! the case base that they carry (papers-checklist §6: the case is the intent). From the field to the attack
+//! the case base that they carry (docs/papers.md §8: the case is the intent). From the field to the attack
 //! frame, m.
 
 use casebase::{CaseBase, CaseRobot, LegKind};

@@ -1,5 +1,5 @@
-//! `recording`: header of a trace, as JSON (DESIGN §7): the settings from which the hosts of a recording can
-//! be rebuilt.
+//! `recording`: header of a trace, as JSON (docs/architecture.md §7.4): the settings from which the hosts of
+//! a recording can be rebuilt.
 //!
 //! A team's key stands in no file that is handed on: the header says only that there was one ([`HostHeader::keyed`]), and whoever
 //! builds the host again brings it.

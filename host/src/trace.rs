@@ -1,5 +1,5 @@
 //! `trace`: trace file of a match, from which it can be decided again. Everything that came to a host and
-//! everything it said, in order (DESIGN §7: `X.trace`).
+//! everything it said, in order (docs/architecture.md §7.4: `X.trace`).
 //!
 //! ```text
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records

@@ -1,4 +1,4 @@
-//! The radio does not allocate after the first second of a match (DESIGN §9).
+//! The radio does not allocate after the first second of a match (docs/architecture.md §9).
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

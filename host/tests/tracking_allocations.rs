@@ -1,4 +1,5 @@
-//! `tracking_allocations`: test: tracking does not allocate after the first seconds of a match (DESIGN §9).
+//! `tracking_allocations`: test: tracking does not allocate after the first seconds of a match
+//! (docs/architecture.md §9).
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -1,4 +1,5 @@
-//! `frame`: the radio's envelope: sender, epoch, counter, payload and what proves them genuine (DESIGN §6).
+//! `frame`: the radio's envelope: sender, epoch, counter, payload and what proves them genuine
+//! (docs/architecture.md §6.1).
 //!
 //! ```text
 //! version 1 | team 1 | sender 1 | epoch 4 LE | counter 4 LE | payload n | tag 8                    to one robot, or from one
@@ -26,7 +27,7 @@ pub const SHORT_TAG_LEN: usize = 3;
 pub const AUDIENCE_LEN: usize = 2;
 /// Bytes of a frame with one tag that are not payload.
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
-/// The longest frame on the air (a part of the world; DESIGN §6).
+/// The longest frame on the air (a part of the world; docs/architecture.md §6.1).
 pub const FRAME_LEN_MAX: usize = 120;
 /// A frame's bytes.
 pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;

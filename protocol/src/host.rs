@@ -1,4 +1,5 @@
-//! `host`: the host's messages to its robots and their telemetry (DESIGN §3, §6). Millimetres, milliradians, field frame.
+//! `host`: the host's messages to its robots and their telemetry (docs/architecture.md §3.3, §6.1).
+//! Millimetres, milliradians, field frame.
 //!
 //! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), what to do goes to each robot by itself
 //! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
@@ -24,7 +25,8 @@ pub const PART_ROBOTS_MAX: usize = 6;
 pub const WORLD_ROBOTS_MAX: usize = 24;
 /// Parts that they need when 16 robots are addressed.
 pub const PARTS_MAX: usize = 8;
-/// The longest [`Command`] in postcard bytes; with the frame's overhead it stays within 40 B (DESIGN §6).
+/// The longest [`Command`] in postcard bytes; with the frame's overhead it stays within 40 B
+/// (docs/architecture.md §6.1).
 pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 
 /// A message of the host.

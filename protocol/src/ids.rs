@@ -113,7 +113,7 @@ impl Who {
     }
 }
 
-/// A stored case: 4 × authored index + symmetry (DESIGN §4.2).
+/// A stored case: 4 × authored index + symmetry (docs/case-format.md §2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct CaseId(pub u16);

@@ -1,5 +1,5 @@
 //! `lockstep`: lockstep between simulator and robot computer. One question, one answer, a tick at a time
-//! (DESIGN §7).
+//! (docs/architecture.md §7.2).
 //!
 //! The simulator sends [`ToRobot::Setup`] once per life and then a [`ToRobot::Tick`] per brain step; the computer
 //! answers each with one [`FromRobot`]. Time moves only by ticks: timers due by `now` run before the tick's packets,

@@ -1,5 +1,5 @@
-//! `provision`: a robot's identity and its keys, a page of the flash written by `onetwo firmware provision` (DESIGN §6, §8):
-//! 64 bytes that are not part of the image.
+//! `provision`: a robot's identity and its keys, a page of the flash written by `onetwo firmware provision`
+//! (docs/architecture.md §6.1, docs/case-format.md §5): 64 bytes that are not part of the image.
 //!
 //! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, the rest 0xff. The keys are this
 //! robot's own ([`crate::key`]), never the team's secret. The check is SipHash-2-4 of the 40 bytes before it under the host key: a

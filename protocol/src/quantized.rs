@@ -1,5 +1,5 @@
-//! `quantized`: conversion between SI units and wire integers. Here and nowhere else (DESIGN §2). All
-//! conversions saturate.
+//! `quantized`: conversion between SI units and wire integers. Here and nowhere else
+//! (docs/architecture.md §2.2). All conversions saturate.
 
 use geometry::{Angle, Field, Point, Pose, math};
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,5 @@
-//! `robot_io`: interface between body and brain (DESIGN §3) (DESIGN §3). SI units, field frame where not said
-//! otherwise.
+//! `robot_io`: interface between body and brain (docs/architecture.md §3.2). SI units, field frame where not
+//! said otherwise.
 //!
 //! Noise enters the system here and nowhere else: the simulator (or a real camera) fills a [`SensorFrame`], and that
 //! is all a robot knows of the world besides its teammates' beacons.
@@ -73,7 +73,7 @@ pub enum ActuatorFrame {
         kick: OmniKick,
     },
     /// A robot on wheels that stands and that nobody commands: no current in the motors, dribbler off, kicker discharged
-    /// (DESIGN §6).
+    /// (docs/architecture.md §6.1).
     Released,
 }
 

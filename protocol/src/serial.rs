@@ -1,5 +1,5 @@
 //! `serial`: framing on a serial line. At the next zero byte: frames travel COBS-stuffed, a zero after each
-//! (DESIGN §6).
+//! (docs/architecture.md §6.1).
 //!
 //! COBS finds the next frame after any garbage and nothing more; whether the bytes are right, the frame's tag tells.
 

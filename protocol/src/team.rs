@@ -1,4 +1,5 @@
-//! `team`: messages between robots. Their whole state, again and again (DESIGN §5; paper §4.1).
+//! `team`: messages between robots. Their whole state, again and again (docs/architecture.md §5.1; paper
+//! §4.1).
 //!
 //! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
 //! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is
@@ -14,7 +15,8 @@ use crate::{CaseId, CycleId, RobotId};
 
 /// Robots of a team that can take part in one case (paper §2: n ≤ 4).
 pub const CASE_ROBOTS_MAX: usize = 4;
-/// The longest [`TeamMessage`] in postcard bytes; with the frame's overhead it stays within 64 B (DESIGN §6).
+/// The longest [`TeamMessage`] in postcard bytes; with the frame's overhead it stays within 64 B
+/// (docs/architecture.md §6.1).
 pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 
 /// A message of a robot.
@@ -198,7 +200,7 @@ pub enum Closure {
     },
 }
 
-/// Why a cycle was stopped (paper §4.2; DESIGN §5).
+/// Why a cycle was stopped (paper §4.2; docs/architecture.md §5.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum AbortReason {
     /// Before the first touch: the ball left the case's scope.

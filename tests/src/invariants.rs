@@ -1,5 +1,5 @@
-//! `invariants`: coordination invariants of a team. The coordination invariants of DESIGN §5, watched from
-//! outside the brain.
+//! `invariants`: coordination invariants of a team. The coordination invariants of
+//! docs/architecture.md §5.4, watched from outside the brain.
 //!
 //! The watcher sees only what an eavesdropper with the key sees: which beacon each robot sent and heard, and when
 //! robots died, came back, and the air was cut or healed. What a robot does with its body in a step is judged by the
@@ -87,9 +87,10 @@ struct Pending {
     newer_than: CycleId,
 }
 
-/// A robot of an older gameplay leaves it within this time of hearing of a newer cycle (DESIGN §5).
+/// A robot of an older gameplay leaves it within this time of hearing of a newer cycle
+/// (docs/architecture.md §5.4).
 pub const LEAVE_WITHIN: Duration = Duration::millis(150);
-/// A new cycle comes within this time of a fault (DESIGN §5).
+/// A new cycle comes within this time of a fault (docs/architecture.md §5.4).
 pub const RECOVER_WITHIN: Duration = Duration::millis(1000);
 
 impl Watcher {

@@ -1,7 +1,8 @@
-//! `oracle`: independent, naive retrieval after the agreement.
+//! `oracle`: independent, naive retrieval by docs/case-format.md §3.
 //!
-//! DESIGN §4.3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed. **Invariant:** it uses no
-//! crate of the project, so that it can be wrong only on its own account. Field frame, mm.
+//! docs/case-format.md §3 (paper §3) in `f64`, case after case, every injection tried, nothing indexed.
+//! **Invariant:** it uses no crate of the project, so that it can be wrong only on its own account. Field
+//! frame, mm.
 //!
 //! Two honest implementations may differ where a number falls on a threshold: every decision that hangs on a relative
 //! difference below [`NEAR`] is noted in the answer.
@@ -19,7 +20,7 @@ use library::{Case, Library, Point, Radii};
 use problem::Problem;
 use walk::Leg;
 
-/// What the agreement says to a problem.
+/// The answer to a problem by docs/case-format.md §3.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// The case to play; `None` when nothing fits.
@@ -47,7 +48,8 @@ pub struct Candidate {
     pub adapted: Vec<Point>,
 }
 
-/// The settings of DESIGN §4.3 that change which answer is right, as far as the agreement says how.
+/// The settings of docs/case-format.md §3.2 that change which answer is right, as far as that section
+/// says how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
     /// Furthest way to an adapted position, mm (`thr_c`; paper, Algorithm 1).
@@ -95,8 +97,8 @@ impl Rules {
     }
 }
 
-/// One line's answer as `onetwo cases retrieve` prints it (DESIGN §8), line counted from 1; `None` for a blank line.
-/// Numbers are not rounded, and an error's wording is the oracle's own.
+/// One line's answer as `onetwo cases retrieve` prints it (docs/case-format.md §5.1), line counted from 1;
+/// `None` for a blank line. Numbers are not rounded, and an error's wording is the oracle's own.
 pub fn answer_line(library: &Library, number: usize, line: &str) -> Option<Value> {
     if line.trim().is_empty() {
         return None;

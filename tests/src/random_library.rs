@@ -1,8 +1,9 @@
 //! `random_library`: random valid libraries. Seeded random ones, as the TOML files a person would have.
 //!
-//! Everything DESIGN §4.1 allows occurs: 1–4 teammates, 0–4 opponents, every action, kicks by heading and at the goal
-//! with their partners, plans of several legs, a later `get_ball` after a kick, either goal, points outside the field,
-//! region names that sort otherwise as strings than as folders. Mm, whole degrees, field frame.
+//! Everything docs/case-format.md §1 allows occurs: 1–4 teammates, 0–4 opponents, every action, kicks by
+//! heading and at the goal with their partners, plans of several legs, a later `get_ball` after a kick,
+//! either goal, points outside the field, region names that sort otherwise as strings than as folders. Mm,
+//! whole degrees, field frame.
 
 mod dice;
 mod problems;

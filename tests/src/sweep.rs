@@ -106,11 +106,12 @@ pub fn sweep(seeds: u64) -> Result<Vec<Row>, (u64, Found)> {
 pub fn page(rows: &[Row], seeds: u64) -> String {
     let mut text = format!(
         "# What loss costs\n\n\
+         How much of its play a team loses when radio packets are lost: gameplays, stops, time to a new cycle. \
          Written by `cargo xtask faults --write`: {seeds} runs a row, {} s each under loss and 3 s without after it, native brains. \
          Walking robots play by themselves, robots on wheels under a host that says `Gameplay` 75 times a second. Lost is \
          what any one receiver does not hear: each packet by itself, or everything of one direction between two stations in \
-         stretches of {BURST_MS} ms on the mean (Gilbert and Elliott). All promises of DESIGN §5 and §6 are watched meanwhile; none was \
-         broken.\n\n\
+         stretches of {BURST_MS} ms on the mean (Gilbert and Elliott). All promises of [architecture.md](architecture.md) \
+         §5.4 and §6.2 are watched meanwhile; none was broken.\n\n\
          - *finished*: of the gameplays that ended, those that all their robots played to the end; the rest somebody stopped.\n\
          - *stops*: how often a robot that was armed braked because its host was silent for 100 ms, in a robot's minute; *stood*: the \
          share of the time for which it then stood (after a silence of half a second it takes half a second to be armed again).\n\

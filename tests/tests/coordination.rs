@@ -1,5 +1,5 @@
-//! `coordination`: tests: a team keeps its promises when packets are lost and robots die (DESIGN §5, watched
-//! from outside).
+//! `coordination`: tests: a team keeps its promises when packets are lost and robots die
+//! (docs/architecture.md §5.4, watched from outside).
 //!
 //! Every seed is a trial of its own on the simulator's carpet: its team size, its retrievers, its scenario and its faults are drawn
 //! from the seed. A failure prints the seed; `ONETWO_SEED=N cargo test -p match-tests --test coordination` repeats it alone, and

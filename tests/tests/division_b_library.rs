@@ -1,5 +1,4 @@
-//! `division_b_library`: tests of division B's built-in library with the oracle. No simulator plays it yet:
-//! its plans are read.
+//! `division_b_library`: tests of division B's built-in library with the oracle. Its plans are read, not played.
 //!
 //! Rules it must keep (ssl-rules, 2026): nobody of ours touches the ball in their defence area (1 m deep, 2 m wide), and a ball is
 //! dribbled for less than a metre.

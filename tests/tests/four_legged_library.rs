@@ -1,8 +1,9 @@
 //! `four_legged_library`: tests of the built-in four-legged library with the oracle.
 //!
-//! Each case must be the answer to its own situation (DESIGN §4.1 warns of a case beaten there), nearly every problem must have a
-//! candidate (paper §5: "most of the time, at least one case will be retrieved"), no case may be there for nothing, none may win
-//! everywhere, and every region and class of the paper (§5.1.1) must be there. Problems are drawn as the paper's scenarios place robots
+//! Each case must be the answer to its own situation (docs/case-format.md §1.2 warns of a case beaten there),
+//! nearly every problem must have a candidate (paper §5: "most of the time, at least one case will be
+//! retrieved"), no case may be there for nothing, none may win everywhere, and every region and class of the
+//! paper (§5.1.1) must be there. Problems are drawn as the paper's scenarios place robots
 //! (`case_tools::Sampler`, with the line-ups of `league.toml`).
 
 use std::collections::{BTreeMap, BTreeSet};

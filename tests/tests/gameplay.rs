@@ -1,7 +1,8 @@
 //! `gameplay`: tests: robots play a case as the paper describes it, and leave it for the paper's reasons (Ros
-//! et al. 2009 §4.2; DESIGN §4.4, §5).
+//! et al. 2009 §4.2; docs/case-format.md §4, docs/architecture.md §5).
 //!
-//! Brains on a table where nothing goes wrong by itself; the library is DESIGN's worked example alone.
+//! Brains on a table where nothing goes wrong by itself; the library is the worked example of
+//! docs/case-format.md §1 alone.
 
 use brain::{BrainConfig, Positioning};
 use case_tools::{Files, Library};
@@ -215,5 +216,5 @@ fn progress(table: &mut Tabletop<'_>, robot: u8) -> Progress {
 }
 
 const LEAGUE: &str = include_str!("../../casebase/library/cases/four-legged/league.toml");
-/// The worked example of DESIGN §4.1, as it is in the built-in library.
+/// The worked example of docs/case-format.md §1, as it is in the built-in library.
 const PASS_AROUND: &str = include_str!("../../casebase/library/cases/four-legged/center/pass-around.toml");

@@ -1,5 +1,5 @@
-//! `qemu_equals_native`: tests: firmware image and native brain play the same trial, bit for bit (DESIGN §2,
-//! §7).
+//! `qemu_equals_native`: tests: firmware image and native brain play the same trial, bit for bit
+//! (docs/architecture.md §2.5, §7.2).
 //!
 //! Each robot runs in a QEMU of its own; trace hashes are taken by the simulator, so by the same code for both. Needs QEMU
 //! and a compiler for the target (feature `qemu`); `cargo xtask test --only qemu` sees to both.
@@ -19,7 +19,7 @@ use protocol::{RobotId, TeamId};
 /// Of each scenario and configuration of the paper.
 const SEEDS: u64 = 5;
 const STEP_BUDGET: u32 = firmware_build::inspect::STEP_BUDGET;
-/// Bytes of stack, painted (DESIGN §9).
+/// Bytes of stack, painted (docs/architecture.md §9).
 const STACK_BUDGET: u32 = firmware_build::inspect::STACK_BUDGET;
 
 #[test]

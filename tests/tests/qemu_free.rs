@@ -1,5 +1,5 @@
 //! `qemu_free`: tests: a robot that runs by its own clock obeys its team's host and no other sender, stops
-//! when the host is gone, and comes back from a panic and from a task that hangs (DESIGN §6).
+//! when the host is gone, and comes back from a panic and from a task that hangs (docs/architecture.md §6.2).
 //!
 //! The image `onetwo-mps2-free` under QEMU in real time, its radio a serial line on the emulator's standard streams. Times are
 //! generous: what is waited for must come, how soon depends on the machine. Needs QEMU and a compiler for the target (feature

@@ -1,5 +1,6 @@
 //! `qemu_match`: tests: six firmware images play the same match as six native brains. Host, radio, cameras
-//! and referee around them are the very same; the match's hash is compared after every tick (DESIGN §2, §7).
+//! and referee around them are the very same; the match's hash is compared after every tick
+//! (docs/architecture.md §2.5, §7.2).
 //!
 //! `ONETWO_MATCH_SECONDS=60 cargo test --release -p match-tests --features qemu --test qemu_match` plays longer. Needs QEMU and a
 //! compiler for the target (feature `qemu`).

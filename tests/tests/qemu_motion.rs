@@ -1,5 +1,5 @@
-//! `qemu_motion`: tests: motion planning on the robot's processor equals the PC's, within its budget (DESIGN
-//! §9).
+//! `qemu_motion`: tests: motion planning on the robot's processor equals the PC's, within its budget
+//! (docs/architecture.md §9).
 //!
 //! `cargo xtask bench motion` prints the same counts, and those of this machine.
 //! Needs QEMU and a compiler for the target (feature `qemu`).

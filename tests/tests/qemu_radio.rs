@@ -1,4 +1,5 @@
-//! `qemu_radio`: tests: radio frames stay within their budget on the robot's processor (DESIGN §9).
+//! `qemu_radio`: tests: radio frames stay within their budget on the robot's processor
+//! (docs/architecture.md §9).
 //!
 //! `cargo xtask bench radio` prints the same counts. Needs QEMU and a compiler for the target (feature `qemu`).
 

@@ -1,5 +1,5 @@
-//! `qemu_retrieval`: tests: retrieval on the robot's processor equals the PC's, within its budget (DESIGN
-//! §9).
+//! `qemu_retrieval`: tests: retrieval on the robot's processor equals the PC's, within its budget
+//! (docs/architecture.md §9).
 //!
 //! The built-in library on problems that robots retrieved for; `cargo xtask bench retrieval` has all bases and problems,
 //! and holds them to the budgets.
@@ -29,8 +29,8 @@ fn a_retrieval_from_the_built_in_library_is_within_its_budget() {
     assert!(figures.bytes_per_case <= 96.0, "{} bytes a case", figures.bytes_per_case);
 }
 
-/// Guest instructions (DESIGN §9).
+/// Guest instructions (docs/architecture.md §9).
 const MEDIAN_MAX: u32 = 1_500;
 const WORST_MAX: u32 = 12_000;
-/// As many as DESIGN §9 names: every scenario and configuration 25 times.
+/// As many as docs/architecture.md §9 names: every scenario and configuration 25 times.
 const TRIALS: usize = 200;

@@ -1,5 +1,5 @@
 //! `qemu_wheels`: tests: the firmware image drives wheels as the native brain does, within its step budget
-//! (DESIGN §2, §9).
+//! (docs/architecture.md §2.4, §9).
 //!
 //! Three robots of ours, each once native and once in a QEMU of its own, hear the same packets of a host and of each other and
 //! see the same world; six opponents drive about. Needs QEMU and a compiler for the target (feature `qemu`).

@@ -1,5 +1,6 @@
 //! A robot on wheels under a host whose radio is delayed, lossy, withheld, recorded or forged: it moves only on commands of its host that
-//! are at most 200 ms old. The host's radio and a robot's station in virtual time, ticks of 10 ms (DESIGN §6).
+//! are at most 200 ms old. The host's radio and a robot's station in virtual time, ticks of 10 ms
+//! (docs/architecture.md §6.2).
 
 use std::collections::VecDeque;
 

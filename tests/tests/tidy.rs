@@ -1,8 +1,8 @@
 //! `tidy`: style tests of the source. What a reviewer would say again and again, a test says once.
 //!
 //! Walks the repository from this crate's folder upwards. Every finding names file and line, what is wrong and the mend.
-//! The rules are DESIGN §1 and §2: shared crates give the same bits everywhere, allocate nothing and do no I/O; who
-//! depends on whom has one direction; and nothing half-done stays behind.
+//! The rules are docs/architecture.md §1.2, §2.4: shared crates give the same bits everywhere, allocate
+//! nothing and do no I/O; who depends on whom has one direction; and nothing half-done stays behind.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -161,7 +161,7 @@ fn dependencies_point_one_way() {
     let crates: BTreeMap<String, Manifest> = members().into_iter().map(|m| (m.name.clone(), m)).collect();
     let mut findings = upward(&crates);
     for (from, to, mend) in NEVER_LINKED {
-        // A crate of a later issue need not be there yet.
+        // A crate that is not there links nothing.
         if crates.contains_key(from) && reachable(&crates, from).contains(to) {
             findings.push(format!("{from} links {to}; {mend}"));
         }
@@ -220,7 +220,7 @@ fn upward(crates: &BTreeMap<String, Manifest>) -> Vec<String> {
         };
         for dependency in manifest.all.iter().filter(|name| height(name).is_some_and(|other| other >= own)) {
             findings.push(format!(
-                "{}/Cargo.toml: `{}` depends on `{dependency}`, which stands above it; turn the dependency round (DESIGN §1)",
+                "{}/Cargo.toml: `{}` depends on `{dependency}`, which stands above it; turn the dependency round (docs/architecture.md §1.2)",
                 manifest.folder, manifest.name
             ));
         }
@@ -299,7 +299,7 @@ const PURE: [&str; 10] = [
     "defmt",
 ];
 
-/// DESIGN §1; a crate depends on earlier ones only.
+/// docs/architecture.md §1.2; a crate depends on earlier ones only.
 const LOWEST_FIRST: [&str; 30] = [
     "geometry",
     "rules",

@@ -1,6 +1,6 @@
 //! `uart`: tests: a serial line that drops, delays, doubles and corrupts bytes never makes a robot dangerous,
 //! and the robot plays again when the line is good. The host's radio and a robot's station with COBS between
-//! them, over an adversary of single bytes (DESIGN §6).
+//! them, over an adversary of single bytes (docs/architecture.md §6.1).
 
 use std::collections::VecDeque;
 

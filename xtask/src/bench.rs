@@ -1,5 +1,5 @@
-//! `cargo xtask bench`. Starts a bench or an example of the crate `match-tests`, with what it needs installed
-//! first.
+//! `bench`: the commands `cargo xtask bench …`. Starts a bench or an example of the crate `match-tests`, with what
+//! it needs installed first.
 
 use firmware_build::Install;
 

@@ -94,7 +94,7 @@ pub(crate) enum Failure {
     Image(BuildError),
     /// An image is too large, or may panic where it must not.
     Firmware(Vec<String>),
-    /// Something costs more than DESIGN §9 allows.
+    /// Something costs more than docs/architecture.md §9 allows.
     Budget(String),
     /// The same trial gave different traces, or none.
     Determinism(Vec<String>),

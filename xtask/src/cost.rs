@@ -15,7 +15,7 @@ pub(crate) struct Row {
     pub(crate) what: String,
     /// Millions of instructions.
     pub(crate) millions: f64,
-    /// At most so many millions, where DESIGN says.
+    /// Budget in millions, where docs/architecture.md §9 names one.
     pub(crate) most: Option<f64>,
 }
 
@@ -103,8 +103,9 @@ pub(crate) fn write(context: &Context) -> Result<(), Failure> {
 const HEAD: &str = "\
 # What it costs
 
-Instructions counted by valgrind's callgrind on x86-64 in a release build; `cargo xtask budgets` writes this page again. What
-happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the design's budget.
+What simulator, trials, strategy and host cost on a PC: instructions counted by valgrind's callgrind on x86-64 in a
+release build. `cargo xtask budgets` writes this page again. What happens once, such as reading a case base, is taken out by counting a run and one twice as long. \"At most\" is the
+budget of [architecture.md §9](architecture.md#9-budgets).
 ";
 
 const TAIL: &str = "

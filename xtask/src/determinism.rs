@@ -1,8 +1,9 @@
 //! `determinism`: determinism check: the same seed gives the same bits in debug and release, on the PC and on
 //! the robot's processor.
 //!
-//! DESIGN §2: a trial's trace hash runs over every pose, actuator frame and air packet, and is taken by the same code
-//! whatever the robots run on. So three hashes that agree say that three builds played the same trial.
+//! docs/architecture.md §2.5: a trial's trace hash runs over every pose, actuator frame and air packet, and
+//! is taken by the same code whatever the robots run on. So three hashes that agree say that three builds
+//! played the same trial.
 
 use std::collections::BTreeSet;
 use std::fmt;

@@ -1,5 +1,5 @@
 //! `game_cost`: instruction counts of a host with eleven robots and of a match of two teams. Both under
-//! callgrind (DESIGN §9).
+//! callgrind (docs/architecture.md §9).
 //!
 //! The host is fed with a recorded match of division A; each packet of vision with all that follows it until the next is counted for
 //! itself, by a dump of callgrind's. A match is counted over so many seconds and over twice as many.

@@ -1,4 +1,4 @@
-//! `images`: size and panic check of the robots' images (DESIGN §9).
+//! `images`: size and panic check of the robots' images (docs/architecture.md §9).
 //!
 //! One image per body, the one that runs by its own clock, and the one for a real robot's board; the list of places that may panic is `firmware/panics.allow`, for all images together.
 

@@ -20,5 +20,5 @@ const PICTURES: [&str; 5] = [
     "cases render --sheet docs/cases-four-legged.svg",
     "cases coverage --out docs/coverage-four-legged.svg",
 ];
-/// The situation of DESIGN §8: drawn over the case that is retrieved.
+/// The situation of docs/case-format.md §5.1: drawn over the case that is retrieved.
 const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;

@@ -1,22 +1,29 @@
-//! `readme`: check of README's commands. Those that run the program are run, in order, as they stand there.
+//! `readme`: check of the documented commands. Those of README and docs/commands.md that run the program are run, in
+//! order, as they stand there.
 
 use std::fs;
 
 use crate::context::{Context, Failure, run};
 
 /// What holds when the step passes.
-pub(crate) const WHAT: &str = "README's commands run, its first one among them";
+pub(crate) const WHAT: &str =
+    "the commands of README and docs/commands.md run, README's first one among them";
 
-/// Runs every `cargo run` of README's shell blocks; the chores beside them are this very program.
+/// Runs every `cargo run` of the pages' shell blocks; the chores beside them are this very program.
 pub(crate) fn check(context: &Context) -> Result<(), Failure> {
-    let file = context.root().join("README.md");
-    let text = fs::read_to_string(&file)
-        .map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
-    for command in commands(&text) {
-        run(&mut context.cargo(command))?;
+    for page in PAGES {
+        let file = context.root().join(page);
+        let text = fs::read_to_string(&file)
+            .map_err(|error| Failure::Start { line: file.display().to_string(), error })?;
+        for command in commands(&text) {
+            run(&mut context.cargo(command))?;
+        }
     }
     Ok(())
 }
+
+/// Pages whose commands are run; tests/tests/readme.rs reads the same.
+const PAGES: [&str; 2] = ["README.md", "docs/commands.md"];
 
 /// What follows `cargo ` in the lines of README's shell blocks that run the program.
 fn commands(readme: &str) -> Vec<&str> {

@@ -1,5 +1,5 @@
 //! `simulator_cost`: instruction count of a simulated second of eleven against eleven. The simulator under
-//! callgrind (DESIGN §9).
+//! callgrind (docs/architecture.md §9).
 //!
 //! So many seconds and twice as many: the difference is free of everything that happens once.
 
@@ -38,7 +38,8 @@ fn with_table(text: &str, table: &str) -> String {
 
 /// So many and twice as many.
 const SECONDS: u32 = 16;
-/// The program's words, what they mean, and what DESIGN §9 allows, instructions a simulated second.
+/// The program's words, what they mean, and what docs/architecture.md §9 allows, instructions a simulated
+/// second.
 const PARTS: [(&str, &str, Option<f64>); 4] = [
     ("physics", "physics of 11 + 11 scripted robots and the ball, with the trace hash", None),
     ("cameras", "and four cameras at 75 Hz", None),

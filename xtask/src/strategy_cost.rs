@@ -1,5 +1,5 @@
 //! `strategy_cost`: instruction counts of strategy decisions. Its example `strategy_cost` under callgrind,
-//! which counts instructions (DESIGN §9).
+//! which counts instructions (docs/architecture.md §9).
 //!
 //! So many of a kind and twice as many: the difference is free of everything that happens once.
 
@@ -22,7 +22,7 @@ pub(crate) fn rows(context: &Context) -> Result<Vec<Row>, Failure> {
     PARTS.iter().map(row).collect()
 }
 
-/// DESIGN §9: one pass location evaluated.
+/// docs/architecture.md §9: one pass location evaluated.
 const PASS_LOCATION: f64 = 2_000.0;
 /// So many places and twice as many; a multiple of the 200 places of a search, on all 64 scenes.
 const PLACES: u32 = 12_800;

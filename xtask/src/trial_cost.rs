@@ -1,5 +1,5 @@
 //! `trial_cost`: instruction count of a simulated second of a trial. Trials of the paper with full brains
-//! under callgrind, which counts instructions (DESIGN §9).
+//! under callgrind, which counts instructions (docs/architecture.md §9).
 //!
 //! The same trials once and twice as many: the difference is free of everything that happens once.
 
@@ -65,7 +65,7 @@ fn seconds(rows: &str) -> Option<f64> {
     lines.map(|line| line.split(',').nth(column)?.parse::<f64>().ok()).sum()
 }
 
-/// DESIGN §9, instructions a simulated second.
+/// docs/architecture.md §9, instructions a simulated second.
 const BUDGET: f64 = 3e6;
 /// So many and twice as many: minutes of simulated time.
 const TRIALS: u32 = 10;

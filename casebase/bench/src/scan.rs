@@ -1,5 +1,5 @@
-//! `scan`: reference retrieval that scans every case. The plain reading of DESIGN §4.3 with its default
-//! settings.
+//! `scan`: reference retrieval that scans every case. The plain reading of docs/case-format.md §3 with its
+//! default settings.
 //!
 //! Nothing is shared with the retrieval that is measured but the records and the ranking: no index, no bound, and the
 //! correspondence by enumeration. Lengths in mm.

@@ -82,7 +82,8 @@ mod tests {
 
     #[test]
     fn cases_of_three_robots_take_a_sixth_more() {
-        // Division B's have up to three robots and longer plans: DESIGN §9 speaks of the 136 of the four-legged league.
+        // Division B's have up to three robots and longer plans: docs/architecture.md §9 speaks of the 136 of
+        // the four-legged league.
         for league in LEAGUES.iter().filter(|league| !league.names.is_empty()) {
             let bytes = league.base().bytes_per_case();
             assert!(bytes <= 112.0, "{}: {bytes} bytes a stored case", league.name);

@@ -1,5 +1,5 @@
-//! `walk`: simulation of a case's plan: the ball's path when its gameplays are played as written (DESIGN
-//! §4.3, item 4; paper §3.3.1).
+//! `walk`: simulation of a case's plan: the ball's path when its gameplays are played as written
+//! (docs/case-format.md §3.1; paper §3.3.1).
 //!
 //! The gameplays are walked symbolically: who holds the ball, where each robot has got to, which legs the ball
 //! runs. The same walk checks a case when a library is built, computes the legs that are stored with it, and tells

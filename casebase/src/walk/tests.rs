@@ -1,5 +1,5 @@
-//! Tests: the plan simulation follows DESIGN §4.3 step by step. Small gameplays whose ball path is worked out
-//! by hand.
+//! Tests: the plan simulation follows docs/case-format.md §3.1 step by step. Small gameplays whose ball path
+//! is worked out by hand.
 
 extern crate std;
 use std::vec::Vec;

@@ -1,5 +1,5 @@
-//! `authored`: the contents of a case file (DESIGN §4.1). Read key by key, so that every fault names its
-//! line. mm, field frame.
+//! `authored`: the contents of a case file (docs/case-format.md §1). Read key by key, so that every fault
+//! names its line. mm, field frame.
 
 use std::ops::Range;
 

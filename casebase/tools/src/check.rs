@@ -1,4 +1,5 @@
-//! `check`: errors that make a case unplayable. What refuses a library beyond its spelling (DESIGN §4.1).
+//! `check`: errors that make a case unplayable. What refuses a library beyond its spelling
+//! (docs/case-format.md §1.2).
 
 use casebase::walk::{Script, WalkError, walk};
 use casebase::{Action, CaseRobot, Symmetry};

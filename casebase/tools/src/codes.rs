@@ -1,7 +1,8 @@
 //! `codes`: the table of finding codes and their meanings. One table, from which `cases check --explain` is
 //! told.
 //!
-//! Errors are those DESIGN §4.1 lists; everything else doubtful is a warning and never stops retrieval.
+//! Errors are those docs/case-format.md §1.2 lists; everything else doubtful is a warning and never stops
+//! retrieval.
 
 use crate::finding::Severity;
 

@@ -1,5 +1,5 @@
 //! `counterfactual`: the smallest move of one thing on the field that would make a case the retrieved one
-//! (DESIGN §4.3, `explain`).
+//! (docs/case-format.md §3.3, `explain`).
 //!
 //! Moves tried: the ball towards the case's ball; each robot to each adapted position; each opponent into the case's
 //! scopes, out of its legs, out of the winner's scopes and into the winner's legs. On each line the shortest way is

@@ -1,4 +1,5 @@
-//! `files`: the files of a league's library. `league.toml` and `<region>/<name>.toml` (DESIGN §4.1).
+//! `files`: the files of a league's library. `league.toml` and `<region>/<name>.toml`
+//! (docs/case-format.md §1).
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `finding`: findings: what is wrong with a library, where, and how to fix it (DESIGN §4.1).
+//! `finding`: findings: what is wrong with a library, where, and how to fix it (docs/case-format.md §1.2).
 
 use std::fmt;
 use std::path::PathBuf;

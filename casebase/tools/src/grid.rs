@@ -1,4 +1,4 @@
-//! `grid`: cell lists of the index (DESIGN §4.3: an index over the ball's position).
+//! `grid`: cell lists of the index (docs/case-format.md §3: an index over the ball's position).
 //!
 //! See `casebase::Grid`: the two copies of each authored case that defend the negative goal; a cell lists them where the
 //! ball scope reaches into the cell. The cells are as small as the table's budget of bytes allows.
@@ -83,7 +83,8 @@ fn reaches(case: &Authored, ball: PointMm, grid: &Grid, column: u16, row: u16) -
     dx * dx + dy * dy <= f64::from(SCOPE_EXPONENT) * ROUNDING
 }
 
-/// What a stored case may cost in all, bytes (DESIGN §9): what the rest leaves of it is the index's.
+/// What a stored case may cost in all, bytes (docs/architecture.md §9): what the rest leaves of it is the
+/// index's.
 const TABLE_BYTES: usize = 96;
 /// What the index may cost where the rest leaves less, bytes a stored case.
 const INDEX_BYTES: usize = 12;

@@ -1,5 +1,5 @@
-//! `keys`: the keys of case files and of `league.toml` (DESIGN §4.1). The reader refuses all others, and the
-//! JSON schema for editors is made from them. mm, whole degrees.
+//! `keys`: the keys of case files and of `league.toml` (docs/case-format.md §1). The reader refuses all
+//! others, and the JSON schema for editors is made from them. mm, whole degrees.
 
 use std::ops::RangeInclusive;
 

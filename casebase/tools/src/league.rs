@@ -1,4 +1,5 @@
-//! `league`: the contents of `league.toml`: field, passes, kick kinds (DESIGN §4.1). mm, degrees.
+//! `league`: the contents of `league.toml`: field, passes, kick kinds (docs/case-format.md §1.1). mm,
+//! degrees.
 
 use casebase::action::KICKS_MAX;
 use casebase::walk::Kicks;

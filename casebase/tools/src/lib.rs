@@ -2,7 +2,8 @@
 //! time.
 //!
 //! [`load`] reads one league's folder: files → [`League`] and authored cases → checks → the four symmetric copies →
-//! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend (DESIGN §4.1).
+//! table and index ([`Table`]) → warnings. Every [`Finding`] has a code, file, line and mend
+//! (docs/case-format.md §1.2).
 //!
 //! **Invariant.** What is stored was computed by the crate that will read it, `casebase`.
 #![forbid(unsafe_code)]

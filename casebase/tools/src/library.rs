@@ -1,5 +1,5 @@
-//! `library`: loading and checking of a league's library. From its files to a checked table (DESIGN
-//! §4.1–§4.3).
+//! `library`: loading and checking of a league's library. From its files to a checked table
+//! (docs/case-format.md §1–§3).
 
 use std::path::{Path, PathBuf};
 

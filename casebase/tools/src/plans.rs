@@ -1,4 +1,4 @@
-//! `plans`: checks of a case's joint plan. Warnings; none stops retrieval (DESIGN §4.1).
+//! `plans`: checks of a case's joint plan. Warnings; none stops retrieval (docs/case-format.md §1.2).
 //!
 //! Everything is judged in the case's own situation: ball and robots where the file puts them. mm, field frame.
 

@@ -1,5 +1,5 @@
-//! `sampled`: cases that no drawn problem retrieves, and what is retrieved instead. Warnings (DESIGN §4.1),
-//! told from a tally of problems; the build of the built-in libraries draws none.
+//! `sampled`: cases that no drawn problem retrieves, and what is retrieved instead. Warnings
+//! (docs/case-format.md §1.2), told from a tally of problems; the build of the built-in libraries draws none.
 
 use casebase::{SettingError, Settings};
 

@@ -205,7 +205,7 @@ impl Share {
 /// 450 × 300 mm on the four-legged field, as the built-in cases have it on average; within what lint calls large.
 const BALL_SCOPE_X: Share = Share { part: 12, least_mm: 10, most_mm: 900 };
 const BALL_SCOPE_Y: Share = Share { part: 18, least_mm: 10, most_mm: 700 };
-/// 300 mm on the four-legged field: the example of DESIGN §4.1.
+/// 300 mm on the four-legged field: the example of docs/case-format.md §1.
 const OPPONENT_SCOPE: Share = Share { part: 18, least_mm: 10, most_mm: 700 };
 /// 540 mm on the four-legged field: a few steps.
 const DRIBBLE: Share = Share { part: 10, least_mm: 10, most_mm: 1000 };

@@ -1,4 +1,5 @@
-//! `warnings`: warnings about cases that are playable but doubtful; none stops retrieval (DESIGN §4.1).
+//! `warnings`: warnings about cases that are playable but doubtful; none stops retrieval
+//! (docs/case-format.md §1.2).
 
 use std::collections::HashMap;
 use std::ops::Range;

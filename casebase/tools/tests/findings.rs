@@ -1,4 +1,4 @@
-//! `findings`: tests: every fault of a library is reported with its code and line (DESIGN §4.1).
+//! `findings`: tests: every fault of a library is reported with its code and line (docs/case-format.md §1.2).
 
 mod common;
 

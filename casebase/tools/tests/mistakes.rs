@@ -1,5 +1,5 @@
 //! `mistakes`: tests: each kind of mistake is reported with code, file, line and a hint that helps. One test
-//! a kind (DESIGN §4.1).
+//! a kind (docs/case-format.md §1.2).
 //!
 //! A sound library of two files; each test makes exactly one mistake in one of them. Every code of the table that
 //! a text alone can raise has a test here; those that need a folder or thousands of actions are in `findings.rs`.

@@ -58,7 +58,7 @@ fn without_opponents_the_same_cases_fit_and_no_condition_speaks_for_any() {
     assert!(justified > 50, "{justified}: too few to tell");
 }
 
-/// DESIGN §4.3, 6: conditions, teammates, interval, cost, similarity, id.
+/// docs/case-format.md §3: conditions, teammates, interval, cost, similarity, id.
 fn by_hand(a: &Match, b: &Match) -> Ordering {
     let interval = |m: &Match| [0.8, 0.6, 0.4].iter().filter(|least| m.similarity >= **least).count();
     (b.conditions.cmp(&a.conditions))

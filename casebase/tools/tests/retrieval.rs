@@ -1,4 +1,5 @@
-//! `retrieval`: tests: retrieval decides as the paper and DESIGN §4.3 say. Situations worked out by hand.
+//! `retrieval`: tests: retrieval decides as the paper and docs/case-format.md §3 say. Situations worked out
+//! by hand.
 
 mod common;
 

@@ -1,5 +1,5 @@
 //! `sampled`: tests: a case that no drawn problem retrieves is reported, with what is retrieved instead, and
-//! no other case is (DESIGN §4.1).
+//! no other case is (docs/case-format.md §1.2).
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! The brain as a value: what comes in, what goes out, and in which order it thinks (DESIGN §3).
+//! The brain as a value: what comes in, what goes out, and in which order it thinks
+//! (docs/architecture.md §3.1).
 //!
 //! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
 //! `poll_timeout` when to come back.
@@ -133,7 +134,8 @@ impl<'a> Brain<'a> {
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
         self.mates.forget_the_silent(now);
-        // The host overrides own senses and mates' reports (DESIGN §3): where one leads, nobody asks them.
+        // The host overrides own senses and mates' reports (docs/architecture.md §3.1): where one leads,
+        // nobody asks them.
         match &mut self.host {
             Some(host) => host.see(now, sensors, &mut self.belief),
             None => self.belief.update(now, self.config.robot, sensors, &self.mates),
@@ -232,7 +234,7 @@ impl<'a> Brain<'a> {
 }
 
 /// Frames that a short step opens and still plans: both parts of a picture, a command and two mates' beacons. Opening one takes
-/// 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take (DESIGN §9).
+/// 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take (docs/architecture.md §9).
 const HEARD_MOST: u8 = 5;
 /// One less where the way leads around something: to look for such a way takes 7,000 of them.
 const HEARD_MOST_WINDING: u8 = 4;

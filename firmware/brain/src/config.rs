@@ -26,7 +26,7 @@ pub struct BrainConfig {
     pub approach: Approach,
     /// How it retrieves.
     pub settings: Settings,
-    /// Whether a host leads it: without one heard it does nothing (DESIGN §6).
+    /// Whether a host leads it: without one heard it does nothing (docs/architecture.md §6.2).
     pub hosted: bool,
     /// How long robots stand still after every cycle (5 s in the paper's experiments with real robots; else 0).
     pub pause_after_cycle: Duration,

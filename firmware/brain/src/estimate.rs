@@ -1,4 +1,5 @@
-//! `estimate`: expected duration and timeout of a gameplay (DESIGN §5: 1.5 × expected duration + 2 s).
+//! `estimate`: expected duration and timeout of a gameplay (docs/architecture.md §5.3: 1.5 × expected
+//! duration + 2 s).
 
 use casebase::{Action, CaseRobot, Leg};
 use geometry::{Field, Point};

@@ -1,5 +1,5 @@
 //! `execution`: execution of a robot's part of a case. Preconditions start actions, no clock does (paper
-//! §2.2; DESIGN §4.4).
+//! §2.2; docs/case-format.md §4).
 //!
 //! The place in the action list is the whole memory that teammates see: `done` counts finished actions, is repeated in
 //! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
@@ -128,7 +128,7 @@ impl Execution {
                     return Outcome::Running(self.hold(scene));
                 }
                 self.started = true;
-                // Waiting has no limit of its own (DESIGN §4.4): the gameplay's is enough.
+                // Waiting has no limit of its own (docs/case-format.md §4): the gameplay's is enough.
                 if action != Action::Wait {
                     let after = estimate::limit(self.expected(scene));
                     timers.set(Timer::Action, scene.now + after);
@@ -395,11 +395,11 @@ fn attack_direction(scene: &Scene<'_>) -> Angle {
 
 /// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
 const ACTIONS_A_STEP: usize = 8;
-/// A robot has turned within 10° (DESIGN §4.4).
+/// A robot has turned within 10° (docs/case-format.md §4).
 const TURNED_WITHIN: f32 = 0.175;
-/// How long the passer waits for its receiver (DESIGN §4.4).
+/// How long the passer waits for its receiver (docs/case-format.md §4).
 const PASS_PATIENCE: Duration = Duration::millis(1000);
-/// How long an opponent may hold the ball before `get_ball` gives up (DESIGN §4.4).
+/// How long an opponent may hold the ball before `get_ball` gives up (docs/case-format.md §4).
 const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
 /// A ball rolling within this distance of a receiver comes to it, m.
 const COMING_WITHIN: f32 = 0.4;

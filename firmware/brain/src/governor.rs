@@ -1,4 +1,5 @@
-//! `governor`: the last limits before the motors, whatever the brain wants (DESIGN §6; rules 2026).
+//! `governor`: the last limits before the motors, whatever the brain wants (docs/architecture.md §6.2; rules
+//! 2026).
 //!
 //! | why | what is left |
 //! |---|---|
@@ -325,9 +326,9 @@ fn is_kick(kick: OmniKick) -> bool {
     }
 }
 
-/// From this silence of the host on the speed left shrinks (DESIGN §6).
+/// From this silence of the host on the speed left shrinks (docs/architecture.md §6.2).
 const RAMP_FROM: Duration = Duration::millis(50);
-/// At this one the robot brakes (DESIGN §6); a command is stale after it too.
+/// At this one the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
 pub const SILENCE: Duration = Duration::millis(100);
 /// The age up to which a frame counts as heard when it came. With [`SILENCE`] it makes the age at which the robot brakes, and beyond
 /// which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60 ms each way is the most that is planned for, and leaves
@@ -339,7 +340,7 @@ const _: () =
 /// ones are gaps of the radio and end with the first fresh frame: with gaps of 40–150 ms at random, half a second without one of
 /// 50 ms, which was asked for before, is rare (robots stood for 52–78 % of the time in play).
 const LONG_SILENCE: Duration = Duration::millis(500);
-/// Heard again for so long after a boot or a long silence, it may move again (DESIGN §6).
+/// Heard again for so long after a boot or a long silence, it may move again (docs/architecture.md §6.2).
 const ARM_AFTER: Duration = Duration::millis(500);
 /// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.
 pub const STOP_SPEED: f32 = 1.3;

@@ -4,7 +4,7 @@ use geometry::{Field, Pose};
 use protocol::team::{Beacon, CycleState, Progress, Status};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
-/// Silent for longer, and a robot is gone (DESIGN §5).
+/// Silent for longer, and a robot is gone (docs/architecture.md §5.1).
 pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
 /// A teammate's newest beacon.

@@ -2,8 +2,8 @@
 //! parts, and carried forward to now.
 //!
 //! Parts may be lost, doubled and reordered, and their numbers wrap: what came counts, what did not keeps its last place for a
-//! moment. Places hold at the moment of arrival (DESIGN §3); between pictures the own pose goes on by odometry, everybody
-//! else by their velocity, the ball as it rolls. Field frame, SI.
+//! moment. Places hold at the moment of arrival (docs/architecture.md §3.2); between pictures the own pose
+//! goes on by odometry, everybody else by their velocity, the ball as it rolls. Field frame, SI.
 
 use geometry::{Body, Field, Pose, Twist, Vector};
 use motion::ball::BallModel;

@@ -1,4 +1,5 @@
-//! `timer`: the table of a robot's deadlines. All of them in one table, named by an enum (DESIGN §3, §5).
+//! `timer`: the table of a robot's deadlines. All of them in one table, named by an enum
+//! (docs/architecture.md §3.1, §5).
 
 use protocol::{Duration, Instant};
 

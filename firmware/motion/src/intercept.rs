@@ -250,7 +250,7 @@ const ROUNDING: f32 = 1e-5;
 const PROBES: u32 = 6;
 /// Nobody plans farther ahead, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
-/// m (paper 2's robots; papers-checklist D2).
+/// m (paper 2's robots; docs/papers.md D2).
 const MOUTH_DEPTH: f32 = 0.01;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! `ending`: crash record of a robot's program. The place of a panic or a fault, in words that can outlive a
-//! reset (DESIGN §6).
+//! reset (docs/architecture.md §6.2).
 //!
 //! Without `core::fmt`, whose formatting takes 7 kB of an image. What a board does besides is its own: motors without current, a
 //! record kept, a new life.

@@ -148,7 +148,7 @@ pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// The brain's pace on wheels (DESIGN §2).
+/// The brain's pace on wheels (docs/architecture.md §2.3).
 const BRAIN_PERIOD: Duration = Duration::from_millis(10);
 /// The control loop has said nothing for ten of its steps.
 const SILENT: Duration = Duration::from_millis(10);

@@ -1,5 +1,5 @@
-//! `kicker`: interlock of charger and kicker. The interlock between the brain's wish and 200 V (DESIGN §6).
-//! Sans-IO.
+//! `kicker`: interlock of charger and kicker. The interlock between the brain's wish and 200 V
+//! (docs/architecture.md §6.2). Sans-IO.
 //!
 //! | wish | ball at the mouth | capacitor | what happens |
 //! |---|---|---|---|

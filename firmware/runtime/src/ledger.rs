@@ -1,5 +1,5 @@
 //! `ledger`: persistent counter of starts. A ledger in its flash, for every start must bring a larger epoch
-//! than all before it (DESIGN §6): hosts and mates take nothing of an older one. Sans-IO.
+//! than all before it (docs/architecture.md §6.1): hosts and mates take nothing of an older one. Sans-IO.
 //!
 //! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and writes the next one
 //! into the next empty cell. A full half goes on in the other, which is erased first; until the new cell is written the old half

@@ -1,5 +1,5 @@
-//! `runtime`: tasks around the brain on a robot's computer. Embassy tasks, generic over the board (DESIGN
-//! §3).
+//! `runtime`: tasks around the brain on a robot's computer. Embassy tasks, generic over the board
+//! (docs/architecture.md §3.1).
 //!
 //! ```text
 //! air ──► radio_receive ─┐              ┌─► outbox ─► radio_send ──► air

@@ -1,5 +1,5 @@
-//! `mind`: the interface of the brain that its task needs. The sans-IO face of [`brain::Station`] (DESIGN
-//! §3), so that tests can put a simpler mind in its place.
+//! `mind`: the interface of the brain that its task needs. The sans-IO face of [`brain::Station`]
+//! (docs/architecture.md §3.1), so that tests can put a simpler mind in its place.
 
 use brain::Station;
 use protocol::Instant;

@@ -1,4 +1,5 @@
-//! `progress`: task supervision: the watchdog is fed only when every task has reported (DESIGN §1: runtime).
+//! `progress`: task supervision: the watchdog is fed only when every task has reported
+//! (docs/architecture.md §1.1: runtime).
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

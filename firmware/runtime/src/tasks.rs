@@ -3,7 +3,7 @@
 //! The brain's task sleeps until something arrives or its own deadline comes, does that one thing, and takes from the
 //! brain everything it has to say about it. Each deadline is handled at its own time, and one that is due when it is set
 //! as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's native robots
-//! keep the same order, therefore a trial has the same bits there and here (DESIGN §7).
+//! keep the same order, therefore a trial has the same bits there and here (docs/architecture.md §7.2).
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;

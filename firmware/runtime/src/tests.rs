@@ -1,5 +1,5 @@
-//! Tests: tasks drive a brain exactly as a plain loop does. Against a plain loop over the same mind (DESIGN
-//! §7).
+//! Tests: tasks drive a brain exactly as a plain loop does. Against a plain loop over the same mind
+//! (docs/architecture.md §7.2).
 
 use std::boxed::Box;
 use std::cell::RefCell;

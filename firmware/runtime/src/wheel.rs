@@ -1,13 +1,13 @@
 //! `wheel`: wheel speed control at 1 kHz, with a stop when the brain is silent. A thousand times a second,
-//! from encoder to duty, and to a stop where the brain has gone silent (DESIGN §2, §6). Sans-IO; m/s at the
-//! rim, duty as a share of the battery's voltage.
+//! from encoder to duty, and to a stop where the brain has gone silent (docs/architecture.md §2.3, §6.2).
+//! Sans-IO; m/s at the rim, duty as a share of the battery's voltage.
 
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
 
 /// Wheels of a robot.
 pub const WHEELS: usize = 4;
-/// How often the loop runs (DESIGN §2).
+/// How often the loop runs (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
 
 /// What the motors shall do until the next step.

@@ -1,5 +1,5 @@
 //! `backups`: count of backups per robot. Entries into the supporting role, as its beacons tell (paper
-//! §5.2.1, Table 2; checklist R36).
+//! §5.2.1, Table 2; docs/papers.md R36).
 
 use protocol::RobotId;
 use protocol::team::Role;

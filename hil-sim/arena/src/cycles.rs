@@ -1,5 +1,5 @@
 //! `cycles`: log of a team's retrieve–reuse cycles. Put together from overheard beacons alone (paper §4;
-//! DESIGN §5).
+//! docs/architecture.md §5).
 
 use protocol::team::{AbortReason, Closure, CycleState, Decision, Play};
 use protocol::{CycleId, RobotId};

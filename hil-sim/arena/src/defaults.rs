@@ -2,7 +2,8 @@
 //! exceeded the threshold").
 //!
 //! A spell begins with a coordinator's word that no case fits and lasts until a case is decided on. Why none fitted is judged from
-//! the carpet at the end of the tick in which that is heard: the farthest any case came through retrieval's tests (DESIGN §4.3).
+//! the carpet at the end of the tick in which that is heard: the farthest any case came through retrieval's
+//! tests (docs/case-format.md §3).
 
 use casebase::{CaseBase, GoalEnd, Problem, Settings, Verdict, explain};
 use hil_sim::TICK_US;

@@ -1,9 +1,10 @@
 //! `arena`: trials and matches of simulator and brains, their reports, text logs and pictures. Runs on the
 //! PC.
 //!
-//! [`run`] plays one trial of Ros et al. 2009 and gives its [`TrialReport`] (DESIGN §8). Whoever wants to see more than the report
-//! watches: a [`Watcher`] is shown every tick, as somebody at the field's edge with a radio receiver would see it; [`Story`]
-//! tells it in words, [`Recording`] keeps what [`picture()`] draws.
+//! [`run`] plays one trial of Ros et al. 2009 and gives its [`TrialReport`] (docs/case-format.md §5.2).
+//! Whoever wants to see more than the report watches: a [`Watcher`] is shown every tick, as somebody at the
+//! field's edge with a radio receiver would see it; [`Story`] tells it in words, [`Recording`] keeps what
+//! [`picture()`] draws.
 //!
 //! [`Rehearsal`] plays single cases from their own situation, many times: does a case do what its author meant?
 //!

@@ -1,5 +1,5 @@
-//! `names`: names of robots and cases. A, B, C, D as in the paper's figures; cases by `region/name` (DESIGN
-//! §4.2).
+//! `names`: names of robots and cases. A, B, C, D as in the paper's figures; cases by `region/name`
+//! (docs/case-format.md §2).
 
 use casebase::Symmetry;
 use hil_sim::Role;

@@ -1,4 +1,5 @@
-//! `report`: result of a trial. The fields of `onetwo trial --json` in their order (DESIGN §8); s, counts.
+//! `report`: result of a trial. The fields of `onetwo trial --json` in their order
+//! (docs/case-format.md §5.2); s, counts.
 
 use std::collections::BTreeMap;
 
@@ -37,9 +38,9 @@ pub struct TrialReport {
     pub cases: CaseCounts,
     /// Every retrieve–reuse cycle, in order.
     pub cycles: Vec<CycleReport>,
-    /// Equal for equal trials (DESIGN §2).
+    /// Equal for equal trials (docs/architecture.md §2.5).
     pub trace_hash: String,
-    /// The named settings of retrieval (DESIGN §4.3).
+    /// The named settings of retrieval (docs/case-format.md §3.2).
     pub settings: BTreeMap<&'static str, String>,
     /// `dependent` or `independent`.
     pub positioning: &'static str,
@@ -49,7 +50,7 @@ pub struct TrialReport {
     pub default: Option<DefaultReport>,
 }
 
-/// How often each opponent had the ball (paper §5.1.4; checklist R33); 0 where it does not play.
+/// How often each opponent had the ball (paper §5.1.4; docs/papers.md R33); 0 where it does not play.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Possession {
     /// The defender.
@@ -68,7 +69,7 @@ impl Serialize for Backups {
     }
 }
 
-/// What the retrievals came to (checklist R37).
+/// What the retrievals came to (docs/papers.md R37).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CaseCounts {
     /// Cases for one robot.

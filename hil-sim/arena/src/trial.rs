@@ -1,5 +1,5 @@
-//! `trial`: a trial of the first paper (Ros et al. 2009 §5.1; DESIGN §7, §8). Robots 1, 2, … are A, B, … and
-//! attack +x.
+//! `trial`: a trial of the first paper (Ros et al. 2009 §5.1;
+//! docs/architecture.md §7, docs/case-format.md §5). Robots 1, 2, … are A, B, … and attack +x.
 
 use brain::{Approach, BrainConfig, Positioning};
 use casebase::{CaseBase, Settings};

@@ -126,7 +126,7 @@ fn watching_changes_nothing_and_frames_keep_their_budgets() {
     let mut traffic = Traffic::default();
     let watched = short(6, 15.0, &mut Crowd(vec![&mut traffic]));
     assert_eq!(watched, short(6, 15.0, &mut Nobody));
-    // DESIGN §6: a command takes at most 40 B of air, a part of the world 120 B.
+    // docs/architecture.md §6.1: a command takes at most 40 B of air, a part of the world 120 B.
     assert!(traffic.longest_to_one > 0 && traffic.longest_to_one <= 40, "{} B", traffic.longest_to_one);
     assert!(traffic.longest_to_all > 0 && traffic.longest_to_all <= 120, "{} B", traffic.longest_to_all);
     // 15 s of about 40 referee packets a second, and at least 60 pictures a second for each team.

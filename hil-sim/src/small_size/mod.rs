@@ -1,5 +1,5 @@
 //! `small_size`: physics of the Small Size League. Robots on wheels and a golf ball in three dimensions, 1 ms
-//! a step (DESIGN §2, §7).
+//! a step (docs/architecture.md §2.3, §7.1).
 //!
 //! A step of the [`World`]: wheels drive (`robot`), bodies part (`crowd`), kickers and dribblers act (`mouth`), the ball
 //! moves (`ball`) and bounces (`contact`), light barriers look. What happened comes out as [`Event`]s. SI units, field
@@ -377,7 +377,7 @@ impl World {
     }
 }
 
-/// Seconds in a step of physics (DESIGN §2: Small Size, every 1 ms).
+/// Seconds in a step of physics (docs/architecture.md §2.3: Small Size, every 1 ms).
 pub const STEP: f32 = 0.001;
 /// Robots of both colours that there can be.
 pub const SLOTS: usize = 2 * RobotId::COUNT;

@@ -1,4 +1,5 @@
-//! `senses`: sensors of a wheeled robot. Wheels and gyroscope with noise, light barrier, battery (DESIGN §3).
+//! `senses`: sensors of a wheeled robot. Wheels and gyroscope with noise, light barrier, battery
+//! (docs/architecture.md §3.2).
 //!
 //! Where it is it learns from its host alone: no pose, no ball seen, no opponents.
 

@@ -1,4 +1,5 @@
-//! `trace`: trace hash of a match. The hash of DESIGN §2 over a Small Size world, tick by tick.
+//! `trace`: trace hash of a match. The hash of docs/architecture.md §2.5 over a Small Size world, tick by
+//! tick.
 //!
 //! Per tick of 10 ms, in order: the tick's number (u32); the ball's place, height, velocity and climb; of every robot
 //! present its slot (a byte), pose and velocity, turning; every order to a body (slot, postcard bytes); every packet handed

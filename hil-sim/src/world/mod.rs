@@ -1,5 +1,5 @@
 //! `world`: physics of the four-legged league. Ball and walking robots in steps of 10 ms; m, s, rad, field
-//! frame (DESIGN §7).
+//! frame (docs/architecture.md §7.1).
 //!
 //! A step: primitives progress (`primitives`), robots walk (`walker`) and are pushed apart, the ball rolls (`ball`) or is
 //! carried, and what touches it pushes it (`contact`). What happened comes out as [`WorldEvent`]s. Robots are named
@@ -180,7 +180,7 @@ impl World {
     }
 }
 
-/// Seconds in a step of physics (DESIGN §2: four-legged, every 10 ms).
+/// Seconds in a step of physics (docs/architecture.md §2.3: four-legged, every 10 ms).
 pub const STEP: f32 = 0.01;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `args`: command-line arguments. The verbs and the arguments they share (DESIGN §8).
+//! `args`: command-line arguments. The verbs and the arguments they share (docs/case-format.md §5).
 
 use std::path::PathBuf;
 
@@ -72,7 +72,7 @@ pub(crate) struct LibraryArgs {
     pub(crate) league: String,
 }
 
-/// Retrieval's named settings (DESIGN §4.3).
+/// Retrieval's named settings (docs/case-format.md §3.2).
 #[derive(Debug, Args)]
 pub(crate) struct SettingsArgs {
     /// Change a setting of retrieval; may be repeated.

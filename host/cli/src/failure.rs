@@ -1,4 +1,5 @@
-//! `failure`: errors of the program, and how to fix them. Exit code 1 (DESIGN §8); wrong usage is clap's.
+//! `failure`: errors of the program, and how to fix them. Exit code 1 (docs/case-format.md §5); wrong usage
+//! is clap's.
 
 use std::fmt;
 use std::io;

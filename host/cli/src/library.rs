@@ -1,4 +1,4 @@
-//! `library`: a case library: built in, or one league's directory read at run time (DESIGN §8).
+//! `library`: a case library: built in, or one league's directory read at run time (docs/case-format.md §5).
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
 //! `onetwo`: entry point of `onetwo`. Reads the command line, hands it to the verb's file, and turns the
-//! verb's end into an exit code: 0 done, 1 the thing asked for failed, 2 wrong usage (DESIGN §8).
+//! verb's end into an exit code: 0 done, 1 the thing asked for failed, 2 wrong usage
+//! (docs/case-format.md §5).
 //!
 //! One file per verb. A verb takes its arguments and returns an [`ExitCode`] or a [`Failure`] that says in words what
 //! went wrong and how to mend it; data goes to stdout, words to stderr. Runs on a PC.

@@ -1,4 +1,5 @@
-//! `onetwo play`: a whole match in the simulator, ours against ours or another team (DESIGN §8). Shown on the page at the clock's pace;
+//! `onetwo play`: a whole match in the simulator, ours against ours or another team (docs/case-format.md §5).
+//! Shown on the page at the clock's pace;
 //! `--headless` as fast as the machine plays it, told line by line, or as one JSON object.
 
 use std::io::{self, IsTerminal, Write};

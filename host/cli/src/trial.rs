@@ -1,4 +1,5 @@
-//! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1; DESIGN §8).
+//! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1;
+//! docs/case-format.md §5.2).
 
 use std::fs;
 use std::io::Write;

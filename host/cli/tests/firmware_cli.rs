@@ -1,4 +1,5 @@
-//! `firmware_cli`: tests of `onetwo firmware` without a target compiler and without a probe (DESIGN §8).
+//! `firmware_cli`: tests of `onetwo firmware` without a target compiler and without a probe
+//! (docs/case-format.md §5).
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,5 +1,5 @@
 //! `problem`: export of a moment. As a problem line for `onetwo cases retrieve` and `explain`, or as the
-//! beginnings of a case file. mm, field frame (DESIGN §4.1, §8).
+//! beginnings of a case file. mm, field frame (docs/case-format.md §1, §5.1).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -19,11 +19,11 @@ pub enum Freeze {
     Case,
 }
 
-/// Most robots of a team in a case file (DESIGN §4.1).
+/// Most robots of a team in a case file (docs/case-format.md §1).
 const CASE_ROBOTS_MAX: usize = 4;
 /// Most of a team in a problem.
 const PROBLEM_ROBOTS_MAX: usize = 11;
-/// The ball's scope to begin with, mm: as DESIGN's example.
+/// The ball's scope to begin with, mm: as in the example of docs/case-format.md §1.
 const BALL_SCOPE: &str = "[450, 250]";
 /// An opponent's, mm.
 const OPPONENT_SCOPE: &str = "[300, 300]";

@@ -1,5 +1,5 @@
-//! `radio`: snapshots and commands into frames at the right rate, robots' frames into telemetry and link quality (DESIGN §3, §6).
-//! Sans-IO: times come from the caller, packets go back to it.
+//! `radio`: snapshots and commands into frames at the right rate, robots' frames into telemetry and link
+//! quality (docs/architecture.md §3.3, §6.1). Sans-IO: times come from the caller, packets go back to it.
 //!
 //! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]). Only then it is commanded,
 //! addressed by snapshots, relayed and given to the strategy. Before, it is welcomed, at most every [`STRANGER_EVERY`].

@@ -1,5 +1,5 @@
 //! `recorder`: recording of a match. `X.log.gz` for everybody's tools, `X.trace` so that every decision can
-//! be taken again (DESIGN §7).
+//! be taken again (docs/architecture.md §7.4).
 //!
 //! What came and went in a second of the match is in the files when the next one begins: a program that is killed loses no more.
 //! Seconds are counted on the hosts' clock, so that the files of equal matches are equal.

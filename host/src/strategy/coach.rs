@@ -1,5 +1,5 @@
 //! `coach`: the plan for each phase of the game: one order per robot of ours, every time the world model
-//! changes (DESIGN §3).
+//! changes (docs/architecture.md §3.3).
 //!
 //! In open play the keeper guards, two defenders stand before the area, and whoever is first at the ball shoots or passes where that is
 //! worth it; else it and everybody left play cases, which the robots choose among themselves. While the ball is not in play everything is said from here. The coach remembers who had which role (so that nobody

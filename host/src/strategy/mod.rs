@@ -1,5 +1,5 @@
 //! `strategy`: team strategy: an order for every robot. A team that plays by the rules: keeper, two
-//! defenders, the others by cases (DESIGN §3).
+//! defenders, the others by cases (docs/architecture.md §3.3).
 //!
 //! [`view`] is the field as strategy sees it, turned so that we attack towards +x (the one place that flips); [`roles`] says
 //! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them

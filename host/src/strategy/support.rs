@@ -1,5 +1,5 @@
 //! `support`: support positions and pass targets. A few fixed places and targets, rated by room and by the
-//! open goal; the search by probabilities is strategy's next part. Attack frame, m.
+//! open goal; the search by probabilities is `pass::search`. Attack frame, m.
 
 use geometry::{Attack, Point, Segment};
 use motion::ball::BallModel;

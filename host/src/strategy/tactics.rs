@@ -1,5 +1,5 @@
 //! `tactics`: the parts of the second paper that a team plays with. Each can be left out, so that what it is
-//! worth can be measured: an ablation is a setting (papers-checklist D24).
+//! worth can be measured: an ablation is a setting (docs/papers.md D24).
 
 use serde::{Deserialize, Serialize};
 
@@ -21,7 +21,7 @@ pub struct Tactics {
     /// In open play, whoever is first at the ball shoots or passes by P(goal) where that is worth it; else cases are played.
     #[serde(default)]
     pub attack: bool,
-    /// Where a case is played, its next pass as pass location and pass-ahead refine it (papers-checklist §6).
+    /// Where a case is played, its next pass as pass location and pass-ahead refine it (docs/papers.md §8).
     #[serde(default)]
     pub bridge: bool,
 }

@@ -1,5 +1,5 @@
 //! `tally`: match counters of passes, free kicks and role changes. Counts of a match, for reports
-//! (papers-checklist D24).
+//! (docs/papers.md D24).
 
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};

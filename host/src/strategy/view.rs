@@ -1,5 +1,5 @@
-//! `view`: the strategy's view of the field. The field turned so that the goal we attack lies at +x (DESIGN
-//! §2: the one place that flips). SI.
+//! `view`: the strategy's view of the field. The field turned so that the goal we attack lies at +x
+//! (docs/architecture.md §2.1: the one place that flips). SI.
 
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};

@@ -1,5 +1,5 @@
 //! `goal`: the two goals. The one at this end of the field; the paper's words for the two, and who attacks
-//! where (DESIGN §2).
+//! where (docs/architecture.md §2.1).
 
 use serde::{Deserialize, Serialize};
 

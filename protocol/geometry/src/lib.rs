@@ -1,4 +1,4 @@
-//! `geometry`: frames, axes and units (DESIGN §2) (DESIGN §2).
+//! `geometry`: frames, axes and units (docs/architecture.md §2.1).
 //!
 //! | frame | origin | axes | who thinks in it |
 //! |---|---|---|---|

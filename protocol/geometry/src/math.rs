@@ -1,4 +1,4 @@
-//! `math`: elementary functions with equal bits on PC and Cortex-M (DESIGN §2) (DESIGN §2).
+//! `math`: elementary functions with equal bits on PC and Cortex-M (docs/architecture.md §2.4).
 //!
 //! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and cosine are
 //! single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer); the rest is libm,

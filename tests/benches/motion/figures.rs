@@ -82,7 +82,7 @@ fn limits(work: Work) -> Limits {
     const NONE: u64 = u64::MAX;
     let limits = |mean, worst, host| Limits { mean, worst, host };
     match work {
-        // DESIGN §9.
+        // docs/architecture.md §9.
         Work::FreeTime | Work::FreePlan => limits(1_500, 1_500, 2_500),
         Work::DragTime | Work::DragPlan => limits(NONE, NONE, 6_000),
         // What was reached, with room: so that it does not grow unseen.

@@ -1,4 +1,4 @@
-//! `motion`: motion benchmark (DESIGN §9). `cargo xtask bench motion` starts it.
+//! `motion`: motion benchmark (docs/architecture.md §9). `cargo xtask bench motion` starts it.
 //!
 //! Instructions on the robot's processor (QEMU) and on this machine (callgrind), on tasks of a seed; with `--verify` 10^6
 //! tasks held to the best of all shares. Exit code 1 where a budget is broken.

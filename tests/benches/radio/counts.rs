@@ -62,7 +62,8 @@ fn limit(bytes: u32) -> Option<u32> {
     match bytes {
         0..=32 => Some(1_300),
         33..=64 => Some(2_400),
-        // Worlds come to a robot a few hundred times a second; DESIGN §9 names no budget for them.
+        // Worlds come to a robot a few hundred times a second; docs/architecture.md §9 names no budget for
+        // them.
         _ => None,
     }
 }

@@ -1,4 +1,4 @@
-//! `radio`: radio benchmark (DESIGN §9). `cargo xtask bench radio` starts it.
+//! `radio`: radio benchmark (docs/architecture.md §9). `cargo xtask bench radio` starts it.
 //!
 //! The bench's image under QEMU, which counts instructions. Exit code 1 where a budget is broken.
 

@@ -112,7 +112,7 @@ fn inside_the_gate(base: &CaseBase<'_>, problem: &Problem) -> usize {
 /// The set of problems that robots retrieved for.
 pub(crate) const PLAYED: &str = "played";
 
-// DESIGN §9, guest instructions and bytes.
+// docs/architecture.md §9, guest instructions and bytes.
 const MEDIAN: f64 = 1_500.0;
 const WORST: f64 = 12_000.0;
 const LARGE: usize = 10_000;

@@ -1,4 +1,4 @@
-//! `retrieval`: retrieval benchmark (DESIGN §9). `cargo xtask bench retrieval` starts it.
+//! `retrieval`: retrieval benchmark (docs/architecture.md §9). `cargo xtask bench retrieval` starts it.
 //!
 //! Bases of 36 to 10,000 stored cases; random problems and those that robots retrieved for in 200 trials; instructions
 //! on the robot's processor (QEMU) and on this machine (callgrind). Exit code 1 where a budget is broken.
@@ -84,7 +84,7 @@ usage: cargo xtask bench retrieval [--write | --guest | --verify]
   --guest   the robot's processor alone, without callgrind
   --verify  answer 10^6 random problems as a plain scan does";
 
-/// Trials whose problems are recorded (DESIGN §9).
+/// Trials whose problems are recorded (docs/architecture.md §9).
 const TRIALS: usize = 200;
 /// Random problems a base.
 const RANDOM: usize = 1_000;

@@ -1,8 +1,9 @@
 //! `library`: naive reader of case files.
 //!
-//! DESIGN §4.1 and §4.2 with the `toml` crate's generic values and nothing else of the project: every stored case is
-//! spelled out (the authored one and its three mirror images), kicks resolved into aim and radii. Field frame, mm,
-//! whole degrees. It trusts the library to be valid: what it cannot read is an error, but it is no lint.
+//! docs/case-format.md §1, §2 with the `toml` crate's generic values and nothing else of the project: every
+//! stored case is spelled out (the authored one and its three mirror images), kicks resolved into aim and
+//! radii. Field frame, mm, whole degrees. It trusts the library to be valid: what it cannot read is an error,
+//! but it is no lint.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -214,7 +215,8 @@ impl Library {
         Self::from_texts(&league, &files)
     }
 
-    /// The same from texts; a `BTreeMap` of `String`s is ordered by bytes, as DESIGN §4.2 orders cases.
+    /// The same from texts; a `BTreeMap` of `String`s is ordered by bytes, as docs/case-format.md §2 orders
+    /// cases.
     pub fn from_texts(league: &str, files: &BTreeMap<String, String>) -> Result<Self, Unreadable> {
         let in_file = |name: &str| {
             let file = PathBuf::from(format!("{name}.toml"));

@@ -1,6 +1,7 @@
 //! `problem`: naive parser of problem lines.
 //!
-//! The format of DESIGN §8, read with `serde_json`'s generic values. Integers in mm, field frame.
+//! The format of docs/case-format.md §5.1, read with `serde_json`'s generic values. Integers in mm, field
+//! frame.
 
 use std::fmt;
 

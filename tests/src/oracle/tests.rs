@@ -42,7 +42,7 @@ r_min = 100
 r_max = 300
 "#;
 
-/// The example of DESIGN §4.1.
+/// The example of docs/case-format.md §1.
 const PASS_AROUND: &str = r#"
 intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"

@@ -1,6 +1,7 @@
 //! `walk`: naive plan simulation: the ball's path through a case.
 //!
-//! The symbolic walk of DESIGN §4.3 item 4 (paper §3.3.1), played one ball action after the other. Field frame, mm.
+//! The symbolic walk of docs/case-format.md §3.1 (paper §3.3.1), played one ball action after the
+//! other. Field frame, mm.
 
 use super::library::{Action, Aim, Case, Kick, Library, Point, Tube};
 

@@ -1,5 +1,5 @@
 //! `guard`: safety monitor of a wheeled robot: its actuator orders against what it received and sensed, seen
-//! from outside the brain (DESIGN §6).
+//! from outside the brain (docs/architecture.md §6.2).
 //!
 //! The guard knows the packets a robot was handed, what an [`Honest`] listener believes of them, its sensors and its
 //! orders. Limits are the published ones; where a clock that runs 100 ppm off and ticks of 10 ms blur them, the robot has one tick more.
@@ -251,7 +251,7 @@ impl Guard {
 
 /// A tick of a brain on wheels, ms.
 const SLACK: u32 = 10;
-/// ms (DESIGN §6): limits shrink; brake; disarmed; armed again.
+/// ms (docs/architecture.md §6.2): limits shrink; brake; disarmed; armed again.
 const GAP: u32 = 50;
 const SILENCE: u32 = 100;
 const LONG_SILENCE: u32 = 500;

@@ -1,5 +1,5 @@
 //! `swarm`: swarm test: a team stays safe under many faults at once, and plays again afterwards. A swarm of
-//! runs, each with faults of its own (DESIGN §5, §6).
+//! runs, each with faults of its own (docs/architecture.md §5.4, §6.2).
 //!
 //! A seed is a run: [`plan`] draws who plays and what goes wrong, `legged` and `wheels` play it with native brains,
 //! [`adversary`] tampers with radios and [`computer`] with sensors and clocks. What is promised is watched from outside:

@@ -77,7 +77,7 @@ pub enum Squad {
 }
 
 impl Squad {
-    /// A brain's tick, ms (DESIGN §2).
+    /// A brain's tick, ms (docs/architecture.md §2.3).
     pub const fn tick_ms(self) -> u32 {
         match self {
             Self::Legged => 40,

@@ -198,5 +198,5 @@ fn instant(ms: u32) -> Instant {
 
 /// What the plan has for a moment happens in the next tick, ms: 40 at most.
 const LAST_TICK: u32 = 40;
-/// A new cycle comes within this time of healing, ms (DESIGN §5).
+/// A new cycle comes within this time of healing, ms (docs/architecture.md §5.4).
 const RECOVER_WITHIN: u32 = 1_000;

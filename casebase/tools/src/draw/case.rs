@@ -391,7 +391,7 @@ fn at(point: PointMm) -> At {
     [f64::from(point.x), f64::from(point.y)]
 }
 
-/// Where a similarity interval ends, and its letter (DESIGN §4.3).
+/// Where a similarity interval ends, and its letter (docs/case-format.md §3).
 const INTERVALS: [(f64, &str); 3] = [(0.8, "H"), (0.6, "h"), (0.4, "l")];
 /// Where the letters of the intervals may stand around the ball, degrees, what reads best first.
 const RAYS: [i32; 16] = [-35, 35, -145, 145, 0, 180, -18, 18, -162, 162, -55, 55, -125, 125, -90, 90];

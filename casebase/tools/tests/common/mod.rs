@@ -56,7 +56,7 @@ r_min = 60
 r_max = 200
 "#;
 
-/// The example of DESIGN §4.1.
+/// The example of docs/case-format.md §1.
 pub(crate) const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"
 ball = { at = [-600, 0], scope = [450, 250] }

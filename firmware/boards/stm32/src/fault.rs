@@ -1,4 +1,5 @@
-//! `fault`: fault handler: everything off, crash record kept and reported, restart (DESIGN §6).
+//! `fault`: fault handler: everything off, crash record kept and reported, restart
+//! (docs/architecture.md §6.2).
 //!
 //! The record lies in the calendar's backup registers: a reset leaves them alone, and unlike memory they have no check bits that a
 //! power-up would leave wrong.

@@ -1,5 +1,5 @@
-//! `shown`: belief of a wheeled robot, from the host's snapshot, its break-beam sensor and its wheels (DESIGN
-//! §3).
+//! `shown`: belief of a wheeled robot, from the host's snapshot, its break-beam sensor and its wheels
+//! (docs/architecture.md §3.2).
 //!
 //! Field frame, SI. The ball in its grip: the light barrier, bridged for a moment where the host shows the ball before the
 //! mouth, as a rolling ball flickers. How far the ball was carried counts from the first touch until there is a gap that

@@ -58,7 +58,8 @@ impl Limbs {
         }
     }
 
-    /// Whether its steps are short (10 ms, DESIGN §2), so that not everything need happen in each.
+    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that not everything need happen in
+    /// each.
     pub fn has_short_steps(&self) -> bool {
         matches!(self, Self::Wheels(..))
     }
@@ -71,7 +72,7 @@ impl Limbs {
         }
     }
 
-    /// Every how many steps this body's robots tell their mates of themselves (DESIGN §5).
+    /// Every how many steps this body's robots tell their mates of themselves (docs/architecture.md §5.1).
     pub fn beacon_steps(&self) -> u8 {
         match self {
             Self::Legs(_) => 1,
@@ -139,7 +140,7 @@ impl Limbs {
     }
 }
 
-/// 20 beacons a second, in steps of 10 ms (DESIGN §2, §5).
+/// 20 beacons a second, in steps of 10 ms (docs/architecture.md §2.3, §5.1).
 const BEACON_STEPS: u8 = 5;
 /// No rim is asked to run faster, m/s: below what wheels run free (the simulator's 6).
 const RIM_MAX: f32 = 5.0;

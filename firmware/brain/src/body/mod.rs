@@ -85,7 +85,7 @@ pub struct BodySpec {
     pub kick: f32,
     /// No fetch is expected to take longer, s.
     pub longest_fetch: f32,
-    /// It has arrived within this distance, m (DESIGN §4.4).
+    /// It has arrived within this distance, m (docs/case-format.md §4).
     pub arrived_within: f32,
     /// "Next to the ball" of the robot that gets it (paper §4.2), centre to ball, m.
     pub next_to_ball: f32,

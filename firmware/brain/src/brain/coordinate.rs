@@ -1,4 +1,5 @@
-//! What concerns the team: being present, proposing, deciding, closing and aborting cycles (paper §4; DESIGN §5).
+//! What concerns the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
+//! docs/architecture.md §5).
 
 use casebase::CaseRobot;
 use protocol::team::{AbortReason, Beacon, Closure, CycleState, Decision, Play, Progress, Status};

@@ -1,4 +1,5 @@
-//! `tell`: what the robot sends of itself: beacons (DESIGN §5) and, where a host leads, telemetry (DESIGN §6).
+//! `tell`: what the robot sends of itself: beacons (docs/architecture.md §5.1) and, where a host leads,
+//! telemetry (docs/architecture.md §6.1).
 
 use protocol::host::{Condition, Telemetry};
 use protocol::quantized::length_to_mm;

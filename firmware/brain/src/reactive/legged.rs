@@ -295,7 +295,7 @@ const ACROSS_AHEAD: f32 = 0.6;
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;
-/// A supporter keeps this far from the ball (checklist §3.5: 0.8–1 m).
+/// A supporter keeps this far from the ball (an estimate between 0.8 and 1 m).
 const SUPPORT_DISTANCE: f32 = 0.9;
 /// And this far off the line from ball to goal: 70°.
 const SUPPORT_ANGLE: Angle = Angle::const_new(1.221_730_5);

@@ -1,5 +1,5 @@
-//! `monitor`: monitoring of a running case. What every robot involved watches while it plays (DESIGN §5,
-//! checklist R27).
+//! `monitor`: monitoring of a running case. What every robot involved watches while it plays
+//! (docs/architecture.md §5.3, docs/papers.md R27).
 //!
 //! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the ball not at
 //! rest where nobody of the case expects it. A doubt must last a fifth of a second before it aborts: an opponent at the

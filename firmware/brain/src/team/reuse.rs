@@ -100,5 +100,5 @@ fn executes(scene: &Scene<'_>, part: casebase::CaseRobot) -> bool {
     matches!(scene.progress_of(part), Some(Progress::Execute { .. } | Progress::WaitEnd { finished: true }))
 }
 
-/// Facing the ball within this angle, rad: 20° (checklist R24).
+/// Facing the ball within this angle, rad: 20° (docs/papers.md R24).
 const FACING_WITHIN: f32 = 0.35;

@@ -1,4 +1,5 @@
-//! `budget`: size budget of an image. The budget of DESIGN §9, and the computers it is compared with.
+//! `budget`: size budget of an image. The budget of docs/architecture.md §9, and the computers it is compared
+//! with.
 
 use std::fmt;
 
@@ -14,7 +15,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of a robot's image with its cases (DESIGN §9).
+    /// Of a robot's image with its cases (docs/architecture.md §9).
     pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
 
     /// Of the image for a real robot's board: the same robot, and 27 kB of drivers, clocks and log of its chip, which has 2 MiB. What
@@ -81,10 +82,11 @@ impl Chip {
 }
 
 /// Bytes of stack that a program may ever use, painted: with [`Budget::IMAGE`]'s RAM it leaves half of an STM32F405's 128 KiB free
-/// (DESIGN §9 asks for a painted stack that is checked and names no number).
+/// (docs/architecture.md §9 asks for a painted stack that is checked and names no number).
 pub const STACK_BUDGET: u32 = 16 * 1024;
 
-/// Guest instructions of one brain step on its worst path (DESIGN §9), the tasks around the brain included.
+/// Guest instructions of one brain step on its worst path (docs/architecture.md §9), the tasks around the
+/// brain included.
 pub const STEP_BUDGET: u32 = 40_000;
 
 /// Symbols named where a budget breaks.

@@ -142,7 +142,7 @@ fn folded(state: &State<Field>) -> u32 {
     words.into_iter().fold(0, |all: u32, word| all.rotate_left(5) ^ word.to_bits())
 }
 
-/// As DESIGN's worst scene: 12 robots and 4 forbidden regions.
+/// The worst case planned for (docs/architecture.md §9): 12 robots and 4 forbidden regions.
 const OBSTACLES: usize = 16;
 
 /// The tasks of a seed, for ever.

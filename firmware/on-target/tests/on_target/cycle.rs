@@ -10,7 +10,7 @@ mod tests {
     use protocol::team::{AbortReason, Closure, Decision, Progress, TeamMessage};
     use protocol::{Duration, Instant, RobotId, TeamId};
 
-    /// A brain step of a walking robot (DESIGN §2).
+    /// A brain step of a walking robot (docs/architecture.md §2.3).
     const STEP: Duration = Duration::millis(40);
 
     #[test]
@@ -30,7 +30,7 @@ mod tests {
                 told.push(progress).expect("few changes");
             }
         }
-        // It listens for one lease, 400 ms, before it proposes (DESIGN §5).
+        // It listens for one lease, 400 ms, before it proposes (docs/architecture.md §5.1).
         assert!(first_at.is_some_and(|at| at >= Instant(400_000)), "{first_at:?}: {told:?}");
         assert_eq!(told.iter().take(2).copied().map(kind).collect::<Vec<_, 2>>()[..], [0, 1], "{told:?}");
         assert!(robot.playing, "a case was chosen");

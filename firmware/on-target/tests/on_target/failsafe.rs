@@ -1,5 +1,5 @@
 //! `failsafe`: tests: the governor stops a robot on this processor, to the millisecond of the PC's tests
-//! (DESIGN §6).
+//! (docs/architecture.md §6.2).
 
 #[embedded_test::tests]
 mod tests {

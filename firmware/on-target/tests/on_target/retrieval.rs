@@ -1,4 +1,4 @@
-//! `retrieval`: tests: the retrieved case is the one that a scan by DESIGN §4.3 finds. mm.
+//! `retrieval`: tests: the retrieved case is the one that a scan by docs/case-format.md §3 finds. mm.
 
 #[embedded_test::tests]
 mod tests {
@@ -10,7 +10,7 @@ mod tests {
     /// So far from the ball is a robot that may take part.
     const NEAR: i32 = 1_200;
 
-    /// The problem of DESIGN §8: the ball at the centre, a mate, an opponent in the way.
+    /// The problem of docs/case-format.md §5.1: the ball at the centre, a mate, an opponent in the way.
     #[test]
     fn the_example_of_the_design_finds_a_case_with_both_robots_and_the_opponent() {
         let problem = Problem {

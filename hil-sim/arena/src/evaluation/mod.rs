@@ -6,7 +6,8 @@
 //!                                                                     paper::rows ──────┘
 //! ```
 //! A [`Plan`] numbers the trials; shards of it are played anywhere, and merged rows are the same bytes for any number of threads,
-//! shards and interrupts. [`tables`] makes DESIGN §8's `tables.json` of them; [`compare`] and [`with_paper`] say what differs.
+//! shards and interrupts. [`tables`] makes docs/case-format.md §5.2's `tables.json` of them; [`compare`] and
+//! [`with_paper`] say what differs.
 
 mod ablation;
 mod claims;

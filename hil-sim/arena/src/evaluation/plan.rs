@@ -18,7 +18,7 @@ use crate::trial::{APPROACHES, TrialConfig};
 pub enum Profile {
     /// The paper's simulator: noiseless perception (§5.2).
     Simulated,
-    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; checklist R40).
+    /// As the paper's robots: noise in perception, 5 s of standing still after every cycle (§5.3; docs/papers.md R40).
     Robots,
 }
 

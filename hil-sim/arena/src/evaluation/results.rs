@@ -4,7 +4,7 @@
 //! | file | what |
 //! |---|---|
 //! | `trials.csv` | every trial, in the plan's order |
-//! | `tables.json`, `tables.csv` | the paper's tables (DESIGN §8) |
+//! | `tables.json`, `tables.csv` | the paper's tables (docs/case-format.md §5.2) |
 //! | `comparisons.json`, `comparisons.csv` | ours against the paper's, and approach against approach |
 //! | `claims.json` | what the paper says in prose, and whether our numbers and its own bear it out |
 //! | `judge.json` | whether the pattern of its results comes out |

@@ -1,4 +1,5 @@
-//! `tables`: the rows of `tables.json` (DESIGN §8): shares in percent, means per trial, seconds.
+//! `tables`: the rows of `tables.json` (docs/case-format.md §5.2): shares in percent, means per trial,
+//! seconds.
 //!
 //! A row holds everything that was measured on its trials, whichever of it the paper's table prints; `null` is what was not
 //! measured: against two defenders a trial ends at the penalty area (no goal, close, block), there is a midfield defender only

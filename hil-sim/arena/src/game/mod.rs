@@ -1,6 +1,6 @@
 //! `game`: a match between two teams: simulated field, cameras, referee and radio; on each side a host and
-//! its robots' brains (DESIGN §3, §7, §8). Deterministic: a seed gives the same match to the bit, on any
-//! machine.
+//! its robots' brains (docs/architecture.md §3, §7, docs/case-format.md §5.2). Deterministic: a seed gives
+//! the same match to the bit, on any machine.
 //!
 //! ```text
 //! world 1 ms ─► cameras ─► vision datagrams ─► host ─► radio frames ─► air ─► brains 10 ms ─► orders ─► world
@@ -40,7 +40,7 @@ use side::Team;
 
 /// Steps of physics in a tick of brains.
 pub const STEPS_A_TICK: u64 = 10;
-/// Length of a tick, µs (DESIGN §2).
+/// Length of a tick, µs (docs/architecture.md §2.3).
 pub const TICK_US: u64 = 10_000;
 
 /// Sees a match from outside.

@@ -1,4 +1,5 @@
-//! `report`: result of a match: DESIGN §8's JSON of `play`, filled from the referee's accounts.
+//! `report`: result of a match: docs/case-format.md §5.2's JSON of `play`, filled from the referee's
+//! accounts.
 
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ pub struct GameReport {
     pub seed: u64,
     /// The world it was played in, as `--world` takes it.
     pub world: String,
-    /// The hash of all ticks (DESIGN §2), 16 hexadecimal digits.
+    /// The hash of all ticks (docs/architecture.md §2.5), 16 hexadecimal digits.
     pub trace_hash: String,
     /// The longest step of a brain, guest instructions; 0 where they cannot be counted.
     pub worst_step_instructions: u32,

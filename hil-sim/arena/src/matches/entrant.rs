@@ -1,5 +1,5 @@
 //! `entrant`: team configuration in a match. A team, and of the second paper's tactics those that its host
-//! plays: an ablation is a team (papers-checklist D24).
+//! plays: an ablation is a team (docs/papers.md D24).
 
 use std::collections::BTreeSet;
 use std::fmt;

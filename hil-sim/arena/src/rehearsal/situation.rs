@@ -111,9 +111,10 @@ fn about(at: Point<Field>) -> Region {
 
 /// Share of the scope's radii within which the similarity is at least 0.8: √(−ln 0.8).
 const CORE: f32 = 0.472_38;
-/// A scope's border: −ln 0.367 (DESIGN §4.3).
+/// A scope's border: −ln 0.367 (docs/case-format.md §3).
 const BORDER: f32 = 1.002_393;
-/// How far robots stand from their places, m, one standard deviation: the tolerance of arriving (DESIGN §4.4).
+/// How far robots stand from their places, m, one standard deviation: the tolerance of arriving
+/// (docs/case-format.md §4).
 const SCATTER: f32 = 0.15;
 /// How far past the ball they look, degrees, one standard deviation: an estimate.
 const LOOKS_PAST_DEG: f32 = 20.0;

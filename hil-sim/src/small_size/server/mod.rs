@@ -1,4 +1,4 @@
-//! `server`: server of the league's simulation protocol, bytes in and bytes out (DESIGN §7).
+//! `server`: server of the league's simulation protocol, bytes in and bytes out (docs/architecture.md §7.3).
 //!
 //! | port | takes | answers |
 //! |---|---|---|

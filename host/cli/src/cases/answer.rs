@@ -1,5 +1,5 @@
-//! `answer`: output format of answers. One JSON object a line, keys in the order of DESIGN §8; lengths in mm,
-//! similarity to four decimals and cost to two.
+//! `answer`: output format of answers. One JSON object a line, keys in the order of docs/case-format.md §5.1;
+//! lengths in mm, similarity to four decimals and cost to two.
 
 use std::io::{self, Write};
 
@@ -48,7 +48,8 @@ pub(crate) struct Found<'a> {
     #[serde(serialize_with = "as_object")]
     adapted: Vec<(u8, [i32; 2])>,
     candidates: u16,
-    /// What differs from retrieval's defaults, recorded with every result (DESIGN §4.3); left out where nothing does.
+    /// What differs from retrieval's defaults, recorded with every result (docs/case-format.md §3.2); left
+    /// out where nothing does.
     #[serde(skip_serializing_if = "<[_]>::is_empty", serialize_with = "as_object")]
     settings: &'a [(String, String)],
 }

@@ -1,6 +1,6 @@
 //! `onetwo cases check`: soundness of a library. Every error and warning as `file:line: error[CODE]: message;
-//! hint`, then one line of summary a league (DESIGN §4.1), or with `--json` one list of findings. Exit 1 on
-//! errors, and with `--strict` on warnings.
+//! hint`, then one line of summary a league (docs/case-format.md §1.2), or with `--json` one list of
+//! findings. Exit 1 on errors, and with `--strict` on warnings.
 
 use std::io::{self, Write};
 use std::path::Path;

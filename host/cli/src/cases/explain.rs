@@ -1,7 +1,7 @@
 //! `onetwo cases explain`: why that case and none of the others. For each problem on stdin the verdict on
 //! every case listed under the goal: the first check it fails, in the order ball, robot count, thr_c, free
-//! path, with its margin; candidates with their rank (DESIGN §4.3, §8). Lengths in mm; robots of a case, legs
-//! and opponents are counted from 1.
+//! path, with its margin; candidates with their rank (docs/case-format.md §3.3, §5.2). Lengths in mm; robots
+//! of a case, legs and opponents are counted from 1.
 
 use std::collections::HashMap;
 use std::io::{self, Write, stdin};

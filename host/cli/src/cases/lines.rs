@@ -1,4 +1,4 @@
-//! `lines`: reader of problem lines (DESIGN §8).
+//! `lines`: reader of problem lines (docs/case-format.md §5.1).
 //!
 //! Blank lines are passed over but counted; a line that is malformed, is no UTF-8 or does not end within [`LINE_MAX`]
 //! is told as an error of that line, and the rest go on. Answers are flushed before the reading has to wait, so that a

@@ -1,5 +1,5 @@
 //! `onetwo cases list`: the stored cases and their purposes. The table, or one JSON list of all of them
-//! (DESIGN §8).
+//! (docs/case-format.md §5.2).
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -31,7 +31,7 @@ pub(super) fn run(args: &ListArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One stored case; the fields of DESIGN §8.
+/// One stored case; the fields of docs/case-format.md §5.2.
 #[derive(Debug, Serialize)]
 struct Row<'a> {
     league: &'a str,

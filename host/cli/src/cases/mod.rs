@@ -1,4 +1,4 @@
-//! `onetwo cases`: contents, soundness and answers of a case base. The verb `cases` (DESIGN §8).
+//! `onetwo cases`: contents, soundness and answers of a case base. The verb `cases` (docs/case-format.md §5).
 
 mod answer;
 mod check;

@@ -1,4 +1,4 @@
-//! `problem`: parser of problem lines (DESIGN §8, `cases retrieve`).
+//! `problem`: parser of problem lines (docs/case-format.md §5.1, `cases retrieve`).
 //!
 //! A problem is one JSON object with exactly the keys `ball`, `defending`, `teammates` and `opponents`; integers in mm,
 //! field frame. Strict: a missing, unknown or repeated key, a repeated robot or a number that is no integer is

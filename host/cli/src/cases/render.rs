@@ -1,4 +1,5 @@
-//! `onetwo cases render`: pictures of cases. An SVG or PNG, alone or all on one page (DESIGN §4.3).
+//! `onetwo cases render`: pictures of cases. An SVG or PNG, alone or all on one page
+//! (docs/case-format.md §3).
 
 use std::io::{Read, stdin};
 use std::path::{Path, PathBuf};

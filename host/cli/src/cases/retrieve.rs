@@ -1,5 +1,5 @@
 //! `onetwo cases retrieve`: the case that fits each situation. Problems in on stdin, answers out on stdout,
-//! one a line (DESIGN §8).
+//! one a line (docs/case-format.md §5.1).
 
 use std::io::stdin;
 use std::process::ExitCode;

@@ -1,5 +1,5 @@
-//! `onetwo cases show`: the contents of a stored case (paper §2; DESIGN §4.1–§4.3). Text for people; mm and
-//! degrees, the case's own coordinates.
+//! `onetwo cases show`: the contents of a stored case (paper §2; docs/case-format.md §1–§3). Text for people;
+//! mm and degrees, the case's own coordinates.
 
 use std::io::{self, Write};
 use std::process::ExitCode;

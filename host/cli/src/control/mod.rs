@@ -1,4 +1,5 @@
-//! `onetwo control`: the host of a team on the league's network (DESIGN §3, §8).
+//! `onetwo control`: the host of a team on the league's network
+//! (docs/architecture.md §3, docs/case-format.md §5).
 //!
 //! The host is a value without sockets ([`host::Host`]); here are a thread for each socket, one channel, and the loop that hands it
 //! what came and sends what it says. Nothing that is missing ends it: it says what it waits for, and goes on when that comes.

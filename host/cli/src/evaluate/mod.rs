@@ -1,5 +1,5 @@
 //! `onetwo evaluate`: evaluations, by default the first paper's tables of case-based against reactive
-//! attackers (Ros et al. 2009 §5; DESIGN §8).
+//! attackers (Ros et al. 2009 §5; docs/case-format.md §5).
 //!
 //! Data goes into the folder `--out`, the tables in words to stdout. Every trial is kept as soon as it is over: the same
 //! command goes on where it was stopped, and shards played elsewhere are merged into the same bytes.

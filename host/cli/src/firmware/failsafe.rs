@@ -1,5 +1,5 @@
 //! `failsafe`: fail-safe table of a wheeled robot: reaction to each fault, and its time. The brain's
-//! governor, asked every millisecond (DESIGN §6); wheels that obey at once.
+//! governor, asked every millisecond (docs/architecture.md §6.2); wheels that obey at once.
 
 use std::fmt::Write as _;
 

@@ -1,5 +1,5 @@
 //! `measure`: stack depth and worst step of an image. It plays under QEMU: a walking robot's a trial of each
-//! of the paper's cells, a wheeled robot's a match of six against six (DESIGN §9).
+//! of the paper's cells, a wheeled robot's a match of six against six (docs/architecture.md §9).
 //!
 //! Instructions of the guest and bytes: the same on every machine for the same image.
 
@@ -74,5 +74,5 @@ fn emulated(body: Body) -> Result<std::path::PathBuf, Failure> {
 
 /// One seed, so that two runs of the same image say the same.
 const SEED: u64 = 1;
-/// Of a match (DESIGN §2).
+/// Of a match (docs/architecture.md §2.3).
 const TICKS_A_SECOND: f64 = 100.0;

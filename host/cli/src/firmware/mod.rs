@@ -1,5 +1,5 @@
 //! `onetwo firmware`: work with the robots' firmware. Build it, see what it takes, run it under QEMU, flash
-//! it, and write the page that tells a robot who it is (DESIGN §8).
+//! it, and write the page that tells a robot who it is (docs/case-format.md §5).
 //!
 //! One file per verb: [`size`] (with [`measure`], which runs images under QEMU), [`mod@run`], [`flash`], [`provision`], and [`report`],
 //! which writes docs/firmware.md ([`failsafe`] is its table). Runs on a PC.

@@ -1,5 +1,5 @@
 //! `onetwo firmware provision`: writes the page of 64 bytes that tells a robot its number, its team and its own keys, derived from the
-//! team's; `onetwo firmware flash --page` puts it beside the image (DESIGN §6).
+//! team's; `onetwo firmware flash --page` puts it beside the image (docs/architecture.md §6.1).
 
 use std::fs;
 use std::io::Write as _;

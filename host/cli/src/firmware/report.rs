@@ -116,6 +116,7 @@ const REPORTED: usize = 12;
 const HEAD: &str = "\
 # What the robots' firmware takes, and what it does when something breaks
 
+What the images of the robots take of flash, RAM, stack and time, and how a robot fails safe.
 Written by `onetwo firmware report --write`. Held by `cargo xtask test`: flash, RAM and places that may panic by the step `image`,
 stacks by the step `qemu` (`qemu_equals_native`, `qemu_wheels`, `qemu_match`, `qemu_free`), steps by `qemu_equals_native` on legs and by
 `qemu_wheels` and `qemu_match` on wheels. A share above 100 % is over its budget. The table of what robots do when something breaks is

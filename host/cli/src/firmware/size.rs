@@ -1,6 +1,6 @@
 //! `onetwo firmware size`: resource usage of images. Flash and RAM by crate and by symbol, statics that hold
-//! RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of DESIGN §9 and
-//! as a share of three robots' computers.
+//! RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of
+//! docs/architecture.md §9 and as a share of three robots' computers.
 
 use std::fmt::Write as _;
 
@@ -63,7 +63,7 @@ impl Known {
         }
     }
 
-    /// Steps of its brain in a second (DESIGN §2).
+    /// Steps of its brain in a second (docs/architecture.md §2.3).
     fn steps_a_second(&self) -> Option<u64> {
         match self.program {
             Program::Robot(Body::Legged) => Some(25),
@@ -210,5 +210,5 @@ fn tell(known: &Known, largest: usize, told: &mut String) {
 
 /// Statics that are named, bytes: below, they are flags and counters.
 pub(super) const POOL_LEAST: u64 = 256;
-/// One brain step on its worst path (DESIGN §9), guest instructions.
+/// One brain step on its worst path (docs/architecture.md §9), guest instructions.
 pub(super) const STEP_BUDGET: u32 = 40_000;

@@ -292,6 +292,6 @@ impl Team {
 
 /// No field has more.
 const CAMERAS_MAX: usize = 64;
-/// FNV-1a-64, as the trace hash (DESIGN §2).
+/// FNV-1a-64, as the trace hash (docs/architecture.md §2.5).
 const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
 const FNV_PRIME: u64 = 0x0100_0000_01b3;

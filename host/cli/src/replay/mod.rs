@@ -1,7 +1,8 @@
 //! `onetwo replay`: contents of a recorded match, the field at a moment, and whether the host decides the
 //! same again.
 //!
-//! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours (DESIGN §7).
+//! Two kinds of files, told apart by their first bytes: the league's log files (anybody's) and traces of ours
+//! (docs/architecture.md §7.4).
 
 mod clock;
 mod decided;

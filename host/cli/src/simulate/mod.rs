@@ -1,4 +1,5 @@
-//! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation protocol (DESIGN §7).
+//! `onetwo simulate`: a Small Size field that any team's software can play on, by the league's simulation
+//! protocol (docs/architecture.md §7.3).
 //!
 //! The simulator is a value without sockets ([`hil_sim::small_size::server`]); here are its sockets, its clock, and the
 //! internal referee. It goes on where a port is taken or a network is missing, and says what to mend.

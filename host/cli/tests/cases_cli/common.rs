@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-/// The league of the worked example (DESIGN §4.1, §8).
+/// The league of the worked example (docs/case-format.md §1, §5.1).
 pub(crate) const LEAGUE: &str = r#"
 [field]
 length = 5400
@@ -36,7 +36,7 @@ r_min = 100
 r_max = 250
 "#;
 
-/// The case file of DESIGN §4.1, word for word.
+/// The case file of docs/case-format.md §1, word for word.
 pub(crate) const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"
 ball = { at = [-600, 0], scope = [450, 250] }        # mm; scope = (τx, τy)
@@ -64,7 +64,7 @@ pub(crate) fn shot_at(x: i32, y: i32) -> String {
     )
 }
 
-/// The problem of DESIGN §8, word for word.
+/// The problem of docs/case-format.md §5.1, word for word.
 pub(crate) const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;
 
 /// A library folder under the build's scratch space, made anew: `league.toml` and these files.
@@ -82,7 +82,7 @@ pub(crate) fn library(test: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// The worked example's library: the case of DESIGN §4.1 alone.
+/// The worked example's library: the case of docs/case-format.md §1 alone.
 pub(crate) fn worked_example(test: &str) -> PathBuf {
     library(test, &[("center/pass-around.toml", PASS_AROUND)])
 }

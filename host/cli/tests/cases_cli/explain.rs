@@ -1,5 +1,5 @@
 //! `explain`: tests: `onetwo cases explain` names for every case under the goal the first check it fails,
-//! with its margin, and for candidates the rank (DESIGN §4.3, §8).
+//! with its margin, and for candidates the rank (docs/case-format.md §3.3, §5.2).
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `inspect`: tests of `onetwo cases check`, `list` and `show` (DESIGN §4.1, §8).
+//! `inspect`: tests of `onetwo cases check`, `list` and `show` (docs/case-format.md §1.2, §5.2).
 
 use crate::common::{PASS_AROUND, cases, command, library, onetwo, shot_at, worked_example};
 

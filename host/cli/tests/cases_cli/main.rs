@@ -1,4 +1,4 @@
-//! `cases_cli`: black-box tests of `onetwo cases` against DESIGN §4 and §8.
+//! `cases_cli`: black-box tests of `onetwo cases` against docs/case-format.md §1–§5.
 
 mod common;
 mod explain;

@@ -1,5 +1,5 @@
-//! `oracle`: tests: the program answers as an independent reading of DESIGN §4.3 does. Files in, lines out:
-//! nothing of ours in between but the program itself.
+//! `oracle`: tests: the program answers as an independent reading of docs/case-format.md §3 does. Files in,
+//! lines out: nothing of ours in between but the program itself.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `render`: tests of `onetwo cases render` (DESIGN §8).
+//! `render`: tests of `onetwo cases render` (docs/case-format.md §5).
 
 use std::fs;
 

@@ -1,11 +1,11 @@
-//! `retrieve`: tests of `onetwo cases retrieve`: output to the letter of DESIGN §8, malformed lines reported
-//! and skipped.
+//! `retrieve`: tests of `onetwo cases retrieve`: output to the letter of docs/case-format.md §5.1, malformed
+//! lines reported and skipped.
 
 use std::io::{BufRead, BufReader, Read, Write};
 
 use crate::common::{PASS_AROUND, PROBLEM, cases, command, library, onetwo, shot_at, worked_example};
 
-/// The answer of DESIGN §8, word for word.
+/// The answer of docs/case-format.md §5.1, word for word.
 const ANSWER: &str = r#"{"case":"center/pass-around","id":0,"symmetry":"identity","similarity":0.9984,"cost":171.02,"conditions":1,"teammates":2,"match":{"1":1,"2":3},"adapted":{"1":[-720,10],"3":[300,910]},"candidates":1}"#;
 const NOTHING: &str = r#"{"case":null,"candidates":0}"#;
 

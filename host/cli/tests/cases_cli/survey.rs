@@ -1,4 +1,4 @@
-//! `survey`: tests of `onetwo cases coverage` and `stats` (DESIGN §8).
+//! `survey`: tests of `onetwo cases coverage` and `stats` (docs/case-format.md §5).
 
 use std::fs;
 

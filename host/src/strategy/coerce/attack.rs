@@ -136,7 +136,8 @@ fn gaussian(random: &mut Xoshiro128PlusPlus) -> Vector<Attack> {
     Vector::polar(math::sqrt(-2.0 * math::ln(share)), Angle::new(turn))
 }
 
-/// Places tried around the best cell's middle: the paper takes the cell, this is its refinement (papers-checklist D18).
+/// Places tried around the best cell's middle: the paper takes the cell, this refines it
+/// (docs/papers.md D18).
 pub const SAMPLES: u32 = 24;
 /// Their standard deviation, as a share of the cell's side: nearly all of them lie in the cell.
 const SPREAD: f32 = 0.25;

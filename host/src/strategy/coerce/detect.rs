@@ -1,5 +1,5 @@
 //! `detect`: tactic estimation of the opponents. Tactics estimated from where they were over the last half
-//! second (Biswas et al. 2014 §4.1; papers-checklist D17). Attack frame, s.
+//! second (Biswas et al. 2014 §4.1; docs/papers.md D17). Attack frame, s.
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};

@@ -37,7 +37,7 @@ pub struct Settings {
     pub arrived: f32,
     /// Opponents are given this long to come after them, s.
     pub follow_time: f32,
-    /// An opponent farther than this from where it is expected was not coerced, m (papers-checklist D16).
+    /// An opponent farther than this from where it is expected was not coerced, m (docs/papers.md D16).
     pub expected_within: f32,
     /// A robot with an opponent nearer than this is marked, m: the same.
     pub marked_within: f32,

@@ -45,7 +45,7 @@ pub type Likelihoods = [f32; 4];
 /// The numbers of the models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Models {
-    /// Standard deviation of where a robot is around where its tactic wants it, m (papers-checklist D17).
+    /// Standard deviation of where a robot is around where its tactic wants it, m (docs/papers.md D17).
     pub spread: f32,
     /// … of how far primary defenders are from the edge that they move along, and walls from the distance they keep, m.
     pub keeps: f32,

@@ -1,6 +1,6 @@
 //! `opponents`: opponent teams that our play is measured against. Honest teams that share our view, motion,
 //! limits, skills, keeper and restarts, and differ in open play alone; each does one thing that teams of the
-//! league are known for (Biswas et al. 2014 §6, papers-checklist §6).
+//! league are known for (Biswas et al. 2014 §6).
 //!
 //! [`Team`] names them. Each is a module: `reactive` runs for the ball and shoots, `marking` stays with every opponent, `zone`
 //! follows the ball with a wall. Attack frame, m, m/s, s.

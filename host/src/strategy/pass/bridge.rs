@@ -1,5 +1,5 @@
 //! `bridge`: refinement of a retrieved case's pass point. P(receive) · P(goal) refines a retrieved case's
-//! pass point near its adapted position (papers-checklist §6: the case is the intent, the evaluator its
+//! pass point near its adapted position (docs/papers.md §8: the case is the intent, the evaluator its
 //! parameters). Attack frame, m.
 
 use casebase::CaseRobot;

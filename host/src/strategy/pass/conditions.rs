@@ -2,7 +2,7 @@
 //! one function each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
 //!
 //! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the condition just holds
-//! (papers-checklist D3). Which margins those are is found by [`super::intercept`], [`super::open`] and [`super::scene`].
+//! (docs/papers.md D3). Which margins those are is found by [`super::intercept`], [`super::open`] and [`super::scene`].
 
 use geometry::math;
 

@@ -9,7 +9,7 @@ use rules::League;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassConstants {
     /// How soft a condition on times is, s: margins of this size are e : 1 likely. The scatter of what teams achieve against
-    /// what is planned for them is of this size (100 ms of latency, papers-checklist D3).
+    /// what is planned for them is of this size (100 ms of latency, docs/papers.md D3).
     pub time_width: f32,
     /// How soft a condition on places is, m: a robot's radius and what a kick of 2 m scatters by (D3).
     pub distance_width: f32,
@@ -53,7 +53,7 @@ pub struct PassConstants {
     pub pass_fastest: f32,
     /// … and no slower, m/s: below, a ball stays at the kicker's mouth (D14).
     pub pass_slowest: f32,
-    /// A receiver masters a ball that arrives with this speed, m/s (Thunderbots receive at 2 and less, papers-checklist §3.6).
+    /// A receiver masters a ball that arrives with this speed, m/s (Thunderbots receive at 2 and less; an estimate).
     pub arrival: f32,
     /// Rise over run of a chip: 45°, as our robots' kickers chip.
     pub chip_slope: f32,

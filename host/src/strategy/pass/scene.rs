@@ -1,8 +1,8 @@
 //! `scene`: probability that a pass leads to a goal. P(receive | x) · P(goal | receive, x), with everything
 //! it was found from (Biswas et al. 2014 §3.1, equations 3–5). Attack frame, SI units.
 //!
-//! A [`Scene`] is one moment with one receiver; what does not depend on x is worked out once. DESIGN §9 bounds what a place costs
-//! (`cargo xtask bench strategy`).
+//! A [`Scene`] is one moment with one receiver; what does not depend on x is worked out once.
+//! docs/architecture.md §9 bounds what a place costs (`cargo xtask bench strategy`).
 
 use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;

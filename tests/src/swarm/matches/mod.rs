@@ -1,5 +1,5 @@
 //! `matches`: whole matches of two teams of ours, with people who show cards, change keepers, halt, stop, restart, and carry the ball,
-//! held to what the rules ask and the project promises. DESIGN §5; s, m, field frame.
+//! held to what the rules ask and the project promises. docs/architecture.md §5.4; s, m, field frame.
 //!
 //! A seed is a match: [`plan`] draws what people do, `run` plays it with both hosts, all brains, cameras, radio and the simulator's
 //! own referee in one process, and checks every 10 ms from outside: [`keep_out`], [`frozen`], halts and stops, and that the match goes

@@ -1,4 +1,4 @@
-//! `fault`: fault handler: motors off, crash record kept and reported, restart (DESIGN §6).
+//! `fault`: fault handler: motors off, crash record kept and reported, restart (docs/architecture.md §6.2).
 //!
 //! A record in memory that no start clears outlives the reset: how often the robot was started since power came, and what
 //! ended the last life.

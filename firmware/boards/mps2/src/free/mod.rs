@@ -48,7 +48,8 @@ fn main() -> ! {
             clock::run(|_| ())
         }
     };
-    // Rises with every boot: a recording of an earlier life is none of this one's (DESIGN §6).
+    // Rises with every boot: a recording of an earlier life is none of this one's
+    // (docs/architecture.md §6.1).
     let epoch = life.boots;
     let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
     say(&[b"ready"]);

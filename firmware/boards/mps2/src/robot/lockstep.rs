@@ -1,5 +1,5 @@
 //! `lockstep`: execution of one lockstep tick. It lets the robot live up to that moment and tells what came
-//! of it (DESIGN §7).
+//! of it (docs/architecture.md §7.2).
 //!
 //! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets in their order, its picture of
 //! the world, and after each kind the tasks run until all of them wait. The robot is born with its set-up, at time zero.

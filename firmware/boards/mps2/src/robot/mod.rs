@@ -1,5 +1,5 @@
-//! `robot`: firmware in lockstep with the simulator. Tick by tick, with the tasks a real board starts (DESIGN
-//! §7).
+//! `robot`: firmware in lockstep with the simulator. Tick by tick, with the tasks a real board starts
+//! (docs/architecture.md §7.2).
 //!
 //! The robot's tasks are `runtime`'s. This board has no radio, no senses and no body of its own: the simulator deals them
 //! out, one tick a frame, over Ethernet ([`lockstep`]), and the clock moves by ticks alone ([`clock`]). A panic or fault

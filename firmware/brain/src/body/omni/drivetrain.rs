@@ -247,7 +247,7 @@ const FACED_RATE: f32 = 0.2;
 const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;
-/// A wheeled robot's step, s (DESIGN §2), and what is taken for one.
+/// A wheeled robot's step, s (docs/architecture.md §2.3), and what is taken for one.
 const STEP: Duration = Duration::millis(10);
 const STEP_LEAST: f32 = 0.001;
 const STEP_MOST: f32 = 0.03;

@@ -106,7 +106,7 @@ const COMING: f32 = 0.4;
 const FETCHED: f32 = 1.0;
 /// One that goes by within this distance is had, m.
 const REACH: f32 = 1.0;
-/// The largest angle between where the ball comes from and where it goes at first touch, rad: 60° (checklist D11).
+/// The largest angle between where the ball comes from and where it goes at first touch, rad: 60° (docs/papers.md D11).
 const DEFLECTS: f32 = core::f32::consts::FRAC_PI_3;
 /// Share of its speed across the heading that a ball keeps in a kick (the simulator's friction, an estimate).
 const KEEPS_ACROSS: f32 = 0.7;
