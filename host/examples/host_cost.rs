@@ -9,8 +9,8 @@ use std::io::BufReader;
 use std::process::ExitCode;
 
 use flate2::bufread::MultiGzDecoder;
-use host::recording::RecordingHeader;
-use host::trace::{Kind, Reader, Record};
+use host::record::header::RecordingHeader;
+use host::record::trace::{Kind, Reader, Record};
 use host::{Host, Input};
 use protocol::frame::TeamKey;
 

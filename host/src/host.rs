@@ -18,8 +18,7 @@ use protocol::{Duration, Instant, RobotId, TeamId};
 use rules::{Colour, FieldSpec, League, Limits, Phase};
 use ssl::Message;
 
-use crate::geometry::VisionGeometry;
-use crate::hidden_ball::HiddenBall;
+use crate::field_geometry::VisionGeometry;
 use crate::learned::Learned;
 use crate::proposal::{cases_of, proposal};
 use crate::radio::{self, Radio, RadioSettings, Situation, To};
@@ -30,6 +29,7 @@ use crate::strategy::pass::bridge::CasePass;
 use crate::strategy::tally::Bookkeeper;
 use crate::strategy::view::{Game, RobotSet};
 use crate::strategy::{Coach, Flip, Orders, Tactics, Team, View};
+use crate::tracking::HiddenBall;
 use crate::tracking::{self, Tracker};
 use crate::world::{Ball, World};
 

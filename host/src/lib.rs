@@ -7,20 +7,17 @@
 #![forbid(unsafe_code)]
 
 pub mod config;
-pub mod geometry;
-mod hidden_ball;
+pub mod field_geometry;
 mod host;
 pub mod learned;
 mod proposal;
 pub mod radio;
-pub mod recheck;
-pub mod recording;
+pub mod record;
 pub mod referee;
 mod requests;
 pub mod sanity;
 pub mod shell;
 pub mod strategy;
-pub mod trace;
 pub mod tracking;
 pub mod world;
 

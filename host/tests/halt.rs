@@ -2,10 +2,10 @@
 //! the same again.
 
 use host::radio::To;
-use host::recheck::Recheck;
-use host::recording::{HostHeader, RecordingHeader};
+use host::record::header::{HostHeader, RecordingHeader};
+use host::record::recheck::Recheck;
+use host::record::trace::{Kind, Record};
 use host::referee::{SenderAddress, SourcePin};
-use host::trace::{Kind, Record};
 use host::{Host, HostSettings, Input};
 use protocol::frame::TeamKey;
 use protocol::host::{HostMessage, Telemetry};

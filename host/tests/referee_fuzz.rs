@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use geometry::Point;
-use host::geometry::VisionGeometry;
+use host::field_geometry::VisionGeometry;
 use host::referee::team_port::TeamPort;
 use host::referee::{Listener, SenderAddress};
 use protocol::Instant;

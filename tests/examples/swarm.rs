@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use arena::game::header;
-use host::shell::Recorder;
+use host::record::Recorder;
 use match_tests::swarm::matches::{self, Plan, Sum};
 use match_tests::swarm::{Runs, watch, watch_matches, words};
 

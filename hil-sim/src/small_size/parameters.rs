@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use rules::League;
 use serde::{Deserialize, Serialize};
 
-use crate::parameters::ParameterError;
+use crate::four_legged::parameters::ParameterError;
 
 /// Declares structs whose every field is a number within bounds, and their check.
 macro_rules! numbers {

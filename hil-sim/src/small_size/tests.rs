@@ -10,7 +10,7 @@ use protocol::RobotId;
 use rules::League;
 
 use super::*;
-use crate::trace::TraceHash;
+use crate::four_legged::trace::TraceHash;
 
 fn yellow(id: u8) -> Who {
     Who::yellow(RobotId::new(id).unwrap())

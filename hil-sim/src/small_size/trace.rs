@@ -8,7 +8,7 @@
 use protocol::robot_io::ActuatorFrame;
 
 use super::World;
-use crate::trace::TraceHash;
+use crate::four_legged::trace::TraceHash;
 use protocol::Who;
 
 impl TraceHash {

@@ -12,7 +12,7 @@ use casebase::CaseBase;
 use clap::Args;
 use hil_sim::NativeBackend;
 use hil_sim::small_size::worlds::WorldChoice;
-use host::shell::Recorder;
+use host::record::Recorder;
 use host::strategy::{Tactics, Team};
 use indicatif::{ProgressBar, ProgressStyle};
 use page::Powers;

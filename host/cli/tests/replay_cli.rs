@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use host::radio::To;
-use host::recheck::Recheck;
-use host::recording::{HostHeader, RecordingHeader};
+use host::record::header::{HostHeader, RecordingHeader};
+use host::record::recheck::Recheck;
+use host::record::trace::{Kind, Reader, Writer};
 use host::referee::SenderAddress;
 use host::strategy::Why;
-use host::trace::{Kind, Reader, Writer};
 use host::{Host, HostSettings, Input};
 use protocol::Instant;
 use protocol::frame::TeamKey;

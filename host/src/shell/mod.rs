@@ -2,15 +2,13 @@
 //!
 //! [`open`] takes the link that a team's settings name; [`Link`] carries whole frames and knows nothing of what is in them.
 //! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;
-//! [`Recorder`] keeps a match.
+//! [`Recorder`](crate::record::Recorder) keeps a match.
 
-mod background;
 pub mod epoch;
 mod error;
 mod hub;
 pub mod key;
 mod outbox;
-mod recorder;
 mod serial;
 mod sim;
 mod udp;
@@ -22,10 +20,8 @@ use protocol::link::Packet;
 use crate::config::RobotLink;
 use crate::radio::{Relay, To};
 
-pub use background::BackgroundRecorder;
 pub use error::LinkError;
 pub use outbox::{OutCounts, Outbox};
-pub use recorder::Recorder;
 pub use serial::SerialLink;
 pub use sim::{SimLink, SimSettings};
 pub use udp::UdpLink;

@@ -51,6 +51,7 @@ use protocol::{Duration, Instant};
 use ssl::vision::{DetectionFrame, WrapperPacket};
 
 pub use ball::BallCounts;
+pub(crate) use ball::HiddenBall;
 pub use publish::Publisher;
 pub use robots::{RobotCounts, RobotNoise};
 
@@ -60,7 +61,7 @@ use self::order::{Placed, Timeline};
 use self::robots::Robots;
 use self::scene::Scene;
 use self::seen::{Captured, Frame, captured};
-use crate::geometry::VisionGeometry;
+use crate::field_geometry::VisionGeometry;
 use crate::world::{BallModels, World};
 
 /// What a tracker may be told.

@@ -6,7 +6,7 @@ use motion::ball::BallModel;
 use ssl::vision::GeometryData;
 
 use super::seen::CAMERAS_MAX;
-use crate::geometry::{GeometryFault, News, VisionGeometry};
+use crate::field_geometry::{GeometryFault, News, VisionGeometry};
 use crate::world::BallModels;
 
 /// Where a camera hangs.

@@ -94,7 +94,7 @@ fn share(confidence: f32) -> f32 {
 }
 
 /// Cameras of a field, numbered from 0: the league uses 1 to 8.
-pub(super) const CAMERAS_MAX: usize = crate::geometry::CAMERAS_MAX as usize;
+pub(super) const CAMERAS_MAX: usize = crate::field_geometry::CAMERAS_MAX as usize;
 /// Robots in one image: 11 + 11, some twice under wrong names.
 const ROBOTS_MAX: usize = 48;
 /// Blobs in one image; hands and shoes included.

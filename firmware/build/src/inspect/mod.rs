@@ -193,7 +193,7 @@ mod tests {
             ("/y/onetwo/firmware/brain/src/body/omni/drivetrain.rs", "brain"),
             ("protocol/src/frame.rs", "protocol"),
             ("protocol/geometry/src/math.rs", "geometry"),
-            ("firmware/boards/mps2/src/bin/../robot/lockstep.rs", "board-mps2"),
+            ("firmware/boards/mps2/src/bin/../lockstep/ticks.rs", "board-mps2"),
             ("firmware/boards/stm32/src/robot/mod.rs", "board-stm32"),
             ("casebase/library/src/lib.rs", "case-library"),
         ] {

@@ -6,7 +6,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "../../../boards/mps2/src/free/clock.rs"]
+#[path = "../../../boards/mps2/src/standalone/clock.rs"]
 mod clock;
 #[cfg(target_os = "none")]
 mod cycle;

@@ -161,7 +161,8 @@ impl Server {
             ("realism.command_delay", radio.delay as f32 * 0.001, COMMAND_DELAY_MAX),
         ] {
             if !(0.0..=high).contains(&value) {
-                let error = crate::parameters::ParameterError::Range { name, value, low: 0.0, high };
+                let error =
+                    crate::four_legged::parameters::ParameterError::Range { name, value, low: 0.0, high };
                 return Err(Refusal::Realism(error));
             }
         }

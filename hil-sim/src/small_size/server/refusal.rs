@@ -8,7 +8,7 @@ use std::fmt;
 
 use ssl::simulation::SimulatorError;
 
-use crate::parameters::ParameterError;
+use crate::four_legged::parameters::ParameterError;
 use crate::small_size::quirks::Profile;
 
 /// Why something was not done. Whatever else the message asked for was.

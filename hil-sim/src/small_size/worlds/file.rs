@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use super::{LinkModel, NamedWorld, RobotSpread, VisionModel, WorldModel};
-use crate::parameters::ParameterError;
+use crate::four_legged::parameters::ParameterError;
 use crate::small_size::Parameters;
 use crate::small_size::parameters::within;
 

@@ -7,10 +7,10 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 use foreign::printable;
-use host::recheck::Recheck;
-use host::recording::RecordingHeader;
+use host::record::header::RecordingHeader;
+use host::record::recheck::Recheck;
+use host::record::trace::{Kind, Reader};
 use host::referee::SenderAddress;
-use host::trace::{Kind, Reader};
 use host::{Host, HostSettings, Input};
 use page::{Happening, Kind as Told, Page, Powers};
 use protocol::Instant;

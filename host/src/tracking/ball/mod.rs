@@ -6,10 +6,12 @@
 
 mod choice;
 mod flight;
+mod hidden;
 mod kick;
 mod track;
 
 use geometry::{Field, Point};
+pub(crate) use hidden::HiddenBall;
 use protocol::Instant;
 
 use self::kick::{Air, Kicked};

@@ -1,12 +1,12 @@
 //! `free`: the free-running firmware image. The image for the emulated board without a simulator: radio over
-//! the serial line, motors that are modelled, watchdog and panic as on a robot; all of it is in [`free`].
+//! the serial line, motors that are modelled, watchdog and panic as on a robot; all of it is in [`standalone`].
 //!
 //! `onetwo firmware run` starts it. Built with the feature `omni` alone.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "../free/mod.rs"]
-mod free;
+#[path = "../standalone/mod.rs"]
+mod standalone;
 
 #[cfg(not(target_os = "none"))]
 fn main() {}

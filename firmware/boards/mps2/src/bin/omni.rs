@@ -3,8 +3,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "../robot/mod.rs"]
-mod robot;
+#[path = "../lockstep/mod.rs"]
+mod lockstep;
 
 #[cfg(not(target_os = "none"))]
 fn main() {}

@@ -6,7 +6,7 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "../robot/instructions.rs"]
+#[path = "../lockstep/instructions.rs"]
 mod instructions;
 
 #[cfg(target_os = "none")]

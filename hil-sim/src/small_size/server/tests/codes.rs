@@ -187,7 +187,7 @@ fn a_synchronous_step_that_no_time_can_be_is_refused() {
 
 #[test]
 fn no_two_refusals_share_a_code() {
-    let range = crate::parameters::ParameterError::Syntax(String::new());
+    let range = crate::four_legged::parameters::ParameterError::Syntax(String::new());
     let fault = rules::FieldFault { field: "length", value: 0.0, least: 1.0, most: 2.0 };
     let all = [
         Refusal::Undecodable,

@@ -1,8 +1,8 @@
 //! `family`: tests of random worlds and of the nominal one.
 
 use super::*;
+use crate::four_legged::trace::TraceHash;
 use crate::small_size::Parameters;
-use crate::trace::TraceHash;
 
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 

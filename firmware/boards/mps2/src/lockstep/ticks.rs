@@ -1,0 +1,174 @@
+//! `ticks`: execution of one lockstep tick. It lets the robot live up to that moment and tells what came
+//! of it (docs/architecture.md §7.2).
+//!
+//! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets in their order, its picture of
+//! the world, and after each kind the tasks run until all of them wait. The robot is born with its set-up, at time zero.
+//! A message that makes no sense where it comes is counted and gets no answer; another life needs another process.
+
+use core::cell::RefCell;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use casebase::CaseBase;
+use critical_section::Mutex;
+use embassy_executor::{SpawnError, Spawner};
+use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
+use embassy_sync::channel::Channel;
+use heapless::Vec;
+use protocol::link::Packet;
+use protocol::lockstep::{AIR_OUT_MAX, FromRobot, TickIn, TickOut, ToRobot};
+use protocol::robot_io::{ActuatorFrame, SensorFrame};
+use runtime::ports::{Body, RadioSender, Senses};
+use runtime::{BrainConfig, Mailboxes, setup, tasks};
+
+use super::clock::Clock;
+use super::eth::{self, Inlet, Outlet};
+use super::{instructions, library, stack};
+
+/// The board's life.
+pub(crate) fn run() -> ! {
+    let core = cortex_m::Peripherals::take().expect("nobody took them before");
+    instructions::start(core.SYST);
+    let (mut inlet, mut outlet) = eth::start().expect("the machine has a LAN9118: mps2-an386");
+    let clock = Clock::new();
+    tell(&mut outlet, &FromRobot::Hello);
+    let (config, base) = wait_for_setup(&mut inlet, &mut outlet);
+    start_tasks(clock.spawner(), config, base).expect("every task is started once");
+    clock.settle();
+    tell(&mut outlet, &FromRobot::Ready);
+    let mut stack = stack::used();
+    loop {
+        let Some(ToRobot::Tick(tick)) = read(inlet.receive()) else {
+            STRANGE.fetch_add(1, Ordering::Relaxed);
+            continue;
+        };
+        let seq = tick.seq;
+        let ((), instructions) = instructions::counted(|| live(&clock, tick));
+        if seq % STACK_EVERY == 0 {
+            stack = stack::used();
+        }
+        let done = critical_section::with(|cs| DONE.borrow(cs).take());
+        let air = done.air.iter().map(|packet| &packet[..]).collect();
+        let answer = TickOut { seq, actuators: done.actuators, air, instructions, stack };
+        tell(&mut outlet, &FromRobot::Tick(answer));
+    }
+}
+
+/// Who the robot is and what it knows; asks on until both can be read.
+fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseBase<'static>) {
+    loop {
+        let Some(ToRobot::Setup { config }) = read(inlet.receive()) else {
+            STRANGE.fetch_add(1, Ordering::Relaxed);
+            continue;
+        };
+        if let (Ok(config), Ok(base)) = (setup::read(config), library::case_base()) {
+            return (config, base);
+        }
+        tell(outlet, &FromRobot::Unusable);
+    }
+}
+
+/// One tick: time, then packets, then the picture.
+fn live(clock: &Clock, tick: TickIn<'_>) {
+    clock.advance(tick.now);
+    for packet in &tick.air {
+        if BOXES.is_full() {
+            clock.settle();
+        }
+        // A packet longer than any frame is none of ours; a radio would not have taken it either.
+        if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.hear(packet)) {
+            STRANGE.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+    // All before the picture.
+    clock.settle();
+    if SEEN.try_send(tick.sensors).is_err() {
+        STRANGE.fetch_add(1, Ordering::Relaxed);
+    }
+    clock.settle();
+}
+
+fn read(message: &[u8]) -> Option<ToRobot<'_>> {
+    match postcard::take_from_bytes(message) {
+        Ok((message, [])) => Some(message),
+        _ => None,
+    }
+}
+
+fn tell(outlet: &mut Outlet, message: &FromRobot<'_>) {
+    // Every message fits: `MESSAGE_LEN_MAX` is above six packets and an order.
+    outlet.send(|buffer| postcard::to_slice(message, buffer).map_or(0, |bytes| bytes.len()));
+}
+
+/// Ticks between two looks at the stack: a look takes some 80,000 instructions, and its deepest use stays to be seen.
+const STACK_EVERY: u32 = 64;
+
+/// Messages and packets that made no sense, for a debugger to read.
+static STRANGE: AtomicU32 = AtomicU32::new(0);
+/// Packets said beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
+static UNHEARD: AtomicU32 = AtomicU32::new(0);
+
+/// What the tick hands to the senses; its packets go straight into the inbox, as there is no radio here.
+static SEEN: Channel<CriticalSectionRawMutex, SensorFrame, 1> = Channel::new();
+/// What the tasks made of the tick.
+static DONE: Mutex<RefCell<Done>> = Mutex::new(RefCell::new(Done { air: Vec::new(), actuators: None }));
+
+#[derive(Default)]
+struct Done {
+    air: Vec<Packet, AIR_OUT_MAX>,
+    actuators: Option<ActuatorFrame>,
+}
+
+struct Eyes;
+impl Senses for Eyes {
+    async fn sense(&mut self) -> SensorFrame {
+        SEEN.receive().await
+    }
+}
+
+struct Mouth;
+impl RadioSender for Mouth {
+    async fn send(&mut self, packet: Packet) {
+        critical_section::with(|cs| {
+            if DONE.borrow_ref_mut(cs).air.push(packet).is_err() {
+                UNHEARD.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+    }
+}
+
+struct Limbs;
+impl Body for Limbs {
+    async fn act(&mut self, wanted: ActuatorFrame) {
+        critical_section::with(|cs| DONE.borrow_ref_mut(cs).actuators = Some(wanted));
+    }
+}
+
+static BOXES: Mailboxes = Mailboxes::new();
+
+fn start_tasks(spawner: Spawner, config: BrainConfig, base: CaseBase<'static>) -> Result<(), SpawnError> {
+    spawner.spawn(body()?);
+    spawner.spawn(radio_send()?);
+    spawner.spawn(sensors()?);
+    spawner.spawn(brain(config, base)?);
+    Ok(())
+}
+
+#[embassy_executor::task]
+async fn brain(config: BrainConfig, base: CaseBase<'static>) -> ! {
+    tasks::brain(&config, base, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn radio_send() -> ! {
+    tasks::radio_send(Mouth, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn sensors() -> ! {
+    tasks::sensors(Eyes, &BOXES).await
+}
+
+#[embassy_executor::task]
+async fn body() -> ! {
+    tasks::body(Limbs, &BOXES).await
+}

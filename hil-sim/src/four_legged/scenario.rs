@@ -1,0 +1,261 @@
+//! `scenario`: start positions of a trial. The paper's four scenarios as data files (§5.1.3, docs/papers.md R31),
+//! and random ones.
+//!
+//! The paper gives no coordinates: `hil-sim/data/scenarios/*.toml` say what was estimated from its text and figures.
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use geometry::{Angle, Field, Point, Pose};
+use rules::League;
+use serde::Deserialize;
+
+use crate::four_legged::opponents::{Conduct, Role};
+use crate::four_legged::parameters::Parameters;
+use crate::four_legged::referee::Configuration;
+use crate::rng::Stream;
+
+/// A scenario's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenario {
+    /// 1: ball and attackers in the middle-back.
+    MiddleBack,
+    /// 2: ball and attackers on the left side.
+    LeftSide,
+    /// 3: middle-front, a defender ahead but farther than 40 cm.
+    DefenderAhead,
+    /// 4: middle-front, a defender within 40 cm.
+    DefenderClose,
+    /// Drawn from the trial's seed.
+    Random,
+}
+
+/// Who stands where at kick-off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// The ball, at rest.
+    pub ball: Point<Field>,
+    /// The robots led by brains: A, B, and as many more as a team may have.
+    pub attackers: Vec<Pose<Field>>,
+    /// The scripted ones.
+    pub opponents: Vec<Placed>,
+}
+
+/// A scripted opponent at kick-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// What it is there for.
+    pub role: Role,
+    /// What it does.
+    pub conduct: Conduct,
+    /// Where it stands.
+    pub pose: Pose<Field>,
+}
+
+impl Placed {
+    /// One that plays from its home, facing the ball.
+    pub fn at_home(role: Role, position: Point<Field>, ball: Point<Field>) -> Self {
+        let pose = Pose { position, heading: position.direction_to(ball) };
+        Self { role, conduct: Conduct::AtHome, pose }
+    }
+}
+
+impl Scenario {
+    /// The paper's four.
+    pub const PAPER: [Self; 4] = [Self::MiddleBack, Self::LeftSide, Self::DefenderAhead, Self::DefenderClose];
+
+    /// Its word in options and reports: `1` to `4` or `random`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::MiddleBack => "1",
+            Self::LeftSide => "2",
+            Self::DefenderAhead => "3",
+            Self::DefenderClose => "4",
+            Self::Random => "random",
+        }
+    }
+
+    /// The scenario of that word.
+    pub fn from_word(word: &str) -> Option<Self> {
+        Self::PAPER.into_iter().chain([Self::Random]).find(|scenario| scenario.word() == word)
+    }
+
+    /// What it looks like, in a few words.
+    pub fn title(self) -> &'static str {
+        self.file().map_or("random", |file| &file.title)
+    }
+
+    /// Who stands where; `seed` matters for [`Scenario::Random`] alone.
+    pub fn layout(self, configuration: Configuration, parameters: &Parameters, seed: u64) -> Layout {
+        let Some(file) = self.file() else { return random(configuration, parameters, seed) };
+        let ball = in_metres(file.ball);
+        let opponents = match configuration {
+            Configuration::DefenderGoalie => &file.opponents.dg,
+            Configuration::TwoDefenders => &file.opponents.two,
+        };
+        let heading = |place: &PlaceFile| Angle::degrees(place.heading_deg as f32);
+        Layout {
+            ball,
+            attackers: (file.attackers.iter())
+                .map(|a| Pose { position: in_metres(a.at), heading: heading(a) })
+                .collect(),
+            opponents: opponents.iter().map(|o| Placed::at_home(o.role, in_metres(o.at), ball)).collect(),
+        }
+    }
+
+    fn file(self) -> Option<&'static ScenarioFile> {
+        let index = Self::PAPER.iter().position(|&scenario| scenario == self)?;
+        FILES.get(index)
+    }
+}
+
+impl fmt::Display for Scenario {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.word())
+    }
+}
+
+/// Ball anywhere between the own third and the defenders' line, A behind it, the others around, the opponents at home.
+fn random(configuration: Configuration, parameters: &Parameters, seed: u64) -> Layout {
+    let mut chance = Stream::new(seed, "scenario");
+    let ball = Point::new(chance.between(-2.0, 1.2), chance.between(-1.4, 1.4));
+    let mut taken = vec![ball];
+    let mut place = |chance: &mut Stream, x: [f32; 2], y: [f32; 2]| {
+        for _ in 0..PLACING_ATTEMPTS {
+            let at = Point::new(chance.between(x[0], x[1]), chance.between(y[0], y[1]));
+            if taken.iter().all(|other| other.distance(at) >= APART) {
+                taken.push(at);
+                return at;
+            }
+        }
+        // Never in a region of a square metre with seven others on the field; a crowd is pushed apart at once.
+        Point::new(x[0], y[0])
+    };
+    let field = League::FourLegged.field();
+    let (x, y) = (ball.x(), ball.y());
+    let mut attackers = vec![place(&mut chance, [x - 0.7, x - 0.3], [y - 0.3, y + 0.3])];
+    for _ in 1..TEAM {
+        attackers.push(place(&mut chance, [x - 1.2, x + 0.6], [y - 1.2, y + 1.2]));
+    }
+    let roles = match configuration {
+        Configuration::DefenderGoalie => [Role::Defender, Role::Goalie],
+        Configuration::TwoDefenders => [Role::Midfield, Role::Defender],
+    };
+    let opponents = roles.map(|role| {
+        let home = role.home(parameters);
+        Placed::at_home(role, place(&mut chance, home.x, home.y), ball)
+    });
+    let attackers =
+        attackers.into_iter().map(|at| Pose { position: field.clamp(at, 0.0), heading: Angle::ZERO });
+    Layout { ball, attackers: attackers.collect(), opponents: opponents.to_vec() }
+}
+
+fn in_metres([x, y]: [i16; 2]) -> Point<Field> {
+    // Divided, not multiplied: 650 mm shall be the very 0.65 m that a region's border is.
+    Point::new(f32::from(x) / 1000.0, f32::from(y) / 1000.0)
+}
+
+/// A scenario file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScenarioFile {
+    title: String,
+    ball: [i16; 2],
+    attackers: [PlaceFile; TEAM],
+    opponents: OpponentsFile,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlaceFile {
+    at: [i16; 2],
+    heading_deg: i16,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OpponentsFile {
+    dg: [OpponentFile; 2],
+    #[serde(rename = "2d")]
+    two: [OpponentFile; 2],
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OpponentFile {
+    role: Role,
+    at: [i16; 2],
+}
+
+/// Attackers a scenario has places for: a four-legged team.
+pub const TEAM: usize = protocol::team::CASE_ROBOTS_MAX;
+/// Metres between any two things placed at random: two robots' radii and a hand.
+const APART: f32 = 0.35;
+/// Draws before a random place is given up.
+const PLACING_ATTEMPTS: usize = 100;
+
+static FILES: LazyLock<[ScenarioFile; 4]> = LazyLock::new(|| {
+    [
+        include_str!("../../data/scenarios/1.toml"),
+        include_str!("../../data/scenarios/2.toml"),
+        include_str!("../../data/scenarios/3.toml"),
+        include_str!("../../data/scenarios/4.toml"),
+    ]
+    .map(|text| toml::from_str(text).expect("the built-in scenarios are read by a test"))
+});
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOTH: [Configuration; 2] = [Configuration::DefenderGoalie, Configuration::TwoDefenders];
+
+    fn layouts() -> Vec<(Scenario, Configuration, Layout)> {
+        let p = Parameters::four_legged();
+        let random = (0..50).map(|seed| (Scenario::Random, seed));
+        let all = Scenario::PAPER.into_iter().map(|scenario| (scenario, 0)).chain(random);
+        all.flat_map(|(s, seed)| BOTH.map(|c| (s, c, s.layout(c, p, seed)))).collect()
+    }
+
+    #[test]
+    fn everybody_stands_on_the_field_at_home_and_clear_of_each_other() {
+        let (field, p) = (League::FourLegged.field(), Parameters::four_legged());
+        for (scenario, configuration, layout) in layouts() {
+            let robots = layout.attackers.iter().chain(layout.opponents.iter().map(|placed| &placed.pose));
+            let places: Vec<_> = robots.map(|pose| pose.position).chain([layout.ball]).collect();
+            for (i, a) in places.iter().enumerate() {
+                assert!(field.contains(*a), "{scenario} {configuration:?}");
+                for b in &places[..i] {
+                    assert!(a.distance(*b) > 0.24, "{scenario} {configuration:?}: {a:?} and {b:?}");
+                }
+            }
+            for Placed { role, pose, .. } in &layout.opponents {
+                assert!(role.home(p).contains(pose.position), "{scenario} {role:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_defender_of_scenario_three_is_beyond_forty_centimetres_and_that_of_four_within() {
+        for configuration in BOTH {
+            let ahead = |scenario: Scenario| {
+                let layout = scenario.layout(configuration, Parameters::four_legged(), 0);
+                layout.opponents[0].pose.position - layout.ball
+            };
+            assert!(ahead(Scenario::DefenderAhead).norm() > 0.4);
+            assert!(ahead(Scenario::DefenderClose).norm() < 0.4);
+            assert!(ahead(Scenario::DefenderClose).x() > 0.0 && ahead(Scenario::DefenderAhead).x() > 0.0);
+        }
+    }
+
+    #[test]
+    fn random_scenarios_follow_their_seed() {
+        let p = Parameters::four_legged();
+        let draw = |seed| Scenario::Random.layout(Configuration::DefenderGoalie, p, seed);
+        assert_eq!(draw(3), draw(3));
+        assert_ne!(draw(3), draw(4));
+        assert_eq!(Scenario::from_word("random"), Some(Scenario::Random));
+        assert_eq!(Scenario::from_word("5"), None);
+        assert_eq!(Scenario::LeftSide.title(), "left side");
+    }
+}

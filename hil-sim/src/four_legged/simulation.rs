@@ -1,0 +1,374 @@
+//! `simulation`: main loop of a trial. Tick by tick: faults, senses, computers, air, opponents, physics,
+//! referee (docs/architecture.md §2.3, §7.1).
+//!
+//! In tick n at n · 40 ms: what is scheduled happens; every robot that runs is handed its senses and its packets, all robots
+//! think (in parallel where they are processes), their answers are taken in the order of ids; packets go into the air and are heard in
+//! a later tick; the opponents decide; then physics moves for four steps of 10 ms, the referee looking at each. Each
+//! robot's clock starts with its life, so no two need to agree.
+
+use std::fmt;
+
+use brain::BrainConfig;
+use protocol::link::Packet;
+use protocol::lockstep::TickIn;
+use protocol::robot_io::ActuatorFrame;
+use protocol::{Instant, RobotId};
+
+use crate::air::{Air, AirSettings};
+use crate::four_legged::fault::{Fault, ScheduledFault, flipped};
+use crate::four_legged::opponents::{Opponent, Role};
+use crate::four_legged::parameters::{Noise, Parameters};
+use crate::four_legged::referee::{Configuration, Referee};
+use crate::four_legged::scenario::Layout;
+use crate::four_legged::sensors::Senses;
+use crate::four_legged::trace::TraceHash;
+use crate::four_legged::world::{STEP, Side, Walker, World, WorldEvent};
+use crate::mcu::{Backend, Mcu, McuError};
+
+/// Everything that decides how a trial runs; equal configurations run equally.
+#[derive(Clone, Debug)]
+pub struct SimulationConfig {
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// Who stands where.
+    pub layout: Layout,
+    /// Which opponents play; decides what ends the trial.
+    pub configuration: Configuration,
+    /// The attackers' brains: the first plays from the layout's first place, and so on.
+    pub brains: Vec<BrainConfig>,
+    /// How the air treats packets.
+    pub air: AirSettings,
+    /// How perception is blurred.
+    pub noise: Noise,
+    /// How the world behaves.
+    pub parameters: Parameters,
+    /// What goes wrong, and when.
+    pub faults: Vec<ScheduledFault>,
+}
+
+/// A trial under way.
+pub struct Simulation<'a> {
+    backend: Box<dyn Backend<'a> + 'a>,
+    robots: Vec<Robot<'a>>,
+    world: World,
+    opponents: Vec<Opponent>,
+    referee: Referee,
+    air: Air,
+    parameters: Parameters,
+    faults: Vec<ScheduledFault>,
+    trace: TraceHash,
+    next: u32,
+    tick: Tick,
+    worst_instructions: u32,
+}
+
+/// A robot led by a brain; its place in the list is that in the world.
+struct Robot<'a> {
+    config: BrainConfig,
+    computer: Option<Box<dyn Mcu + 'a>>,
+    /// The tick in which its present life began.
+    born: u32,
+    senses: Senses,
+    /// The bit to flip in its next order.
+    flip: Option<u8>,
+}
+
+/// What happened in a tick.
+#[derive(Clone, Debug, Default)]
+pub struct Tick {
+    /// Its number.
+    pub number: u32,
+    /// Seconds from kick-off to its beginning.
+    pub time: f32,
+    /// What was scheduled for it.
+    pub faults: Vec<Fault>,
+    /// What robots heard, in delivery order.
+    pub heard: Vec<Heard>,
+    /// What bodies were told, by id.
+    pub orders: Vec<(RobotId, ActuatorFrame)>,
+    /// What robots said, in order.
+    pub sent: Vec<Sent>,
+    /// What happened on the carpet, with the seconds from kick-off.
+    pub events: Vec<(f32, WorldEvent)>,
+}
+
+/// A packet that a robot said.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sent {
+    /// Who.
+    pub from: RobotId,
+    /// The bytes.
+    pub packet: Packet,
+}
+
+/// A packet that a robot was handed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heard {
+    /// Who.
+    pub to: RobotId,
+    /// The bytes.
+    pub packet: Packet,
+}
+
+impl<'a> Simulation<'a> {
+    /// At kick-off, all computers started.
+    pub fn new(
+        config: SimulationConfig,
+        mut backend: Box<dyn Backend<'a> + 'a>,
+    ) -> Result<Self, SimulationError> {
+        let SimulationConfig { seed, layout, configuration, brains, air, noise, parameters, faults } = config;
+        if brains.len() > layout.attackers.len() {
+            return Err(SimulationError::TooManyRobots {
+                wanted: brains.len(),
+                places: layout.attackers.len(),
+            });
+        }
+        if let Some(pair) = brains.windows(2).find(|pair| pair[0].robot >= pair[1].robot) {
+            return Err(SimulationError::IdsNotRising(pair[1].robot));
+        }
+        let ids: Vec<RobotId> = brains.iter().map(|brain| brain.robot).collect();
+        let mut walkers: Vec<Walker> = (layout.attackers.iter().take(brains.len()))
+            .map(|pose| Walker::at(Side::Attackers, *pose))
+            .collect();
+        walkers.extend(layout.opponents.iter().map(|placed| Walker::at(Side::Opponents, placed.pose)));
+        let roles: Vec<Role> = layout.opponents.iter().map(|placed| placed.role).collect();
+        let opponents = (layout.opponents.iter().zip(brains.len()..))
+            .map(|(placed, i)| Opponent::new(placed.role, placed.conduct, i, &parameters));
+        let mut robots = Vec::new();
+        for (i, config) in brains.into_iter().enumerate() {
+            let computer = start(&mut *backend, &config)?;
+            let senses = Senses::new(noise, seed, i);
+            robots.push(Robot { config, computer: Some(computer), born: 0, senses, flip: None });
+        }
+        let mut faults = faults;
+        // Stable: what is scheduled for one tick happens in the order it was given.
+        faults.sort_by_key(|fault| fault.tick);
+        Ok(Self {
+            backend,
+            robots,
+            opponents: opponents.collect(),
+            referee: Referee::new(configuration, &parameters.referee, roles, layout.ball),
+            world: World::new(&parameters, seed, layout.ball, walkers),
+            air: Air::new(air, seed, &ids),
+            parameters,
+            faults,
+            trace: TraceHash::default(),
+            next: 0,
+            tick: Tick::default(),
+            worst_instructions: 0,
+        })
+    }
+
+    /// Runs a tick; gives what happened. The referee's verdict does not stop the world: that is the caller's business.
+    pub fn step(&mut self) -> Result<&Tick, SimulationError> {
+        let number = self.next;
+        self.next += 1;
+        self.tick = Tick { number, time: seconds(number, 0), ..Tick::default() };
+        self.happen(number)?;
+        self.trace.tick(number, &self.world);
+        self.think(number)?;
+        for Sent { from, packet } in &self.tick.sent {
+            self.air.send(number, *from, packet);
+        }
+        for opponent in &mut self.opponents {
+            opponent.act(&mut self.world, &self.parameters);
+        }
+        self.play(number);
+        Ok(&self.tick)
+    }
+
+    /// What happened in the last tick.
+    pub fn tick(&self) -> &Tick {
+        &self.tick
+    }
+
+    /// The truth, as it is now: at the end of the last tick.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The referee, who knows how the trial stands.
+    pub fn referee(&self) -> &Referee {
+        &self.referee
+    }
+
+    /// Seconds from kick-off to now.
+    pub fn time(&self) -> f32 {
+        seconds(self.next, 0)
+    }
+
+    /// The hash of all ticks so far.
+    pub fn trace(&self) -> TraceHash {
+        self.trace
+    }
+
+    /// The air, to look at.
+    pub fn air(&self) -> &Air {
+        &self.air
+    }
+
+    /// Most instructions that any robot's tick has taken, where they can be counted; else 0.
+    pub fn worst_instructions(&self) -> u32 {
+        self.worst_instructions
+    }
+
+    /// The attackers' ids, in the order of [`World::walkers`], and whether their computers run.
+    pub fn attackers(&self) -> impl Iterator<Item = (RobotId, bool)> {
+        self.robots.iter().map(|robot| (robot.config.robot, robot.computer.is_some()))
+    }
+
+    /// The opponents' roles; they follow the attackers in [`World::walkers`].
+    pub fn opponents(&self) -> impl Iterator<Item = Role> {
+        self.opponents.iter().map(|opponent| opponent.role)
+    }
+
+    /// What is scheduled for this tick.
+    fn happen(&mut self, number: u32) -> Result<(), SimulationError> {
+        let due = self.faults.partition_point(|fault| fault.tick <= number);
+        for ScheduledFault { fault, .. } in self.faults.drain(..due).collect::<Vec<_>>() {
+            self.tick.faults.push(fault.clone());
+            let place = |id: RobotId| self.robots.iter().position(|robot| robot.config.robot == id);
+            match fault {
+                Fault::Crash(id) => {
+                    if let Some(i) = place(id) {
+                        self.robots[i].computer = None;
+                        self.world.let_go(i);
+                    }
+                }
+                Fault::Return(id) => {
+                    let Some(i) = place(id).filter(|&i| self.robots[i].computer.is_none()) else { continue };
+                    let robot = &mut self.robots[i];
+                    robot.config.epoch = robot.config.epoch.wrapping_add(1);
+                    robot.born = number;
+                    robot.computer = Some(start(&mut *self.backend, &robot.config)?);
+                }
+                Fault::Air(settings) => self.air.set(settings),
+                Fault::FlipOrderBit { robot, bit } => {
+                    if let Some(i) = place(robot) {
+                        self.robots[i].flip = Some(bit);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Every computer gets its tick, then gives its answer.
+    fn think(&mut self, number: u32) -> Result<(), SimulationError> {
+        for (i, robot) in self.robots.iter_mut().enumerate() {
+            let id = robot.config.robot;
+            // Looked at even without a computer, so that odometry spans one tick when it returns.
+            let sensors = robot.senses.look(&self.world, i, TICK);
+            let Some(computer) = &mut robot.computer else {
+                self.air.discard(number, id);
+                continue;
+            };
+            let packets = self.air.deliver(number, id);
+            let first = self.tick.heard.len();
+            self.tick.heard.extend(packets.into_iter().map(|packet| Heard { to: id, packet }));
+            let tick = TickIn {
+                seq: number,
+                now: Instant(u64::from(number - robot.born) * TICK_US),
+                air: self.tick.heard[first..].iter().map(|heard| &heard.packet[..]).collect(),
+                sensors,
+            };
+            computer.post(&tick).map_err(|error| SimulationError::Computer { robot: id, error })?;
+        }
+        for (i, robot) in self.robots.iter_mut().enumerate() {
+            let id = robot.config.robot;
+            let Some(computer) = &mut robot.computer else { continue };
+            let reply = computer.collect().map_err(|error| SimulationError::Computer { robot: id, error })?;
+            self.worst_instructions = self.worst_instructions.max(reply.instructions);
+            self.tick.sent.extend(reply.packets.into_iter().map(|packet| Sent { from: id, packet }));
+            if let Some(order) = reply.actuators {
+                let order = robot.flip.take().map_or(order, |bit| flipped(order, bit));
+                self.trace.order(id, &order);
+                self.world.command(i, &order);
+                self.tick.orders.push((id, order));
+            }
+        }
+        for Heard { to, packet } in &self.tick.heard {
+            self.trace.packet(*to, packet);
+        }
+        Ok(())
+    }
+
+    /// Four steps of physics, each looked at by the referee.
+    fn play(&mut self, number: u32) {
+        let mut events = Vec::new();
+        for step in 1..=STEPS_PER_TICK {
+            self.world.step();
+            self.world.take_events(&mut events);
+            let time = seconds(number, step);
+            self.referee.observe(time, &self.world, &events);
+            self.tick.events.extend(events.drain(..).map(|event| (time, event)));
+        }
+    }
+}
+
+/// Why a trial cannot start or go on.
+#[derive(Debug)]
+pub enum SimulationError {
+    /// The layout has fewer places than there are brains.
+    TooManyRobots {
+        /// Brains.
+        wanted: usize,
+        /// Places.
+        places: usize,
+    },
+    /// Brains come in rising order of their ids, each once; this one does not.
+    IdsNotRising(RobotId),
+    /// A robot's computer failed.
+    Computer {
+        /// Whose.
+        robot: RobotId,
+        /// How.
+        error: McuError,
+    },
+}
+
+impl fmt::Display for SimulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooManyRobots { wanted, places } => {
+                write!(f, "{wanted} robots, but the scenario has places for {places}")
+            }
+            Self::IdsNotRising(id) => write!(f, "robot {id} is named twice or out of order"),
+            Self::Computer { robot, error } => write!(f, "robot {robot}: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for SimulationError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Computer { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
+
+fn start<'a>(
+    backend: &mut (dyn Backend<'a> + 'a),
+    config: &BrainConfig,
+) -> Result<Box<dyn Mcu + 'a>, SimulationError> {
+    backend.boot(config).map_err(|error| SimulationError::Computer { robot: config.robot, error })
+}
+
+/// Seconds from kick-off to a step of a tick, from whole milliseconds.
+fn seconds(tick: u32, step: u32) -> f32 {
+    (tick * TICK_MS + step * (TICK_MS / STEPS_PER_TICK)) as f32 * 0.001
+}
+
+/// A brain's tick, ms (docs/architecture.md §2.3: four-legged, every 40 ms).
+const TICK_MS: u32 = 40;
+/// The same in µs.
+pub const TICK_US: u64 = TICK_MS as u64 * 1000;
+/// The same in s.
+const TICK: f32 = 0.04;
+/// Steps of physics in a tick.
+const STEPS_PER_TICK: u32 = 4;
+const _: () = assert!(TICK == STEPS_PER_TICK as f32 * STEP && TICK_MS.is_multiple_of(STEPS_PER_TICK));
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,209 @@
+//! `defaults`: time that a team played its default behaviour, and why (paper §5.4: "only when the costs
+//! exceeded the threshold").
+//!
+//! A spell begins with a coordinator's word that no case fits and lasts until a case is decided on. Why none fitted is judged from
+//! the carpet at the end of the tick in which that is heard: the farthest any case came through retrieval's
+//! tests (docs/case-format.md §3).
+
+use casebase::{CaseBase, GoalEnd, Problem, Settings, Verdict, explain};
+use hil_sim::TICK_US;
+use hil_sim::four_legged::world::{Side, World};
+use protocol::{CycleId, RobotId};
+use serde::Serialize;
+
+use crate::cycles::CycleSeen;
+use crate::report::in_seconds;
+
+/// A trial's default behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DefaultReport {
+    /// Seconds of it.
+    pub time_s: f64,
+    /// How many times it began.
+    pub spells: u32,
+    /// Why, by decision; a spell has one every quarter of a second or so.
+    pub causes: Causes,
+}
+
+/// How often no case fitted, by the farthest that any case came.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Causes {
+    /// The ball lay in no case's scope: a hole in the case base.
+    pub ball: u32,
+    /// Too few robots for every case whose scope held the ball.
+    pub robots: u32,
+    /// Somebody would have had too far to go: the paper's only cause.
+    pub thr_c: u32,
+    /// An opponent stood in the ball's way.
+    pub path: u32,
+    /// A case fitted, but could not begin: another robot held the ball, or robots saw it otherwise.
+    pub held: u32,
+}
+
+/// Watches one team's default behaviour.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DefaultWatch {
+    active: bool,
+    /// The cycle whose lack of a case was counted last.
+    judged: Option<CycleId>,
+    ticks: u32,
+    spells: u32,
+    causes: Causes,
+}
+
+impl DefaultWatch {
+    /// A tick is over.
+    pub(crate) fn tick(&mut self) {
+        self.ticks += u32::from(self.active);
+    }
+
+    /// The newest cycle was decided on or ended.
+    pub(crate) fn hear(
+        &mut self,
+        cycle: &CycleSeen,
+        problem: &Problem,
+        base: &CaseBase<'_>,
+        settings: &Settings,
+    ) {
+        if cycle.play.is_some() {
+            self.active = false;
+        } else if cycle.no_case && self.judged != Some(cycle.id) {
+            self.judged = Some(cycle.id);
+            self.spells += u32::from(!self.active);
+            self.active = true;
+            *self.causes.of(base, problem, settings) += 1;
+        }
+    }
+
+    pub(crate) fn report(&self) -> DefaultReport {
+        let seconds = self.ticks as f32 * (TICK_US as f32 * 1e-6);
+        DefaultReport { time_s: in_seconds(seconds), spells: self.spells, causes: self.causes }
+    }
+}
+
+impl Causes {
+    fn of(&mut self, base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> &mut u32 {
+        let mut farthest = 0;
+        explain(base, problem, settings, |_, verdict| {
+            farthest = farthest.max(match verdict {
+                Verdict::Ball { .. } => 0,
+                Verdict::Robots { .. } => 1,
+                Verdict::OutOfField { .. } | Verdict::TooFar { .. } => 2,
+                Verdict::Path { .. } => 3,
+                Verdict::Candidate(_) => 4,
+            });
+        });
+        match farthest {
+            0 => &mut self.ball,
+            1 => &mut self.robots,
+            2 => &mut self.thr_c,
+            3 => &mut self.path,
+            _ => &mut self.held,
+        }
+    }
+
+    /// All of them.
+    pub fn total(&self) -> u32 {
+        let Self { ball, robots, thr_c, path, held } = *self;
+        ball + robots + thr_c + path + held
+    }
+}
+
+/// What a coordinator without noise sees: the ball where it will lie, the attackers by id, everybody else.
+pub(crate) fn problem(world: &World, attackers: &[RobotId], deceleration: f32) -> Problem {
+    let places = |side| {
+        let walkers = world.walkers.iter().filter(move |walker| walker.side == side);
+        walkers.map(|walker| walker.pose.position.into())
+    };
+    let ids = attackers.iter().copied();
+    Problem {
+        ball: world.ball.rest(deceleration).into(),
+        defending: GoalEnd::Negative,
+        teammates: ids.zip(places(Side::Attackers)).collect(),
+        opponents: places(Side::Opponents).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use casebase::PointMm;
+
+    use super::*;
+
+    const fn at(x: i32, y: i32) -> PointMm {
+        PointMm { x, y }
+    }
+
+    fn cause(ball: PointMm, mates: &[PointMm]) -> Causes {
+        let id = |n: usize| RobotId::new(n as u8).unwrap();
+        let problem = Problem {
+            ball,
+            teammates: mates.iter().enumerate().map(|(i, mate)| (id(i + 1), *mate)).collect(),
+            ..problem_of_nobody()
+        };
+        let mut causes = Causes::default();
+        *causes.of(&case_library::four_legged(), &problem, &Settings::default()) += 1;
+        causes
+    }
+
+    fn cycle(counter: u32, no_case: bool, play: bool) -> CycleSeen {
+        use protocol::quantized::WirePoint;
+        use protocol::team::Play;
+        let id = RobotId::new(1).unwrap();
+        let play = play.then(|| Play {
+            case: protocol::CaseId(0),
+            ball: WirePoint::default(),
+            robots: [id].into_iter().collect(),
+        });
+        CycleSeen {
+            id: CycleId { counter, proposer: id },
+            coordinator: id,
+            play,
+            no_case,
+            start: 0.0,
+            end: None,
+        }
+    }
+
+    #[test]
+    fn the_cause_is_the_farthest_any_case_came() {
+        assert_eq!(cause(at(60_000, 0), &[at(0, 0)]), Causes { ball: 1, ..Causes::default() });
+        // The ball is in scopes of the built-in library, but the robots are a field's length away.
+        assert_eq!(
+            cause(at(0, 0), &[at(9_000, 9_000), at(9_000, 8_000)]),
+            Causes { thr_c: 1, ..Causes::default() }
+        );
+        assert_eq!(cause(at(0, 0), &[]), Causes { robots: 1, ..Causes::default() });
+        assert_eq!(cause(at(0, 0), &[at(-150, 0), at(800, 900)]), Causes { held: 1, ..Causes::default() });
+    }
+
+    #[test]
+    fn a_spell_lasts_from_the_first_word_to_the_next_case() {
+        let problem = Problem { ball: at(60_000, 0), ..problem_of_nobody() };
+        let (base, settings) = (case_library::four_legged(), Settings::default());
+        let mut watch = DefaultWatch::default();
+        // The second word about cycle 2 is its closing.
+        for (counter, no_case, play, ticks) in [
+            (1, true, false, 5),
+            (2, true, false, 2),
+            (2, true, false, 3),
+            (3, false, true, 100),
+            (4, true, false, 15),
+        ] {
+            watch.hear(&cycle(counter, no_case, play), &problem, &base, &settings);
+            (0..ticks).for_each(|_| watch.tick());
+        }
+        let causes = Causes { ball: 3, ..Causes::default() };
+        assert_eq!(watch.report(), DefaultReport { time_s: 1.0, spells: 2, causes });
+        assert_eq!(causes.total(), 3);
+    }
+
+    fn problem_of_nobody() -> Problem {
+        Problem {
+            ball: at(0, 0),
+            defending: GoalEnd::Negative,
+            teammates: std::iter::empty().collect(),
+            opponents: std::iter::empty().collect(),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! `recording`: recording of a trial for its picture. Places by tick, kicks, and where gameplays began; m, s,
+//! field frame.
+
+use geometry::{Field, Point, Pose};
+use hil_sim::TICK_US;
+use hil_sim::four_legged::world::WorldEvent;
+use protocol::robot_io::LeggedKick;
+
+use crate::cycles::News;
+use crate::names::{Cast, symmetry};
+use crate::report::TrialReport;
+use crate::trial::{Moment, Watcher};
+
+/// A trial's course.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    /// Who is who in [`Sample::robots`].
+    pub cast: Cast,
+    /// Every tick.
+    pub samples: Vec<Sample>,
+    /// Every kick, opponents' included.
+    pub kicks: Vec<Kick>,
+    /// Every gameplay that began.
+    pub starts: Vec<Start>,
+    /// How it ended, once it has.
+    pub report: Option<TrialReport>,
+}
+
+/// Where everything was at the end of a tick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sample {
+    /// Seconds from kick-off.
+    pub time: f32,
+    /// The ball.
+    pub ball: Point<Field>,
+    /// Who held it, if somebody did.
+    pub holder: Option<usize>,
+    /// The robots.
+    pub robots: Vec<Pose<Field>>,
+}
+
+/// A kick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kick {
+    /// Seconds from kick-off.
+    pub time: f32,
+    /// Who kicked.
+    pub robot: usize,
+    /// How.
+    pub kick: LeggedKick,
+    /// From where.
+    pub from: Point<Field>,
+    /// Where the ball would come to rest, undisturbed.
+    pub rest: Point<Field>,
+}
+
+/// The beginning of a gameplay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Start {
+    /// Seconds from kick-off.
+    pub time: f32,
+    /// Where the ball was.
+    pub ball: Point<Field>,
+    /// `region/name`.
+    pub case: String,
+    /// Which copy of it.
+    pub symmetry: &'static str,
+    /// Who plays, in the order of case robots.
+    pub players: Vec<String>,
+    /// Its place in the team's list of cycles.
+    pub cycle: usize,
+}
+
+impl Watcher for Recording {
+    fn watch(&mut self, moment: &Moment<'_>) {
+        if self.samples.is_empty() {
+            self.cast = moment.cast.clone();
+        }
+        for news in moment.news {
+            let News::Decided(cycle) = *news else { continue };
+            let Some(play) = moment.cycles.cycles().get(cycle).and_then(|cycle| cycle.play.as_ref()) else {
+                continue;
+            };
+            self.starts.push(Start {
+                time: moment.tick.time,
+                ball: play.ball.into(),
+                case: moment.config.names.of(play.case),
+                symmetry: symmetry(play.case),
+                players: play.robots.iter().map(|id| moment.cast.name_of(*id)).collect(),
+                cycle,
+            });
+        }
+        for (time, event) in &moment.tick.events {
+            if let WorldEvent::Kicked { robot, kick, from, rest } = *event {
+                self.kicks.push(Kick { time: *time, robot, kick, from, rest });
+            }
+        }
+        self.samples.push(Sample {
+            time: moment.tick.time + TICK_US as f32 * 1e-6,
+            ball: moment.world.ball.position,
+            holder: moment.world.holder(),
+            robots: moment.world.walkers.iter().map(|walker| walker.pose).collect(),
+        });
+    }
+
+    fn end(&mut self, _moment: &Moment<'_>, report: &TrialReport) {
+        self.report = Some(report.clone());
+    }
+}

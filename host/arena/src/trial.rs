@@ -1,0 +1,326 @@
+//! `trial`: a trial of the first paper (Ros et al. 2009 §5.1;
+//! docs/architecture.md §7, docs/case-format.md §5). Robots 1, 2, … are A, B, … and attack +x.
+
+use brain::{Approach, BrainConfig, Positioning};
+use casebase::{CaseBase, Settings};
+use hil_sim::{
+    AirSettings, Backend, Configuration, Layout, Noise, Outcome, Parameters, Party, Referee, Role, Scenario,
+    ScheduledFault, Simulation, SimulationConfig, SimulationError, Tick, Verdict, four_legged::world::World,
+};
+use protocol::frame::{TeamKey, TeamKeys};
+use protocol::link::overhear;
+use protocol::team::{Beacon, TeamMessage};
+use protocol::{Duration, RobotId, TeamId};
+
+use crate::backups::BackupCount;
+use crate::cycles::{CycleLog, News};
+use crate::defaults::{self, DefaultWatch};
+use crate::names::{CaseNames, Cast};
+use crate::report::{Backups, CaseCounts, CycleReport, Possession, TrialReport, in_seconds};
+
+/// Everything that decides a trial but its back end.
+#[derive(Clone, Debug)]
+pub struct TrialConfig<'a> {
+    /// Where everybody stands.
+    pub scenario: Scenario,
+    /// Where everybody stands instead, if it is no named scenario.
+    pub layout: Option<Layout>,
+    /// Which opponents play.
+    pub opponents: Configuration,
+    /// What leads the attackers.
+    pub approach: Approach,
+    /// Where all chance comes from.
+    pub seed: u64,
+    /// How robots retrieve.
+    pub settings: Settings,
+    /// When a case's actions begin.
+    pub positioning: Positioning,
+    /// Attackers, 1 to 4; the paper has 2.
+    pub robots: usize,
+    /// How many of them may retrieve: those with the highest ids, so that the elector need not be one (paper §4.1).
+    pub retrievers: usize,
+    /// How the air treats packets.
+    pub air: AirSettings,
+    /// How perception is blurred.
+    pub noise: Noise,
+    /// How long robots stand still after every cycle.
+    pub pause_after_cycle: Duration,
+    /// What goes wrong, and when.
+    pub faults: Vec<ScheduledFault>,
+    /// How the world behaves.
+    pub parameters: Parameters,
+    /// The case base in every robot.
+    pub base: CaseBase<'a>,
+    /// What its cases are called.
+    pub names: CaseNames,
+}
+
+impl TrialConfig<'static> {
+    /// As in the paper's simulated experiments, with the built-in library of the four-legged league.
+    pub fn new(scenario: Scenario, opponents: Configuration, approach: Approach, seed: u64) -> Self {
+        let league = case_library::league(LEAGUE);
+        Self {
+            scenario,
+            layout: None,
+            opponents,
+            approach,
+            seed,
+            settings: Settings::default(),
+            positioning: Positioning::default(),
+            robots: 2,
+            retrievers: 2,
+            air: AirSettings::default(),
+            noise: Noise::NONE,
+            pause_after_cycle: Duration(0),
+            faults: Vec::new(),
+            parameters: Parameters::four_legged().clone(),
+            base: case_library::four_legged(),
+            names: CaseNames::new(league.map_or(&[][..], |league| league.names).iter().copied()),
+        }
+    }
+}
+
+impl<'a> TrialConfig<'a> {
+    /// The same trial with another library.
+    pub fn with_library(self, base: CaseBase<'a>, names: CaseNames) -> Self {
+        Self { base, names, ..self }
+    }
+
+    /// What the simulator needs to know.
+    pub fn simulation(&self) -> SimulationConfig {
+        let ids = (1..=self.robots).filter_map(|n| RobotId::new(u8::try_from(n).ok()?));
+        let brains = ids.enumerate().map(|(i, robot)| BrainConfig {
+            retriever: self.robots - i <= self.retrievers,
+            positioning: self.positioning,
+            approach: self.approach,
+            settings: self.settings.clone(),
+            pause_after_cycle: self.pause_after_cycle,
+            ..BrainConfig::new(robot, TEAM)
+        });
+        let drawn = || self.scenario.layout(self.opponents, &self.parameters, self.seed);
+        let layout = self.layout.clone().unwrap_or_else(drawn);
+        SimulationConfig {
+            seed: self.seed,
+            layout,
+            configuration: self.opponents,
+            brains: brains.collect(),
+            air: self.air.clone(),
+            noise: self.noise,
+            parameters: self.parameters.clone(),
+            faults: self.faults.clone(),
+        }
+    }
+}
+
+/// Somebody at the edge of the field, with eyes and a radio receiver.
+pub trait Watcher {
+    /// A tick has passed.
+    fn watch(&mut self, moment: &Moment<'_>);
+
+    /// The trial is over.
+    fn end(&mut self, _moment: &Moment<'_>, _report: &TrialReport) {}
+}
+
+/// What a watcher is shown.
+pub struct Moment<'a> {
+    /// The trial's configuration.
+    pub config: &'a TrialConfig<'a>,
+    /// Who is who.
+    pub cast: &'a Cast,
+    /// The carpet, as it is at the end of the tick.
+    pub world: &'a World,
+    /// The tick.
+    pub tick: &'a Tick,
+    /// The referee, who counts.
+    pub referee: &'a Referee,
+    /// What robots said in the tick, in order; packets that are no beacons of this team are left out.
+    pub beacons: &'a [(RobotId, Beacon)],
+    /// The cycles so far, these beacons included.
+    pub cycles: &'a CycleLog,
+    /// What these beacons added to them.
+    pub news: &'a [News],
+}
+
+/// Plays a trial to its end.
+pub fn run<'a>(
+    config: &TrialConfig<'a>,
+    backend: Box<dyn Backend<'a> + 'a>,
+    watchers: &mut [&mut dyn Watcher],
+) -> Result<TrialReport, SimulationError> {
+    let mut game = Game::new(config, backend)?;
+    let verdict = loop {
+        game.step(watchers)?;
+        if let Some(verdict) = game.moment().referee.verdict() {
+            break verdict;
+        }
+    };
+    Ok(game.end(verdict, watchers))
+}
+
+/// A trial under way; it ends when its caller says so.
+pub(crate) struct Game<'c, 'a> {
+    config: &'c TrialConfig<'a>,
+    backend: &'static str,
+    simulation: Simulation<'a>,
+    cast: Cast,
+    backups: BackupCount,
+    cycles: CycleLog,
+    defaults: DefaultWatch,
+    beacons: Vec<(RobotId, Beacon)>,
+    news: Vec<News>,
+    keys: TeamKeys,
+}
+
+impl<'c, 'a> Game<'c, 'a> {
+    /// At kick-off.
+    pub(crate) fn new(
+        config: &'c TrialConfig<'a>,
+        backend: Box<dyn Backend<'a> + 'a>,
+    ) -> Result<Self, SimulationError> {
+        let name = backend.name();
+        let simulation = Simulation::new(config.simulation(), backend)?;
+        let cast = Cast {
+            attackers: simulation.attackers().map(|(id, _)| id).collect(),
+            opponents: simulation.opponents().collect(),
+        };
+        Ok(Self {
+            config,
+            backend: name,
+            backups: BackupCount::new(cast.attackers.iter().copied()),
+            simulation,
+            cast,
+            cycles: CycleLog::default(),
+            defaults: DefaultWatch::default(),
+            beacons: Vec::new(),
+            news: Vec::new(),
+            keys: TeamKey::ZERO.of_team(),
+        })
+    }
+
+    /// A tick, shown to the watchers.
+    pub(crate) fn step(&mut self, watchers: &mut [&mut dyn Watcher]) -> Result<(), SimulationError> {
+        let tick = self.simulation.step()?;
+        self.beacons.clear();
+        self.news.clear();
+        for sent in &tick.sent {
+            let Ok((from, TeamMessage::Beacon(beacon))) = overhear(&sent.packet, TEAM, &self.keys) else {
+                continue;
+            };
+            self.backups.hear(tick.time, from, beacon.role);
+            if let Some(state) = &beacon.cycle {
+                self.news.push(self.cycles.hear(tick.time, state));
+            }
+            self.beacons.push((from, beacon));
+        }
+        self.watch_defaults();
+        let moment = self.moment();
+        for watcher in watchers.iter_mut() {
+            watcher.watch(&moment);
+        }
+        Ok(())
+    }
+
+    /// Does the team play by a case, and if not, why?
+    fn watch_defaults(&mut self) {
+        let Self { config, simulation, cast, cycles, defaults, news, .. } = self;
+        for news in news.iter() {
+            let (News::Decided(i) | News::Ended(i)) = *news else { continue };
+            // What is still said of an older cycle leads nobody any more.
+            if let [cycle] = &cycles.cycles()[i..] {
+                let deceleration = config.parameters.ball.deceleration;
+                let problem = defaults::problem(simulation.world(), &cast.attackers, deceleration);
+                defaults.hear(cycle, &problem, &config.base, &config.settings);
+            }
+        }
+        defaults.tick();
+    }
+
+    /// The end of the last tick.
+    pub(crate) fn moment(&self) -> Moment<'_> {
+        Moment {
+            config: self.config,
+            cast: &self.cast,
+            world: self.simulation.world(),
+            tick: self.simulation.tick(),
+            referee: self.simulation.referee(),
+            beacons: &self.beacons,
+            cycles: &self.cycles,
+            news: &self.news,
+        }
+    }
+
+    /// The trial is over: its report, told to the watchers.
+    pub(crate) fn end(mut self, verdict: Verdict, watchers: &mut [&mut dyn Watcher]) -> TrialReport {
+        self.cycles.finish(verdict.time);
+        let report = self.report(verdict);
+        let moment = self.moment();
+        for watcher in watchers.iter_mut() {
+            watcher.end(&moment, &report);
+        }
+        report
+    }
+
+    fn report(&self, verdict: Verdict) -> TrialReport {
+        let (config, referee) = (self.config, self.simulation.referee());
+        let out_by = referee.last_touch().filter(|_| verdict.outcome == Outcome::Out).map(Party::word);
+        TrialReport {
+            scenario: config.scenario,
+            opponents: config.opponents,
+            approach: approach_word(config.approach),
+            backend: self.backend,
+            seed: config.seed,
+            outcome: verdict.outcome,
+            time_s: in_seconds(verdict.time),
+            possession: Possession {
+                defender: referee.possessions(Role::Defender),
+                midfield: referee.possessions(Role::Midfield),
+            },
+            backups: Backups(self.backups.counts()),
+            out_by,
+            cases: CaseCounts::of(self.cycles.cycles()),
+            cycles: (self.cycles.cycles().iter())
+                .map(|cycle| CycleReport::new(cycle, &config.names, verdict.time))
+                .collect(),
+            trace_hash: self.simulation.trace().digits(),
+            settings: (config.settings.describe())
+                .map(|(name, value)| (name, value.as_str().to_owned()))
+                .collect(),
+            positioning: positioning_word(config.positioning),
+            case_base: format!("{:08x}", config.base.hash()),
+            default: (config.approach != Approach::Reactive).then(|| self.defaults.report()),
+        }
+    }
+}
+
+/// The word of an approach in options and reports.
+pub const fn approach_word(approach: Approach) -> &'static str {
+    match approach {
+        Approach::Cases => "cbr",
+        Approach::Reactive => "reactive",
+        Approach::Hybrid => "hybrid",
+    }
+}
+
+/// The approach of that word.
+pub fn approach_from_word(word: &str) -> Option<Approach> {
+    APPROACHES.into_iter().find(|approach| approach_word(*approach) == word)
+}
+
+/// All approaches, in the order of tables: the paper's two first.
+pub const APPROACHES: [Approach; 3] = [Approach::Cases, Approach::Reactive, Approach::Hybrid];
+
+/// The word of a positioning in options and reports.
+pub const fn positioning_word(positioning: Positioning) -> &'static str {
+    match positioning {
+        Positioning::Dependent => "dependent",
+        Positioning::Independent => "independent",
+    }
+}
+
+/// The attackers' team on the air.
+pub const TEAM: TeamId = TeamId(1);
+/// The league trials are played in.
+const LEAGUE: &str = "four-legged";
+
+#[cfg(test)]
+mod tests;

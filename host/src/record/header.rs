@@ -1,0 +1,364 @@
+//! `header`: header of a trace, as JSON (docs/architecture.md §7.4): the settings from which the hosts of
+//! a recording can be rebuilt.
+//!
+//! A team's key stands in no file that is handed on: the header says only that there was one ([`HostHeader::keyed`]), and whoever
+//! builds the host again brings it.
+
+use std::fmt;
+
+use geometry::GoalEnd;
+use protocol::frame::TeamKey;
+use protocol::{Duration, Instant, RobotId, TeamId};
+use rules::{Colour, League};
+use serde::{Deserialize, Serialize};
+
+use crate::HostSettings;
+use crate::config::KICK_RANGE;
+use crate::proposal::cases_of;
+use crate::radio::{RadioSettings, Relay};
+use crate::referee::{OnSilence, SourcePin};
+use crate::strategy::{Tactics, Team};
+
+/// What a trace begins with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RecordingHeader {
+    /// The program's version.
+    pub version: String,
+    /// The commit it was built from.
+    pub commit: String,
+    /// Where a simulated match had its chance from; none on a real field.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// The league's name.
+    pub league: String,
+    /// Which simulated world it was played in; none on a real field, and in recordings from before there were several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub world: Option<String>,
+    /// Unix time of the hosts' instant 0, µs, where it is known: what their clock shows is since then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_unix_us: Option<u64>,
+    /// The hosts, by the number that records have.
+    pub hosts: Vec<HostHeader>,
+}
+
+/// With what one host began.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HostHeader {
+    /// `blue` or `yellow`.
+    pub colour: String,
+    /// Its goal until the referee says: `yellow` is the one at −x, `cyan` the one at +x, as in problems.
+    pub defending: String,
+    /// Its keeper until the referee says.
+    pub keeper: u8,
+    /// Ball speed over speed ordered, by robot.
+    pub kick: Vec<f32>,
+    /// Deceleration of a rolling ball that was set, m/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f32>,
+    /// Whether it played by what it learned.
+    #[serde(default)]
+    pub learns: bool,
+    /// When it began, on its own clock, µs.
+    #[serde(default)]
+    pub began_us: u64,
+    /// Who decided open play.
+    #[serde(default)]
+    pub plays: Team,
+    /// The team's number on the radio.
+    pub team: u8,
+    /// Which life of the host it was.
+    pub epoch: u32,
+    /// Who passes beacons on: `no`, `to-each` or `to-all`.
+    pub relay: String,
+    /// How long a packet is on its way, µs.
+    pub way_us: u64,
+    /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub referee_source: Option<String>,
+    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command stood.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub referee_silence: Option<String>,
+    /// Were frames sealed with a key other than zeros?
+    #[serde(default)]
+    pub keyed: bool,
+    /// Which tactics it played.
+    #[serde(default = "Tactics::none")]
+    pub tactics: Tactics,
+    /// The hash of the case base by which it understood its robots, where its tactics asked for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cases: Option<String>,
+}
+
+/// Why a header builds no host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HeaderError {
+    /// What is wrong, with its place.
+    pub words: String,
+}
+
+impl fmt::Display for HeaderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the recording's header: {}", self.words)
+    }
+}
+
+impl std::error::Error for HeaderError {}
+
+fn wrong(words: impl Into<String>) -> HeaderError {
+    HeaderError { words: words.into() }
+}
+
+impl RecordingHeader {
+    /// As a trace begins with it.
+    pub fn to_json(&self) -> String {
+        // Strings, numbers and lists of them: nothing that JSON cannot say.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// From a trace's first words.
+    pub fn from_json(text: &str) -> Result<Self, HeaderError> {
+        serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
+    }
+
+    /// The league itself.
+    pub fn league(&self) -> Result<League, HeaderError> {
+        [League::Ssl2013, League::DivisionB, League::DivisionA]
+            .into_iter()
+            .find(|league| league.name() == self.league)
+            .ok_or_else(|| {
+                wrong(format!("league: `{}` is none; ssl-2013, division-b or division-a", self.league))
+            })
+    }
+}
+
+fn hash_of_cases(league: League) -> String {
+    format!("{:08x}", cases_of(league).hash())
+}
+
+const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
+
+impl HostHeader {
+    /// Of a host that begins at `began`.
+    pub fn new(
+        (colour, keeper, defending): (Colour, RobotId, GoalEnd),
+        kick: &[f32; RobotId::COUNT],
+        radio: &RadioSettings,
+        began: Instant,
+    ) -> Self {
+        let relay = RELAYS.iter().find(|(_, relay)| *relay == radio.relay).map_or("no", |(word, _)| word);
+        Self {
+            colour: colour.word().to_owned(),
+            defending: defending.word().to_owned(),
+            keeper: keeper.number(),
+            kick: kick.to_vec(),
+            roll: None,
+            learns: false,
+            began_us: began.0,
+            plays: Team::Ours,
+            team: radio.team.0,
+            epoch: radio.epoch,
+            relay: relay.to_owned(),
+            way_us: radio.way.0,
+            referee_source: None,
+            referee_silence: None,
+            keyed: radio.key != TeamKey::ZERO,
+            tactics: Tactics::NONE,
+            cases: None,
+        }
+    }
+
+    /// Of a host with these settings that begins at `began`.
+    pub fn of(settings: &HostSettings, began: Instant) -> Self {
+        let who = (settings.us, settings.keeper, settings.defending);
+        Self {
+            plays: settings.team,
+            roll: settings.roll,
+            learns: settings.learns,
+            referee_source: settings.referee.as_ref().map(ToString::to_string),
+            referee_silence: Some(settings.referee_silence.word().to_owned()),
+            tactics: settings.tactics,
+            cases: settings.tactics.bridge.then(|| hash_of_cases(settings.league)),
+            ..Self::new(who, &settings.kick, &settings.radio, began)
+        }
+    }
+
+    /// The settings it began with; the key is for the caller to bring.
+    pub fn settings(&self, league: League, key: TeamKey) -> Result<HostSettings, HeaderError> {
+        let ours = hash_of_cases(league);
+        if let Some(theirs) = self.cases.as_ref().filter(|hash| self.tactics.bridge && **hash != ours) {
+            return Err(wrong(format!(
+                "cases: it understood its robots by case base {theirs}, this program's is {ours}; take the program of the recording"
+            )));
+        }
+        Ok(HostSettings {
+            us: self.colour()?,
+            league,
+            keeper: self.keeper()?,
+            defending: self.defending()?,
+            kick: self.kick()?,
+            roll: self.roll.filter(|roll| (0.05..=1.5).contains(roll)),
+            learns: self.learns,
+            referee: self.referee_source.as_deref().map(SourcePin::of),
+            referee_silence: self.referee_silence()?,
+            team: self.plays,
+            radio: self.radio(key)?,
+            tactics: self.tactics,
+        })
+    }
+
+    fn referee_silence(&self) -> Result<OnSilence, HeaderError> {
+        let Some(word) = &self.referee_silence else { return Ok(OnSilence::GoOn) };
+        let known = OnSilence::ALL.into_iter().find(|(known, _)| known == word);
+        known
+            .map(|(_, known)| known)
+            .ok_or_else(|| wrong(format!("referee_silence: `{word}` is none; halt or go-on")))
+    }
+
+    /// Its colour.
+    pub fn colour(&self) -> Result<Colour, HeaderError> {
+        [Colour::Blue, Colour::Yellow]
+            .into_iter()
+            .find(|colour| colour.word() == self.colour)
+            .ok_or_else(|| wrong(format!("colour: `{}` is none; blue or yellow", self.colour)))
+    }
+
+    /// The goal it began to defend.
+    pub fn defending(&self) -> Result<GoalEnd, HeaderError> {
+        GoalEnd::from_word(&self.defending).ok_or_else(|| {
+            wrong(format!("defending: `{}` is no goal; yellow (−x) or cyan (+x)", self.defending))
+        })
+    }
+
+    /// Its keeper.
+    pub fn keeper(&self) -> Result<RobotId, HeaderError> {
+        RobotId::new(self.keeper)
+            .ok_or_else(|| wrong(format!("keeper: {} is no robot; ids are 0 to 15", self.keeper)))
+    }
+
+    /// Ball speed over speed ordered, by robot.
+    pub fn kick(&self) -> Result<[f32; RobotId::COUNT], HeaderError> {
+        let good = self.kick.iter().all(|factor| KICK_RANGE.contains(factor));
+        <[f32; RobotId::COUNT]>::try_from(&self.kick[..]).ok().filter(|_| good).ok_or_else(|| {
+            let (count, low, high) = (RobotId::COUNT, KICK_RANGE.start(), KICK_RANGE.end());
+            wrong(format!("kick: {count} factors of {low} to {high}, one for each robot"))
+        })
+    }
+
+    /// When it began.
+    pub fn began(&self) -> Instant {
+        Instant(self.began_us)
+    }
+
+    /// Its radio, sealed with that key.
+    pub fn radio(&self, key: TeamKey) -> Result<RadioSettings, HeaderError> {
+        let relay = RELAYS.iter().find(|(word, _)| *word == self.relay);
+        let (_, relay) =
+            relay.ok_or_else(|| wrong(format!("relay: `{}`; no, to-each or to-all", self.relay)))?;
+        Ok(RadioSettings {
+            team: TeamId(self.team),
+            key,
+            epoch: self.epoch,
+            relay: *relay,
+            way: Duration(self.way_us),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header() -> RecordingHeader {
+        let mut kick = [1.0; RobotId::COUNT];
+        kick[3] = 1.06;
+        let radio = RadioSettings {
+            key: TeamKey([7; 16]),
+            relay: Relay::ToEach,
+            ..RadioSettings::new(TeamId(2), 1_795_000_000)
+        };
+        let who = (Colour::Blue, RobotId::new(0).unwrap(), GoalEnd::Positive);
+        RecordingHeader {
+            version: "0.1.0".to_owned(),
+            commit: "unknown".to_owned(),
+            seed: Some(7),
+            league: "division-b".to_owned(),
+            world: Some("random:7".to_owned()),
+            zero_unix_us: None,
+            hosts: vec![HostHeader::new(who, &kick, &radio, Instant(25))],
+        }
+    }
+
+    #[test]
+    fn what_a_host_began_with_is_read_again_from_the_words() {
+        let written = header();
+        let read = RecordingHeader::from_json(&written.to_json()).unwrap();
+        assert_eq!(read, written);
+        assert_eq!(read.league().unwrap(), League::DivisionB);
+        let host = &read.hosts[0];
+        assert_eq!((host.colour().unwrap(), host.defending().unwrap()), (Colour::Blue, GoalEnd::Positive));
+        assert_eq!(
+            (host.keeper().unwrap(), host.kick().unwrap()[3], host.began()),
+            (RobotId::new(0).unwrap(), 1.06, Instant(25))
+        );
+        let radio = host.radio(TeamKey([7; 16])).unwrap();
+        assert_eq!((radio.team, radio.epoch, radio.relay), (TeamId(2), 1_795_000_000, Relay::ToEach));
+        assert_eq!(radio.way, Duration::millis(3));
+    }
+
+    #[test]
+    fn a_key_is_never_written_down_but_that_there_was_one_is() {
+        let written = header();
+        assert!(written.hosts[0].keyed);
+        assert!(!written.to_json().contains("7,7,7"), "{}", written.to_json());
+    }
+
+    #[test]
+    fn hosts_of_old_recordings_played_no_tactics_and_those_of_new_ones_are_told() {
+        let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
+        settings.tactics = Tactics { threats: true, ..Tactics::NONE };
+        let told = serde_json::to_string(&HostHeader::of(&settings, Instant(0))).unwrap();
+        let read: HostHeader = serde_json::from_str(&told).unwrap();
+        assert_eq!(read.settings(League::DivisionB, TeamKey::ZERO).unwrap().tactics, settings.tactics);
+        let tactics = told.find(",\"tactics\"").unwrap();
+        let old: HostHeader = serde_json::from_str(&format!("{}}}", &told[..tactics])).unwrap();
+        assert_eq!(old.tactics, Tactics::NONE);
+    }
+
+    #[test]
+    fn whoever_played_the_bridge_between_the_papers_says_by_which_cases_and_others_do_not_do() {
+        let mut settings = HostSettings::new(Colour::Blue, League::DivisionB, 1);
+        settings.tactics = Tactics { bridge: false, ..Tactics::ALL };
+        assert_eq!(HostHeader::of(&settings, Instant(0)).cases, None);
+        settings.tactics.bridge = true;
+        let mut told = HostHeader::of(&settings, Instant(0));
+        assert_eq!(told.cases, Some(format!("{:08x}", case_library::division_b().hash())));
+        assert!(told.settings(League::DivisionB, TeamKey::ZERO).is_ok());
+        told.cases = Some("01234567".to_owned());
+        let words = told.settings(League::DivisionB, TeamKey::ZERO).unwrap_err().to_string();
+        assert!(words.contains("01234567"), "{words}");
+    }
+
+    #[test]
+    fn every_fault_of_a_header_names_its_place() {
+        let faulty = |change: fn(&mut HostHeader)| {
+            let mut host = header().hosts.remove(0);
+            change(&mut host);
+            host
+        };
+        assert!(
+            faulty(|h| h.colour = "red".into()).colour().unwrap_err().to_string().contains("blue or yellow")
+        );
+        assert!(
+            faulty(|h| h.defending = "blue".into()).defending().unwrap_err().to_string().contains("cyan")
+        );
+        assert!(faulty(|h| h.keeper = 16).keeper().unwrap_err().to_string().contains("0 to 15"));
+        assert!(faulty(|h| h.kick.truncate(15)).kick().unwrap_err().to_string().contains("16"));
+        assert!(faulty(|h| h.kick[0] = f32::NAN).kick().unwrap_err().to_string().contains("0.4 to 2"));
+        assert!(
+            faulty(|h| h.relay = "x".into()).radio(TeamKey::ZERO).unwrap_err().to_string().contains("to-all")
+        );
+        let other = RecordingHeader { league: "four-legged".into(), ..header() };
+        assert!(other.league().unwrap_err().to_string().contains("division-b"));
+        assert!(RecordingHeader::from_json("{\"version\":1}").unwrap_err().to_string().contains("line 1"));
+    }
+}

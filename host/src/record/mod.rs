@@ -1,0 +1,11 @@
+//! `record`: recording of a match and its use: the league's log file and a trace of every input and packet, written on a thread of its
+//! own, read again, and held against what a host decides on the same inputs.
+
+mod background;
+pub mod header;
+pub mod recheck;
+mod recorder;
+pub mod trace;
+
+pub use background::BackgroundRecorder;
+pub use recorder::Recorder;

@@ -1,0 +1,325 @@
+//! `recheck`: replay check of a host's decisions. Feeds a trace's inputs to hosts built from its header and
+//! holds every packet they send to the record, byte for byte (docs/architecture.md §7.4).
+
+use std::collections::VecDeque;
+use std::fmt;
+
+use protocol::frame::TeamKey;
+use protocol::{Instant, RobotId};
+
+use crate::radio::To;
+use crate::record::header::{HeaderError, RecordingHeader};
+use crate::record::trace::{Kind, Record};
+use crate::{Host, Input};
+
+/// Hosts under check.
+#[derive(Debug)]
+pub struct Recheck {
+    hosts: Vec<Checked>,
+}
+
+/// One host, built again.
+#[derive(Debug)]
+struct Checked {
+    host: Host,
+    said: VecDeque<(Instant, Vec<u8>)>,
+    counts: Counts,
+    difference: Option<Difference>,
+}
+
+/// What one host was fed, and what became of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Inputs fed.
+    pub inputs: u64,
+    /// Packets that were the same.
+    pub same: u64,
+}
+
+/// Where record and host part. Times on the host's clock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Difference {
+    /// Another packet than recorded.
+    Other {
+        /// When it was recorded.
+        at: Instant,
+        /// How many packets were the same before.
+        after: u64,
+        /// The record: the robot it is for (255: all), then the frame.
+        recorded: Vec<u8>,
+        /// What the host says, and when.
+        said: (Instant, Vec<u8>),
+    },
+    /// The record has a packet that the host does not say.
+    Missing {
+        /// When it was recorded.
+        at: Instant,
+        /// How many packets were the same before.
+        after: u64,
+        /// For whom: 255 all.
+        to: u8,
+    },
+    /// The host says a packet that the record has not.
+    Extra {
+        /// When.
+        at: Instant,
+        /// How many packets were the same before.
+        after: u64,
+        /// For whom: 255 all.
+        to: u8,
+    },
+}
+
+impl Difference {
+    /// When the record and the host part.
+    pub fn at(&self) -> Instant {
+        match self {
+            Self::Other { at, .. } | Self::Missing { at, .. } | Self::Extra { at, .. } => *at,
+        }
+    }
+}
+
+fn whom(to: u8) -> String {
+    RobotId::new(to).map_or_else(|| "all robots".to_owned(), |robot| format!("robot {}", robot.number()))
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = self.at().0 as f64 * 1e-6;
+        match self {
+            Self::Other { after, recorded, said: (at, said), .. } => {
+                let byte = recorded.iter().zip(said).take_while(|(a, b)| a == b).count();
+                let to = whom(recorded.first().copied().unwrap_or(u8::MAX));
+                write!(f, "at {seconds:.6} s, after {after} packets that are the same: the packet to {to} ")?;
+                if byte == recorded.len() && byte == said.len() {
+                    write!(f, "is said at {:.6} s", at.0 as f64 * 1e-6)
+                } else {
+                    write!(
+                        f,
+                        "differs from byte {} on ({} bytes recorded, {} said)",
+                        byte.max(1) - 1,
+                        recorded.len() - 1,
+                        said.len() - 1
+                    )
+                }
+            }
+            Self::Missing { after, to, .. } => write!(
+                f,
+                "at {seconds:.6} s, after {after} packets that are the same: the packet to {} is not said again",
+                whom(*to)
+            ),
+            Self::Extra { after, to, .. } => write!(
+                f,
+                "at {seconds:.6} s, after {after} packets that are the same: a packet to {} is said that was not recorded",
+                whom(*to)
+            ),
+        }
+    }
+}
+
+impl Recheck {
+    /// The hosts of a recording as they began; `key` opens what was sealed with one.
+    pub fn new(header: &RecordingHeader, key: TeamKey) -> Result<Self, HeaderError> {
+        let league = header.league()?;
+        let build = |host: &crate::record::header::HostHeader| {
+            let settings = host.settings(league, if host.keyed { key } else { TeamKey::ZERO })?;
+            Ok(Checked {
+                host: Host::new(settings, host.began()),
+                said: VecDeque::new(),
+                counts: Counts::default(),
+                difference: None,
+            })
+        };
+        Ok(Self { hosts: header.hosts.iter().map(build).collect::<Result<_, _>>()? })
+    }
+
+    /// The next record. False: it is of a host that the header does not tell of.
+    pub fn feed(&mut self, record: &Record) -> bool {
+        let Some(checked) = self.hosts.get_mut(usize::from(record.host)) else { return false };
+        match record.kind {
+            Kind::Sent => checked.compare(record),
+            Kind::Vision => checked.tell(record.at, Input::Vision(&record.bytes)),
+            Kind::Referee => checked.tell(record.at, Input::Referee(&record.bytes, record.from)),
+            Kind::Robot => checked.tell(record.at, Input::Robot(&record.bytes)),
+            Kind::Timeout => checked.tell(record.at, Input::Timeout),
+            Kind::Halt => checked.tell(record.at, Input::Halt),
+            Kind::Lost => {}
+        }
+        true
+    }
+
+    /// The record is over. With `cut`, packets may be missing at its end.
+    pub fn finish(&mut self, cut: bool) {
+        for checked in self.hosts.iter_mut().filter(|_| !cut) {
+            checked.expect_nothing_left();
+        }
+    }
+
+    /// Whether a host said packets that the record has not, after its last input and nowhere before: the record of a match that was
+    /// cut there.
+    pub fn is_unfinished(&self) -> bool {
+        self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
+    }
+
+    /// Host by host, in the header's order: what it was fed, and where it parts from the record.
+    pub fn results(&self) -> impl Iterator<Item = (Counts, Option<&Difference>)> {
+        self.hosts.iter().map(|checked| (checked.counts, checked.difference.as_ref()))
+    }
+
+    /// A host as it is now.
+    pub fn host(&self, number: usize) -> Option<&Host> {
+        self.hosts.get(number).map(|checked| &checked.host)
+    }
+}
+
+impl Checked {
+    fn tell(&mut self, at: Instant, input: Input<'_>) {
+        self.expect_nothing_left();
+        self.counts.inputs += 1;
+        self.host.handle(at, input);
+        while let Some((to, packet)) = self.host.poll_packet() {
+            let mut bytes = vec![match to {
+                To::All => u8::MAX,
+                To::One(robot) => robot.number(),
+            }];
+            bytes.extend_from_slice(&packet);
+            self.said.push_back((at, bytes));
+        }
+    }
+
+    fn compare(&mut self, record: &Record) {
+        let said = self.said.pop_front();
+        if self.difference.is_some() {
+            return;
+        }
+        let (at, after) = (record.at, self.counts.same);
+        match said {
+            Some((when, bytes)) if when == at && bytes == record.bytes => self.counts.same += 1,
+            Some(said) => {
+                self.difference = Some(Difference::Other { at, after, recorded: record.bytes.clone(), said });
+            }
+            None => {
+                let to = record.bytes.first().copied().unwrap_or(u8::MAX);
+                self.difference = Some(Difference::Missing { at, after, to });
+            }
+        }
+    }
+
+    fn expect_nothing_left(&mut self) {
+        if let Some((at, bytes)) = self.said.pop_front() {
+            self.said.clear();
+            let to = bytes.first().copied().unwrap_or(u8::MAX);
+            self.difference.get_or_insert(Difference::Extra { at, after: self.counts.same, to });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::Duration;
+    use rules::{Colour, League};
+    use ssl::Message;
+    use ssl::vision::{DetectionFrame, DetectionRobot, WrapperPacket};
+
+    use super::*;
+    use crate::HostSettings;
+    use crate::record::header::HostHeader;
+    use crate::referee::SenderAddress;
+
+    fn header() -> RecordingHeader {
+        let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
+        RecordingHeader {
+            version: String::new(),
+            commit: String::new(),
+            seed: None,
+            league: League::DivisionB.name().to_owned(),
+            world: None,
+            zero_unix_us: None,
+            hosts: vec![HostHeader::of(&settings, Instant(0))],
+        }
+    }
+
+    fn image(number: u32) -> Vec<u8> {
+        let robot = DetectionRobot {
+            confidence: 1.0,
+            robot_id: Some(3),
+            x: 10.0 * number as f32,
+            orientation: Some(0.0),
+            ..DetectionRobot::default()
+        };
+        let image = DetectionFrame {
+            frame_number: number,
+            t_capture: f64::from(number) * 0.016,
+            robots_blue: vec![robot],
+            ..DetectionFrame::default()
+        };
+        WrapperPacket { detection: Some(image), ..WrapperPacket::default() }.encode_to_vec()
+    }
+
+    /// A second of vision as a host of this header hears it, and what it says.
+    fn recorded() -> Vec<Record> {
+        let settings = header().hosts[0].settings(League::DivisionB, TeamKey::ZERO).unwrap();
+        let mut host = Host::new(settings, Instant(0));
+        let mut records = Vec::new();
+        for number in 0..60 {
+            let at = Instant(1_000_000) + Duration(u64::from(number) * 16_000);
+            let bytes = image(number);
+            host.handle(at, Input::Vision(&bytes));
+            records.push(Record { at, host: 0, kind: Kind::Vision, from: SenderAddress::INTERNAL, bytes });
+            while let Some((to, packet)) = host.poll_packet() {
+                let to = if let To::One(robot) = to { robot.number() } else { u8::MAX };
+                let bytes = [&[to], &packet[..]].concat();
+                records.push(Record { at, host: 0, kind: Kind::Sent, from: SenderAddress::INTERNAL, bytes });
+            }
+        }
+        records
+    }
+
+    fn check(records: &[Record]) -> (Counts, Option<Difference>) {
+        let mut recheck = Recheck::new(&header(), TeamKey::ZERO).unwrap();
+        for record in records {
+            assert!(recheck.feed(record));
+        }
+        recheck.finish(false);
+        recheck.results().map(|(counts, difference)| (counts, difference.cloned())).next().unwrap()
+    }
+
+    #[test]
+    fn the_same_inputs_give_the_same_packets() {
+        let records = recorded();
+        let sent = records.iter().filter(|record| record.kind == Kind::Sent).count() as u64;
+        assert!(sent > 50, "{sent}");
+        assert_eq!(check(&records), (Counts { inputs: 60, same: sent }, None));
+    }
+
+    #[test]
+    fn one_byte_that_differs_is_found_with_its_time() {
+        let mut records = recorded();
+        let place = records.iter().rposition(|record| record.kind == Kind::Sent).unwrap();
+        records[place].bytes[15] ^= 1;
+        let (_, difference) = check(&records);
+        let difference = difference.unwrap();
+        assert_eq!(difference.at(), records[place].at);
+        assert!(difference.to_string().contains("differs from byte 14 on"), "{difference}");
+    }
+
+    #[test]
+    fn a_packet_too_few_or_too_many_is_told() {
+        let records = recorded();
+        let place = records.iter().rposition(|record| record.kind == Kind::Sent).unwrap();
+        let mut fewer = records.clone();
+        fewer.remove(place);
+        assert!(matches!(check(&fewer).1, Some(Difference::Extra { .. } | Difference::Other { .. })));
+        let mut more = records.clone();
+        more.push(records[place].clone());
+        assert!(matches!(check(&more).1, Some(Difference::Missing { .. })));
+    }
+
+    #[test]
+    fn a_record_of_no_host_is_not_fed() {
+        let mut recheck = Recheck::new(&header(), TeamKey::ZERO).unwrap();
+        let from = SenderAddress::INTERNAL;
+        let stray = Record { at: Instant(0), host: 9, kind: Kind::Timeout, from, bytes: Vec::new() };
+        assert!(!recheck.feed(&stray));
+    }
+}

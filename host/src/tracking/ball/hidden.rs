@@ -1,0 +1,146 @@
+//! `hidden`: position of a ball that no camera sees. Under a robot, or where it was put; field frame,
+//! SI.
+//!
+//! Of ours, it is at the robot that feels it, and where that robot felt it last once it has let go; of theirs, at the one whose
+//! front was at it when it vanished. At a restart after a placement it lies where it was placed: who brought it there hid it on the
+//! way, and where it was seen last is metres off. Else it lies where it was going to rest. Without this a robot that may not come
+//! near the ball would walk up to it as soon as it is hidden, and one that backs off a ball it hides would look for it elsewhere.
+
+use geometry::{Field, Point, Vector};
+use protocol::{Instant, RobotId, Who};
+use rules::{Colour, Phase};
+
+use crate::referee::Game;
+use crate::world::{Ball, Robot, World};
+
+/// What is remembered of the ball while it is seen, and of its placement.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct HiddenBall {
+    /// The ball as it was when last seen, or felt by a robot of ours since.
+    last: Option<Ball>,
+    /// The opponent that hides it from all cameras, if one does.
+    by: Option<Who>,
+    /// Where it was placed for the restart that is to come.
+    placed: Option<Point<Field>>,
+}
+
+impl HiddenBall {
+    /// Puts a ball into a world without one, for the team `us`; `feels` tells of its robots whether they have the ball.
+    pub(crate) fn fill(
+        &mut self,
+        now: Instant,
+        world: &mut World,
+        us: Colour,
+        game: &Game,
+        feels: impl Fn(RobotId) -> bool,
+    ) {
+        match game.phase {
+            Phase::BallPlacement(_) => self.placed = game.placement.or(self.placed),
+            Phase::Stop | Phase::FreeKick(_) => {}
+            _ => self.placed = None,
+        }
+        if let Some(ball) = world.ball {
+            self.last = Some(ball);
+            let hides = |robot: &&Robot| mouth(robot).distance(ball.position) < HIDES;
+            self.by = world.theirs(us).find(hides).map(|robot| robot.who);
+            return;
+        }
+        let holder = world.ours(us).find(|robot| feels(robot.who.id));
+        if let (Some(robot), Some(last)) = (holder, &mut self.last) {
+            // Where it lies if it is let go: what is let go at speed is soon seen.
+            (last.position, last.velocity) = (mouth(robot), Vector::default());
+            (last.height, last.climb) = (0.0, 0.0);
+            self.by = None;
+        }
+        let theirs = |robot: &&Robot| Some(robot.who) == self.by;
+        let hider = holder.or_else(|| world.theirs(us).find(theirs));
+        let lies = matches!(game.phase, Phase::Stop | Phase::FreeKick(_));
+        let (position, velocity) = match (hider, self.placed, &self.last) {
+            (Some(robot), ..) => (mouth(robot), robot.velocity),
+            (None, Some(placed), _) if lies => (placed, Vector::default()),
+            (None, _, Some(last)) => (last.rest(&world.models), Vector::default()),
+            (None, _, None) => return,
+        };
+        let seen = self.last.map_or(now, |last| last.seen);
+        world.ball = Some(Ball { velocity, confidence: 0.0, ..Ball::at_rest(position, seen) });
+    }
+}
+
+/// The middle of a robot's front, where a ball is that it has.
+fn mouth(robot: &Robot) -> Point<Field> {
+    robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
+}
+
+/// A ball this near the middle of a robot's front may lie in its mouth, m: a mouth's half width and the vision's noise.
+const HIDES: f32 = 0.06;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::Pose;
+
+    const NOBODY: fn(RobotId) -> bool = |_| false;
+
+    fn robot(who: Who, x: f32) -> Robot {
+        Robot {
+            who,
+            pose: Pose { position: Point::new(x, 0.0), ..Pose::default() },
+            velocity: Vector::default(),
+            angular: 0.0,
+            confidence: 1.0,
+            seen: Instant(0),
+        }
+    }
+
+    fn ball(x: f32) -> Ball {
+        Ball::at_rest(Point::new(x, 0.0), Instant(0))
+    }
+
+    fn x_of(
+        hidden: &mut HiddenBall,
+        world: &World,
+        phase: Phase<Colour>,
+        feels: fn(RobotId) -> bool,
+    ) -> Option<f32> {
+        let mut world = world.clone();
+        let placement = matches!(phase, Phase::BallPlacement(_)).then(|| Point::new(-4.0, 0.0));
+        let mut game = Game::default();
+        (game.phase, game.placement) = (phase, placement);
+        hidden.fill(Instant(1), &mut world, Colour::Yellow, &game, feels);
+        world.ball.map(|ball| ball.position.x())
+    }
+
+    #[test]
+    fn it_is_at_our_robot_that_feels_it_or_at_theirs_that_had_it_or_where_it_was_last() {
+        let (ours, theirs) = (Who::yellow(RobotId::ZERO), Who::blue(RobotId::ZERO));
+        let mut hidden = HiddenBall::default();
+        let mut world = World::default();
+        world.put(robot(ours, 1.0));
+        world.put(robot(theirs, 2.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), None, "nobody has ever seen it");
+        world.ball = Some(ball(3.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
+        world.ball = None;
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, |_| true), Some(1.09));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(1.09), "let go, and still hidden");
+        world.ball = Some(ball(2.1));
+        x_of(&mut hidden, &world, Phase::Run, NOBODY);
+        world.ball = None;
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(2.09));
+    }
+
+    #[test]
+    fn at_the_restart_after_a_placement_it_lies_where_it_was_placed() {
+        let (mut hidden, mut world) = (HiddenBall::default(), World::default());
+        let (placement, free_kick) = (Phase::BallPlacement(Colour::Blue), Phase::FreeKick(Colour::Blue));
+        world.ball = Some(ball(3.0));
+        x_of(&mut hidden, &world, placement, NOBODY);
+        world.ball = None;
+        assert_eq!(x_of(&mut hidden, &world, placement, NOBODY), Some(3.0), "it is still on its way");
+        assert_eq!(x_of(&mut hidden, &world, Phase::Stop, NOBODY), Some(-4.0));
+        assert_eq!(x_of(&mut hidden, &world, free_kick, NOBODY), Some(-4.0));
+        assert_eq!(x_of(&mut hidden, &world, Phase::Run, NOBODY), Some(3.0));
+        assert_eq!(x_of(&mut hidden, &world, free_kick, NOBODY), Some(3.0), "another restart, not placed");
+    }
+}
