@@ -20,7 +20,7 @@ impl Errand {
     /// What is wanted of the body for `directive`; `None` where the robots choose for themselves.
     pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
         if !matches!(directive, Directive::PlaceBall { .. }) {
-            self.placement = Placement::default();
+            self.placement.end();
         }
         if belief.game.barred && touches(directive) {
             return Some(wheels::keep_off(belief));

@@ -49,7 +49,7 @@ impl World {
         if at_goal || self.ball.position.x().abs() > self.goal_zone {
             self.hit_bar(&before);
         }
-        self.stay_in_boards();
+        self.stay_in_boards(&before);
         let speed = self.ball.velocity.norm();
         if speed > SPEED_MAX {
             self.ball.velocity = self.ball.velocity * (SPEED_MAX / speed);
@@ -288,11 +288,13 @@ impl World {
     }
 
     /// Boards round the carpet; beyond them, where only flying balls come, the hall ends.
-    fn stay_in_boards(&mut self) {
+    fn stay_in_boards(&mut self, before: &Ball) {
         let [x, y] = self.pitch.corner();
         let radius = self.parameters.ball.radius;
         let p = self.ball.position;
-        let outside = p.x().abs() > x || p.y().abs() > y;
+        // It came over a board: one that a robot presses into it in this step has not.
+        let was = before.position;
+        let outside = was.x().abs() > x || was.y().abs() > y;
         if p.x().abs() <= x - radius && p.y().abs() <= y - radius {
             return;
         }

@@ -186,8 +186,7 @@ const PLACER_PATIENCE: Duration = Duration::millis(6_000);
 const PLACER_CHOSEN: Duration = Duration::millis(100);
 /// A ball that has come nearer to its place by this much is on its way, m.
 const PLACING_GAINS: f32 = 0.1;
-/// A ball that has not for this long is given up: of the 30 s of a placement, twice what a robot takes across division B's field and
-/// around a goal.
-const PLACING_PATIENCE: Duration = Duration::millis(12_000);
+/// A ball that has not for this long is given up: the 30 s of a placement.
+const PLACING_PATIENCE: Duration = Duration::millis(30_000);
 /// One that no robot can get at is given up as soon as it lies still.
 const BALL_ROLLS: Duration = Duration::millis(2_000);

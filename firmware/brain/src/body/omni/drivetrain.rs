@@ -143,7 +143,11 @@ impl Drivetrain {
         drive: &Drive,
     ) -> Wanted {
         let pose = belief.pose;
-        let mut turning = if drive.manner == Manner::Holding { HOLDING_TURN } else { TURN };
+        let mut turning = match drive.manner {
+            Manner::Holding if belief.is_placing() => PLACING_TURN,
+            Manner::Holding => HOLDING_TURN,
+            _ => TURN,
+        };
         let angular = match face {
             Some(face) if (face - pose.heading).abs() > FACED || self.angular.abs() > FACED_RATE => {
                 if belief.is_placing() {
@@ -217,7 +221,8 @@ fn held_or_free(belief: &Belief) -> Drive {
 
 fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     let limits = if drive.manner == Manner::Holding {
-        FreeLimits { acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
+        let speed = if belief.is_placing() { PLACING_SPEED } else { HOLDING.speed };
+        FreeLimits { speed, acceleration: HOLDING.acceleration * drive.gentle, ..HOLDING }
     } else {
         LIMITS
     };
@@ -230,9 +235,13 @@ pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braki
 /// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4: it brakes a ball that it caught on the
 /// run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
 const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
+/// How fast a ball is pushed to its place at most, m/s.
+const PLACING_SPEED: f32 = 2.0;
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
 /// ω² · 95 mm stays below 1.2 m/s².
 const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
+/// The same where there is time: 0.4 m/s² along the roller.
+const PLACING_TURN: TurnLimits = TurnLimits { rate: 1.5, acceleration: 4.0 };
 /// The last bit of a turn while a ball is placed, 1/s: orders that arrive 0.1 s late make a faster one swing about its goal.
 const SETTLES: f32 = 5.0;
 /// Below the governor's limit in STOP, m/s: it shall not need to say anything.

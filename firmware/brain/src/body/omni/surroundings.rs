@@ -63,7 +63,8 @@ impl Surroundings {
         if manner == Manner::Shy
             && let Some(ball) = belief.ball.filter(|_| !belief.ball_flies())
         {
-            let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + SHY };
+            let shy = if belief.is_placing() { SHY_PLACING } else { SHY };
+            let shape = Shape::Disc { center: ball.position, radius: BODY + BALL_RADIUS + shy };
             self.add(Obstacle::moving(shape, ball.velocity));
         }
         for goal in [GoalEnd::Negative, GoalEnd::Positive] {
@@ -171,6 +172,8 @@ const BORDER: f32 = 0.02;
 const WALL: f32 = 0.01;
 /// From a ball that is not to be touched, m.
 const SHY: f32 = 0.03;
+/// The same while it is placed: what touches it then rolls away.
+const SHY_PLACING: f32 = 0.055;
 /// From other robots, m.
 const ROBOTS: f32 = 0.03;
 /// From other robots beside the ball, m.

@@ -51,7 +51,8 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
     // The farther back, the wider the way in; at the ball itself a finger's breadth.
     let room = along - BALL_AT;
     let width = BESIDE + WIDENS * room.clamp(0.0, 0.3);
-    if along > 0.0 && room < GO_IN_FROM && beside.abs() < width && off < ALIGNED {
+    let drifts = belief.is_placing() && ahead.cross(belief.velocity).abs() > DRIFTS;
+    if along > 0.0 && room < GO_IN_FROM && beside.abs() < width && off < ALIGNED && !drifts {
         let to = ball.position - ahead * (BALL_AT - PRESS);
         // A ball that still moves a little goes on while the robot comes.
         let to = to + ball.velocity * LEAD;
@@ -62,7 +63,8 @@ pub fn approach(belief: &Belief, ball: &Ball, face: Angle, speed: f32) -> Approa
         let to = ball.position - ahead * (BALL_AT + room.max(PRESS)) + ball.velocity * LEAD;
         return Approach::Around(Drive { speed: SIDESTEP, ..Drive::bold(to, face) });
     }
-    let behind = ball.position - ahead * (BALL_AT + STAND_OFF) + ball.velocity * LEAD;
+    let stand_off = if belief.is_placing() { PLACING_STAND_OFF } else { STAND_OFF };
+    let behind = ball.position - ahead * (BALL_AT + stand_off) + ball.velocity * LEAD;
     let drive = Drive::shy(behind, face);
     // Slow at its end where there is time, or what the robot is behind in time takes it past.
     let settles = SETTLES * belief.pose.position.distance(behind) + SIDESTEP;
@@ -159,12 +161,16 @@ const GO_IN: f32 = 0.35;
 const GO_IN_FROM: f32 = 0.25;
 /// Between front and ball at the place behind it, m.
 const STAND_OFF: f32 = 0.07;
+/// The same where there is time.
+const PLACING_STAND_OFF: f32 = 0.1;
 /// How deep it presses into where the ball lies, m: until it touches for certain.
 const PRESS: f32 = 0.02;
 /// Beside the line over the ball: half of the mouth's half width, m.
 const BESIDE: f32 = 0.015;
 /// So far beside it a robot before the ball steps aside to it, m.
 const SIDESTEPS: f32 = 0.1;
+/// Faster across than this it would come beside the ball, m/s.
+const DRIFTS: f32 = 0.1;
 /// How fast, m/s: what it is behind in time makes it overshoot a faster step.
 const SIDESTEP: f32 = 0.25;
 /// How fast the rest of a way is gone, 1/s.

@@ -1,0 +1,282 @@
+//! `ways`: how a ball that is placed is come to, pulled, pushed and kicked off walls, and where walls are in the way.
+
+use geometry::{Angle, Field, Point, Vector, math};
+use protocol::robot_io::OmniKick;
+use rules::FieldSpec;
+use rules::limits::{PLACEMENT_TOLERANCE, ROBOT_RADIUS};
+
+use super::{ASKEW, FOLLOWS, GAP, Placement};
+use crate::belief::{Ball, Belief};
+use crate::body::Intent;
+use crate::body::omni::{BALL_AT, Drive};
+use crate::skills::wheels::get_ball::{Approach, approach, meet};
+
+/// To the ball from the side of the place, or from behind it; at a wall from the field, at right angles to it, or as it is kicked.
+pub(super) fn fetch(
+    placement: &Placement,
+    belief: &Belief,
+    ball: &Ball,
+    at: Point<Field>,
+    kicks: Option<Angle>,
+) -> Intent {
+    let rolls = ball.velocity.norm() > ROLLING;
+    if rolls && placement.grip > FOLLOWS {
+        return meet(belief, ball).into();
+    }
+    // Chased, a ball that the dribbler does not hold is only driven on: it is waited for where it will rest.
+    let resting = Ball { position: ball.rest, velocity: Vector::default(), rest: ball.rest };
+    let ball = if rolls { &resting } else { ball };
+    let wall = placement.wall(belief, ball, at);
+    let face = match (kicks, wall) {
+        (Some(face), _) | (None, Some(face)) => face,
+        _ if placement.pushes(belief, ball, at) => ball.position.direction_to(at),
+        _ if ball.position.distance(at) > PLACEMENT_TOLERANCE => at.direction_to(ball.position),
+        _ => belief.pose.position.direction_to(ball.position),
+    };
+    let speed = if wall.is_some() { GO_IN_AT_WALL } else { GO_IN };
+    match approach(belief, ball, face, speed) {
+        Approach::Around(drive) => around(belief, ball.position, face, drive).into(),
+        Approach::In(drive) if kicks.is_some() => kicking(drive).into(),
+        Approach::In(drive) => Drive { dribbler: 1.0, ..drive }.into(),
+    }
+}
+
+/// On the way to behind a ball at a wall: past it on the side that lies farther from the wall.
+fn around(belief: &Belief, ball: Point<Field>, face: Angle, drive: Drive) -> Drive {
+    let carpet = belief.league().field().carpet();
+    let ahead = Vector::<Field>::polar(1.0, face);
+    let left = Vector::new(-ahead.y(), ahead.x());
+    let (one, other) = (ball + left * ASIDE, ball - left * ASIDE);
+    let (near, far) = (carpet.distance_to(one), carpet.distance_to(other));
+    let past = belief.pose.position - ball;
+    let inwards = if near < far { left } else { -left };
+    if near.max(far) < -NARROW || past.dot(ahead) < 0.0 || past.dot(inwards) > GOES_BY {
+        return drive;
+    }
+    Drive { to: ball + inwards * ASIDE, ..drive }
+}
+
+/// The same way, with the kick off a wall.
+pub(super) fn kicking(drive: Drive) -> Drive {
+    Drive { kick: OmniKick::Flat(OFF_WALL), dribbler: 0.0, ..drive }
+}
+
+/// Backwards with the ball: straight away from a wall, or to its place, with this share of the acceleration.
+pub(super) fn pull(belief: &Belief, at: Point<Field>, out: Option<Angle>, gentle: f32) -> Drive {
+    let me = belief.pose.position;
+    let Some(out) = out else {
+        // Facing away from the place; at the end the heading stays.
+        let far = belief.mouth().distance(at) > KEEPS_HEADING;
+        let face = if far { at.direction_to(me) } else { belief.pose.heading };
+        // Sideways a roller holds less than towards the robot.
+        let share = if (face - belief.pose.heading).abs() > TURNS { SIDEWAYS } else { 1.0 };
+        let to = at - Vector::polar(BALL_AT, face);
+        return Drive { speed: PULL, gentle: share * gentle, ..Drive::holding(to, face) };
+    };
+    Drive { speed: PULL, gentle, ..Drive::holding(me - Vector::polar(CLEAR_OF_WALL, out), out) }
+}
+
+/// From behind, with what the dribbler holds.
+pub(super) fn push(belief: &Belief, ball: &Ball, at: Point<Field>, grip: f32) -> Intent {
+    let face = ball.position.direction_to(at);
+    // So slow that the ball rests at the place when it rolls on from here, and no slower than it starts at all.
+    let rolls = BRAKES.iter().find(|(held, _)| grip > *held).map_or(ROLLS, |(_, brakes)| *brakes);
+    let left = ball.position.distance(at) - LAG * belief.velocity.norm();
+    let speed = math::sqrt(2.0 * rolls * left.max(0.0)).clamp(CREEP, PUSH);
+    let to = ball.position + Vector::polar(AHEAD - BALL_AT, face);
+    Drive { speed, ..Drive::holding(to, face) }.into()
+}
+
+/// A pushed ball has got beside the robot, or the robot beside its way.
+pub(super) fn strays(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
+    let seen = belief.pose.to_body(ball.position);
+    let askew = (ball.position.direction_to(at) - belief.pose.heading).abs();
+    seen.x() < BALL_AT - GAP || seen.y().abs() > BESIDE || askew > ASKEW || seen.x() > ESCAPED
+}
+
+/// The direction out of the field, where a ball lies so near a wall or goal that no body gets beside it, or behind it to push it to `at`.
+pub(super) fn wall(
+    field: &FieldSpec,
+    ball: Point<Field>,
+    at: Point<Field>,
+    pushes: bool,
+    room: f32,
+) -> Option<Angle> {
+    let (x, y) = (ball.x(), ball.y());
+    let (line, post) = (0.5 * field.length, 0.5 * field.goal_width);
+    let to_end = line + field.goal_line_margin - x.abs();
+    let to_side = 0.5 * field.width + field.margin - y.abs();
+    // In the goal, before it, and beside its walls.
+    let at_goal = x.abs() > line - WALL_ROOM && y.abs() < post + BESIDE_POST;
+    let spot = ball - Vector::polar(BEHIND, ball.direction_to(at));
+    let fits = if pushes {
+        stands(field, spot, room) && to_end.min(to_side) > BESIDE_WALL
+    } else {
+        to_end.min(to_side) > WALL_ROOM
+    };
+    if fits && !at_goal {
+        return None;
+    }
+    let end = Vector::<Field>::new(x, 0.0).unit().unwrap_or_default();
+    let side = Vector::<Field>::new(0.0, y).unit().unwrap_or_default();
+    let out = if at_goal {
+        // Where a goal's wall leaves no room for the body beside the ball, between both.
+        let wall = y.abs() - post;
+        let beyond = x.abs() > line - ROBOT_RADIUS;
+        if beyond && wall < 0.0 && -wall < BESIDE_WALL {
+            end + side
+        } else if beyond && wall > 0.0 && wall - field.goal_wall < BESIDE_WALL {
+            end - side
+        } else {
+            end
+        }
+    } else if to_end.max(to_side) < IN_CORNER {
+        end + side
+    } else if to_end < to_side {
+        end
+    } else {
+        side
+    };
+    Some(out.angle())
+}
+
+/// Where a ball that lies at one wall is kicked so that it leaves that wall, on the side of the place; `None` in corners and goals.
+pub(super) fn kick_off(field: &FieldSpec, ball: Point<Field>, at: Point<Field>, out: Angle) -> Option<Angle> {
+    let ahead = Vector::<Field>::polar(1.0, out);
+    let goal = 0.5 * field.goal_width + field.goal_wall + ROBOT_RADIUS;
+    if (ahead.x() * ahead.y()).abs() > ASKEW_OUT || ball.y().abs() < goal && ahead.x().abs() > 0.5 {
+        return None;
+    }
+    // Away from a goal beside it.
+    let towards = if ball.y().abs() < goal + BESIDE_POST && ahead.x().abs() > 0.5 {
+        Vector::new(0.0, ball.y())
+    } else {
+        at - ball
+    };
+    let left = ahead.cross(towards) > 0.0;
+    Some(out + Angle::new(if left { KICKS_ASKEW } else { -KICKS_ASKEW }))
+}
+
+/// A body has this much room there beyond what it needs, m.
+fn stands(field: &FieldSpec, spot: Point<Field>, room: f32) -> bool {
+    let body = BODY + room;
+    let goal = spot.x().abs() > 0.5 * field.length - body
+        && spot.y().abs() < 0.5 * field.goal_width + field.goal_wall + body;
+    !goal && field.carpet().grown(-body).contains(spot)
+}
+
+/// From ball to the centre of who goes past it, m, and from where on it is past.
+const ASIDE: f32 = 0.22;
+const GOES_BY: f32 = 0.16;
+/// With so much room on both sides it goes as it likes, m.
+const NARROW: f32 = 0.2;
+/// How fast a ball is pulled, m/s.
+const PULL: f32 = 1.4;
+/// How fast it comes to the ball, m/s.
+const GO_IN: f32 = 0.3;
+/// The same at a wall, m/s: a body that comes on for a centimetre squeezes the ball out of its mouth.
+const GO_IN_AT_WALL: f32 = 0.12;
+/// A faster ball is met, m/s.
+const ROLLING: f32 = 0.3;
+/// The ball is there, m: less than the rules' 0.15.
+pub(super) const NEAR_ENOUGH: f32 = 0.1;
+/// With this a ball is kicked off a wall, m/s: it leaves a board with 0.5 to 1 across and rests within a metre.
+const OFF_WALL: f32 = 2.5;
+/// Off the wall's normal, rad: 40°, more leaves no room for the body, and with less the ball comes back to it.
+const KICKS_ASKEW: f32 = 0.7;
+/// Product of a direction's shares along two walls, beyond which it points between them.
+const ASKEW_OUT: f32 = 0.2;
+/// How fast a ball is pushed at first, m/s.
+const PUSH: f32 = 2.0;
+/// A pushed ball is slowed down by this on the way, m/s²: about as carpets do, so that it stays near the front.
+const ROLLS: f32 = 0.35;
+/// The same of one that followed with such a share of the acceleration or more, m/s².
+const BRAKES: [(f32, f32); 3] = [(0.3, 1.0), (0.12, 0.7), (0.065, 0.5)];
+/// The slowest push, m/s.
+const CREEP: f32 = 0.2;
+/// The ball is ahead of where it is shown by what it does in so long, s: picture, radio, a step; estimate.
+const LAG: f32 = 0.05;
+/// A push aims this far ahead on the ball's way, m: no less than a robot takes to brake.
+const AHEAD: f32 = 0.7;
+/// A pushed ball this far beside the middle is lost, m; ahead, m.
+const BESIDE: f32 = 0.07;
+const ESCAPED: f32 = 0.5;
+/// From a ball to the centre of who lines up behind it, m (`get_ball`).
+const BEHIND: f32 = BALL_AT + 0.1;
+/// A body, and room to get there, m.
+const BODY: f32 = ROBOT_RADIUS + 0.03;
+/// A ball this near a wall leaves no room for a body beside it that turns, m; …
+const WALL_ROOM: f32 = 0.16;
+/// … and this near none for one that goes along.
+const BESIDE_WALL: f32 = 0.1;
+/// The same beyond a post, m: a body across and its way around.
+const BESIDE_POST: f32 = 0.3;
+/// Nearer than this to two walls a ball is pulled between them, m.
+const IN_CORNER: f32 = 0.2;
+/// How far it is pulled off a wall before anything else, m.
+const CLEAR_OF_WALL: f32 = 0.3;
+/// While it turns by more than this a ball is pulled with this share of the acceleration, rad.
+const TURNS: f32 = 0.3;
+const SIDEWAYS: f32 = 0.4;
+/// Nearer than this to the place the heading stays, m.
+const KEEPS_HEADING: f32 = 0.15;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skills::wheels::testing::belief;
+    use rules::League;
+
+    fn out(ball: (f32, f32), pushes: bool) -> Option<f32> {
+        let at = Point::new(0.0, 0.0);
+        let field = League::DivisionB.field();
+        wall(&field, Point::new(ball.0, ball.1), at, pushes, 0.0).map(Angle::to_degrees)
+    }
+
+    #[test]
+    fn a_ball_in_a_corner_is_come_to_from_the_field_between_both_walls() {
+        assert!((out((4.75, 3.25), false).unwrap() - 45.0).abs() < 1e-3);
+        assert!((out((1.0, -3.25), false).unwrap() + 90.0).abs() < 1e-3);
+        assert!(out((-4.6, 0.2), false).unwrap().abs() > 179.9);
+        // In the goal's own corner, and outside beside its wall.
+        assert!((out((4.6, 0.47), false).unwrap() - 45.0).abs() < 1e-3);
+        assert!((out((4.6, 0.55), false).unwrap() + 45.0).abs() < 1e-3);
+        assert_eq!(out((1.0, 1.0), false), None);
+        // Pulled it is free where nobody comes behind it to push it.
+        assert_eq!(out((4.6, 2.0), false), None);
+        assert!(out((4.6, 2.0), true).is_some());
+    }
+
+    #[test]
+    fn a_ball_is_kicked_off_one_wall_to_the_side_of_the_place_and_not_into_corners_or_goals() {
+        let field = League::DivisionB.field();
+        let at = Point::new(0.0, 0.0);
+        let kick = |ball: Point<Field>| kick_off(&field, ball, at, wall(&field, ball, at, true, 0.0)?);
+        let face = kick(Point::new(2.0, 3.27)).unwrap();
+        assert!((face.to_degrees() - 130.1).abs() < 0.1, "{}", face.to_degrees());
+        assert_eq!(kick(Point::new(4.75, 3.25)), None);
+        assert_eq!(kick(Point::new(4.6, 0.2)), None);
+        // Beside the goal: away from it.
+        assert!(kick(Point::new(4.7, 0.75)).unwrap().to_degrees() > 30.0);
+    }
+
+    #[test]
+    fn the_ball_is_fetched_from_the_side_of_the_place() {
+        let b = belief((0.0, 0.0, 0.0), (1.0, 0.0));
+        let at = Point::new(1.0, -1.0);
+        let Intent::Drive(drive) = fetch(&Placement::default(), &b, &b.ball.unwrap(), at, None) else {
+            panic!("drives")
+        };
+        // South of the ball, looking north.
+        assert!(drive.to.y() < -0.1 && (drive.face.to_degrees() - 90.0).abs() < 1e-3, "{drive:?}");
+    }
+
+    #[test]
+    fn a_push_ends_so_slowly_that_the_ball_rests_at_its_place() {
+        let b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
+        let Intent::Drive(drive) = push(&b, &b.ball.unwrap(), Point::new(BALL_AT + 0.08, 0.0), 0.04) else {
+            panic!("drives")
+        };
+        assert!(drive.speed * drive.speed / (2.0 * ROLLS) < 0.09, "{}", drive.speed);
+    }
+}
