@@ -1,9 +1,9 @@
 //! `belief`: a robot's belief about the world, from its own sensors and its teammates' beacons, never from
 //! the true state.
 //!
-//! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the mate nearest
-//! the ball stands in (its information is the most accurate, paper §4.1). A fresh picture of the host overrides both
-//! ([`shown`]).
+//! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the
+//! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
+//! the host overrides both ([`shown`]).
 
 pub mod shown;
 
@@ -24,7 +24,8 @@ const SIGHT_LEASE: Duration = Duration::millis(400);
 const SHARP: f32 = 0.004;
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
-/// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
+/// A ball slower than this is stationary, m/s: below the apparent speed that a walking body's sway gives a
+/// stationary ball.
 pub const REST_SPEED: f32 = 0.05;
 
 /// The ball as believed.
@@ -34,7 +35,7 @@ pub struct Ball {
     pub position: Point<Field>,
     /// Where it goes.
     pub velocity: Vector<Field>,
-    /// Where it will come to rest: cut at the first opponent in its way and at the lines of the field.
+    /// Stop position: cut at the first opponent on its path and at the lines of the field.
     pub rest: Point<Field>,
 }
 
@@ -44,7 +45,7 @@ impl Ball {
         self.velocity.norm() < REST_SPEED
     }
 
-    /// Seconds until it lies, slowing down evenly: twice its way at its speed.
+    /// Seconds until it stops, slowing down evenly: twice the remaining distance over its speed.
     pub fn rolls_for(&self) -> f32 {
         if self.is_at_rest() { 0.0 } else { 2.0 * self.position.distance(self.rest) / self.velocity.norm() }
     }
@@ -60,7 +61,7 @@ impl Ball {
 /// Robots besides oneself: two teams of the largest league.
 pub const OTHERS_MAX: usize = 2 * OPPONENTS_MAX - 1;
 
-/// Another robot as the host shows it.
+/// Another robot as received from the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Other {
     /// Whose.
@@ -84,12 +85,13 @@ pub struct Game {
     pub duty: Duty,
     /// The goal its team defends.
     pub defending: GoalEnd,
-    /// It has touched the ball in a restart, and nobody else has since: it must not again.
+    /// Double touch: it has touched the ball in a restart and no other robot has since, so it must not touch
+    /// it again.
     pub barred: bool,
 }
 
 impl Default for Game {
-    /// Play, as where nobody says otherwise.
+    /// Play (`Phase::Run`), the default without a host.
     fn default() -> Self {
         Self {
             phase: Phase::Run,
@@ -101,12 +103,12 @@ impl Default for Game {
     }
 }
 
-/// The robot's picture of the world.
+/// The robot's world model.
 #[derive(Clone, Debug)]
 pub struct Belief {
     /// Where it is itself.
     pub pose: Pose<Field>,
-    /// The ball, if anybody knows.
+    /// The ball; `None` if its position is unknown.
     pub ball: Option<Ball>,
     /// Opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
@@ -120,7 +122,7 @@ pub struct Belief {
     pub angular: f32,
     /// The kicker is charged.
     pub kicker_ready: bool,
-    /// Everybody else whose motion the host shows.
+    /// All other robots whose motion the host sends.
     pub others: heapless::Vec<Other, OTHERS_MAX>,
     /// What may be done now, and what it is for its team.
     pub game: Game,
@@ -169,7 +171,7 @@ impl Belief {
         Self { game: Game { defending, ..Game::default() }, ..Self::new(league) }
     }
 
-    /// Takes in what the body perceives and what mates report.
+    /// Takes in what the body perceives and what teammates report.
     pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, mates: &Mates) {
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
@@ -233,7 +235,7 @@ impl Belief {
     fn own_ball(&self, now: Instant) -> Option<Ball> {
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
         let mut ball = rolling(sight.position, sight.velocity, self.league);
-        // An opponent in its way stops it.
+        // An opponent on its path stops it.
         let within = self.spec.opponent_holds_within;
         let way = geometry::Segment::new(ball.position, ball.rest);
         let stops =

@@ -31,11 +31,11 @@ use tell::Spoken;
 /// What has come since the last step, beside time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
-    /// Frames of mates and host.
+    /// Number of frames received from teammates and host.
     heard: u8,
     /// It has retrieved.
     retrieved: bool,
-    /// A gameplay has begun or ended.
+    /// A gameplay has started or ended.
     turned: bool,
 }
 
@@ -52,7 +52,7 @@ pub struct Brain<'a> {
     reactive: Reactive,
     timers: TimerTable,
     awake: bool,
-    /// The closed cycle whose end this robot has told its mates.
+    /// The closed cycle whose end this robot has announced to its teammates.
     told_end_of: Option<CycleId>,
     limbs: Limbs,
     host: Option<Hosted>,
@@ -63,7 +63,7 @@ pub struct Brain<'a> {
     beacon_due: bool,
     /// What has come since its last step.
     since: Since,
-    /// So many steps it may stay on its way before it must plan: up to [`ONWARDS_MOST`].
+    /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
     onwards: u8,
     spoken: Spoken,
 }
@@ -100,7 +100,7 @@ impl<'a> Brain<'a> {
 
     /// A teammate's beacon.
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
-        // What mates tell the host of themselves is not for us.
+        // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
         self.since.heard = self.since.heard.saturating_add(1);
         self.timers.advance(now);
@@ -134,8 +134,8 @@ impl<'a> Brain<'a> {
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
         self.mates.forget_the_silent(now);
-        // The host overrides own senses and mates' reports (docs/architecture.md §3.1): where one leads,
-        // nobody asks them.
+        // The host overrides own sensors and teammates' reports (docs/architecture.md §3.1): a robot led by a
+        // host does not use them.
         match &mut self.host {
             Some(host) => host.see(now, sensors, &mut self.belief),
             None => self.belief.update(now, self.config.robot, sensors, &self.mates),
@@ -148,8 +148,9 @@ impl<'a> Brain<'a> {
         self.beacon_due |= self.spoken.has_turn(self.config.robot, self.limbs.beacon_steps());
     }
 
-    /// What it wants of its body. Where steps are short, one of them is not for planning and something else that takes long: in
-    /// which a gameplay begins or ends it brakes for 10 ms; in which it retrieved or heard much it stays on its way.
+    /// What it wants of its body. Where steps are short, a step does not both plan and do something else that
+    /// takes long: a step in which a gameplay starts or ends brakes for 10 ms; a step that retrieved or
+    /// received many frames reuses its path.
     fn intent(&mut self, now: Instant) -> Intent {
         let since = core::mem::take(&mut self.since);
         let heard_most = if self.limbs.winds() { HEARD_MOST_WINDING } else { HEARD_MOST };
@@ -186,9 +187,10 @@ impl<'a> Brain<'a> {
         self.spoken.beacon(now);
         let beacon = self.beacon();
         if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
-            // The end is told before the next cycle begins: who hears only the beginning would not know why.
+            // The end is announced before the next cycle starts: a teammate that receives only the start
+            // would not know why.
             self.told_end_of = self.cycle.id();
-            // One word a step where steps are short: sealing costs, and the next step is near.
+            // One message a step where steps are short: sealing costs time, and the next step comes soon.
             if !self.has_short_steps() {
                 self.coordinate(now);
             }
@@ -216,7 +218,7 @@ impl<'a> Brain<'a> {
         &self.belief
     }
 
-    /// What the governor made of the last step's wish.
+    /// The governor's decision on the motion wanted in the last step.
     pub fn ruling(&self) -> Ruling {
         self.limbs.ruling()
     }
@@ -233,11 +235,13 @@ impl<'a> Brain<'a> {
     }
 }
 
-/// Frames that a short step opens and still plans: both parts of a picture, a command and two mates' beacons. Opening one takes
-/// 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take (docs/architecture.md §9).
+/// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
+/// beacons. Opening one takes 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take
+/// (docs/architecture.md §9).
 const HEARD_MOST: u8 = 5;
-/// One less where the way leads around something: to look for such a way takes 7,000 of them.
+/// One less where the path leads around something: planning such a path takes 7,000 of them.
 const HEARD_MOST_WINDING: u8 = 4;
-/// So many steps in a row it stays on its way: a cycle's end, a proposal, its answer and mates' usual beacons between them, twice. Each
-/// step that plans earns one again, so that on an air that is always full every second step plans.
+/// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
+/// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
+/// always full every second step plans.
 const ONWARDS_MOST: u8 = 10;

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 /// A robot's configuration; travels in the lockstep set-up and is compiled or provisioned on a board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrainConfig {
-    /// Who it is.
+    /// The robot's number in its team.
     pub robot: RobotId,
     /// Whose robot it is.
     pub team: TeamId,
-    /// Which life this is: rises with every boot.
+    /// Boot epoch: rises with every boot.
     pub epoch: u32,
     /// Whose field, robots and ball.
     pub league: League,
@@ -20,13 +20,13 @@ pub struct BrainConfig {
     pub defending: GoalEnd,
     /// Whether it is one of the k robots that may retrieve (paper §4.1).
     pub retriever: bool,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
     /// How it chooses what to do.
     pub approach: Approach,
     /// How it retrieves.
     pub settings: Settings,
-    /// Whether a host leads it: without one heard it does nothing (docs/architecture.md §6.2).
+    /// Whether a host leads it: without frames of one it does nothing (docs/architecture.md §6.2).
     pub hosted: bool,
     /// How long robots stand still after every cycle (5 s in the paper's experiments with real robots; else 0).
     pub pause_after_cycle: Duration,

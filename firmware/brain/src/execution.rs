@@ -24,7 +24,7 @@ pub struct Scene<'s> {
     pub now: Instant,
     /// What this robot believes.
     pub belief: &'s Belief,
-    /// What its mates say.
+    /// Its teammates' beacons.
     pub mates: &'s Mates,
     /// The cycle's id.
     pub cycle: CycleId,
@@ -54,12 +54,12 @@ impl Scene<'_> {
         self.play.ball.into()
     }
 
-    /// Who plays case robot `part`.
+    /// The robot that plays case robot `part`.
     pub fn player(&self, part: CaseRobot) -> Option<RobotId> {
         self.play.robots.get(part.index()).copied()
     }
 
-    /// How far the mate who plays `part` has come; `None` if nothing is known of it in this cycle.
+    /// How far the teammate that plays `part` has come; `None` if nothing is known of it in this cycle.
     pub fn progress_of(&self, part: CaseRobot) -> Option<Progress> {
         self.mates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
     }
@@ -87,7 +87,7 @@ pub enum Outcome {
     Failed(AbortReason),
 }
 
-/// One robot's way through its actions.
+/// One robot's progress through its actions.
 #[derive(Clone, Debug)]
 pub struct Execution {
     part: CaseRobot,
@@ -184,7 +184,7 @@ impl Execution {
         partner
     }
 
-    /// Whether action number `index` may begin.
+    /// Whether action number `index` may start.
     fn may_start(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
         match scene.case.action(self.part, index) {
             None | Some(Action::Wait | Action::GoToPoint(_) | Action::Turn(_)) => true,
@@ -294,7 +294,8 @@ impl Execution {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
                 match kick.aim {
-                    // The case says that it is a shot; where between the posts, and with which leg, is seen only now.
+                    // The case only marks it as a shot; the aim between the posts, and the leg to kick with,
+                    // are chosen now.
                     KickAim::Goal { .. } => {
                         timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
@@ -322,7 +323,7 @@ impl Execution {
         Verdict::from(step)
     }
 
-    /// Aims and kicks, as `intent` says; done when the ball has left, failed when it was lost before.
+    /// Aims and kicks as `intent` orders; done when the ball has left, failed when it was lost before.
     fn release(&mut self, belief: &Belief, intent: Intent) -> Verdict {
         if self.kicked && !belief.holds_ball {
             return Verdict::Done;
@@ -393,7 +394,7 @@ fn attack_direction(scene: &Scene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
 }
 
-/// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
+/// Actions that may end and start within one step; the table's byte limits a list to as many.
 const ACTIONS_A_STEP: usize = 8;
 /// A robot has turned within 10° (docs/case-format.md §4).
 const TURNED_WITHIN: f32 = 0.175;

@@ -15,10 +15,10 @@ use crate::{Brain, BrainConfig};
 pub struct Station<'a> {
     brain: Brain<'a>,
     link: Link,
-    /// When the brain spoke last, and when mates were greeted last.
+    /// When the brain sent last, and when handshakes were sent to teammates last.
     spoke: Option<Instant>,
     greeted: Option<Instant>,
-    /// Something has happened since it had nothing more to say.
+    /// Something has happened since the brain had no more messages.
     stirred: bool,
 }
 
@@ -39,8 +39,8 @@ impl<'a> Station<'a> {
         }
     }
 
-    /// A packet came; whatever is not a genuine, new message of this team is counted and dropped. Where steps are short nothing is
-    /// said before the next.
+    /// Handles a packet; anything but a genuine, new message of this team is counted and dropped. Where steps
+    /// are short nothing is sent before the next step.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if !self.brain.has_short_steps() {
             self.stirred = true;
@@ -119,5 +119,5 @@ impl<'a> Station<'a> {
     }
 }
 
-/// Greetings wait for a step without other words, but no longer than this: a walking robot speaks in each.
+/// Handshakes wait for a step without other messages, but no longer than this: a walking robot sends in each.
 const GREET_WITHIN: Duration = Duration::millis(40);

@@ -8,9 +8,9 @@ use protocol::{Duration, Instant};
 pub enum Timer {
     /// A booting robot has listened long enough to be present (one lease).
     Boot,
-    /// Robots that booted together have heard that each other are present: now they may propose.
+    /// Robots that booted together have received each other's presence: now they may propose.
     Settle,
-    /// The coordinator has been silent about its decision for too long: propose anew.
+    /// The coordinator has been silent about its decision for too long: propose again.
     NoDecision,
     /// There was no case; close the cycle and try again.
     Retry,
@@ -47,7 +47,7 @@ enum Slot {
 }
 
 impl TimerTable {
-    /// Starts `timer` anew.
+    /// Restarts `timer`.
     pub fn set(&mut self, timer: Timer, deadline: Instant) {
         self.put(timer, Slot::Running(deadline));
     }

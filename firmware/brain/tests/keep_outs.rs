@@ -16,7 +16,7 @@ const DUTIES: [Duty; 3] = [Duty::Keeper, Duty::Taker, Duty::Player];
 const STEP: f32 = 0.01;
 /// What the controller gives teams to prepare, s.
 const TIME: f32 = 10.0;
-/// Who has to move stands no longer than this, s.
+/// A robot that has to move stands no longer than this, s.
 const STANDS: f32 = 1.0;
 /// A robot slower than this stands, m/s.
 const STANDING: f32 = 0.02;
@@ -263,7 +263,7 @@ fn in_stop_placements_and_free_kicks_it_leaves_too_the_keeper_as_well() {
 
 #[test]
 fn others_that_stand_about_close_no_way_out() {
-    // Two keepers of 2013 do not get past three robots that stand close before their goal's mouth of 0.7 m.
+    // Two keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m.
     alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(15), 11, 2);
 }
 
@@ -332,7 +332,8 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
     players.iter().filter_map(wrong).collect()
 }
 
-/// How near a robot on its way across comes to the first 0.9 m of the ball's way, when a teammate is about to kick it.
+/// How near a robot that crosses comes to the first 0.9 m of the ball's path, when a teammate is about to
+/// kick it.
 fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
     let (from, to) = (Point::new(0.5, -1.5), Point::new(0.5, 1.5));
     let mut player =
@@ -360,6 +361,6 @@ fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
         // Around it, to the other side; at a kick-off the other half is closed.
         assert!(left < 0.01 || phase == Phase::Kickoff(Side::Ours), "{phase:?}: {left} m left");
     }
-    // In play there is no such lane: the test can tell.
+    // In play there is no such lane: the test distinguishes the two.
     assert!(crossing(Phase::Run, Duty::Player).0 < touches);
 }

@@ -1,9 +1,9 @@
 //! `ball`: prediction of a kicked ball. It slides, then rolls (two decelerations), in the air it hops
 //! ([`chip`]); m, s, m/s, m/s².
 //!
-//! Kicked with v₀ it slides with a_s until its speed is c·v₀, where it rolls without slipping, then rolls with a_r until it
-//! rests. All of a path in closed form: t_s = v₀ (1 − c) / a_s, d_s = v₀² (1 − c²) / (2 a_s). Lines and robots in its way are
-//! the caller's to find; a path goes on until rest.
+//! Kicked with v₀ it slides with a_s until its speed is c·v₀, where it rolls without slipping, then rolls
+//! with a_r until it stops. All of a path in closed form: t_s = v₀ (1 − c) / a_s, d_s = v₀² (1 − c²) / (2
+//! a_s). Lines and robots on its path are for the caller to find; a path continues until the ball stops.
 
 pub mod chip;
 
@@ -12,7 +12,7 @@ use geometry::{Point, Vector, math};
 use crate::rolling::RollingBall;
 use crate::trajectory::{Motion, State};
 
-/// What carpet and ball are like.
+/// Parameters of field surface and ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallModel {
     /// Deceleration while it slides, m/s², > 0.
@@ -24,7 +24,7 @@ pub struct BallModel {
 }
 
 impl Default for BallModel {
-    /// 3.9 and 0.35 m/s² of ER-Force's simulator, 5/7 of a solid ball that begins to roll (1 / (1 + 2/5)).
+    /// 3.9 and 0.35 m/s² of ER-Force's simulator, 5/7 of a solid ball that starts to roll (1 / (1 + 2/5)).
     fn default() -> Self {
         Self { slide: 3.9, roll: 0.35, switch: 5.0 / 7.0 }
     }
@@ -45,14 +45,14 @@ impl BallModel {
         self.moving(at, velocity, self.switch * velocity.norm())
     }
 
-    /// The path of a ball that rolls already, as one does whose kick nobody saw.
+    /// The path of a ball that rolls already, such as one whose kick was not observed.
     pub fn rolling<F: Copy>(&self, at: Point<F>, velocity: Vector<F>) -> BallPath<F> {
         self.moving(at, velocity, f32::INFINITY)
     }
 
     /// The path of a ball that slides until its speed is `switch_speed` (that share of the kick's speed), then rolls.
     ///
-    /// A position that is not a number is taken for the origin, a velocity for rest.
+    /// A position that is not a number is replaced by the origin, a velocity by zero.
     pub fn moving<F: Copy>(&self, at: Point<F>, velocity: Vector<F>, switch_speed: f32) -> BallPath<F> {
         let speed = velocity.norm();
         let (along, speed) = match velocity.unit() {
@@ -91,7 +91,7 @@ impl BallModel {
     }
 }
 
-/// A ball's way until it rests.
+/// A ball's path until it stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallPath<F> {
     from: Point<F>,
@@ -118,7 +118,7 @@ impl<F: Copy> BallPath<F> {
         self.along
     }
 
-    /// Where it comes to rest.
+    /// Stop position.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * self.rest_distance
     }
@@ -143,7 +143,7 @@ impl<F: Copy> BallPath<F> {
         (0.5 * (self.speed + speed) * t, speed)
     }
 
-    /// When it has gone `distance` m, s; `None` where it rests before.
+    /// When it has gone `distance` m, s; `None` where it stops before.
     pub fn time_to(&self, distance: f32) -> Option<f32> {
         if distance <= self.slide_distance {
             return self.slide.travel_time(self.speed, distance);
@@ -175,7 +175,8 @@ impl<F: Copy> Motion<F> for BallPath<F> {
     }
 }
 
-/// Decelerations a carpet can have, m/s²: published ones lie between 0.26 (rolling) and 14 (sliding, grSim).
+/// Range of plausible decelerations on a field surface, m/s²: published ones lie between 0.26 (rolling) and
+/// 14 (sliding, grSim).
 const DECELERATION_MIN: f32 = 0.01;
 const DECELERATION_MAX: f32 = 100.0;
 

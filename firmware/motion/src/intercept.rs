@@ -1,10 +1,10 @@
 //! `intercept`: interception of a moving ball, soonest or with the most time to spare (paper 2 §2, equations
 //! 1 and 2; m, s).
 //!
-//! For future places of the ball, [`STEP`] apart in time: when is the ball there, when can the robot be behind it, looking
-//! at the kick's target? Their difference is the slack; only a slack ≥ 0 meets the ball. Places that a bound of the robot's
-//! reach rules out are skipped, eight at a time and then singly, without planning a motion to them; the answer is that of
-//! the search through all of them.
+//! For future places of the ball, [`STEP`] apart in time: the time when the ball is there, and the time when
+//! the robot can be behind it, facing the kick's target. Their difference is the slack; only a slack ≥ 0
+//! intercepts the ball. Places that a bound of the robot's reach rules out are skipped, eight at a time and
+//! then singly, without planning a motion to them; the result equals that of the search through all of them.
 
 use geometry::{Point, Vector};
 
@@ -24,7 +24,8 @@ pub struct Interception<'b, F> {
     pub target: Point<F>,
     /// From the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm ([`kick_reach`]), m.
     pub reach: f32,
-    /// The ball is of interest so long, s: until it leaves the field, or is taken. At most [`HORIZON`].
+    /// Time for which the ball is of interest, s: until it leaves the field, or is taken. At most
+    /// [`HORIZON`].
     pub until: f32,
 }
 
@@ -42,7 +43,7 @@ pub enum Wish {
 pub enum Verdict<F> {
     /// The robot can be there in time.
     Meets(Meeting<F>),
-    /// Nowhere in time: go where the ball comes to rest, or is lost from interest, and hope.
+    /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
     Chase {
         /// The ball, then.
         ball: Point<F>,
@@ -53,7 +54,7 @@ pub enum Verdict<F> {
     },
 }
 
-/// A meeting of ball and robot.
+/// An interception of the ball by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting<F> {
     /// The ball, then.
@@ -73,7 +74,7 @@ impl<F> Meeting<F> {
     }
 }
 
-/// From the robot's centre to the ball's, when it kicks, m: the mouth lets the ball in by 10 mm.
+/// From the robot's centre to the ball's, when it kicks, m: the ball enters the dribbler opening by 10 mm.
 pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
     robot_radius + ball_radius - MOUTH_DEPTH
 }
@@ -94,8 +95,9 @@ impl<F: Copy> Interception<'_, F> {
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
     }
 
-    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: once as many places as `most` were looked at in vain, only
-    /// every fourth is, and after as many more one of eight; from the first in time back by halving.
+    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: after `most` points without an
+    /// interception only every fourth is tested, and after as many more one of eight; from the first in time
+    /// back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
         let best = self.soonest(limits, most);
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
@@ -112,7 +114,7 @@ impl<F: Copy> Interception<'_, F> {
 
     fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<Meeting<F>> {
         let steps = self.steps();
-        // The last place that was looked at in vain; so many were, that far apart.
+        // The last point without an interception, the number of such points, and their stride.
         let (mut late, mut vain, mut stride) = (0, 0, 1);
         let mut begins = 0.0;
         for block in 0..=steps / BLOCK {
@@ -188,7 +190,7 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// No place with the ball's ways in between is reached within this time.
+    /// Whether no point with the ball's distances in `ways` is reached within this time.
     fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, ways: [f32; 2], within: f32) -> bool {
         let [begins, ends] = ways;
         let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
@@ -196,7 +198,7 @@ impl<F: Copy> Interception<'_, F> {
         limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
     }
 
-    /// The meeting at a time, if its slack is `least` at least.
+    /// The interception at a time, if its slack is `least` at least.
     fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Look<F> {
         let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
         let place = kick_place(ball, self.target, self.reach);
@@ -219,11 +221,11 @@ impl<F: Copy> Interception<'_, F> {
     }
 }
 
-/// What a look at one place tells.
+/// Result of testing one point.
 enum Look<F> {
-    /// The robot meets the ball there.
+    /// The robot intercepts the ball there.
     Meets(Meeting<F>),
-    /// It does not, as a planned motion shows.
+    /// It does not, by a planned motion.
     TooLate,
     /// It cannot; no motion was planned.
     OutOfReach,
@@ -242,13 +244,13 @@ impl<F> Look<F> {
 pub const STEP: f32 = 0.02;
 /// Places that are ruled out together.
 const BLOCK: u32 = 8;
-/// In bounded time, so many times farther apart places are looked at after so many in vain.
+/// In bounded time, factor by which the stride grows after each run of points without an interception.
 const COARSER: u32 = 4;
 /// s.
 const ROUNDING: f32 = 1e-5;
 /// Shares of the horizon that are tried first for how much slack there is.
 const PROBES: u32 = 6;
-/// Nobody plans farther ahead, s: a kick of 6.5 m/s has left the field by then.
+/// Longest prediction, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
 /// m (paper 2's robots; docs/papers.md D2).
 const MOUTH_DEPTH: f32 = 0.01;

@@ -25,7 +25,7 @@ impl Default for Wheels {
     }
 }
 
-/// Which wheels cannot drive a robot in every way.
+/// Error of a wheel arrangement that cannot drive a robot in every direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelsError;
 

@@ -1,4 +1,4 @@
-//! `rolling`: distance and time of a rolling ball. Constant deceleration until rest; m, s, m/s, m/s².
+//! `rolling`: distance and time of a rolling ball. Constant deceleration until it stops; m, s, m/s, m/s².
 
 use geometry::math;
 
@@ -10,7 +10,7 @@ pub struct RollingBall {
 }
 
 impl RollingBall {
-    /// How far it gets from `speed` to rest, m.
+    /// Distance from `speed` to its stop, m.
     pub fn rest_distance(self, speed: f32) -> f32 {
         speed * speed / (2.0 * self.deceleration)
     }

@@ -1,17 +1,18 @@
 //! `body`: robot body in another simulator. Orders become `RobotControl`, `RobotControlResponse` becomes
-//! senses.
+//! sensor frames.
 //!
 //! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so this keeps to what
 //! all of them do:
-//! - **Way.** Velocity in the robot's frame; ER-Force takes no wheel speeds. Wheel rims go through `motion::omni` back to
-//!   the body's motion.
+//! - **Motion.** Velocity in the robot's frame; ER-Force takes no wheel speeds. Wheel rims go through
+//!   `motion::omni` back to the body's motion.
 //! - **Every 10 ms, everything.** ER-Force puts a robot to standby after 0.1 s without a command and resets a dribbler
 //!   whose speed is missing, so each command holds motion and dribbler, also where nothing changed.
 //! - **Kick.** grSim kicks once per command that has a speed, ER-Force and ours whenever ball and charge are there while the
 //!   last command has one. So the speed is in a command only while a kick is wanted; absent is no kick everywhere. ER-Force knows
 //!   0° and 45° only: flat and chip.
-//! - **Ball contact.** Responses list other robots too, also ones that are off the field; ER-Force's "realistic" leaves
-//!   robots out at random. Ours counts alone, and what was last heard holds for [`CONTACT_HOLDS`].
+//! - **Ball contact.** Responses list other robots too, also ones that are off the field; ER-Force's
+//!   "realistic" leaves robots out at random. Ours counts alone, and the last response holds for
+//!   [`CONTACT_HOLDS`].
 
 use geometry::{Body, Twist, Vector};
 use motion::omni::Omni;
@@ -21,16 +22,16 @@ use ssl::simulation::{
     MoveCommand, MoveLocalVelocity, RobotCommand, RobotControl, RobotControlResponse, RobotMoveCommand,
 };
 
-/// Between two commands, and between two pictures of the senses.
+/// Period of commands, and of sensor frames.
 pub const TICK: Duration = Duration::millis(10);
-/// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
-/// ER-Force's "realistic".
+/// How long the last response on ball contact holds: five responses in a row are lost once in 100,000 at the
+/// 10 % loss of ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
 /// Of a dribbler's full speed, rpm: what ours and our other simulated robots' turn at; ER-Force's is full at 1432.
 const DRIBBLER_FULL: f32 = 1000.0;
 /// Of a chip kick, degrees above the ground.
 const CHIP_ANGLE: f32 = 45.0;
-/// Nobody's simulated kicker is faster, and nobody's robot: what is beyond is a mistake, m/s.
+/// No known kicker, simulated or real, is faster: a larger value is an error, m/s.
 const SPEED_MAX: f32 = 10.0;
 /// rad/s.
 const TURN_MAX: f32 = 30.0;
@@ -125,13 +126,13 @@ impl SimulatedBody {
             opponents: heapless::Vec::new(),
             ball_contact: self.contact.is_some_and(|(at, contact)| contact && now.since(at) <= CONTACT_HOLDS),
             busy: false,
-            // Nobody tells how fast it moves, so it takes its own word.
+            // The protocol does not report its motion, so the commanded one is used.
             odometry: self.motion,
             health: Health { battery: None, tipped: false, kicker_ready: true },
         }
     }
 
-    /// Errors that the simulator has answered with, and the last one's words.
+    /// Number of errors that the simulator has answered with, and the text of the last one.
     pub fn errors(&self) -> (u32, Option<&str>) {
         (self.errors, self.last_error.as_deref())
     }

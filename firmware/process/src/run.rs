@@ -14,14 +14,14 @@ use protocol::frame::RobotKeys;
 
 use crate::robot::VirtualRobot;
 
-/// Who the robot is, and whom it speaks with.
+/// Identity of the robot, and its peers.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Its brain.
     pub brain: BrainConfig,
     /// Its keys.
     pub keys: RobotKeys,
-    /// Whoever commands.
+    /// Address of the host.
     pub host: SocketAddr,
     /// The simulator's port for this team's robots: 10301 blue, 10302 yellow.
     pub simulator: SocketAddr,
@@ -56,7 +56,7 @@ impl std::error::Error for RunError {
     }
 }
 
-/// A flag that is raised when standard input closes: whoever started the robot has gone, or wants it to end.
+/// A flag that is raised when standard input closes: the parent process has gone, or requests the end.
 pub fn parent_gone() -> Arc<AtomicBool> {
     let gone = Arc::new(AtomicBool::new(false));
     let raised = gone.clone();
@@ -88,7 +88,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
         socket
             .set_read_timeout(Some(Duration::from_micros(wait.0).max(WAIT_MIN)))
             .map_err(RunError::Socket)?;
-        // A time-out, or somebody who does not listen yet: both pass.
+        // A time-out, or a peer that does not listen yet: both pass.
         if let Ok((len, from)) = socket.recv_from(&mut bytes) {
             let datagram = bytes.get(..len).unwrap_or(&[]);
             if from == options.host {
@@ -110,5 +110,5 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
 
 /// The longest datagram that is read: the league's programs send none beyond.
 const LEN_MAX: usize = 8192;
-/// The shortest wait that a socket can be told.
+/// The shortest time-out that a socket accepts.
 const WAIT_MIN: Duration = Duration::from_micros(1);

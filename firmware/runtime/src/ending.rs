@@ -1,8 +1,8 @@
-//! `ending`: crash record of a robot's program. The place of a panic or a fault, in words that can outlive a
-//! reset (docs/architecture.md §6.2).
+//! `ending`: crash record of a robot's program. The source location of a panic or a fault, as numbers that
+//! can outlive a reset (docs/architecture.md §6.2).
 //!
-//! Without `core::fmt`, whose formatting takes 7 kB of an image. What a board does besides is its own: motors without current, a
-//! record kept, a new life.
+//! Without `core::fmt`, whose formatting takes 7 kB of flash. The further reaction is the board's: motors
+//! without current, a record kept, a restart.
 
 use core::panic::Location;
 

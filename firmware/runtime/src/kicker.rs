@@ -1,11 +1,11 @@
-//! `kicker`: interlock of charger and kicker. The interlock between the brain's wish and 200 V
-//! (docs/architecture.md §6.2). Sans-IO.
+//! `kicker`: interlock of charger and kicker, between the brain's requests and 200 V (docs/architecture.md
+//! §6.2). Sans-IO.
 //!
-//! | wish | ball at the mouth | capacitor | what happens |
+//! | request | ball at the dribbler | capacitor | result |
 //! |---|---|---|---|
 //! | `Discharge` | – | – | not charged, bled through the coil too slowly to move the plunger |
 //! | none, or a kick | – | low | charged |
-//! | a kick | no | full | waits: the light barrier fires it, the brain's order only arms it |
+//! | a kick | no | full | waits: the break-beam sensor fires it, the brain's order only arms it |
 //! | a kick | yes | full | one pulse, then nothing for half a second |
 
 use protocol::robot_io::OmniKick;
@@ -26,10 +26,10 @@ pub enum KickerAct {
     Chip(Duration),
 }
 
-/// What the kicker's sensors say.
+/// Readings of the kicker's sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KickerState {
-    /// The light barrier in front of the kicker is broken.
+    /// The beam in front of the kicker is interrupted.
     pub ball: bool,
     /// The capacitor's voltage, V.
     pub volts: f32,
@@ -67,7 +67,7 @@ impl Interlock {
         if full { KickerAct::Rest } else { KickerAct::Charge }
     }
 
-    /// Whether a kick would be fired at once, as far as charge and pause tell.
+    /// Whether a kick would be fired at once, judged by charge and pause.
     pub fn is_ready(&self, now: Instant, volts: f32) -> bool {
         volts >= FULL_VOLTS && self.fired.is_none_or(|fired| now.since(fired) >= PAUSE)
     }

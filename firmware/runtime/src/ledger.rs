@@ -1,9 +1,10 @@
-//! `ledger`: persistent counter of starts. A ledger in its flash, for every start must bring a larger epoch
-//! than all before it (docs/architecture.md §6.1): hosts and mates take nothing of an older one. Sans-IO.
+//! `ledger`: persistent counter of starts in the robot's flash. Every start must use a larger epoch than all
+//! before it (docs/architecture.md §6.1): hosts and teammates accept nothing of an older one. Sans-IO.
 //!
-//! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and writes the next one
-//! into the next empty cell. A full half goes on in the other, which is erased first; until the new cell is written the old half
-//! still says all. A cell that was written halfway, when the power went, is skipped.
+//! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and
+//! writes the next one into the next empty cell. After a full half the other is used, which is erased first;
+//! until the new cell is written the old half still holds every epoch needed. A cell that was only partly
+//! written when the power went is skipped.
 //!
 //! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, the rest 0xff.
 
@@ -55,7 +56,7 @@ pub struct Place {
     pub index: usize,
 }
 
-/// What a start has to do before it says anything.
+/// What a start has to do before it sends anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Its epoch.
@@ -114,7 +115,7 @@ mod tests {
             plan(CELLS, |at| Cell::of(&self.0[at.half * CELLS + at.index])).unwrap()
         }
 
-        /// A start that loses its power after so many steps: erasing, half a cell, the whole cell.
+        /// A start that loses its power after `steps` steps: erasing, half a cell, the whole cell.
         fn start(&mut self, steps: usize) -> Option<u32> {
             let Plan { epoch, at, erase } = self.plan();
             if erase {
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn power_that_goes_at_any_moment_never_brings_an_epoch_back() {
-        // Every pattern of six starts, three ways to end each, twice over.
+        // Every pattern of six starts, three endings each, twice over.
         for pattern in 0..3_usize.pow(6) {
             let (mut flash, mut last) = (Flash::new(), 0);
             for n in 0..12 {

@@ -7,9 +7,10 @@
 //! senses ─► sensors ─────┘              └─► orders ─► body ────────► wheels, legs, kicker
 //! ```
 //!
-//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival. Where no simulator moves the
-//! body, the tasks of [`hardware`] do: wheels, kicker, senses, and a watchdog. A board implements the traits of [`ports`], declares a task for each function of
-//! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
+//! All input of the brain passes one inbox, so that it is handled in the order of its arrival. Where no
+//! simulator moves the body, the tasks of [`hardware`] do: wheels, kicker, sensors, and a watchdog. A board
+//! implements the traits of [`ports`], declares a task for each function of [`tasks`] (embassy's tasks cannot
+//! be generic) and starts them with one [`Mailboxes`] between them:
 //!
 //! ```text
 //! static BOXES: Mailboxes = Mailboxes::new();

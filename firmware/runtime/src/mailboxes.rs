@@ -15,7 +15,8 @@ use crate::progress::Progress;
 /// Arrivals that may wait for the brain. When full, radio and senses wait with the next one: what is lost then, their
 /// drivers count.
 pub const INBOX_LEN: usize = 8;
-/// Packets that may wait for the air: more than the brain says in one step. When full, the newest is dropped and counted.
+/// Packets that may wait for the radio: more than the brain sends in one step. When full, the newest is
+/// dropped and counted.
 pub const OUTBOX_LEN: usize = 8;
 
 /// Something for the brain.
@@ -27,7 +28,7 @@ pub const OUTBOX_LEN: usize = 8;
 pub enum Arrival {
     /// A packet of the air.
     Packet(Packet),
-    /// A picture of the world: the brain makes a step.
+    /// A sensor frame: the brain makes a step.
     Sensors(SensorFrame),
 }
 
@@ -35,9 +36,9 @@ pub enum Arrival {
 pub struct Mailboxes {
     pub(crate) inbox: Channel<CriticalSectionRawMutex, Arrival, INBOX_LEN>,
     pub(crate) outbox: Channel<CriticalSectionRawMutex, Packet, OUTBOX_LEN>,
-    /// The latest word counts: a body never works off old orders.
+    /// Only the latest orders count: a body never executes old ones.
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
-    /// Who has run, for the watchdog.
+    /// Parts that have run, for the watchdog.
     pub(crate) progress: Progress,
     unsent: AtomicU32,
     undelivered: AtomicU32,
@@ -56,7 +57,7 @@ impl Mailboxes {
         }
     }
 
-    /// How many packets the brain said that found the outbox full.
+    /// Number of packets of the brain that were dropped because the outbox was full.
     pub fn unsent(&self) -> u32 {
         self.unsent.load(Ordering::Relaxed)
     }

@@ -1,5 +1,4 @@
-//! `ports`: traits that a board implements: radio, sensors, actuators. Hear and speak on the air, sense, and
-//! move.
+//! `ports`: traits that a board implements: radio, sensors, actuators.
 //!
 //! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(
@@ -14,21 +13,21 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use crate::kicker::{KickerAct, KickerState};
 use crate::wheel::WHEELS;
 
-/// The ear of a radio.
+/// The receiver of a radio.
 pub trait RadioReceiver {
-    /// The next packet of the air, as it came: nobody has checked it yet.
+    /// The next packet received, not yet authenticated.
     async fn receive(&mut self) -> Packet;
 }
 
-/// The mouth of a radio.
+/// The sender of a radio.
 pub trait RadioSender {
-    /// Puts a packet on the air; returns when the next may follow. Whether anybody hears it is not known.
+    /// Sends a packet; returns when the next may follow. Whether it was received is not known.
     async fn send(&mut self, packet: Packet);
 }
 
 /// What a robot perceives with.
 pub trait Senses {
-    /// The next picture of the world, at the pace of the control loop.
+    /// The next sensor frame, at the pace of the control loop.
     async fn sense(&mut self) -> SensorFrame;
 }
 
@@ -52,11 +51,11 @@ pub trait Wheels {
 
 /// The kicker's capacitor and coils.
 pub trait Kicker {
-    /// What its sensors say.
+    /// Readings of its sensors.
     fn state(&mut self) -> KickerState;
 
-    /// Does this; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay switched on longer
-    /// than the pulse, whatever becomes of the task: the board's timer ends it, not the program.
+    /// Executes `act`; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay
+    /// switched on longer than the pulse, even if the task stops: the board's timer ends it, not the program.
     async fn act(&mut self, act: KickerAct);
 }
 
@@ -66,12 +65,12 @@ pub trait Probes {
     fn look(&mut self) -> Seen;
 }
 
-/// What probes say.
+/// Readings of the probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     /// How fast the body turns, rad/s; `None` without a gyroscope.
     pub turn: Option<f32>,
-    /// The light barrier at the dribbler is broken.
+    /// The beam at the dribbler is interrupted.
     pub ball: bool,
     /// The robot lies on its side.
     pub tipped: bool,
@@ -86,6 +85,6 @@ pub trait Dog {
     /// How long it waits.
     const PATIENCE: Duration;
 
-    /// Makes it wait anew.
+    /// Restarts its time-out.
     fn feed(&mut self);
 }

@@ -3,23 +3,23 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Who has to say that it runs.
+/// Parts that have to report that they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The control loop of the wheels.
     Control = 1,
-    /// The ear of the radio, whether it hears something or not.
+    /// The radio receiver, whether it receives something or not.
     Radio = 1 << 1,
     /// The brain: it had a thought.
     Brain = 1 << 2,
 }
 
-/// Who has run since the watchdog was fed last.
+/// Parts that have run since the watchdog was fed last.
 #[derive(Debug, Default)]
 pub struct Progress(AtomicU32);
 
 impl Progress {
-    /// Nobody yet.
+    /// No part yet.
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }

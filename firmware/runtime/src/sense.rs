@@ -1,5 +1,6 @@
-//! `sense`: conversion of raw sensor readings. Encoder counts to rim speed, a gyroscope without its zero, a
-//! light barrier in daylight, and which way is up. Sans-IO; SI units, fed at the pace of the control loop.
+//! `sense`: conversion of raw sensor readings: encoder counts to rim speed, a gyroscope without its offset, a
+//! break-beam sensor in daylight, and whether the robot is tipped. Sans-IO; SI units, fed at the pace of the
+//! control loop.
 
 use protocol::{Duration, Instant};
 
@@ -19,8 +20,9 @@ impl Encoder {
         Self { per_count, last: None, speed: 0.0, stuck: None }
     }
 
-    /// Rim speed since the last step, m/s, from the counter and from the duty of that time; NaN once the wheel was driven hard
-    /// for a while without moving. Then the encoder, its cable or the motor is broken, and the governor brakes the robot.
+    /// Rim speed since the last step, m/s, from the counter and from the duty cycle of that time; NaN once
+    /// the wheel was driven hard for a while without moving. Then the encoder, its cable or the motor is
+    /// broken, and the governor brakes the robot.
     pub fn step(&mut self, now: Instant, count: u16, duty: f32) -> f32 {
         if let Some((at, before)) = self.last {
             let micros = now.since(at).0;
@@ -35,7 +37,7 @@ impl Encoder {
         let hard = duty.abs() >= HARD;
         self.stuck = match self.stuck {
             Some((_, from)) if count.wrapping_sub(from).cast_signed().unsigned_abs() > SHAKES => None,
-            // Broken stays broken until the wheel moves: the duty goes down because it is.
+            // Broken stays broken until the wheel moves: the duty cycle falls because the wheel is broken.
             Some((since, _)) if !hard && now.since(since) < STUCK_FOR => None,
             None if hard => Some((now, count)),
             stuck => stuck,
@@ -101,7 +103,8 @@ impl Tilt {
         Self { tipped: false, otherwise_since: None }
     }
 
-    /// From the upward part of the acceleration, g: 1 upright, 0 on its side. Blows are short; a reading that is none says nothing.
+    /// From the upward part of the acceleration, g: 1 upright, 0 on its side. Short shocks are ignored; NaN
+    /// is no reading.
     pub fn step(&mut self, now: Instant, up: f32) -> bool {
         let seems = if up.is_nan() { self.tipped } else { up < UPRIGHT };
         if seems == self.tipped {
@@ -116,7 +119,7 @@ impl Tilt {
     }
 }
 
-/// A light barrier whose lamp goes on and off with every step, so that daylight is told from the lamp.
+/// A break-beam sensor whose lamp toggles with every step, so that daylight is distinguished from the lamp.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Barrier {
     dark: Option<f32>,
@@ -150,7 +153,7 @@ impl Barrier {
 
 /// A share of full voltage that moves any wheel that can be moved.
 const HARD: f32 = 0.8;
-/// A wheel that does not move by then, at that duty, is broken: the motor follows in 30 ms.
+/// A wheel that has not moved by then, at that duty cycle, is broken: the motor follows in 30 ms.
 const STUCK_FOR: Duration = Duration::millis(200);
 /// Counts by which a line that is broken, or a blocked wheel, may shake.
 const SHAKES: u16 = 8;

@@ -23,7 +23,7 @@ pub enum SetupError {
     Unreadable,
     /// This many bytes are left over behind it.
     Rest(usize),
-    /// The image has no brain for the body of that league's robots.
+    /// The firmware has no brain for the body of that league's robots.
     Body(League),
 }
 

@@ -1,9 +1,10 @@
 //! `tasks`: the five tasks that a board starts.
 //!
-//! The brain's task sleeps until something arrives or its own deadline comes, does that one thing, and takes from the
-//! brain everything it has to say about it. Each deadline is handled at its own time, and one that is due when it is set
-//! as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's native robots
-//! keep the same order, therefore a trial has the same bits there and here (docs/architecture.md §7.2).
+//! The brain's task sleeps until something arrives or its own deadline comes, handles that one event, and
+//! drains the brain's output for it. Each deadline is handled at its own time, and one that is due when it is
+//! set as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's
+//! native robots keep the same order, therefore a trial has the same bits there and here
+//! (docs/architecture.md §7.2).
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
@@ -17,7 +18,7 @@ use crate::mind::Mind;
 use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
 use crate::progress::Part;
 
-/// The robot's life: begins with the first poll of this task.
+/// The robot's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
     brain_with_keys(config, base, TeamKey::ZERO.of_robot(config.robot), boxes).await
 }
@@ -29,7 +30,7 @@ pub async fn brain_with_keys(
     keys: RobotKeys,
     boxes: &Mailboxes,
 ) -> ! {
-    // Born where it lives: by value it would lie in this future twice, and on the stack on its way there.
+    // Constructed in place; moving it would store it twice in this future, and on the stack in between.
     let mut station = Station::with_keys(now(), config, base, keys);
     think(&mut station, boxes).await
 }
@@ -68,7 +69,7 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// The brain's task, for any mind.
+/// The brain's task, for any implementation of the interface.
 pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
@@ -91,7 +92,7 @@ pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// Gives the mind what has waited longest; whether anything did.
+/// Gives `mind` the input that has waited longest; returns whether there was any.
 fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
     // An arrival is not handed around: it is large, and every hand would copy it.
     match &boxes.inbox.try_receive() {
@@ -102,7 +103,7 @@ fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
     true
 }
 
-/// Waits for what comes next: the mind's deadline, or (`None`) something that arrives.
+/// Waits for what comes next: the deadline, or (`None`) an arrival.
 async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Mailboxes) -> Option<Instant> {
     let Some(due) = due else {
         boxes.inbox.ready_to_receive().await;
@@ -113,7 +114,7 @@ async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Ma
     with_deadline(alarm, boxes.inbox.ready_to_receive()).await.err().map(|_| due)
 }
 
-/// Takes from the mind whatever it has to say.
+/// Drains the output of `mind`.
 fn empty(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) {
     while let Some(packet) = mind.poll_packet(now) {
         boxes.post(packet);

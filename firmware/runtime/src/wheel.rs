@@ -1,6 +1,6 @@
-//! `wheel`: wheel speed control at 1 kHz, with a stop when the brain is silent. A thousand times a second,
-//! from encoder to duty, and to a stop where the brain has gone silent (docs/architecture.md §2.3, §6.2).
-//! Sans-IO; m/s at the rim, duty as a share of the battery's voltage.
+//! `wheel`: wheel speed control at 1 kHz, from encoder to duty cycle, and to a stop when the brain is silent
+//! (docs/architecture.md §2.3, §6.2). Sans-IO; m/s at the rim, duty cycle as a share of the battery's
+//! voltage.
 
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
@@ -13,7 +13,7 @@ pub const CONTROL_PERIOD: Duration = Duration::millis(1);
 /// What the motors shall do until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motors {
-    /// These duties, −1 to 1.
+    /// Duty cycle of each wheel, −1 to 1.
     Driven([f32; WHEELS]),
     /// No current.
     Released,
@@ -50,7 +50,7 @@ impl Control {
         self.order = Some((now, order));
     }
 
-    /// One step of a millisecond: what to do, from what the encoders say.
+    /// One step of a millisecond: the drive for the encoders' readings.
     pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> Step {
         let fresh = self.order.filter(|(at, _)| now.since(*at) < ORDER_STALE).map(|(_, order)| order);
         let (dribbler, kick) = match (self.order, fresh) {
@@ -64,7 +64,8 @@ impl Control {
                 self.wanted = wheels;
                 (dribbler, kick)
             }
-            // The brain has gone silent, or said something that is no number: to a stop, as fast as the carpet holds.
+            // The brain is silent, or has sent NaN: brakes to a stop as fast as wheels hold the field
+            // surface.
             (Some(_), _) => {
                 let slower = |speed: f32| (speed.abs() - BRAKE_A_STEP).max(0.0) * speed.signum();
                 self.wanted = self.wanted.map(slower);
@@ -103,13 +104,14 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
 /// An order older than this is none: five steps of the brain. The governor brakes for a silent host, this loop for a
 /// silent brain.
 pub const ORDER_STALE: Duration = Duration::millis(50);
-/// By so much a rim slows down in a step, m/s: the governor's 5 m/s².
+/// Decrease of a rim's speed in a step, m/s: the governor's 5 m/s².
 const BRAKE_A_STEP: f32 = 0.005;
-/// Duty for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on a robot).
+/// Duty cycle for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on
+/// a robot).
 const FEED_FORWARD: f32 = 1.0 / 6.0;
-/// Duty for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
+/// Duty cycle for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
 const PROPORTIONAL: f32 = 0.4;
-/// Duty an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
+/// Duty cycle that an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
 const INTEGRAL_A_STEP: f32 = 0.006;
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
 use crate::hosted::Hosted;
 use crate::mates::Mates;
 
-/// A body's limbs and what they remember.
+/// Actuation of one body, with its state.
 #[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
 #[derive(Clone, Debug)]
 pub enum Limbs {
@@ -25,7 +25,7 @@ pub enum Limbs {
     Wheels(kind::Wheels, Wheels),
 }
 
-/// Wheels and who watches over them.
+/// Drivetrain of the wheels with the governor that limits it.
 #[derive(Clone, Debug)]
 pub struct Wheels {
     drivetrain: Drivetrain,
@@ -51,7 +51,7 @@ impl Limbs {
         }
     }
 
-    /// A frame of the host counts as heard at that time.
+    /// Counts a frame of the host as received at `heard`.
     pub fn hear_host(&mut self, heard: Instant) {
         if let Self::Wheels(_, wheels) = self {
             wheels.governor.hear_host(heard);
@@ -64,7 +64,7 @@ impl Limbs {
         matches!(self, Self::Wheels(..))
     }
 
-    /// On wheels: whether the last way led around something.
+    /// On wheels: whether the last path led around something.
     pub fn winds(&self) -> bool {
         match self {
             Self::Legs(_) => false,
@@ -72,7 +72,7 @@ impl Limbs {
         }
     }
 
-    /// Every how many steps this body's robots tell their mates of themselves (docs/architecture.md §5.1).
+    /// Number of steps between two beacons of this body's robots (docs/architecture.md §5.1).
     pub fn beacon_steps(&self) -> u8 {
         match self {
             Self::Legs(_) => 1,
@@ -80,7 +80,7 @@ impl Limbs {
         }
     }
 
-    /// What the governor made of the last step's wish.
+    /// The governor's decision on the motion wanted in the last step.
     pub fn ruling(&self) -> Ruling {
         match self {
             Self::Legs(_) => Ruling::Allowed,

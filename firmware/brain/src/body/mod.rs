@@ -49,9 +49,9 @@ pub enum Intent {
     Grab,
     /// On legs: kick the ball held.
     Kick(LeggedKick),
-    /// On wheels: a way to go, with dribbler and kicker.
+    /// On wheels: a target to drive to, with dribbler and kicker.
     Drive(omni::Drive),
-    /// On wheels: the way of the step before, once more.
+    /// On wheels: reuse of the previous step's path.
     Onwards,
 }
 
@@ -61,7 +61,7 @@ impl Intent {
         match self {
             Self::Kick(_) => true,
             Self::Drive(drive) => drive.armed && matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
-            // What it wanted before was told before.
+            // The previous intent was reported in its own step.
             Self::Onwards => false,
             Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {
                 false
@@ -70,7 +70,7 @@ impl Intent {
     }
 }
 
-/// What those who plan with a body need to know of it.
+/// Properties of a body that planning depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySpec {
     /// How fast it goes from place to place, m/s.
@@ -89,11 +89,11 @@ pub struct BodySpec {
     pub arrived_within: f32,
     /// "Next to the ball" of the robot that gets it (paper §4.2), centre to ball, m.
     pub next_to_ball: f32,
-    /// Of the way a receiver could go while the ball rolls, this share is counted on.
+    /// Share of the distance a receiver could cover while the ball rolls that plans count on.
     pub receiver_haste: f32,
     /// A receiver this near its place is there for the passer, m.
     pub receiver_near: f32,
-    /// How long a robot looks for a gap before it shoots at the goal, whatever stands there.
+    /// How long a robot looks for a gap before it shoots at the goal even without one.
     pub shot_patience: Duration,
     /// An opponent whose centre is this near the ball touches it, m.
     pub opponent_holds_within: f32,
@@ -108,7 +108,7 @@ pub trait Body: Sync {
     /// Its numbers.
     fn spec(&self) -> &'static BodySpec;
 
-    /// Goes for the ball and takes it; facing `onwards` afterwards if that costs nothing that matters.
+    /// Moves to the ball and takes it; faces `onwards` afterwards unless that loses a race.
     fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step;
 
     /// Goes for a ball that has been passed to this robot.
@@ -120,7 +120,7 @@ pub trait Body: Sync {
     /// Passes the ball held to a place.
     fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent;
 
-    /// Kicks the ball held in the way of the library's `kind`, to `end`.
+    /// Kicks the held ball with the library's kick `kind`, to `end`.
     fn kick(&self, belief: &Belief, kind: &Kick, along: Angle, end: Point<Field>) -> Intent;
 
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.

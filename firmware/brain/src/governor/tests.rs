@@ -25,7 +25,7 @@ fn at(ms: u64, phase: Phase<Side>) -> Circumstances<'static> {
     }
 }
 
-/// A robot that has heard the host every 10 ms up to `ms`, and drives with 3 m/s.
+/// A robot that has received the host every 10 ms up to `ms`, and drives with 3 m/s.
 fn driving(ms: u64, phase: Phase<Side>) -> Governor {
     let mut governor = Governor::new(League::DivisionB);
     for t in (0..=ms).step_by(10) {
@@ -180,7 +180,7 @@ fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps
     let mut governor = Governor::new(League::DivisionB);
     let (mut armed, mut frame) = (None, None);
     for t in (0..2000_u64).step_by(10) {
-        // Heard for 60 ms, then not for 150 ms, again and again.
+        // Received for 60 ms, then not for 150 ms, again and again.
         if t % 210 < 60 {
             governor.hear_host(Instant(t * 1000));
             frame = Some(Instant(t * 1000));
@@ -191,7 +191,7 @@ fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps
             armed = Some(t);
         }
     }
-    // 500 ms after the first, the newest was heard 30 ms before.
+    // 500 ms after the first, the newest was received 30 ms before.
     assert_eq!(armed, Some(500));
 }
 
@@ -303,8 +303,8 @@ fn an_absurd_motion_is_cut_to_what_robots_do() {
     assert!((given.twist.linear.norm() - 4.0).abs() < 1e-5 && given.twist.angular == -20.0);
 }
 
-/// Steps of 10 ms from `from` ms on in which `at` holds and the wheels do as they are told, until the motors are released;
-/// `None` after 3 s.
+/// Steps of 10 ms from `from` ms on in which `at` holds and the wheels follow their orders, until the motors
+/// are released; `None` after 3 s.
 fn released_after(
     governor: &mut Governor,
     from: u64,

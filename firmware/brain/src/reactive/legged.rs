@@ -1,14 +1,15 @@
 //! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
-//! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others back up,
-//! off the line from ball to goal. An opponent is considered only when it blocks the way within 0.4 m: then dodge,
-//! turning with the ball and stepping diagonally, and kick as soon as the kick passes it. Short kicks advance, near the
-//! goal the robot turns to the clearest lane and shoots. No passes.
+//! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others
+//! back up, off the line from ball to goal. An opponent is considered only when it blocks the path within 0.4
+//! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
+//! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
 //!
-//! What it took to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalie): kicks out of a
-//! duel that pass the opponent and end where one of us is first, head kicks among them; shots by the open angle of the goal,
-//! from aside of its middle, where a goalie opposite the ball leaves the far post open; standing turned to that post until
-//! it opens; roles by who has the ball first where it will rest. `onetwo evaluate` says what it comes to.
+//! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalie): kicks
+//! out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots by the
+//! open angle of the goal, from aside of its middle, where a goalie opposite the ball leaves the far post
+//! open; standing turned to that post until it opens; roles by who has the ball first at its stop position.
+//! `onetwo evaluate` measures it.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use protocol::robot_io::LeggedKick;
@@ -107,7 +108,8 @@ impl Reactive {
             return intent;
         }
         let blocked = blocker(belief, ball, to_goal);
-        // A dodge once begun is ended by a kick: an opponent at the limit would else keep it turning to and fro.
+        // A dodge that has started is ended by a kick: otherwise an opponent at the limit would keep it
+        // turning to and fro.
         let opponent =
             blocked.or_else(|| self.dodge.and(belief.nearest_opponent(ball.position)).map(|(at, _)| at));
         let Some(opponent) = opponent else {
@@ -126,7 +128,8 @@ impl Reactive {
     }
 }
 
-/// The kick from where the robot stands now that passes everybody, ends in the field and is best for us there.
+/// The kick from where the robot stands now that passes every opponent, ends in the field and is best for us
+/// there.
 fn way_out(
     now: Instant,
     belief: &Belief,
@@ -156,7 +159,7 @@ fn way_out(
     best.map(|(_, kick)| kick)
 }
 
-/// Is an opponent about to be at the ball?
+/// Whether an opponent is about to be at the ball.
 fn disputed(belief: &Belief, ball: &Ball) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < DISPUTED_WITHIN)
 }
@@ -173,8 +176,8 @@ fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
     }
 }
 
-/// Whether the ball is this robot's: it holds it, or nobody does and nobody is there earlier (the one who already goes for it
-/// keeps it unless beaten clearly).
+/// Whether the ball is this robot's: it holds it, or no robot holds it and no teammate is there earlier (the
+/// robot that already goes for it keeps it unless beaten clearly).
 fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
     if belief.holds_ball {
         return true;
@@ -223,7 +226,7 @@ fn support(belief: &Belief, to: Point<Field>) -> Intent {
     Intent::Walk { to, face: face_ball(belief, to), shy_of_ball: true }
 }
 
-/// The opponent that is near the ball and in the way of a kick towards the goal.
+/// The opponent that is near the ball and on the path of a kick towards the goal.
 fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>> {
     belief.opponents.iter().copied().find(|&opponent| {
         let v = opponent - ball.position;
@@ -231,7 +234,7 @@ fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>>
     })
 }
 
-/// How far every opponent stays from a kick's way, m.
+/// Smallest distance of any opponent from a kick's path, m.
 fn clearance(belief: &Belief, from: Point<Field>, direction: Angle, length: f32) -> f32 {
     let way = geometry::Segment::new(from, from + Vector::polar(length, direction));
     belief.opponents.iter().map(|&o| way.distance_to(o)).fold(f32::INFINITY, f32::min)
@@ -244,7 +247,8 @@ fn past(ball: &Ball, opponent: Point<Field>, left: bool) -> Angle {
     v.angle() + Angle::new(if left { off } else { -off })
 }
 
-/// On which side of the way to the goal a dodge is better: where a hard kick stays within the lines, else the clearer, else the inner.
+/// On which side of the line to the goal a dodge is better: where a hard kick stays within the lines, else
+/// the clearer, else the inner.
 fn left_is_clearer(belief: &Belief, ball: &Ball, to_goal: Angle) -> bool {
     let value = |direction: Angle| {
         let end = ball.position + Vector::polar(HARD_KICK, direction);
@@ -255,9 +259,10 @@ fn left_is_clearer(belief: &Belief, ball: &Ball, to_goal: Angle) -> bool {
     value(to_goal + DODGE_ANGLE) >= value(to_goal - DODGE_ANGLE)
 }
 
-/// The hard kick's nominal way, m: from here a clear shot reaches the goal. Also the way a dodge's kick should have within the lines.
+/// The hard kick's nominal distance, m: from here a clear shot reaches the goal. Also the distance that a
+/// dodge's kick should have within the lines.
 const HARD_KICK: f32 = 2.15;
-/// The soft kick's nominal way, m.
+/// The soft kick's nominal distance, m.
 const SOFT_KICK: f32 = 0.8;
 /// "Approximately 40 cm away at most" (paper §5.3.1): ball to the opponent's centre, m.
 const BLOCKED_WITHIN: f32 = 0.4;
@@ -289,7 +294,8 @@ const INNER_SIDE: f32 = 0.05;
 const KICK_INSIDE: f32 = 0.3;
 /// A ball this far off the field's long axis lies on one side, m.
 const ACROSS_FROM: f32 = 0.3;
-/// Who waits across the field waits this far ahead of the ball, m: within one pass and one adaptation.
+/// A robot that waits across the field waits this far ahead of the ball, m: within one pass and one
+/// adaptation.
 const ACROSS_AHEAD: f32 = 0.6;
 /// And this far off the axis, m: half a penalty area's width, where a goalie opposite the ball leaves the far post open.
 const ACROSS_OFF: f32 = 0.6;

@@ -29,7 +29,7 @@ pub enum Freedom {
 pub enum Reactive {
     /// The paper's, on legs.
     Legged(kind::Legs, legged::Reactive),
-    /// Simple and lawful, on wheels.
+    /// Simple and rule-compliant, on wheels.
     Wheels(kind::Wheels, wheels::Reactive),
 }
 

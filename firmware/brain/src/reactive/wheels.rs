@@ -1,8 +1,8 @@
 //! `wheels`: reactive behaviour of wheeled robots without a case; simple and rule-compliant.
 //!
-//! Who has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on while there is room and the
-//! rules let it, else kicks it up the freer wing. The others take places ahead of the ball and behind it, one each. SI,
-//! field frame.
+//! The robot that has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on
+//! while there is room and the rules allow it, else kicks it up the freer wing. The others take places ahead
+//! of the ball and behind it, one each. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -89,7 +89,7 @@ fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
     skills::clear_or_shoot(belief, attacked)
 }
 
-/// Whether the ball is this robot's: it has it, or nobody else under the same directive has it sooner.
+/// Whether the ball is this robot's: it has it, or no other robot under the same directive has it sooner.
 fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
     if belief.holds_ball {
         return true;
@@ -141,17 +141,17 @@ const CONTESTED: f32 = 0.6;
 const SHOOTS_FROM: f32 = 4.5;
 /// A shot with that much room beside bodies' reach is taken, m.
 const OPEN: f32 = 0.03;
-/// It looks this far for who is in its way, m.
+/// It checks this far ahead for opponents on its path, m.
 const LOOKS_AHEAD: f32 = 0.6;
-/// An opponent this near the way ahead blocks it, m: two bodies and a hand.
+/// An opponent this near the path ahead blocks it, m: two bodies and a hand.
 const BLOCKS: f32 = 0.25;
 /// A ball is carried no farther, m: the rules' metre, less what it takes to kick.
 const CARRIES: f32 = 0.55;
 /// Nearer to the goal's centre carrying on gains nothing, m.
 const TOO_NEAR: f32 = 1.8;
-/// Who goes for the ball keeps that unless another is nearer by this, m.
+/// The robot that goes for the ball keeps it unless another is nearer by this, m.
 const KEEPS: f32 = 0.3;
-/// Where a rolling ball will be when somebody is there, s.
+/// Prediction time for the position of a rolling ball at which a robot arrives, s.
 const AHEAD: f32 = 0.6;
 /// Places keep this far before the area, m.
 const BEFORE_AREA: f32 = 0.5;

@@ -1,7 +1,7 @@
-//! `skills`: skills of the case language. A folder per body; belief in, intent and verdict out.
+//! `skills`: skills of the case language. A directory per body; belief in, intent and verdict out.
 //!
-//! A walking robot's skills remember nothing; what must be remembered between steps (a kick was commanded, the ball was
-//! held) is the [execution's](crate::execution) or the reactive behaviour's.
+//! A walking robot's skills keep no state; what must be kept between steps (a kick was commanded, the ball
+//! was held) is the [execution's](crate::execution) or the reactive behaviour's.
 
 pub mod legged;
 pub mod wheels;
@@ -20,8 +20,8 @@ pub enum Step {
 /// How a reception stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reception {
-    /// On the way to it, or to its end.
+    /// Moving to the ball, or to its stop position.
     Going(Step),
-    /// The ball has passed by, or came to rest too far away.
+    /// The ball has passed by, or stopped too far away.
     Missed,
 }

@@ -8,7 +8,8 @@ use protocol::{CycleId, RobotId};
 pub struct Cycle {
     me: RobotId,
     state: Option<CycleState>,
-    /// Learned of while still listening after a boot: what an earlier life of this robot did in it is unknown.
+    /// Learned of while still listening after a boot: what an earlier boot epoch of this robot did in it is
+    /// unknown.
     learned_asleep: bool,
     /// Own progress in it.
     pub progress: Progress,
@@ -23,7 +24,7 @@ pub enum News {
     Known,
     /// More about the cycle, but no other gameplay.
     More,
-    /// A gameplay begins, or is replaced or ended.
+    /// A gameplay starts, or is replaced or ended.
     Gameplay,
 }
 
@@ -56,12 +57,13 @@ impl Cycle {
         }
     }
 
-    /// Whether this robot is the coordinator of an open cycle that it has seen from its start in this life.
+    /// Whether this robot is the coordinator of an open cycle that it has received from its start in this
+    /// boot epoch.
     pub fn is_mine_to_decide(&self) -> bool {
         !self.learned_asleep && self.state.as_ref().is_some_and(|s| s.coordinator == self.me)
     }
 
-    /// Whether an earlier life of this robot took part in the running gameplay.
+    /// Whether an earlier boot epoch of this robot took part in the running gameplay.
     pub fn is_of_an_earlier_life(&self) -> bool {
         self.learned_asleep
     }
@@ -103,7 +105,7 @@ impl Cycle {
         self.closed(Closure::Aborted { by: self.me, reason })
     }
 
-    /// The open cycle with the coordinator's word.
+    /// The open cycle with the coordinator's decision.
     #[must_use]
     pub fn decided(&self, decision: Decision) -> Option<CycleState> {
         self.state.as_ref().map(|state| CycleState { decision, ..state.clone() })

@@ -12,7 +12,7 @@ use casebase::{Action, KickAim};
 use crate::estimate;
 use crate::execution::Scene;
 
-/// Is the reactive behaviour expected to shoot sooner than the gameplay of `scene`?
+/// Whether the reactive behaviour is expected to shoot sooner than the gameplay of `scene`.
 pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
     let ball = Point::from(casebase::PointMm::from(scene.play.ball));
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
@@ -68,7 +68,8 @@ fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
 const IN_REACH: f32 = 2.15;
 /// The reactive behaviour must win by this much, s: estimates of a gameplay's seconds are no better.
 const MARGIN: f32 = 1.0;
-/// An opponent this far ahead of the ball, and this far beside its way to the goal, will dispute it, m: what it walks in 3 s.
+/// An opponent this far ahead of the ball, and this far beside its path to the goal, will dispute it, m: what
+/// it walks in 3 s.
 const DUEL_AHEAD: f32 = 1.0;
 /// See [`DUEL_AHEAD`].
 const DUEL_BESIDE: f32 = 0.6;
@@ -76,5 +77,5 @@ const DUEL_BESIDE: f32 = 0.6;
 const DUEL: f32 = 6.0;
 /// From this far shots have a chance, m: a hard kick (2.15 m) less its scatter in length.
 const SHOT_FROM: f32 = 1.6;
-/// A short kick's nominal way, m.
+/// A short kick's nominal distance, m.
 const PUSH: f32 = 0.8;

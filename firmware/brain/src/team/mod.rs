@@ -7,10 +7,10 @@
 //! end        the coordinator closes the cycle when all have finished; anyone involved may abort it
 //! ```
 //!
-//! All of it is one value, [`CycleState`](protocol::team::CycleState), which only grows and is repeated in every beacon;
-//! [`Cycle`] holds it. [`election`] says who proposes what, [`retrieval`] makes a problem of beliefs, [`reuse`] is the
-//! state machine of Fig. 10, [`monitor`] watches whether the case still applies,
-//! [`hybrid`] whether acting at once would be better.
+//! All of it is one value, [`CycleState`](protocol::team::CycleState), which only grows and is repeated in
+//! every beacon; [`Cycle`] holds it. [`election`] determines which robot proposes what, [`retrieval`] makes a
+//! problem of beliefs, [`reuse`] is the state machine of Fig. 10, [`monitor`] watches whether the case still
+//! applies, [`hybrid`] whether acting at once would be better.
 
 pub mod cycle;
 pub mod election;

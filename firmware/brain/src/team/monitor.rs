@@ -1,9 +1,9 @@
 //! `monitor`: monitoring of a running case. What every robot involved watches while it plays
 //! (docs/architecture.md §5.3, docs/papers.md R27).
 //!
-//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the ball not at
-//! rest where nobody of the case expects it. A doubt must last a fifth of a second before it aborts: an opponent at the
-//! edge of a trapezoid shall not end a gameplay by swaying.
+//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
+//! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
+//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying.
 
 use casebase::{PointMm, Settings};
 use geometry::Segment;

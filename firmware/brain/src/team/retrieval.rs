@@ -1,7 +1,7 @@
 //! `retrieval`: retrieval by the coordinator. Beliefs to a problem, a retrieval to a decision.
 //!
-//! The ball of the problem is where the ball will lie: robots that adapt to a place a rolling ball has left would only
-//! abort. For a ball at rest it is the paper's own ball position.
+//! The ball of the problem is at its stop position: robots that adapt to a place a rolling ball has left
+//! would only abort. For a stationary ball it is the paper's own ball position.
 
 use casebase::{CaseBase, GoalEnd, Problem, Settings};
 use protocol::host::Hint;
@@ -33,7 +33,7 @@ pub fn problem(
         .filter(|(_, mate)| mate.beacon.case_base == base.hash())
         .map(|(id, mate)| (id, mate.pose().position));
     for (id, position) in able.chain([(me, belief.pose.position)]) {
-        // A team larger than a problem holds is told to its limit.
+        // A team larger than a problem holds is cut at its limit.
         let _ = problem.teammates.push((id, position.into()));
     }
     for opponent in &belief.opponents {
@@ -60,10 +60,10 @@ pub fn accept(
     })
 }
 
-/// What the coordinator announces about `problem`.
+/// The coordinator's decision about `problem`.
 ///
-/// A robot that holds the ball can give it away only by a kick: a case that wants another robot to get the ball first
-/// cannot begin, and counts as none.
+/// A robot that holds the ball can give it away only by a kick: a case in which another robot must get the
+/// ball first cannot start, and counts as none.
 pub fn decide(
     base: &CaseBase<'_>,
     problem: &Problem,

@@ -52,7 +52,7 @@ pub fn step(
     }
 }
 
-/// On the way to the adapted position, facing the ball at its end.
+/// Walks to the adapted position, facing the ball at its end.
 fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
     if scene.belief.holds_ball {
         return Intent::Stand { face: None };
@@ -79,7 +79,8 @@ fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     near && (face - pose.heading).abs() <= FACING_WITHIN
 }
 
-/// Dependent: the ball getter is there. Independent: all are. Either way a mate who executes has seen it so.
+/// Dependent: the ball getter is there. Independent: all are. In both, a teammate that executes has found it
+/// so.
 fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Execution, arrived: bool) -> bool {
     let there = |part| {
         if part == execution.part() {

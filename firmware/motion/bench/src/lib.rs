@@ -1,7 +1,8 @@
 //! `motion_bench`: motion benchmark tasks. The same on a board and on the PC, to the last bit.
 //!
-//! Tasks are drawn from a seed, so nothing travels to the board; back come counts, and a hash of what was found. Runs in
-//! the bench's image (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`, which drives both. SI units.
+//! Tasks are drawn from a seed, so no task data goes to the board; counts and a hash of the results come
+//! back. Runs in the bench's firmware (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`,
+//! which drives both. SI units.
 #![forbid(unsafe_code)]
 #![no_std]
 
@@ -28,7 +29,7 @@ pub enum Work {
     DragTime,
     /// The whole motion with drag.
     DragPlan,
-    /// The soonest meeting with a ball.
+    /// The earliest interception of a ball.
     Soonest,
     /// The one with most slack.
     Safest,
@@ -39,7 +40,7 @@ pub enum Work {
 }
 
 impl Work {
-    /// All, as they are told.
+    /// All tasks, in the order of the report.
     pub const ALL: [Self; 9] = [
         Self::FreeTime,
         Self::FreePlan,
@@ -52,7 +53,7 @@ impl Work {
         Self::AvoidMoving,
     ];
 
-    /// Its word.
+    /// Its name in reports and options.
     pub const fn word(self) -> &'static str {
         match self {
             Self::FreeTime => "free-time",
@@ -67,7 +68,7 @@ impl Work {
         }
     }
 
-    /// Does it; the bits of what was found, folded into one word.
+    /// Runs the task; returns the bits of the result, folded into 32 bits.
     pub fn run(self, task: &Task) -> u32 {
         let Task { from, velocity, to, .. } = *task;
         let (free, drag) = (FreeLimits::default(), DragLimits::default());
@@ -88,7 +89,7 @@ impl Work {
 /// What is to be done.
 #[derive(Clone, Debug)]
 pub struct Task {
-    /// A start, a velocity and an end on a field of 12 × 9 m; every second way is short.
+    /// A start, a velocity and an end on a field of 12 × 9 m; every second path is short.
     pub from: Point<Field>,
     /// m/s.
     pub velocity: Vector<Field>,

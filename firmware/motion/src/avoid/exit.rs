@@ -1,10 +1,11 @@
 //! `exit`: finds a free point near a covered one: out of overlapping obstacles and inside the region to stay in. m.
 //!
-//! A best-first search over candidates: on the sides of the box, or around the disc or capsule, that covers a point; a candidate
-//! that is covered itself is left the same way, the one nearest to the start first. Candidates outside the region to stay in are no
-//! exits: a half-plane that ends beyond a wall is left on the side that lies on the carpet. Where [`TRIES_MAX`] candidates were
-//! tried in vain, the nearest free point of a lattice over the region is taken. Deterministic, and bounded: a search looks at
-//! [`TRIES_MAX`] candidates and [`COLUMNS`] × [`ROWS`] points of the lattice at most.
+//! A best-first search over candidates: on the sides of the box, or around the disc or capsule, that covers a
+//! point; a candidate that is covered itself is left by the same method, the one nearest to the start first.
+//! Candidates outside the region to stay in are no exits: a half-plane that ends beyond a wall is left on the
+//! side that lies on the field surface. Where [`TRIES_MAX`] candidates were tried in vain, the nearest free
+//! point of a lattice over the region is taken. Deterministic, and bounded: a search looks at [`TRIES_MAX`]
+//! candidates and [`COLUMNS`] × [`ROWS`] points of the lattice at most.
 
 use geometry::{Point, Shape, Vector, math};
 
@@ -20,7 +21,8 @@ impl<F: Copy> Scene<'_, F> {
             .unwrap_or(start)
     }
 
-    /// Where to leave what covers a robot: the nearest free point to which no body stands in the straight way, else the nearest.
+    /// Where to leave what covers a robot: the nearest free point with no body on the straight path to it,
+    /// else the nearest.
     pub(super) fn exit(&self, from: Point<F>, effort: u32) -> Point<F> {
         let start = self.within().map_or(from, |within| inside(&within, from));
         let tries = (effort / EFFORT_A_TRY).min(TRIES_MAX) as usize;
@@ -60,7 +62,7 @@ impl<F: Copy> Scene<'_, F> {
         self.nearer(point, FREE).map(|obstacle| obstacle.shape)
     }
 
-    /// The ways out of a shape from a point in it, as far as they end inside.
+    /// Exit points of a shape from a point in it, as far as they lie inside.
     fn add_exits(&self, exits: &mut Exits<F>, shape: &Shape<F>, at: Point<F>) {
         let same = if matches!(shape, Shape::Box { .. }) { SAME } else { SAME_AROUND };
         let mut add = |exit: Point<F>| {
@@ -192,11 +194,12 @@ const OFF: f32 = 2.0 * FREE;
 const SAME: f32 = 0.001;
 /// The same around discs and capsules, of which there would be too many.
 const SAME_AROUND: f32 = 0.03;
-/// Most candidates that are looked at: with 16, keepers do not find into a mouth in which another robot stands.
+/// Most candidates that are tested: with 16, keepers do not find into a goal opening in which another robot
+/// stands.
 const TRIES_MAX: u32 = 32;
-/// A candidate is looked at for so much of the effort that a way out may take.
+/// Effort for testing one candidate, out of what a route out may take.
 const EFFORT_A_TRY: u32 = 12;
-/// Most candidates for a target that is covered: whoever gets near it looks again.
+/// Most candidates for a target that is covered: a robot that gets near it searches again.
 const TRIES_TO_GOAL_MAX: usize = 2;
 /// Most candidates that are noted.
 const EXITS_MAX: usize = 64;

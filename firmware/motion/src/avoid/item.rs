@@ -6,7 +6,8 @@ use geometry::{Point, Segment, Shape, Vector, math};
 
 use super::{FORESIGHT, OBSTACLES_MAX, Obstacle};
 
-/// An obstacle with the distance that is kept from it, and a circle around it: most are told by that alone.
+/// An obstacle with the distance that is kept from it, and a circle around it: most tests need the circle
+/// alone.
 #[derive(Clone, Copy)]
 pub(super) struct Item<F> {
     center: Point<F>,
@@ -73,11 +74,12 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within
     }
 
-    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. Who leaves may go through all regions; a body that
-    /// holds the start is taken to end just before it, so that no way leads into it. One that moves with the robot, as a ball that
-    /// rolls on beside it, is left out where the exit leads away from it: to brake would keep them together; one that lies before it
-    /// would be pushed along, and stays. Walls meet: what is kept from the one that is nearest to the start is kept from all of them,
-    /// else none could be followed around to the next.
+    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. A robot that leaves may go
+    /// through all regions; a body that holds the start is taken to end just before it, so that no path leads
+    /// into it. A body that moves with the robot, as a ball that rolls on beside it, is left out where the
+    /// exit leads away from it: braking would keep them together; a body that lies before the start would be
+    /// pushed along, and stays. Walls meet: the distance kept from the wall nearest to the start is kept from
+    /// all of them, else none could be followed around to the next.
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
         let mut wall = SKIN;
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
@@ -115,7 +117,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.all().find(|(item, obstacle)| near(item, obstacle)).map(|(_, obstacle)| obstacle)
     }
 
-    /// Notes that every obstacle was looked at, at so much for each three, and so much besides.
+    /// Spends `a_third` per three obstacles, as every obstacle was tested, and `besides` in addition.
     pub(super) fn spend(&self, a_third: u32, besides: u32) {
         let looked = self.items.len() as u32 * a_third / 3;
         self.effort.set(self.effort.get().saturating_sub(looked + besides));
@@ -144,7 +146,8 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within.is_none_or(|within| within.distance_to(to) <= math::max(within.distance_to(from), 0.0))
     }
 
-    /// The first obstacle that a piece of way touches, by its number, when it takes from `at` to `at + time` s.
+    /// The first obstacle that a piece of path touches, by its number, when it takes from `at` to `at + time`
+    /// s.
     pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
         self.spend(3, PIECE);
         let mut first = None;
@@ -163,7 +166,8 @@ impl<'o, F: Copy> Scene<'o, F> {
         first
     }
 
-    /// Whether no body stands in the straight way; of one that covers the start, whether it does not lead deeper in.
+    /// Whether no body stands on the straight path; for a body that covers the start, whether the path does
+    /// not lead deeper in.
     pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
         let way = to - from;
         self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
@@ -218,19 +222,20 @@ impl<F: Copy> Item<F> {
         self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
     }
 
-    /// No way touches it any more.
+    /// Excludes it: no path touches it any more.
     fn leave_out(&mut self) {
         (self.route, self.brake) = (NOWHERE, NOWHERE);
     }
 
-    /// Whether the point is in the circle, or no number tells.
+    /// Whether the point is in the circle, or its coordinates are NaN.
     #[inline]
     fn may_hold(&self, point: Point<F>) -> bool {
         let off = point - self.center;
         off.dot(off) <= self.route
     }
 
-    /// Whether a piece of way that touches the circle at `share` comes nearer than `margin`, and at which share about.
+    /// Whether a piece of path that touches the circle at `share` comes nearer than `margin`, and at about
+    /// which share.
     #[inline]
     fn hit(&self, shape: &Shape<F>, from: Point<F>, way: Vector<F>, margin: f32, share: f32) -> Option<f32> {
         match *shape {
@@ -254,7 +259,7 @@ pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
     }
 }
 
-/// A piece of way and when it is gone, s.
+/// A piece of path and when it is travelled, s.
 struct Seen<F> {
     from: Point<F>,
     way: Vector<F>,
@@ -285,7 +290,8 @@ fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     }
 }
 
-/// The share of the way at which it is nearest to `center`, if that is nearer than the root of `radius_squared`.
+/// The share of the path at which it is nearest to `center`, if that is nearer than the root of
+/// `radius_squared`.
 #[inline]
 fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squared: f32) -> Option<f32> {
     let offset = center - from;
@@ -305,7 +311,7 @@ fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squ
 fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
     let bone = spine.vector();
     let offset = spine.from - from;
-    // Do they cross? from + s·way = spine.from + t·bone.
+    // Intersection test: from + s·way = spine.from + t·bone.
     let turn = way.cross(bone);
     if turn != 0.0 {
         let per_turn = 1.0 / turn;
@@ -360,7 +366,7 @@ impl<F: Copy> Obstacle<F> {
 pub(super) const SKIN: f32 = 0.02;
 /// What braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
-/// A share of a way that tells where it leads.
+/// A share of a path long enough to give its direction.
 const A_LITTLE: f32 = 0.1;
 /// The square of no circle's radius: nothing comes nearer.
 const NOWHERE: f32 = -1.0;
@@ -368,7 +374,7 @@ const NOWHERE: f32 = -1.0;
 const TOUCH: f32 = 0.000_5;
 /// Slower is standing, m/s.
 const SPEED_MIN: f32 = 0.02;
-/// What a piece of way takes besides looking at obstacles: its corner and its place in the search.
+/// Effort for a piece of path besides testing obstacles: its corner and its place in the search.
 const PIECE: u32 = 12;
 
 /// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for `side` +1.

@@ -29,7 +29,7 @@ struct Node<F> {
     /// Length so far, and with what turning costs.
     length: f32,
     cost: f32,
-    /// Cost with the straight rest; infinite once looked at.
+    /// Cost including the straight line to the goal; infinite once tested.
     estimate: f32,
 }
 
@@ -39,7 +39,7 @@ struct Search<'s, F> {
     velocity: Vector<F>,
     limits: &'s FreeLimits,
     nodes: heapless::Vec<Node<F>, NODES_MAX>,
-    /// Pieces of way that may still be looked at.
+    /// Number of path pieces that may still be tested.
     checks: u32,
     /// Towards the goal, m/s.
     speed: f32,
@@ -145,8 +145,8 @@ impl<F: Copy> Search<'_, F> {
         None
     }
 
-    /// What it costs to turn the present velocity into this way, as a length: nothing straight on, twice the way of
-    /// braking to rest where it goes back.
+    /// Cost of turning the present velocity into this direction, as a length: nothing straight on, twice the
+    /// braking distance where it goes back.
     fn turning(&self, way: Vector<F>, piece: f32) -> f32 {
         if piece <= 0.0 {
             return 0.0;
@@ -155,7 +155,8 @@ impl<F: Copy> Search<'_, F> {
         0.5 * speed * (speed - self.velocity.dot(way) / piece) / self.limits.braking
     }
 
-    /// A corner of the way around an obstacle on the left (`side` +1) or right, from the node on towards `to`.
+    /// A corner of the path around an obstacle on the left (`side` +1) or right, from the node on towards
+    /// `to`.
     fn corner(
         &self,
         item: &Item<F>,
@@ -213,8 +214,8 @@ impl<F: Copy> Search<'_, F> {
         }
     }
 
-    /// Where to go when no way was found: the corner nearest to the goal; where that is the start, the cheapest that was not looked
-    /// at any more, for to stay would repeat the same search in the next step.
+    /// Target when no path was found: the corner nearest to the goal; where that is the start, the cheapest
+    /// that was not tested any more, because staying would repeat the same search in the next step.
     fn most_promising(&self) -> usize {
         let mut best = (0, f32::INFINITY);
         for (i, node) in self.nodes.iter().enumerate() {
@@ -257,7 +258,7 @@ fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straig
     if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / math::max(straight.norm(), PIECE_MIN) }
 }
 
-/// To go around this obstacle on this side, on the way to there.
+/// A turn around this obstacle on this side, on the path to that point.
 #[derive(Clone, Copy)]
 struct Turn<F> {
     item: usize,
@@ -296,8 +297,8 @@ impl<F: Copy> Turns<F> {
     }
 }
 
-/// Where the tangents of a disc from both points meet on one side; where they meet far out or not at all, a corner half
-/// the way round. With `flank`, the tangent along it takes the place of the one from `to`.
+/// Where the tangents of a disc from both points meet on one side; where they meet far out or not at all, a
+/// corner half-way round. With `flank`, the tangent along it takes the place of the one from `to`.
 fn around<F: Copy>(
     center: Point<F>,
     radius: f32,
@@ -312,7 +313,7 @@ fn around<F: Copy>(
     let outwards = Vector::new(-along.y(), along.x()) * side;
     let both = first + last;
     let opening = 1.0 + first.dot(last);
-    // Beyond 120°, or the long way round.
+    // Beyond 120°, or the longer side.
     if opening > OPENING_MIN && both.dot(outwards) > 0.0 {
         return center + both * (radius / opening);
     }
@@ -328,7 +329,7 @@ const TURNS_MAX: usize = 12;
 const NODES_MAX: usize = CHECKS_LONG as usize + 1;
 /// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
-/// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.
+/// What passing in front costs, by the obstacle's speed across the path, s: a robot may be late by as much.
 const LATENESS: f32 = 0.5;
 /// Room for a moving obstacle around corners, by its speed, s.
 const EARLY_OR_LATE: f32 = 0.15;

@@ -42,7 +42,7 @@ struct Drive {
     left: f32,
 }
 
-/// Drives what it is told, exactly, until it rests at the goal, or a time has passed.
+/// Follows the planned steps exactly, until it stands at the goal, or a time has passed.
 fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     let mut course = start;
     let mut drive = Drive { time: 0.0, arrived: false, deepest: f32::NEG_INFINITY, left: f32::NEG_INFINITY };
@@ -111,7 +111,7 @@ impl Dice {
     }
 }
 
-/// Is there any way, by a grid of 4 cm? With what is within `gap` m of an obstacle counted as closed.
+/// Whether any path exists, by a grid of 4 cm, with what is within `gap` m of an obstacle counted as closed.
 fn is_reachable(from: Point<Field>, to: Point<Field>, scene: &[Obstacle<Field>], gap: f32) -> bool {
     const CELL: f32 = 0.04;
     let (columns, rows) = (235_i32, 160_i32);
@@ -191,7 +191,7 @@ fn a_disc_in_the_way_is_passed_on_its_nearer_side_at_its_tangent() {
         let gap = piece.distance_to(at(1.0, 0.1)) - 0.3;
         assert!(gap > 0.02 && gap < 0.024, "{gap}");
     }
-    // Two tangents of 0.32 m: each √(1.01 − 0.104) long, and the rest of them.
+    // Two tangents of 0.32 m: each √(1.01 − 0.104) long, and the remaining path.
     assert!(way.length > 2.0 && way.length < 2.1, "{}", way.length);
 }
 
@@ -248,7 +248,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
     let mut dice = Dice::new(5);
     for number in 0..2_000 {
         let mut scene = scene(&mut dice);
-        // Half of the carpet is closed, up to a wall, in one of four directions.
+        // Half of the field surface is closed, up to a wall, in one of four directions.
         let half = match number % 4 {
             0 => Shape::Box { low: at(0.5, -3.5), high: at(5.0, 3.5) },
             1 => Shape::Box { low: at(-5.0, -3.5), high: at(-0.5, 3.5) },
@@ -270,7 +270,7 @@ fn a_target_inside_becomes_the_nearest_point_outside() {
     let obstacles = [disc(1.0, 0.0, 0.5)];
     let way = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
     assert!(way.goal.distance(at(0.5, 0.0)) < 0.01 && way.verdict == Verdict::Direct);
-    // In the overlap of two, and out of the carpet.
+    // In the overlap of two, and off the field surface.
     let obstacles = [disc(1.0, 0.0, 0.5), disc(1.3, 0.0, 0.5)];
     let way = plan(&course(at(0.0, 0.0), at(1.2, 0.05), &obstacles));
     assert!(

@@ -37,8 +37,8 @@ impl ChipModel {
         (share(model.first) && share(model.other) && (0.0..1.0).contains(&model.rise)).then_some(model)
     }
 
-    /// The path of a ball chipped at `at` with `velocity` along the ground and `rise` m/s upwards. After the last hop it
-    /// rolls as `ball` says.
+    /// The path of a ball chipped at `at` with `velocity` along the ground and `rise` m/s upwards. After the
+    /// last hop it rolls by `ball`.
     pub fn chipped<F: Copy>(
         &self,
         at: Point<F>,
@@ -90,7 +90,7 @@ pub fn launch(distance: f32, slope: f32) -> (f32, f32) {
     }
 }
 
-/// A chipped ball's way until it rests.
+/// A chipped ball's path until it stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipPath<F> {
     from: Point<F>,
@@ -123,7 +123,7 @@ impl Hop {
 pub struct ChipState<F> {
     /// Along the ground.
     pub ground: State<F>,
-    /// Of the ball above where it lies on the carpet, m.
+    /// Height of the ball above its position on the field surface, m.
     pub height: f32,
     /// Upwards, m/s.
     pub rise: f32,
@@ -134,7 +134,7 @@ impl<F: Copy> ChipPath<F> {
         self.hops.get(..self.hop_count).unwrap_or(&[])
     }
 
-    /// Until it rests, s.
+    /// Time until it stops, s.
     pub fn duration(&self) -> f32 {
         self.roll_time + self.roll_speed / self.roll.deceleration
     }
@@ -149,7 +149,7 @@ impl<F: Copy> ChipPath<F> {
         self.from + self.along * self.roll_distance
     }
 
-    /// Where it comes to rest.
+    /// Stop position.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * (self.roll_distance + self.roll.rest_distance(self.roll_speed))
     }
@@ -178,7 +178,7 @@ impl<F: Copy> ChipPath<F> {
         ChipState { ground: state(rest - 0.5 * speed * left, speed, deceleration), height: 0.0, rise: 0.0 }
     }
 
-    /// When it has gone `distance` m along the ground, s; `None` where it rests before.
+    /// When it has gone `distance` m along the ground, s; `None` where it stops before.
     pub fn time_to(&self, distance: f32) -> Option<f32> {
         if distance < 0.0 {
             return None;

@@ -67,7 +67,7 @@ fn a_kick_for_an_arrival_arrives_so_fast_sliding_or_rolling() {
     for (distance, arrival) in [(3.0, 1.0), (6.0, 2.0), (0.2, 3.0), (0.5, 0.0), (1.0, 5.0)] {
         let kick = model.kick_speed(distance, arrival);
         let path = model.kicked(Point::<Field>::new(0.0, 0.0), Vector::new(kick, 0.0));
-        // The inverse loses digits where the ball all but rests.
+        // The inverse loses digits where the ball is nearly stationary.
         let (_, _, v) = stepped(model, f64::from(kick), |_, d, _| d >= f64::from(distance));
         assert!((v - arrival as f64).abs() < 0.02, "{distance} m, {arrival} m/s: {kick} m/s gives {v}");
         assert!(path.rest_distance() >= distance - 1e-3);

@@ -1,6 +1,7 @@
 //! `axis`: one axis of a trajectory. Trapezoid or triangle; m or rad, s.
 //!
-//! Phases, any of which may be empty: brake (the wrong way, or above the speed limit), speed up, cruise, brake.
+//! Phases, any of which may be empty: brake (moving in the wrong direction, or above the speed limit), speed
+//! up, cruise, brake.
 
 use geometry::math;
 
@@ -22,14 +23,14 @@ pub(super) struct AxisLimits {
     speed_squared: f32,
 }
 
-/// What a direction of an axis has to do, turned so that the way after braking is never negative.
+/// What a direction of an axis has to do, turned so that the distance after braking is never negative.
 #[derive(Clone, Copy)]
 struct Ahead {
     /// +1, or −1 where the axis was turned round.
     sign: f32,
     distance: f32,
     speed: f32,
-    /// Time and way of braking from the wrong direction.
+    /// Time and distance of braking from the wrong direction.
     first: f32,
 }
 
@@ -50,12 +51,13 @@ impl AxisLimits {
         }
     }
 
-    /// Time to rest at `distance` ahead, moving with `speed` now, s.
+    /// Time to standstill at `distance` ahead, moving with `speed` now, s.
     #[inline]
     pub(super) fn time(&self, distance: f32, speed: f32) -> f32 {
         let Ahead { distance, speed, first, .. } = self.ahead(distance, speed);
         if speed > self.speed {
-            // Brake to the limit, cruise, brake: the two brakings together are one from `speed` to rest.
+            // Brake to the limit, cruise, brake: the two brakings together are one from `speed` to
+            // standstill.
             let cruise = (distance - 0.5 * speed * speed * self.per_braking) * self.per_speed;
             return first + speed * self.per_braking + cruise;
         }
@@ -72,7 +74,7 @@ impl AxisLimits {
             + (distance - up - down) * self.per_speed
     }
 
-    /// About how much there is to do, for a first guess of an axis's share; exact between two rests.
+    /// Approximate duration, for a first guess of an axis's share; exact between two standstills.
     #[inline]
     pub(super) fn effort(&self, distance: f32, speed: f32) -> f32 {
         let stop = 0.5 * speed * speed * self.per_braking;
@@ -152,7 +154,8 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Place, speed and acceleration at a time. The last two phases are told from the end backwards, so that it arrives.
+    /// Place, speed and acceleration at a time. The last two phases are computed from the end backwards, so
+    /// that it arrives.
     pub(super) fn at(&self, time: f32) -> (f32, f32, f32) {
         if time >= self.duration {
             return (self.end, 0.0, 0.0);

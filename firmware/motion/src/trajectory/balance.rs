@@ -15,8 +15,9 @@ pub(super) struct Balance {
     pub(super) time: f32,
 }
 
-/// Seeks the shares. `times(x, y)` are both axes' times with these shares; `first` is where to begin, 0 (all for x) to 1
-/// (all for y). Ends early, with what it has by then, once it is clear that the time is over `within`.
+/// Seeks the shares. `times(x, y)` are both axes' times with these shares; `first` is where to start, 0 (all
+/// for x) to 1 (all for y). Ends early, with the shares found by then, once it is clear that the time is over
+/// `within`.
 #[inline]
 pub(super) fn balance(
     first: f32,

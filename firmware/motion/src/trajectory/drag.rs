@@ -1,8 +1,9 @@
 //! Near-time-optimal motion of a robot whose motors weaken with speed (Kalmár-Nagy, D'Andrea, Ganguly 2004).
 //!
-//! In units of `speed`, `speed` / `acceleration` (time) and `speed²` / `acceleration` (way): z″ + z′ = u, |u| ≤ 1. Each
-//! axis pushes with one size of u, first one way, then the other; z + z′ grows by u a time unit, and that gives both times
-//! in closed form. The share of u between the axes is sought, as without drag.
+//! In units of `speed`, `speed` / `acceleration` (time) and `speed²` / `acceleration` (distance): z″ + z′ =
+//! u, |u| ≤ 1. Each axis pushes with one size of u, first in one direction, then in the other; z + z′ grows
+//! by u a time unit, and that gives both times in closed form. The share of u between the axes is searched
+//! for, as without drag.
 
 use geometry::{Point, Vector, math};
 
@@ -144,7 +145,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// Place, speed and acceleration; the second push is told from the end backwards, so that it arrives.
+    /// Place, speed and acceleration; the second push is computed from the end backwards, so that it arrives.
     fn at(&self, time: f32) -> (f32, f32, f32) {
         let Pushes { push, first, second } = self.pushes;
         let left = first + second - time;
@@ -171,7 +172,7 @@ struct Pushes {
 }
 
 impl Pushes {
-    /// To rest at `distance`, moving with `speed`, pushing with `size` > 0.
+    /// To standstill at `distance`, moving with `speed`, pushing with `size` > 0.
     #[inline]
     fn new(distance: f32, speed: f32, size: f32) -> Self {
         if distance == 0.0 && speed == 0.0 {

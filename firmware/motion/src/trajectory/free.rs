@@ -8,8 +8,8 @@ use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
 /// Limits of a robot without drag.
 ///
-/// On the way acceleration never exceeds `acceleration`, or `braking` where an axis brakes; speed never exceeds
-/// √(`speed`² + |v₀|²), and `speed` itself where it starts at rest or along its way.
+/// During the motion acceleration never exceeds `acceleration`, or `braking` where an axis brakes; speed
+/// never exceeds √(`speed`² + |v₀|²), and `speed` itself where it starts at standstill or along its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeLimits {
     /// m/s, > 0.
@@ -21,8 +21,8 @@ pub struct FreeLimits {
 }
 
 impl Default for FreeLimits {
-    /// 3.0 m/s and 3.5 m/s² both ways: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations,
-    /// 3.5 m/s² lies between published teams' 2 and 4.5.
+    /// 3.0 m/s and 3.5 m/s² in both directions: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper
+    /// prints accelerations, 3.5 m/s² lies between published teams' 2 and 4.5.
     fn default() -> Self {
         Self { speed: 3.0, acceleration: 3.5, braking: 3.5 }
     }
@@ -120,7 +120,7 @@ impl<F> FreeMotion<F> {
 }
 
 impl<F: Copy> FreeMotion<F> {
-    /// Where it ends, at rest.
+    /// Its end, at standstill.
     pub fn to(&self) -> Point<F> {
         self.to
     }

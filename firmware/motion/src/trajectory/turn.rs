@@ -15,14 +15,15 @@ pub struct TurnLimits {
 }
 
 impl Default for TurnLimits {
-    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which no wheel on carpet keeps.
+    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which wheels
+    /// on a field surface cannot keep.
     fn default() -> Self {
         Self { rate: 6.0, acceleration: 30.0 }
     }
 }
 
 impl TurnLimits {
-    /// From `from`, turning with `rate` rad/s, to rest at `to`: the way round that is sooner there.
+    /// From `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner there.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
         // NaN is not above anything.
@@ -46,7 +47,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Until it rests, s.
+    /// Time until it stands, s.
     pub fn duration(&self) -> f32 {
         self.phases.duration
     }

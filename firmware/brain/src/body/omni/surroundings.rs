@@ -27,13 +27,14 @@ impl Surroundings {
         Self { obstacles: heapless::Vec::new(), within: field.carpet().grown(-BODY - BORDER) }
     }
 
-    /// Takes in what matters to this robot on its way to `to`.
+    /// Collects what matters to this robot on its path to `to`.
     pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, manner: Manner) {
         let KeepOut { forbidden, within } = keep_out(&situation(belief, field));
-        // Who goes for the ball may touch the boards: one in a corner is had no other way.
+        // A robot that goes for the ball may touch the boards: a ball in a corner cannot be reached
+        // otherwise.
         self.within = within.grown(if manner == Manner::Shy { -BODY - BORDER } else { -BODY });
         let me = belief.pose.position;
-        // The way it means to go, and the one on which it could come to rest.
+        // The planned path, and the one on which it could stop.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
         // A robot at a ball that lies beside an area may be as near as the rules let it.
@@ -49,7 +50,8 @@ impl Surroundings {
             };
             region.shape.grown(BODY + law)
         };
-        // Who must leave a region may have to leave by another way than the one it means to go: all of them count.
+        // A robot that must leave a region may have to leave by another path than the planned one: all
+        // regions count.
         let covers = |shape: Shape<Field>| shape.contains(me) || shape.contains(to);
         let leaves = forbidden.iter().any(|region| covers(grown(region)));
         for shape in forbidden.iter().map(grown) {
@@ -106,7 +108,7 @@ impl Surroundings {
     }
 }
 
-/// Whether a region comes near the way: looked at from three places on it, each for its stretch.
+/// Whether a region comes near the path: tested at three points of it, each for its stretch.
 fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
     let along = way.vector();
     let stretch = SIXTH * (along.x().abs() + along.y().abs());
@@ -149,7 +151,7 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     }
 }
 
-/// Of a way.
+/// Share of the path's length.
 const SIXTH: f32 = 1.0 / 6.0;
 /// The robot's own radius, m.
 const BODY: f32 = ROBOT_RADIUS;
@@ -157,15 +159,16 @@ const BODY: f32 = ROBOT_RADIUS;
 const LAW: f32 = 0.04;
 /// Beside areas at a ball that lies, m: what wheels overshoot at 0.35 m/s.
 const LAW_AT_BALL: f32 = 0.01;
-/// A placement's stadium swings with the ball by what it rolls in so long, s: picture, radio, and what wheels take to follow; …
+/// A placement's stadium moves with the ball by what it rolls in this time, s: snapshot and radio latency,
+/// and the lag of the wheels; …
 const LEADS: f32 = 0.15;
-/// … no more than this, m: who stands where hosts send it is 0.15 m clear.
+/// … at most this, m: the places that hosts order are 0.15 m clear of it.
 const LEADS_MOST: f32 = 0.3;
 /// A slower ball lies, m/s.
 const LIES: f32 = 0.3;
-/// This near the ball its way ends, m: lining up behind it.
+/// A robot whose path ends this near the ball lines up behind it, m.
 const AT_BALL: f32 = 0.2;
-/// From the carpet's edge, m.
+/// From the edge of the field surface, m.
 const BORDER: f32 = 0.02;
 /// From goal walls, m.
 const WALL: f32 = 0.01;
@@ -179,17 +182,19 @@ const ROBOTS_AT_BALL: f32 = 0.0;
 const KICKS_WITHIN: f32 = 0.35;
 /// It looks at the ball within this, rad.
 const LOOKS_AT: f32 = 0.35;
-/// The lane ends so far from the ball, m: short of who waits for a pass of a metre.
+/// The lane ends this far from the ball, m: short of a robot that waits for a pass of a metre.
 const LANE: f32 = 0.9;
-/// Beside the ball's way, m.
+/// Beside the ball's path, m.
 const LANE_MARGIN: f32 = 0.03;
-/// Who stands farther beside the way than this is in nobody's way, m: a way around one robot keeps nearer.
+/// A robot that stands farther beside the path than this is no obstacle, m: a path around one robot keeps
+/// nearer.
 const ASIDE: f32 = 0.3;
-/// Who moves may come nearer for so long, s.
+/// Time for which a moving robot may come nearer, s.
 const ASIDE_FOR: f32 = 0.4;
-/// Who moves may be elsewhere than it was shown, by this much of its way, s: two images' worth of its velocity's error.
+/// A moving robot may be elsewhere than received, by its velocity's error over this time, s: two camera
+/// frames.
 const STRAYS_FOR: f32 = 0.025;
-/// At 3 m/s and 3.5 m/s² a robot comes to rest in 0.43 s times its speed, s.
+/// At 3 m/s and 3.5 m/s² a robot stops in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
 /// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;

@@ -43,13 +43,13 @@ pub fn aim(belief: &Belief, target: Point<Field>) -> Angle {
 
 /// Carries the ball held to `to`; done when the ball is within `tolerance` of it, m.
 pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
-    // Who stands between the ball and the place has not brought it there.
+    // A robot that stands between the ball and the target has not brought the ball there.
     let ball = belief.ball.map_or(belief.pose.position, |ball| ball.position);
     if ball.distance(to) <= tolerance { Step::Done } else { Step::Running(Intent::Carry { to }) }
 }
 
-/// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which can still be
-/// grabbed, and in 1.6 s instead of the 2.4 s of one that comes to rest there (0.35 m/s²).
+/// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which
+/// can still be grabbed, and in 1.6 s instead of the 2.4 s of one that stops there (0.35 m/s²).
 const PASS_FIRMLY: f32 = 1.2;
 /// A head kick may miss the wanted length by this share: as much as kicks scatter anyway.
 const SIDE_PASS_WITHIN: f32 = 0.3;

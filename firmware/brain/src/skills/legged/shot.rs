@@ -1,8 +1,9 @@
 //! `shot`: aim of a shot between the posts. The open angle of the goal, as kicks scatter. Field frame, SI.
 //!
-//! Rays from the robot fan over the goal's mouth. A ray is free where no opponent can be at it when the ball passes: each
-//! covers its body and what it walks sideways until then. A kick in one of these directions goes astray as kicks do
-//! (motion's spread); its chance is the share of such kicks that run along free rays, times that of rolling far enough.
+//! Rays from the robot fan over the goal opening. A ray is free where no opponent can be at it when the ball
+//! passes: each covers its body and what it walks sideways until then. A kick in one of these directions
+//! deviates as kicks do (motion's spread); its probability is the share of such kicks that run along free
+//! rays, times the probability of rolling far enough.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use motion::legged::{KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_SIDEWAYS};
@@ -38,14 +39,15 @@ pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Inte
     if me.distance(place) > CARRIED_AT_MOST {
         return None;
     }
-    // A goalie on the way to where the ball is leaves the far post open once it is there: be turned to it by then.
+    // A goalkeeper that walks towards the ball's new position leaves the far post open: face that post by
+    // then.
     let goal = belief.league().field().goal_center(attacked);
     let far = Point::new(goal.x(), -FAR_POST * me.y());
     let aside = me.y().abs() > ASIDE;
     Some(if aside { Intent::Turn { heading: me.direction_to(far) } } else { Intent::Carry { to: place } })
 }
 
-/// Is an opponent about to take the ball?
+/// Whether an opponent is about to take the ball.
 fn is_pressed(belief: &Belief) -> bool {
     belief.nearest_opponent(belief.pose.position).is_some_and(|(_, distance)| distance < PRESSED_WITHIN)
 }
@@ -100,7 +102,7 @@ struct Fan {
     step: f32,
     /// The rays' directions, of length 1.
     along: [Vector<Field>; RAYS],
-    /// How dense kicks are so many rays off the one they are aimed along; 1 for none.
+    /// Probability density of a kick by the number of rays off its aim; 1 for none.
     density: [f32; RAYS],
     /// To the goal's centre, m.
     distance: f32,
@@ -133,7 +135,7 @@ impl Fan {
         self.right + Angle::new(self.step * index as f32)
     }
 
-    /// The rays along which a ball kicked that far passes everybody.
+    /// The rays along which a ball kicked that far passes every opponent.
     fn free_rays(&self, belief: &Belief, length: f32) -> [bool; RAYS] {
         let mut free = [true; RAYS];
         let rolling = RollingBall { deceleration: belief.league().ball().rolling_deceleration };
@@ -251,7 +253,7 @@ mod tests {
 
     #[test]
     fn without_a_gap_it_waits_turned_to_the_far_post_and_under_pressure_takes_what_there_is() {
-        // The goalie is still on its way across: near post open by a little.
+        // The goalkeeper is still crossing: near post open by a little.
         let waiting = belief(1.4, 0.6, &[(2.05, 0.33)]);
         let Some(Intent::Turn { heading }) = attempt(&waiting, GoalEnd::Positive, true) else {
             panic!("waits")

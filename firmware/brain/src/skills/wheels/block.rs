@@ -1,7 +1,8 @@
 //! Block: stand on a stretch where the ball would cross it, and stop a ball that comes.
 //!
-//! A ball that comes: where `motion::intercept` finds the most slack on its way, but never behind the stretch. A ball that
-//! does not: on the line from it to the own goal, or along where its holder looks. The keeper's stretch lies before its goal.
+//! A ball that approaches: at the point of most slack on its path, by `motion::intercept`, but never behind
+//! the stretch. Otherwise: on the line from the ball to the own goal, or along the heading of its holder. The
+//! keeper's stretch lies before its goal.
 
 use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
@@ -37,7 +38,7 @@ fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
     crossing(way, stretch, BESIDE)
 }
 
-/// The place with the most time to spare on the ball's way to `crossing`.
+/// The point with the most slack on the ball's path to `crossing`.
 fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     let path = BallModel::default().rolling(ball.position, ball.velocity);
     let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY).min(LOOKS_AHEAD);
@@ -51,7 +52,8 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     };
     match question.find(&LIMITS, Wish::Safest) {
         Verdict::Meets(meeting) if meeting.slack() > 0.0 => meeting.place,
-        // Too late for rest there: go where it crosses, as fast as possible; a body in the way will do.
+        // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
+        // enough.
         _ => crossing,
     }
 }
@@ -59,7 +61,7 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
 /// Where a ball that does not come would cross the stretch.
 fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
-    // Who takes a penalty tells by where it lines up: there is no time to wait for the ball.
+    // The kicker of a penalty reveals its aim by where it lines up: there is no time to wait for the ball.
     let penalty = belief.game.phase == Phase::Penalty(Side::Theirs);
     let looks_at_it =
         |pose: Pose<Field>| (pose.position.direction_to(ball.position) - pose.heading).abs() < LOOKS_AT;
@@ -95,7 +97,7 @@ const COMING: f32 = 0.3;
 const BESIDE: f32 = 0.18;
 /// An opponent this near the ball has it, m.
 const HOLDS: f32 = 0.15;
-/// The taker of a penalty this near the ball lines up for its shot, m; and looks at it within this, rad.
+/// The kicker of a penalty this near the ball lines up for its shot, m; and faces it within this, rad.
 const LINES_UP: f32 = 0.6;
 const LOOKS_AT: f32 = 0.3;
 /// A point far along a line, m.

@@ -1,7 +1,7 @@
 //! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked as it is touched.
 //!
-//! In a restart the taker may touch the ball once: it goes in only when everything points right, kicker armed and dribbler
-//! still, so that the first touch is the kick.
+//! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
+//! armed and dribbler still, so that the first touch is the kick.
 
 use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
@@ -66,8 +66,9 @@ pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     let slack = 1.0 + LOOSENS * (belief.held() - AIMS_FOR).max(0.0);
     let still = belief.angular.abs() < STILL_TURNING * slack && sideways(belief) < STILL_SIDEWAYS * slack;
     let armed = off < tolerance(me.distance(at)) * slack && still;
-    // Armed for as long as it points right, though the light barrier may flicker: the kicker acts when the ball is there. The light
-    // barrier sees farther than kicker and roller reach: a ball that stays where it is has not come so near.
+    // Armed for as long as it points right, though the break-beam signal may flicker: the kicker acts when
+    // the ball is there. The beam reaches farther than kicker and roller: a ball that stays where it is has
+    // not come near enough.
     let to = if armed { me + Vector::polar(GOES_ON, belief.pose.heading) } else { me };
     Drive { kick, armed, ..Drive::holding(to, face) }.into()
 }
@@ -89,14 +90,14 @@ fn sideways(belief: &Belief) -> f32 {
 
 /// A slower ball lies, m/s.
 const LIES: f32 = 0.25;
-/// From a ball to the centre of who lines up behind it, m (`get_ball`); and two bodies side by side.
+/// From a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 0.18;
 /// How fast a robot goes in for a kick, m/s.
 const GO_IN: f32 = 0.35;
 /// This near the ball it must look right before it goes on, m.
 const CLOSE: f32 = 0.02;
-/// Between front and ball while it waits to be told, m.
+/// Between front and ball while the robot waits for the order to kick, m.
 const WAIT_OFF: f32 = 0.04;
 /// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that is missed rolls 2.4 m
 /// farther (v²/0.7), one of 2 nearly 6 m and off the field.
@@ -109,11 +110,12 @@ const AIM_WIDTH: f32 = 0.06;
 const AIM_BEST: f32 = 0.015;
 /// No worse than 3°, rad.
 const AIM_WORST: f32 = 0.05;
-/// So long a robot with the ball aims as well as it can, s: half a turn with the ball takes 1.2 s.
+/// Time for which a robot with the ball aims with full precision, s: half a turn with the ball takes 1.2 s.
 const AIMS_FOR: f32 = 1.4;
-/// Then everything that an aim must be within grows by so much of itself a second: 0.3 to 0.5 rad after another 1.3 s (estimate).
+/// Then every tolerance of the aim grows by this share of itself per second: 0.3 to 0.5 rad after another 1.3
+/// s (estimate).
 const LOOSENS: f32 = 7.0;
-/// With the kicker armed it goes on by so much, m: what a light barrier sees beyond a kicker's reach.
+/// With the kicker armed it goes on by this distance, m: the reach of the break beam beyond the kicker's.
 const GOES_ON: f32 = 0.03;
 /// A robot that turns no faster than this kicks where it looks, rad/s.
 const STILL_TURNING: f32 = 0.6;

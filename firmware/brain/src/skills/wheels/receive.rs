@@ -1,7 +1,8 @@
-//! Receive: be on the line of a passed ball, face it, give way as it comes; or send it on at first touch.
+//! Receive: be on the line of a passed ball, face it, retreat as it comes; or redirect it at first touch.
 //!
-//! One touch: the kicker adds its speed along the heading, what the ball has across the heading it keeps in part. The heading
-//! between where the ball comes from and where it goes is found by three corrections. Beyond 60° it is taken instead.
+//! One touch: the kicker adds its speed along the heading, the ball keeps part of its speed across the
+//! heading. The heading between where the ball comes from and where it goes is found by three corrections.
+//! Beyond 60° it is taken instead.
 
 use geometry::{Angle, Field, Point, Segment, Vector};
 use protocol::robot_io::OmniKick;
@@ -30,12 +31,12 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
                 Step::Done => Intent::Stand { face: None },
             };
         }
-        // Its mouth waits where the ball shall come.
+        // Its dribbler opening waits where the ball shall come.
         let face = at.direction_to(ball.position);
         return Drive::shy(at - Vector::polar(BALL_AT, face), face).into();
     }
     let line = Segment::new(ball.position, ball.rest);
-    // Where it was told, or where the line passes that.
+    // The ordered place, or where the line passes it.
     let meets = line.closest_to(at);
     let way = ball.velocity.unit().unwrap_or_default();
     if let Some(then) = then
@@ -63,7 +64,7 @@ pub fn take_pass(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }
 }
 
-/// It rolls this way: past `at` or this robot within a metre.
+/// Whether the ball comes towards the robot: past `at` or this robot within a metre.
 fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
     let me = belief.pose.position;
     let towards = ball.velocity.dot(at - ball.position) > 0.0 || ball.velocity.dot(me - ball.position) > 0.0;
@@ -98,7 +99,7 @@ fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> 
     Some(face)
 }
 
-/// A slower ball rests, m/s.
+/// A slower ball is stationary, m/s.
 const RESTS: f32 = 0.15;
 /// A faster one comes, m/s.
 const COMING: f32 = 0.4;

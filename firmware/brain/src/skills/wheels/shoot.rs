@@ -1,6 +1,7 @@
 //! Shoot: at the widest gap between the posts. Clear: away from the own goal, to the freer side.
 //!
-//! A gap's worth is how far every opponent stays from the ball's way, less how far it can move until the ball passes. SI, field frame.
+//! A gap's value is how far every opponent stays from the ball's path, less how far it can move until the
+//! ball passes. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment};
 use motion::ball::BallModel;
@@ -47,12 +48,13 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     });
     let [left, right] = ahead;
     let (at, _) = if left.1 >= right.1 { left } else { right };
-    // It comes to rest there: what rolls on leaves the field, and is theirs.
+    // It stops there: a ball that rolls on leaves the field, and is theirs.
     let speed = BallModel::default().kick_speed(me.distance(at), RESTS).min(CLEARS_WITH);
     kick_held(belief, at, OmniKick::Flat(speed))
 }
 
-/// What opponents leave free beside a ball's way, m; what no one can reach counts as [`ROOM_ENOUGH`].
+/// Distance that opponents leave free beside a ball's path, m; what no opponent can reach counts as
+/// [`ROOM_ENOUGH`].
 fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
     let way = Segment::new(from, to);
     let mut room = ROOM_ENOUGH;
@@ -80,7 +82,7 @@ const SHOOTS_FROM: f32 = 4.0;
 const CLEARS_AHEAD: f32 = 2.5;
 /// And with no more than this, m/s: it stays in the field.
 const CLEARS_WITH: f32 = 4.0;
-/// As good as at rest, m/s.
+/// As good as stationary, m/s.
 const RESTS: f32 = 0.2;
 /// From the goal line, m.
 const INSIDE: f32 = 1.2;
