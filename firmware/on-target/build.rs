@@ -15,12 +15,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-search={}", out.display());
     println!("cargo:rustc-link-arg-tests=--nmagic");
     println!("cargo:rustc-link-arg-tests=-Tlink.x");
-    // Keeps the list of tests in the image.
+    // Keeps the list of tests in the ELF file.
     println!("cargo:rustc-link-arg-tests=-Tembedded-test.x");
     Ok(())
 }
 
-/// All of the board's first two memories: tests may be larger than a robot's image.
+/// All of the board's first two memories: tests may be larger than a robot's firmware.
 const MEMORY: &str = "MEMORY
 {
   FLASH : ORIGIN = 0x00000000, LENGTH = 4M

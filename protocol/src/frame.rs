@@ -34,7 +34,7 @@ pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;
 /// The longest payload, in a frame with one tag.
 pub const PAYLOAD_LEN_MAX: usize = FRAME_LEN_MAX - OVERHEAD;
 
-/// Who speaks on a team's air.
+/// Sender of a frame in a team's radio network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sender {
     /// A robot of the team; 0–15 on the wire.
@@ -128,7 +128,7 @@ impl FromIterator<RobotId> for Audience {
 pub struct Frame<'a> {
     /// Whose air this is.
     pub team: TeamId,
-    /// Who speaks.
+    /// The sender.
     pub sender: Sender,
     /// For whom it is sealed, where for several: a short tag each. Only the host's frames have one.
     pub audience: Option<Audience>,
@@ -220,7 +220,7 @@ impl core::fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// Who a frame claims to be from, by its header alone; nothing is checked.
+/// The sender that a frame claims to be from, by its header alone; nothing is checked.
 pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
     match *bytes.get(SENDER_AT)? {
         HOST_TO_SEVERAL => Some(Sender::Host),
@@ -274,7 +274,7 @@ impl<'a> Frame<'a> {
             Some(_) => None,
         };
         let kept = if self.audience.is_none() { u64::MAX } else { SHORT_TAG_BITS };
-        // One comparison of the whole tag: the time must not say how many bytes were right.
+        // One comparison of the whole tag: the time must not reveal the number of matching bytes.
         seen.is_some_and(|seen| (seen ^ key.tag(covered)) & kept == 0)
     }
 
@@ -348,7 +348,7 @@ pub struct Sessions {
 }
 
 impl Sessions {
-    /// Would this frame be news? To be asked before the tag is computed.
+    /// Refuses a frame that is not newer than the last. Called before the tag is computed.
     pub fn check(&self, frame: &Frame<'_>) -> Result<(), Refusal> {
         match self.last[frame.sender.index()] {
             Some((current, _)) if frame.epoch < current => Err(Refusal::Epoch { seen: frame.epoch, current }),
@@ -359,12 +359,12 @@ impl Sessions {
         }
     }
 
-    /// The sender's current epoch, if it was heard.
+    /// The sender's current epoch, if it was received.
     pub fn epoch(&self, sender: Sender) -> Option<u32> {
         self.last[sender.index()].map(|(epoch, _)| epoch)
     }
 
-    /// The sender's last counter, if it was heard.
+    /// The sender's last counter, if it was received.
     pub fn counter(&self, sender: Sender) -> Option<u32> {
         self.last[sender.index()].map(|(_, counter)| counter)
     }

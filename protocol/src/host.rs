@@ -1,11 +1,12 @@
 //! `host`: the host's messages to its robots and their telemetry (docs/architecture.md §3.3, §6.1).
 //! Millimetres, milliradians, field frame.
 //!
-//! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), what to do goes to each robot by itself
-//! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
-//! moment of arrival: the host's tracking has carried them forward by the radio's latency, so no clocks need to agree.
-//! Everything is repeated with every snapshot; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
-//! believes a host it must have had its [`Welcome`]: a recording of an earlier boot epoch cannot command it.
+//! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), the directive goes to each
+//! robot by itself ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet
+//! that was lost. All places hold at the moment of arrival: the host's tracking has carried them forward by
+//! the radio's latency, so no clocks need to agree. Everything is repeated with every snapshot; nothing is
+//! sent once. Robots answer with their [`Telemetry`]. Before a robot believes a host it must have had its
+//! [`Welcome`]: a recording of an earlier boot epoch cannot command it.
 
 mod read;
 
@@ -32,7 +33,7 @@ pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 /// A message of the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum HostMessage {
-    /// To all: a part of the picture.
+    /// To all: a part of the snapshot.
     World(WorldPart),
     /// To one robot: what to do.
     Command(Command),
@@ -41,8 +42,8 @@ pub enum HostMessage {
 }
 
 impl HostMessage {
-    /// Whether the numbers in it can be: a part of a picture is one of its parts, and there are no more than
-    /// [`PARTS_MAX`].
+    /// Whether the numbers in it are valid: the index of a part is less than the number of parts, which is
+    /// [`PARTS_MAX`] at most.
     pub fn is_sound(&self) -> bool {
         match self {
             Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
@@ -61,7 +62,8 @@ impl HostMessage {
     }
 }
 
-/// Proof that this host lives now: it has heard the robot in its present boot epoch. And how its clock stands to the robot's.
+/// Proof that this host is live: it has received the robot in its present boot epoch. Also the offset of its
+/// clock to the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
     /// Who is meant.
@@ -75,16 +77,16 @@ pub struct Welcome {
     pub offset: u32,
 }
 
-/// A part of the picture of the field.
+/// A part of the snapshot of the field.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorldPart {
-    /// Which picture; parts of one picture carry one number, the next picture the next (wrapping).
+    /// Number of the snapshot; parts of one snapshot carry one number, the next snapshot the next (wrapping).
     pub picture: u8,
     /// Which part of it, from 0.
     pub part: u8,
     /// How many parts it has.
     pub parts: u8,
-    /// The phase of the game, in our words.
+    /// The phase of the game, from our side.
     pub phase: Phase<Side>,
     /// Where the ball is to be placed; only while that matters.
     pub placement: Option<WirePoint>,
@@ -95,10 +97,12 @@ pub struct WorldPart {
 }
 
 impl WorldPart {
-    /// How many robots fit into a part for so many addressees: six up to six of them, three for all sixteen.
+    /// Number of robots that fit into a part for `addressees` addressees: six up to six of them, three for
+    /// all sixteen.
     pub const fn robots_max(addressees: usize, placement: bool) -> usize {
         let tags = AUDIENCE_LEN + SHORT_TAG_LEN * addressees;
-        // Variant, picture, part, parts, the longer phase, two options, the ball, a length; then four bytes of placement.
+        // Variant, snapshot, part, parts, the longer phase, two options, the ball, a length; then four bytes
+        // of placement.
         let head = 1 + 3 + 2 + 1 + 11 + 1 + if placement { 4 } else { 0 };
         let fit = FRAME_LEN_MAX.saturating_sub(HEADER_LEN + tags + head) / WIRE_ROBOT_LEN;
         if fit < PART_ROBOTS_MAX { fit } else { PART_ROBOTS_MAX }
@@ -171,7 +175,7 @@ pub struct Command {
     pub to: RobotId,
     /// The goal we defend: teams change ends at half-time.
     pub defending: GoalEnd,
-    /// The phase of the game, in our words.
+    /// The phase of the game, from our side.
     pub phase: Phase<Side>,
     /// What it is now, besides a field player.
     pub duty: Duty,
@@ -179,12 +183,14 @@ pub struct Command {
     pub directive: Directive,
 }
 
-/// What to do, as the host's strategy wants it. The robot's skills do it, within what phase, duty and governor allow.
+/// The directive of the host's strategy. The robot's skills carry it out, within the limits of phase, role
+/// and governor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Directive {
     /// Brake and stand.
     Stand,
-    /// Be at this place with this heading, around everything; away from the ball too unless the taker.
+    /// Be at this place with this heading, around all obstacles; away from the ball too unless the kicker of
+    /// a restart.
     GoTo {
         /// Where and how.
         pose: WirePose,
@@ -201,9 +207,9 @@ pub enum Directive {
         /// How.
         kick: KickOrder,
     },
-    /// Pass to a mate, who will have the ball at `at`; waits, facing it, until told to be `ready`.
+    /// Pass to a teammate, who will have the ball at `at`; waits, facing it, until ordered to be `ready`.
     Pass {
-        /// The meeting point.
+        /// The interception point.
         at: WirePoint,
         /// To whom.
         receiver: RobotId,
@@ -214,7 +220,7 @@ pub enum Directive {
     },
     /// Have a passed ball at this place.
     Receive {
-        /// The meeting point.
+        /// The interception point.
         at: WirePoint,
         /// Shoot or pass it on at this point at first touch; nothing: take it.
         then: Option<WirePoint>,
@@ -231,12 +237,12 @@ pub enum Directive {
         /// The other end.
         to: WirePoint,
     },
-    /// Bring the ball to this place and leave it there, at rest.
+    /// Bring the ball to this place and leave it there, stationary.
     PlaceBall {
         /// The designated position.
         at: WirePoint,
     },
-    /// Choose a case with the mates under this directive, and play it.
+    /// Choose a case with the teammates under this directive, and play it.
     Gameplay {
         /// The host's proposal.
         hint: Option<Hint>,
@@ -263,7 +269,7 @@ pub struct Hint {
     pub pass_point: Option<WirePoint>,
 }
 
-/// What a robot tells the host of itself.
+/// A robot's report about itself to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Telemetry {
     /// Bits, see [`Condition`].
@@ -271,16 +277,16 @@ pub struct Telemetry {
     /// Battery, cV (1/100 V); 0 where it is not measured.
     #[serde(with = "postcard::fixint::le")]
     pub battery: u16,
-    /// Parts of the host's pictures that came in this life, wrapping.
+    /// Number of parts of the host's snapshots received in this boot epoch, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub heard: u16,
-    /// Parts that never came, by the pictures' numbers, wrapping.
+    /// Number of parts never received, by the snapshots' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
     /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; the robot's own frames, given back, are not counted.
     #[serde(with = "counts")]
     pub refused: [u16; Refusal::KINDS],
-    /// The newest picture a part of which came; means nothing before the first.
+    /// The newest snapshot of which a part was received; meaningless before the first.
     pub picture: u8,
     /// How long ago the last frame of the host came, 0.1 ms, saturating.
     #[serde(with = "postcard::fixint::le")]

@@ -8,16 +8,16 @@
 //! age = own clock now + offset − counter of the frame
 //! ```
 //!
-//! is never less than the true age, whatever delayed or withheld either frame: it is the way up and the way down together. The
-//! smallest offset counts. It grows by 1/1024 of the time since it was learned, more than two clocks drift apart (crystals
-//! 100 ppm, a slewed system clock 500 ppm).
+//! is never less than the true age, whatever delayed or withheld either frame: it is the sum of both
+//! latencies, up and down. The smallest offset counts. It grows by 1/1024 of the time since it was learned,
+//! more than two clocks drift apart (crystals 100 ppm, a slewed system clock 500 ppm).
 
 use crate::{Duration, Instant};
 
 /// The host's frames are refused beyond this age: then the host is silent.
 pub const AGE_MAX: Duration = Duration::millis(200);
-/// The host's counters may run ahead of its clock by this many ticks (20 ms): it sends at most 40 frames at once. A frame that is
-/// further ahead shows that the robot's clock stood still.
+/// The host's counters may run ahead of its clock by this many ticks (20 ms): it sends at most 40 frames at
+/// once. A frame that is further ahead proves that the robot's clock stood still.
 const AHEAD_MAX: u32 = 312;
 
 /// A clock's reading in ticks, wrapping.
@@ -37,7 +37,7 @@ pub struct HostClock {
     learned: u32,
 }
 
-/// What a frame's counter says of its age.
+/// Age of a frame by its counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
     /// At most so old.
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn the_age_is_the_way_up_and_down_whatever_the_clocks_show() {
-        // The host's clock is 7 s ahead; 20 ms up, 30 ms down. Both clocks wrap on the way.
+        // The host's clock is 7 s ahead; 20 ms up, 30 ms down. Both clocks wrap in between.
         for start in [0, 3_600_000, 274_877_900 - 50, 274_877_900 - 7_000] {
             let host = |at: u64| ticks(ms(start + at + 7_000));
             let robot = |at: u64| ms(start + at);

@@ -5,7 +5,7 @@ use core::fmt;
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
-/// A robot of one team, 0–15; fixed for its life (paper §4.1: "each robot has a unique fixed Id").
+/// A robot of one team, 0–15; fixed permanently (paper §4.1: "each robot has a unique fixed Id").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct RobotId(u8);
@@ -125,7 +125,7 @@ impl fmt::Display for CaseId {
 }
 
 /// One retrieve–reuse cycle of a team. Totally ordered: the counter first, then the proposer, so that two
-/// proposals made at once still have one winner, and whatever carries an older id is known to be stale.
+/// proposals made at once still have one winner, and a message with an older id is known to be stale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct CycleId {
     /// Rises with every proposal.

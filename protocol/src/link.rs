@@ -1,10 +1,12 @@
 //! `link`: a robot's end of the radio: seals its messages, opens what it receives, counts what it refuses;
 //! [`crate::host_link`] is the other.
 //!
-//! A robot hears its teammates and its host, and believes neither before they have answered its present boot epoch: the host with a
-//! [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
-//! and again when a host or teammate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s. The host's
-//! frames are refused as [`Refusal::Stale`] when they are older than [`AGE_MAX`](crate::host_clock::AGE_MAX).
+//! A robot receives its teammates and its host, and trusts neither before they have answered its present boot
+//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`] (handshake). A
+//! recording cannot, because it was made before the robot's epoch was known. Until then, and again when a
+//! host or teammate with a newer epoch sends, its frames are refused as [`Refusal::Stranger`]
+//! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than
+//! [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
 use crate::acquaintance::Acquaintances;
 use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
@@ -17,19 +19,19 @@ use crate::{Duration, Instant, RobotId, TeamId};
 /// A packet of the air: one whole frame.
 pub type Packet = FrameBytes;
 
-/// What a robot heard.
+/// An accepted frame.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// A teammate says this.
+    /// A message of a teammate.
     Mate(RobotId, TeamMessage),
-    /// The host says this, at most [`Link::age`] ago.
+    /// A message of the host, sent at most [`Link::age`] ago.
     Host(HostMessage),
-    /// It is for another receiver: not opened, whatever it says changes nothing here.
+    /// It is for another receiver: not opened, without any effect here.
     Elsewhere,
 }
 
-/// One robot's end of the radio: seals what it says, opens what it hears, counts what it refuses.
+/// One robot's end of the radio: seals its messages, opens received frames, counts what it refuses.
 #[derive(Clone, Debug)]
 pub struct Link {
     team: TeamId,
@@ -75,20 +77,20 @@ impl Link {
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
-        // Of its own body it speaks to the host alone, and no teammate can say it in its name.
+        // Telemetry about its own body goes to the host alone, and no teammate can send it in its name.
         let key =
             if matches!(message, TeamMessage::Telemetry(_)) { &self.keys.host } else { &self.keys.team };
         let (team, epoch, counter) = (self.team, self.epoch, self.counter);
         packet(&Frame { team, sender, audience: None, epoch, counter, payload }, key)
     }
 
-    /// The packet that greets mates who do not know yet that we live now, if there are any and it is time.
+    /// The handshake for teammates that do not yet know our present boot epoch, if one is due.
     pub fn poll_greeting(&mut self, now: Instant) -> Option<Packet> {
         let greeting = self.acquaintances.poll(now)?;
         Some(self.seal(&TeamMessage::Greeting(greeting)))
     }
 
-    /// Who says what, or why the packet is not believed (counted).
+    /// The sender and its message, or why the packet is refused (counted).
     pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
@@ -112,7 +114,7 @@ impl Link {
         &self.refused
     }
 
-    /// What came of the host's pictures, and what did not.
+    /// Counters of received and lost parts of the host's snapshots.
     pub fn pictures(&self) -> &Pictures {
         &self.pictures
     }
@@ -125,7 +127,7 @@ impl Link {
         telemetry.lost = self.pictures.lost as u16;
         telemetry.picture = self.pictures.newest().unwrap_or(0);
         telemetry.refused = self.refused.map(|count| count.min(u32::from(u16::MAX)) as u16);
-        // A base station that sends to all gives a robot its own words back; that is no sign of trouble.
+        // A base station that sends to all echoes a robot's own messages; that is no sign of an attack.
         let sender = &mut telemetry.refused[Refusal::Sender(0).kind()];
         *sender = sender.saturating_sub(self.echoes.min(u32::from(u16::MAX)) as u16);
     }
@@ -141,7 +143,7 @@ impl Link {
         Ok(frame)
     }
 
-    /// Whether a frame is for this robot, as it says itself; its tag has not been looked at.
+    /// Whether a frame is addressed to this robot; its tag is not checked.
     #[inline]
     fn is_for_me(&self, frame: &Frame<'_>) -> bool {
         match (frame.sender, frame.audience) {
@@ -209,18 +211,19 @@ impl Link {
     }
 }
 
-/// Which parts of the host's pictures came? Every robot is sent every part, so what is missing was lost.
+/// Counters of the host's snapshots. Every robot is sent every part, so a missing part was lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pictures {
-    /// Parts that came in this life.
+    /// Parts received in this boot epoch.
     pub heard: u32,
-    /// Parts that never came: of pictures that are over, or whole pictures between two that came (as many parts as the
-    /// later one). 256 pictures missed in a row cannot be told from none; who counts on it looks at the silence too.
+    /// Parts never received: of snapshots that are over, or whole snapshots between two received ones (as
+    /// many parts as the later one). 256 snapshots missed in a row cannot be distinguished from none; a
+    /// caller that relies on it must check the silence too.
     pub lost: u32,
     now: Option<Now>,
 }
 
-/// The picture that is coming in.
+/// The snapshot being received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Now {
     number: u8,
@@ -232,7 +235,7 @@ struct Now {
 const _: () = assert!(PARTS_MAX <= u8::BITS as usize, "a bit for each part");
 
 impl Pictures {
-    /// The newest picture a part of which came.
+    /// The newest snapshot of which a part was received.
     pub fn newest(&self) -> Option<u8> {
         self.now.map(|now| now.number)
     }

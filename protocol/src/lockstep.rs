@@ -1,18 +1,18 @@
 //! `lockstep`: lockstep between simulator and robot computer. One question, one answer, a tick at a time
 //! (docs/architecture.md §7.2).
 //!
-//! The simulator sends [`ToRobot::Setup`] once per life and then a [`ToRobot::Tick`] per brain step; the computer
-//! answers each with one [`FromRobot`]. Time moves only by ticks: timers due by `now` run before the tick's packets,
-//! packets in order, then the sensors. Over Ethernet each message is `length u16 LE | postcard` behind the 14-byte
-//! header with [`ETHERTYPE`].
+//! The simulator sends [`ToRobot::Setup`] once per boot epoch and then a [`ToRobot::Tick`] per brain step;
+//! the computer answers each with one [`FromRobot`]. Time moves only by ticks: timers due by `now` run before
+//! the tick's packets, packets in order, then the sensors. Over Ethernet each message is `length u16 LE |
+//! postcard` behind the 14-byte header with [`ETHERTYPE`].
 
 use serde::{Deserialize, Serialize};
 
 use crate::Instant;
 use crate::robot_io::{ActuatorFrame, SensorFrame};
 
-/// Packets of the air handed to a robot in one tick; the simulator keeps the rest for the next. Eleven robots' world in
-/// four parts, a command, a welcome and a beacon of each of ten mates.
+/// Radio packets handed to a robot in one tick; the simulator keeps further ones for the next. Eleven robots'
+/// world in four parts, a command, a welcome and a beacon of each of ten teammates.
 pub const AIR_IN_MAX: usize = 16;
 /// Bytes of packets handed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it stays within
 /// [`MESSAGE_LEN_MAX`].
@@ -28,7 +28,8 @@ pub const ETHERTYPE: u16 = 0x88b5;
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToRobot<'a> {
-    /// Start a new life with this configuration (postcard of the brain's own type; this crate does not look inside).
+    /// Start a new boot epoch with this configuration (postcard of the brain's own type; this crate does not
+    /// look inside).
     Setup {
         /// The brain's configuration.
         config: &'a [u8],
@@ -71,14 +72,14 @@ pub enum FromRobot<'a> {
 pub struct TickOut<'a> {
     /// The tick answered.
     pub seq: u32,
-    /// What the body shall do; `None` when nothing new was said.
+    /// The actuator orders; `None` without new ones.
     pub actuators: Option<ActuatorFrame>,
     /// Packets to send, in order.
     #[serde(borrow)]
     pub air: heapless::Vec<&'a [u8], AIR_OUT_MAX>,
     /// Guest instructions the tick took, where they can be counted; else 0.
     pub instructions: u32,
-    /// Bytes of its stack that were ever used, as last looked at; 0 where nobody looks.
+    /// Bytes of its stack that were ever used, as measured last; 0 where it is not measured.
     pub stack: u32,
 }
 

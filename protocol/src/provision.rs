@@ -1,10 +1,11 @@
 //! `provision`: a robot's identity and its keys, a page of the flash written by `onetwo firmware provision`
-//! (docs/architecture.md §6.1, docs/case-format.md §5): 64 bytes that are not part of the image.
+//! (docs/architecture.md §6.1, docs/case-format.md §5): 64 bytes that are not part of the firmware.
 //!
-//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, the rest 0xff. The keys are this
-//! robot's own ([`crate::key`]), never the team's secret. The check is SipHash-2-4 of the 40 bytes before it under the host key: a
-//! page that was written halfway, or is empty flash, is none. A robot without a page, or with keys that are public, is not
-//! commanded by any host ([`read`]).
+//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, padded
+//! with 0xff. The keys are this robot's own ([`crate::key`]), never the team's secret. The check is
+//! SipHash-2-4 of the 40 bytes before it under the host key: a page that was written halfway, or is empty
+//! flash, is none. A robot without a page, or with keys that are public, is not commanded by any host
+//! ([`read`]).
 
 use core::fmt;
 
@@ -13,7 +14,7 @@ use rules::League;
 use crate::key::{Key, RobotKeys};
 use crate::{RobotId, TeamId};
 
-/// Bytes of a page; the rest of a flash sector stays empty.
+/// Bytes of a page; the remainder of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
 /// Of those, the ones that mean something.
 const USED: usize = CHECKED + 8;
@@ -35,7 +36,7 @@ pub struct Provision {
     pub keys: RobotKeys,
 }
 
-/// Why there is no telling who a robot is.
+/// Why a robot's identity cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvisionError {
     /// Nothing was ever written, or something else.
@@ -82,7 +83,7 @@ pub fn page(who: &Provision) -> [u8; PAGE_LEN] {
     page
 }
 
-/// Reads a page. Public keys are refused unless `open` says that this is an image for trying things out.
+/// Reads a page. Public keys are refused unless `open` marks a firmware for trials.
 pub fn read(page: &[u8], open: bool) -> Result<Provision, ProvisionError> {
     let used: &[u8; USED] = page.first_chunk().ok_or(ProvisionError::Empty)?;
     let [m0, m1, m2, m3, version, robot, team, league, rest @ ..] = *used;

@@ -1,5 +1,5 @@
 //! `robot_io`: interface between body and brain (docs/architecture.md §3.2). SI units, field frame where not
-//! said otherwise.
+//! stated otherwise.
 //!
 //! Noise enters the system here and nowhere else: the simulator (or a real camera) fills a [`SensorFrame`], and that
 //! is all a robot knows of the world besides its teammates' beacons.
@@ -21,9 +21,9 @@ pub struct SensorFrame {
     pub ball: Option<BallSight>,
     /// Opponents seen, in no meaningful order.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
-    /// The ball is in the robot's grip: between the legs, or on the dribbler.
+    /// The robot holds the ball: between the legs, or on the dribbler.
     pub ball_contact: bool,
-    /// A grab or kick is under way; the body takes no other until it ends.
+    /// A grab or kick is running; the body takes no other until it ends.
     pub busy: bool,
     /// How it moves by its own measure (joints, or wheels and gyroscope), in its own frame.
     pub odometry: Twist<Body>,
@@ -49,7 +49,7 @@ pub struct BallSight {
     pub position: Point<Field>,
     /// Standard deviation of that, m.
     pub sigma: f32,
-    /// How old the picture is.
+    /// Age of the sensor frame.
     pub age: Duration,
 }
 
@@ -60,7 +60,7 @@ pub enum ActuatorFrame {
     Legged {
         /// Wanted velocity in the body frame, m/s and rad/s; the body does what it can.
         walk: Twist<Body>,
-        /// A primitive to begin, unless one is under way.
+        /// A primitive to start, unless one is running.
         primitive: LeggedPrimitive,
     },
     /// A robot on omnidirectional wheels.
@@ -72,8 +72,8 @@ pub enum ActuatorFrame {
         /// What the kicker shall do.
         kick: OmniKick,
     },
-    /// A robot on wheels that stands and that nobody commands: no current in the motors, dribbler off, kicker discharged
-    /// (docs/architecture.md §6.1).
+    /// A robot on wheels that stands without a command: no current in the motors, dribbler off, kicker
+    /// discharged (docs/architecture.md §6.1).
     Released,
 }
 
@@ -112,6 +112,6 @@ pub enum OmniKick {
     Flat(f32),
     /// Through the air, ball speed in m/s.
     Chip(f32),
-    /// Let the charge go without touching a ball: what a robot that nobody commands does.
+    /// Discharge without touching a ball: the order of a robot without a command.
     Discharge,
 }

@@ -1,7 +1,7 @@
 //! `serial`: framing on a serial line. At the next zero byte: frames travel COBS-stuffed, a zero after each
 //! (docs/architecture.md §6.1).
 //!
-//! COBS finds the next frame after any garbage and nothing more; whether the bytes are right, the frame's tag tells.
+//! COBS finds the next frame after any garbage and nothing more; the frame's tag verifies the bytes.
 
 use cobs::{DecodeResult, DecoderState};
 
@@ -43,7 +43,7 @@ impl Default for Lines {
 }
 
 impl Lines {
-    /// A line of which nothing was heard yet.
+    /// A line on which nothing was received yet.
     pub fn new() -> Self {
         Self::default()
     }
@@ -57,7 +57,7 @@ impl Lines {
             }
             Ok(DecodeResult::NoData) => return None,
             Ok(DecodeResult::DataComplete) => !self.overlong,
-            // A zero in the middle of a frame: the next one begins behind it.
+            // A zero in the middle of a frame: the next one starts behind it.
             Err(_) => false,
         };
         self.overlong = false;

@@ -1,11 +1,11 @@
-//! `team`: messages between robots. Their whole state, again and again (docs/architecture.md §5.1; paper
-//! §4.1).
+//! `team`: messages between robots: their whole state, repeatedly (docs/architecture.md §5.1; paper §4.1).
 //!
-//! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
-//! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is
-//! a value that only grows ([`CycleState::is_newer_than`]), so that packets may be lost, doubled and reordered, and
-//! any robot may pass on what the coordinator said. [`Telemetry`] is for the host; mates leave it. A [`Greeting`] is what makes
-//! mates believe each other after a boot ([`crate::acquaintance`]).
+//! Teammates need one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot
+//! knows it, and the robot's own progress. Nothing is sent once: a lost packet only delays. What a robot
+//! knows of the cycle is a value that only grows ([`CycleState::is_newer_than`]), so that packets may be
+//! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] is
+//! for the host; teammates ignore it. A [`Greeting`] is the handshake by which teammates trust each other
+//! after a boot ([`crate::acquaintance`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -26,28 +26,30 @@ pub enum TeamMessage {
     Beacon(Beacon),
     /// To the host: how the sender's body and link are.
     Telemetry(Telemetry),
-    /// To mates that do not know yet that the sender lives now.
+    /// Handshake to teammates that do not know yet that the sender is live.
     Greeting(Greeting),
 }
 
 impl TeamMessage {
-    /// Whether a payload that is one of these is meant for the host alone, as its first byte tells: the variant's number.
+    /// Whether a payload that is one of these is meant for the host alone, by its first byte: the variant's
+    /// number.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
         matches!(*payload, [1, ..])
     }
 }
 
-/// Mates' lives that the sender has heard: who is named in its present life knows that this is no recording.
+/// Handshake: teammates' boot epochs that the sender has received. A robot that finds its present epoch named
+/// knows that this is no recording.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Greeting {
-    /// Who, in which life.
+    /// Teammates and their boot epochs.
     pub mates: heapless::Vec<Greeted, GREETED_MAX>,
 }
 
-/// Mates in one greeting: as many as its frame holds.
+/// Teammates in one handshake: as many as its frame holds.
 pub const GREETED_MAX: usize = 7;
 
-/// A mate that is greeted.
+/// A teammate named in a handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Greeted {
     /// Who.
@@ -59,10 +61,10 @@ pub struct Greeted {
     pub bond: Bond,
 }
 
-/// How far two mates are with each other, as one of them knows.
+/// State of the handshake between two teammates, as one of them knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Bond {
-    /// The greeter has heard the other, and does not believe it yet.
+    /// The sender has received the other, and does not trust it yet.
     Heard,
     /// It believes the other.
     Believed,
@@ -137,8 +139,8 @@ pub struct CycleState {
 }
 
 impl CycleState {
-    /// Whether this is more than `known`: a later cycle, or more of the same one. A total order, so that robots who
-    /// hear the same things in any order end up knowing the same.
+    /// Whether this is more than `known`: a later cycle, or more of the same one. A total order, so that
+    /// robots that receive the same messages in any order end up knowing the same.
     pub fn is_newer_than(&self, known: Option<&Self>) -> bool {
         known.is_none_or(|known| self > known)
     }
@@ -155,7 +157,7 @@ impl CycleState {
 /// What the coordinator made of its cycle.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Decision {
-    /// It has not said yet.
+    /// The coordinator has not announced its decision yet.
     Undecided,
     /// No case fits: default behaviour.
     NoCase,
@@ -165,7 +167,7 @@ pub enum Decision {
     Closed(Closure),
 }
 
-/// A retrieved case and who plays it.
+/// A retrieved case and the robots that play it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Play {
     /// The stored case.
@@ -187,11 +189,11 @@ impl Play {
 /// How a cycle ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Closure {
-    /// Everybody involved reported the end of their actions.
+    /// Every robot involved reported the end of its actions.
     Finished,
     /// There was no case; time to try again.
     NoCase,
-    /// Somebody involved stopped it.
+    /// A robot involved stopped it.
     Aborted {
         /// Who.
         by: RobotId,
@@ -207,13 +209,13 @@ pub enum AbortReason {
     BallOutOfScope,
     /// Before the first touch: an opponent stands in the ball's path.
     PathBlocked,
-    /// A robot involved, or the coordinator, is gone or has started anew.
+    /// A robot involved, or the coordinator, is gone or has restarted.
     RobotLost,
     /// The holder lost the ball, or an action failed.
     ActionFailed,
     /// After the first touch: an opponent is on the ball.
     OpponentOnBall,
-    /// After the first touch: the ball came to rest where no one of the case expects it.
+    /// After the first touch: the ball stopped where no robot of the case expects it.
     BallAtRest,
     /// It took longer than 1.5 × the expected duration + 2 s.
     Timeout,
@@ -229,7 +231,7 @@ pub enum Progress {
     /// Not bound by a case.
     #[default]
     Idle,
-    /// On the way to its adapted position.
+    /// Walking to its adapted position.
     Adapt {
         /// It is there.
         arrived: bool,

@@ -1,11 +1,11 @@
-//! `time`: instants and durations. Whatever the caller says: microseconds since the robot's start. Nothing
-//! here reads a clock.
+//! `time`: instants and durations, given by the caller: microseconds since the robot's start. Nothing here
+//! reads a clock.
 
 use core::ops::{Add, AddAssign, Mul, Sub};
 
 use serde::{Deserialize, Serialize};
 
-/// A moment, µs since the start of the clock of whoever speaks.
+/// A moment, µs since the start of the sender's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Instant(pub u64);
@@ -35,7 +35,7 @@ impl Duration {
 
     /// In seconds.
     pub fn as_secs_f32(self) -> f32 {
-        // The first hour in one instruction of a robot's processor; the same number either way.
+        // The first hour in one instruction of a robot's processor; the same number in both branches.
         let micros = u32::try_from(self.0).map_or_else(|_| self.0 as f32, |micros| micros as f32);
         micros * 1e-6
     }

@@ -12,7 +12,8 @@ use std::time::Duration;
 
 use crate::process::{in_path, output_of, run_within};
 
-/// Unpacks `rust-src` of this very release into the user's cache; gives the folder that holds `library/`.
+/// Unpacks `rust-src` of this very release into the user's cache; returns the directory that holds
+/// `library/`.
 pub(crate) fn rust_sources(release: &str) -> Result<PathBuf, String> {
     let cache = cache_folder()?.join(format!("rust-src-{release}"));
     let sources = cache.join(format!("usr/src/rustc-{release}"));
@@ -34,7 +35,7 @@ pub(crate) fn rust_sources(release: &str) -> Result<PathBuf, String> {
             format!("Dir::Cache={}", cache.join("cache").display()),
             format!("Dir::Etc::SourceList={}", list.display()),
             "Dir::Etc::SourceParts=/dev/null".into(),
-            // The download's own user could not read a private folder.
+            // The download's own user could not read a private directory.
             "APT::Sandbox::User=root".into(),
         ] {
             command.args(["-o", &option]);
@@ -120,7 +121,7 @@ fn is_root() -> bool {
 }
 
 const APT: &str = "/etc/apt";
-/// Who signs Debian's archives, as the package `debian-archive-keyring` installs it.
+/// Keys that sign Debian's archives, as the package `debian-archive-keyring` installs them.
 const KEYRING: &str = "/usr/share/keyrings/debian-archive-keyring.gpg";
 /// Keeps several releases of the compiler's sources side by side.
 const SUITE: &str = "trixie-backports";

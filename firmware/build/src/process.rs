@@ -21,7 +21,7 @@ pub(crate) fn output_of(command: &mut Command) -> Result<String, String> {
     }
 }
 
-/// Runs the command with its words on our stderr; kills it after `limit`, for a download may hang.
+/// Runs the command with its output on our stderr; kills it after `limit`, because a download may hang.
 pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), String> {
     let line = line_of(command);
     eprintln!("firmware: {line}");

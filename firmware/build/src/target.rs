@@ -1,8 +1,8 @@
 //! `target`: compiler detection for the robot's processor.
 //!
-//! rustup's target where it is, or can be fetched. Where it cannot, `core` is compiled from its sources of the same
-//! release; last comes the distribution's own compiler. Each way that fails leaves its reason, and all reasons
-//! together are the error.
+//! rustup's target where it is, or can be fetched. Where it cannot, `core` is compiled from its sources of
+//! the same release; last comes the distribution's own compiler. Each method that fails leaves its reason,
+//! and all reasons together are the error.
 
 use std::env;
 use std::fmt;
@@ -14,7 +14,7 @@ use std::time::Duration;
 use crate::process::{in_path, output_of, run_within};
 use crate::{Install, TARGET, debian};
 
-/// Finds a way to build for [`TARGET`], fetching what is missing as far as `install` allows.
+/// Finds a compiler for [`TARGET`], fetching what is missing as far as `install` allows.
 pub fn ensure_target(root: &Path, install: Install) -> Result<ThumbToolchain, TargetError> {
     let compiler = Compiler::of(root).map_err(|why| TargetError::NoCompiler { why })?;
     let mut attempts = Vec::new();
@@ -42,8 +42,8 @@ pub enum ThumbToolchain {
 }
 
 impl ThumbToolchain {
-    /// `cargo`, in the workspace, with what this way needs; add a verb, packages and a profile, then run it. Every build
-    /// for the target has to start here: other flags would compile all of it again.
+    /// `cargo`, in the workspace, with what this toolchain needs; add a verb, packages and a profile, then
+    /// run it. Every build for the target has to start here: other flags would compile all of it again.
     pub fn cargo(&self, root: &Path, verb: &str) -> Command {
         let mut command = match self {
             Self::Prebuilt | Self::FromSources => Command::new(cargo_program()),
@@ -51,7 +51,7 @@ impl ThumbToolchain {
         };
         command.current_dir(root).arg(verb).args(["--target", TARGET]);
         if *self != Self::Prebuilt {
-            // Building `core` is called unstable, so the stable compiler has to be told that we mean it.
+            // Building `core` is an unstable feature, which the stable compiler must be allowed to use.
             command.env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core,alloc");
         }
         if let Self::Distribution { linker } = self {
@@ -74,10 +74,10 @@ impl fmt::Display for ThumbToolchain {
     }
 }
 
-/// One way that was tried, and why it led nowhere.
+/// One method that was tried, and why it failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attempt {
-    /// The way.
+    /// The method.
     pub way: &'static str,
     /// Why not.
     pub why: String,
@@ -88,10 +88,10 @@ pub struct Attempt {
 pub enum TargetError {
     /// There is no Rust compiler at all.
     NoCompiler {
-        /// What was said when we asked for it.
+        /// Output of the attempt.
         why: String,
     },
-    /// Every way was tried.
+    /// Every method failed.
     NoWay {
         /// In the order they were tried.
         attempts: Vec<Attempt>,
@@ -238,7 +238,7 @@ fn distribution(compiler: &Compiler, install: Install) -> Result<ThumbToolchain,
 
 /// What the distribution's compiler consists of, sources of its `core` included.
 const DISTRIBUTION: [&str; 3] = ["/usr/bin/rustc", "/usr/bin/cargo", "/usr/lib/rustlib/src/rust/library"];
-/// The target is 10 MB; a server that is silent for so long will stay so.
+/// The target is 10 MB; a server that is silent for this time is given up.
 const RUSTUP: Duration = Duration::from_mins(2);
 
 #[cfg(test)]

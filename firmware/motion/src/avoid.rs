@@ -268,7 +268,7 @@ pub const OBSTACLES_MAX: usize = 38;
 pub const CHECKS_MAX: u32 = 12;
 /// More is never worth it: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
-/// The same of a long search, for a way out or while there is time: around a goal and into its opening it
+/// The same of a long search, for a route out or while there is time: around a goal and into its opening it
 /// takes more.
 pub const CHECKS_LONG: u32 = 24;
 /// A control step is no longer, s.

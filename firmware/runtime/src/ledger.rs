@@ -6,7 +6,7 @@
 //! until the new cell is written the old half still holds every epoch needed. A cell that was only partly
 //! written when the power went is skipped.
 //!
-//! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, the rest 0xff.
+//! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, padded with 0xff.
 
 /// Bytes of a cell: what an STM32H7 writes into its flash at once.
 pub const CELL_LEN: usize = 32;

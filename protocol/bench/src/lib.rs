@@ -1,6 +1,6 @@
-//! `radio-bench`: what the radio is measured on, one robot's end of it: each kind of message sealed and opened, shortest and longest, and
-//! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
-//! which drives it.
+//! `radio-bench`: tasks of the radio benchmark, one robot's end of it: each kind of message sealed and
+//! opened, shortest and longest, and frames refused. The same frames in the bench's firmware (`radio-bench`
+//! of the QEMU board) and in `cargo xtask bench radio`, which drives it.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -23,19 +23,19 @@ pub const ROUNDS: usize = 20;
 /// One thing a robot's radio does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// Says what a robot says that has just booted.
+    /// Seals the first message after a boot.
     SealShort,
     /// The longest beacon.
     SealLong,
     /// Telemetry.
     SealTelemetry,
-    /// Hears the shortest command.
+    /// Opens the shortest command.
     OpenCommand,
     /// The longest one.
     OpenLongCommand,
-    /// A mate's short beacon.
+    /// Opens a teammate's short beacon.
     OpenShort,
-    /// A mate's longest beacon.
+    /// Opens a teammate's longest beacon.
     OpenLong,
     /// A part of the world with one robot in it.
     OpenSmallWorld,
@@ -45,7 +45,7 @@ pub enum Work {
     Skip,
     /// A frame that came before.
     RefuseReplay,
-    /// A forged frame of a mate, as long as its longest.
+    /// Refuses a forged frame of a teammate, as long as its longest.
     RefuseForged,
 }
 
@@ -90,7 +90,7 @@ impl Work {
     }
 }
 
-/// A robot, its mate and its host, who have heard each other.
+/// A robot, its teammate and its host, after their handshakes.
 pub struct Bench {
     robot: Link,
     mate: Link,
@@ -118,7 +118,8 @@ impl Bench {
         bench.host.set_audience(Audience(0b11_1111));
         let welcome = HostMessage::Welcome(Welcome { to: id(2), life: 9, offset: 0 });
         let _welcomed = bench.robot.open(NOW, &bench.host.seal(NOW, &welcome));
-        // The mate hears a first frame and greets; whom it has greeted believes it.
+        // The teammate receives a first frame and sends a handshake; the receiver of a handshake trusts its
+        // sender.
         let first = bench.robot.seal(&short());
         let _heard = bench.mate.open(NOW, &first);
         if let Some(greeting) = bench.mate.poll_greeting(Instant(0)) {
@@ -176,7 +177,7 @@ impl Task<'_> {
     }
 }
 
-/// Whatever time it is.
+/// An arbitrary time.
 const NOW: Instant = Instant(12_345_678);
 
 fn id(number: u8) -> RobotId {

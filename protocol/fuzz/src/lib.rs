@@ -1,8 +1,8 @@
 //! `fuzz`: fuzz targets of every reader of external bytes. The targets of `cargo fuzz`, and of the seeded
 //! loop that CI runs.
 //!
-//! A target panics where a reader does, where something without the key is believed, or where a message changes on its way out and
-//! in again.
+//! A target panics where a reader does, where something without the key is accepted, or where a message
+//! changes in an encoding round trip.
 #![forbid(unsafe_code)]
 
 use std::fmt::Debug;
@@ -20,7 +20,7 @@ use serde::de::DeserializeOwned;
 use ssl::log::{MessageKind, Packet, guess};
 use ssl::stream::FrameReader;
 
-/// A target: its name, which is its corpus' folder too, and what it does.
+/// A target: its name, which is its corpus' directory too, and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All of them.
@@ -109,7 +109,7 @@ pub fn league(bytes: &[u8]) {
     }
 }
 
-/// If the bytes begin with a message, it is the same after going out and in again.
+/// If the bytes start with a message, it is the same after encoding and decoding.
 fn same_again<T>(bytes: &[u8]) -> Option<T>
 where
     T: Serialize + DeserializeOwned + PartialEq + Debug,

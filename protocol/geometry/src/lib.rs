@@ -1,6 +1,6 @@
 //! `geometry`: frames, axes and units (docs/architecture.md §2.1).
 //!
-//! | frame | origin | axes | who thinks in it |
+//! | frame | origin | axes | used by |
 //! |---|---|---|---|
 //! | [`Field`] | centre of the field | +x along the length, +y to the left of +x | cases, robots, wire, simulator |
 //! | [`Attack`] | centre of the field | +x towards the goal we attack | the host's strategy only |

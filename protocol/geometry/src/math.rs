@@ -1,9 +1,9 @@
 //! `math`: elementary functions with equal bits on PC and Cortex-M (docs/architecture.md §2.4).
 //!
-//! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and cosine are
-//! single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer); the rest is libm,
-//! rounding is micromath's (exact). Never call `f32`'s own methods of these names in shared code: on the host they
-//! are the C library's, whose bits differ.
+//! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and
+//! cosine are single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer);
+//! all other functions are libm's, rounding is micromath's (exact). Never call `f32`'s own methods of these
+//! names in shared code: on the host they are the C library's, whose bits differ.
 
 pub use core::f32::consts::{FRAC_PI_2, PI, TAU};
 

@@ -5,7 +5,7 @@ use crate::{Point, Vector};
 /// The straight stretch from `from` to `to`, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<F> {
-    /// Where it begins.
+    /// Its start.
     pub from: Point<F>,
     /// Where it ends.
     pub to: Point<F>,

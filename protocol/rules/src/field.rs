@@ -18,9 +18,9 @@ pub struct FieldSpec {
     pub length: f32,
     /// From touch line to touch line.
     pub width: f32,
-    /// Carpet beyond the touch lines, up to the wall.
+    /// Field surface beyond the touch lines, up to the wall.
     pub margin: f32,
-    /// Carpet beyond the goal lines, up to the wall.
+    /// Field surface beyond the goal lines, up to the wall.
     pub goal_line_margin: f32,
     /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is none.
     pub goal_substitution: f32,
@@ -28,7 +28,7 @@ pub struct FieldSpec {
     pub goal_width: f32,
     /// From the goal line to the goal's back.
     pub goal_depth: f32,
-    /// From the carpet to the goal's upper edge.
+    /// From the field surface to the goal's upper edge.
     pub goal_height: f32,
     /// Thickness of the goal's walls.
     pub goal_wall: f32,
@@ -79,7 +79,7 @@ impl core::error::Error for FieldFault {}
 
 /// Shortest and longest field that is believed, m: a table top, and twice division A's length.
 const LENGTH: [f32; 2] = [1.0, 24.0];
-/// The widest margin that is believed, m: more than any hall leaves around a field.
+/// The widest margin that is accepted, m: more than any venue leaves around a field.
 const MARGIN_MAX: f32 = 3.0;
 /// The deepest goal and the thickest line that are believed, m.
 const GOAL_DEPTH_MAX: f32 = 1.0;
@@ -124,12 +124,12 @@ impl FieldSpec {
         goal.sign() as f32 * self.length * 0.5
     }
 
-    /// Middle of the goal mouth at that end.
+    /// Middle of the goal opening at that end.
     pub fn goal_center(&self, goal: GoalEnd) -> Point<Field> {
         Point::new(self.goal_line(goal), 0.0)
     }
 
-    /// The goal mouth at that end, from its post at −y to its post at +y.
+    /// The goal opening at that end, from its post at −y to its post at +y.
     pub fn goal_mouth(&self, goal: GoalEnd) -> Segment<Field> {
         let (x, y) = (self.goal_line(goal), self.goal_width * 0.5);
         Segment::new(Point::new(x, -y), Point::new(x, y))
@@ -140,7 +140,7 @@ impl FieldSpec {
         p.x().abs() <= self.length * 0.5 && p.y().abs() <= self.width * 0.5
     }
 
-    /// All the carpet within the walls.
+    /// The whole field surface within the walls.
     pub fn carpet(&self) -> Shape<Field> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
@@ -249,7 +249,8 @@ mod tests {
 
     #[test]
     fn a_robot_behind_its_own_goal_line_does_not_count_where_the_area_takes_all_of_it() {
-        // The game controller's own numbers: 6 + 0.6 − 0.3 + 0.09 = 6.39 m, up to the wall at 6.6 m, across all of the carpet.
+        // The game controller's own numbers: 6 + 0.6 − 0.3 + 0.09 = 6.39 m, up to the wall at 6.6 m, across
+        // the whole field surface.
         let field = League::DivisionA.field();
         for (x, counts) in [(6.385, true), (6.395, false), (6.595, false), (6.605, true)] {
             assert_eq!(field.counts(GoalEnd::Positive, Point::new(x, 4.75)), counts, "{x}");
@@ -257,7 +258,8 @@ mod tests {
             assert!(field.counts(GoalEnd::Negative, Point::new(x, 0.0)), "behind their goal it counts");
         }
         assert!(field.counts(GoalEnd::Positive, Point::new(6.45, 4.85)), "beyond the wall");
-        // Division B has no such area by the rules; where vision tells of one all the same, the controller goes by that.
+        // Division B has no such area by the rules; where vision reports one all the same, the controller
+        // uses it.
         let field = League::DivisionB.field();
         assert!(field.counts(GoalEnd::Positive, Point::new(4.65, 1.5)));
         let field = FieldSpec { goal_substitution: 0.3, ..field };

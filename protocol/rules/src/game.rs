@@ -51,14 +51,14 @@ pub enum Duty {
     Taker,
 }
 
-/// A node of the league's state graph; `Who` is [`Colour`] for those who look from outside and [`Side`] for a team.
+/// A node of the league's state graph; `Who` is [`Colour`] for an outside observer and [`Side`] for a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Phase<Who> {
-    /// Nobody moves.
+    /// No robot moves.
     Halt,
-    /// Slow, away from the ball, nobody touches it.
+    /// Slow, away from the ball, no robot touches it.
     Stop,
-    /// A team has taken a time-out: as halt, but people may work on robots.
+    /// A team has taken a time-out: as halt, but team members may work on robots.
     Timeout(Who),
     /// This team brings the ball to the designated position.
     BallPlacement(Who),
@@ -77,14 +77,14 @@ pub enum Phase<Who> {
 }
 
 impl Phase<Colour> {
-    /// The same phase in the words of the team of that colour.
+    /// The same phase from the side of the team of that colour.
     pub fn seen_by(self, us: Colour) -> Phase<Side> {
         self.map(|colour| if colour == us { Side::Ours } else { Side::Theirs })
     }
 }
 
 impl<Who> Phase<Who> {
-    /// The same phase with the team named in another way.
+    /// The same phase with the team named by another type.
     pub fn map<Other>(self, name: impl FnOnce(Who) -> Other) -> Phase<Other> {
         match self {
             Self::Halt => Phase::Halt,

@@ -1,8 +1,9 @@
 //! `keep_out`: the rules of 2026 as shapes: forbidden regions, speed limits and touch bans for a robot.
 //!
-//! Robots' skills, host and referee ask here, so that there is one truth. Shapes are for the robot's *body*: who plans for its
-//! centre grows them by its radius, and by what it takes for its own noise ([`KeepOut::offence`] does the former).
-//! Lines belong to the areas they bound. Field frame, m. Nothing here remembers: double touches, graces and counts are the caller's.
+//! Robots' skills, host and referee call these functions, so that there is one definition. Shapes are for the
+//! robot's *body*: a planner for its centre grows them by its radius, and by its own noise
+//! ([`KeepOut::offence`] does the former). Lines belong to the areas they bound. Field frame, m. No state is
+//! kept here: double touches, grace times and counts are the caller's.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape};
 use heapless::Vec;
@@ -31,7 +32,8 @@ pub struct Situation<'a> {
     pub ball: Option<Point<Field>>,
     /// Where the ball is to be placed; only asked in ball placement.
     pub placement: Option<Point<Field>>,
-    /// Whether the ball has left its place since NORMAL_START; only asked of a penalty's keeper, who then may move.
+    /// Whether the ball has left its place since NORMAL_START; only used for a penalty's keeper, who then may
+    /// move.
     pub ball_in_play: bool,
 }
 
@@ -56,15 +58,17 @@ pub enum Why {
     KeeperLine,
     /// Within 0.5 m of the line from ball to target while opponents place.
     Stadium,
-    /// Within 0.5 m of the target while a mate places: a force start may follow, and it would not count as placed.
+    /// Within 0.5 m of the target while a teammate places: a force start may follow, and it would not count
+    /// as placed.
     Target,
-    /// Beyond the carpet.
+    /// Beyond the field surface.
     Border,
 }
 
 impl Why {
-    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because nothing good can be
-    /// done there: in the opponents' area the ball may not be touched, at the target mates are in the way.
+    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because
+    /// being there is useless: in the opponents' area the ball may not be touched, at the target teammates
+    /// are on the path.
     pub const fn offends(self, phase: Phase<Side>) -> bool {
         match self {
             Self::Target | Self::Border => false,
@@ -88,7 +92,7 @@ pub struct Forbidden {
 pub struct KeepOut {
     /// No part of the body in any of these.
     pub forbidden: Vec<Forbidden, FORBIDDEN_MAX>,
-    /// The whole body in here: the carpet within the walls.
+    /// The whole body must be in here: the field surface within the walls.
     pub within: Shape<Field>,
 }
 
@@ -170,7 +174,7 @@ pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
 pub enum Touch {
     /// It may.
     Allowed,
-    /// The phase lets nobody, not its team, or only its team's taker (or keeper).
+    /// The phase allows no robot, not its team, or only its team's kicker (or keeper).
     NotNow,
     /// It is at least partly in the opponents' defence area.
     InOpponentArea,
@@ -178,8 +182,7 @@ pub enum Touch {
     InOwnArea,
 }
 
-/// Whether a robot with its centre here may touch the ball now. That a taker must not touch it twice is for the caller to
-/// remember.
+/// Whether a robot with its centre here may touch the ball now. The caller keeps track of double touches.
 pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     let may = match s.phase {
         Phase::Run => true,
@@ -234,7 +237,7 @@ impl List {
         }
     }
 
-    /// All the carpet from x = `from` to the wall behind this goal.
+    /// The whole field surface from x = `from` to the wall behind this goal.
     fn half_plane(&mut self, s: &Situation, why: Why, from: f32, towards: GoalEnd) {
         let wall = s.field.goal_line(towards) + towards.sign() as f32 * s.field.goal_line_margin;
         let y = s.field.width * 0.5 + s.field.margin;
@@ -242,8 +245,8 @@ impl List {
         self.add(why, Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) });
     }
 
-    /// The kicker may be in the whole circle, of whose far half a box cannot tell; what is left open is the largest
-    /// upright square in it.
+    /// The kicker may be in the whole circle, whose far half a box cannot describe; the largest upright
+    /// square in it is left open.
     fn kicker(&mut self, s: &Situation) {
         let side = s.field.center_radius * core::f32::consts::FRAC_1_SQRT_2;
         let other = s.own.opposite();
@@ -268,7 +271,7 @@ impl List {
             let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });
             self.add_some(Why::BallTouch, on);
         } else {
-            // A ball that lies elsewhere is not yet where the kick is taken from: people carry it there.
+            // A ball that lies elsewhere is not yet where the kick is taken from: it is placed there by hand.
             let mark = s.field.penalty_spot(attacked);
             let ball = s.ball.filter(|ball| ball.distance(mark) < NEAR_MARK).unwrap_or(mark);
             let from = ball.x() - attacked.sign() as f32 * PENALTY_BEHIND;

@@ -1,8 +1,8 @@
 //! `league`: the leagues: field, robots and ball.
 //!
-//! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; carpet 6 × 4 m
-//! as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their fields; goals 0.3 m high and
-//! the penalty mark are estimates that nothing depends on.
+//! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; field
+//! surface 6 × 4 m as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their
+//! fields; goals 0.3 m high and the penalty mark are estimates that nothing depends on.
 //!
 //! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those that the league's programs carried for the single-size
 //! field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75 m, 0.25 m of margin within
@@ -45,7 +45,7 @@ pub struct BallSpec {
 }
 
 impl League {
-    /// The name used in folders, files and options.
+    /// The name used in directories, files and options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::FourLegged => "four-legged",
@@ -138,8 +138,9 @@ impl League {
         }
     }
 
-    /// Its ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls on carpet, rounded up;
-    /// radius: the league's orange ball of about 85 mm across, from memory, no source found.
+    /// Its ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls on the
+    /// field surface, rounded up; radius: the league's orange ball of about 85 mm across, from memory, no
+    /// source found.
     pub const fn ball(self) -> BallSpec {
         match self {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },

@@ -57,7 +57,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     let (x, y) = (field.length * 0.5, field.width * 0.5);
     let from = if field.contains(before) { before } else { field.clamp(now, 0.0) };
     let (dx, dy) = (now.x() - from.x(), now.y() - from.y());
-    // Share of the way at which the centre crosses a line's centre; only the lines that it goes beyond count.
+    // Share of the path at which the centre crosses a line's centre; only the lines that it goes beyond
+    // count.
     let share = |start: f32, way: f32, end: f32, limit: f32| {
         let crossed = end.abs() > limit && way != 0.0;
         crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / way).clamp(0.0, 1.0))
@@ -161,7 +162,7 @@ pub fn too_close_to_area(field: &FieldSpec, opponents: GoalEnd, robot: Point<Fie
     field.distance_to_area(opponents, robot) - edge - ROBOT_RADIUS < OPPONENT_AREA_DISTANCE
 }
 
-/// In the way of the opponents' placement: within 0.5 m of the line from the ball to its target.
+/// Interferes with the opponents' placement: within 0.5 m of the line from the ball to its target.
 pub fn interferes(robot: Point<Field>, ball: Point<Field>, target: Point<Field>) -> bool {
     Segment::new(ball, target).distance_to(robot) - ROBOT_RADIUS < BALL_DISTANCE
 }
@@ -176,12 +177,13 @@ pub fn kicked_too_fast(limits: &Limits, speed: f32) -> bool {
     speed > limits.ball_speed
 }
 
-/// The ball was dribbled too far from where the contact began.
+/// The ball was dribbled too far from where the contact started.
 pub fn dribbled_too_far(limits: &Limits, from: Point<Field>, ball: Point<Field>) -> bool {
     from.distance(ball) > limits.dribble
 }
 
-/// The taker touches the ball a second time: nobody else has touched it since, and it had moved 0.05 m from its place.
+/// The kicker touches the ball a second time: no other robot has touched it since, and it had moved 0.05 m
+/// from its place.
 pub fn double_touch(place: Point<Field>, ball: Point<Field>, touched_by_other: bool) -> bool {
     !touched_by_other && place.distance(ball) >= IN_PLAY_DISTANCE
 }

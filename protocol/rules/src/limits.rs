@@ -82,7 +82,7 @@ pub const SUBSTITUTION_TIME: f32 = 20.0;
 pub const SUBSTITUTION_REACH: f32 = 1.0;
 /// A robot changes only this far from the ball, m (substitution).
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
-/// Division A's goal substitution area begins this far behind the own goal line, m (substitution).
+/// Division A's goal substitution area starts this far behind the own goal line, m (substitution).
 pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
 /// The radius that the rules take every robot to have, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
@@ -106,9 +106,10 @@ pub const ROBOTS_MAX: usize = 11;
 pub struct Limits {
     /// Robots of a team, keeper included (robots).
     pub robots: u32,
-    /// Nobody kicks faster than this, m/s, in three dimensions (offenses, ball speed).
+    /// No robot may kick faster than this, m/s, in three dimensions (offenses, ball speed).
     pub ball_speed: f32,
-    /// Nobody dribbles farther than this, m, straight from the first contact (offenses, excessive dribbling).
+    /// No robot may dribble farther than this, m, straight from the first contact (offenses, excessive
+    /// dribbling).
     pub dribble: f32,
     /// A free kick is in play after this, s (referee commands, ball in and out of play).
     pub free_kick_time: f32,
@@ -148,10 +149,11 @@ impl League {
     pub const fn limits(self) -> Option<Limits> {
         match self {
             Self::FourLegged => None,
-            // Biswas et al. 2014: shots at 8 m/s (§1), dribbling at most 0.5 m (§3), free kicks within 10 s and defenders 0.5 m away
-            // (§4). From defence areas 0.2 m, as the league's programs of 2013 and 2014 carried it. What neither tells
-            // (lines, goal kick, keeper, no progress) is division B's; on a field of 4 m the goal kick moves to half a metre,
-            // so that it stays out of reach of the area.
+            // Biswas et al. 2014: shots at 8 m/s (§1), dribbling at most 0.5 m (§3), free kicks within 10 s
+            // and defenders 0.5 m away (§4). From defence areas 0.2 m, as the league's programs of 2013 and
+            // 2014 carried it. What neither states (lines, goal kick, keeper, no progress) is division B's;
+            // on a field of 4 m the goal kick moves to half a metre, so that it stays out of reach of the
+            // area.
             Self::Ssl2013 => Some(Limits {
                 ball_speed: 8.0,
                 dribble: 0.5,

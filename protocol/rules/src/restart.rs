@@ -103,7 +103,8 @@ fn pushed_out(
     spots.into_iter()
 }
 
-/// On each side of the rectangle `inside` the lines, and each way from the point next to `from`: the first valid place.
+/// On each side of the rectangle `inside` the lines, and in each direction from the point next to `from`: the
+/// first valid place.
 fn border_spots(
     field: &FieldSpec,
     inside: f32,
@@ -134,7 +135,7 @@ fn border_spots(
 /// How play goes on after the ball has left the field without a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AfterOut {
-    /// Which restart; each is a free kick for who did not touch the ball last.
+    /// Kind of restart; each is a free kick for the team that did not touch the ball last.
     pub kind: OutKind,
     /// Where.
     pub spot: Point<Field>,
@@ -145,16 +146,16 @@ pub struct AfterOut {
 pub enum OutKind {
     /// Over a touch line.
     ThrowIn,
-    /// Over the goal line of those who did not touch it last.
+    /// Over the goal line of the team that did not touch it last.
     GoalKick,
-    /// Over the goal line of those who touched it last.
+    /// Over the goal line of the team that touched it last.
     Corner,
     /// Over the other goal line from the own half, without another touch (division B).
     AimlessKick,
 }
 
-/// Where play goes on after the ball crossed a line; `own` is the goal that those who touched it last defend, `kicked_from` the
-/// place of that touch, `from_kickoff` whether it was the kick-off itself.
+/// Where play continues after the ball crossed a line; `own` is the goal of the team that touched it last,
+/// `kicked_from` the place of that touch, `from_kickoff` whether it was the kick-off itself.
 pub fn after_out(
     field: &FieldSpec,
     limits: &Limits,
@@ -238,7 +239,7 @@ pub fn placement_lack(
     nearest.filter(|near| *near < next.clearance()).map(PlacementLack::Robot)
 }
 
-/// Whether the ball lies well enough that nobody needs to place it.
+/// Whether the ball lies well enough that no placement is needed.
 pub fn placement_needless(field: &FieldSpec, ball: Point<Field>, speed: f32, target: Point<Field>) -> bool {
     let areas = [GoalEnd::Negative, GoalEnd::Positive].map(|goal| field.distance_to_area(goal, ball));
     ball.distance(target) < PLACEMENT_SKIP_DISTANCE
@@ -247,12 +248,14 @@ pub fn placement_needless(field: &FieldSpec, ball: Point<Field>, speed: f32, tar
         && speed <= BALL_STILL
 }
 
-/// Lawful places for a team's kick-off: the keeper in its goal, then the robot nearest to the ball (the kicker, behind it, if the
-/// kick-off is ours), then the others behind it, the nearest to the ball first.
+/// Rule-compliant places for a team's kick-off: the keeper in its goal, then the robot nearest to the ball
+/// (the kicker, behind it, if the kick-off is ours), then the others behind it, the nearest to the ball
+/// first.
 pub fn kickoff_places(field: &FieldSpec, own: GoalEnd, ours: bool) -> Vec<Point<Field>, ROBOTS_MAX> {
     let back = own.sign() as f32;
     let (half, side) = (field.length * 0.5, field.width * 0.5);
-    // Shares of the way from the centre to the own goal line, and of the way to the touch line; nobody in the circle or the area.
+    // Shares of the distance from the centre to the own goal line, and of that to the touch line; no robot in
+    // the circle or the area.
     const SHARES: [(f32, f32); ROBOTS_MAX - 2] = [
         (0.15, 0.5),
         (0.15, -0.5),

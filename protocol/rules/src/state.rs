@@ -1,15 +1,18 @@
 //! `state`: state machine of the referee's commands. The league's state graph as a value (rules 2026,
 //! appendix "game states").
 //!
-//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both say what came of it. Times are µs of
-//! one clock, the caller's. Three things are decided here, because the rules leave them open:
+//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both return the
+//! resulting change. Times are µs of one clock, the caller's. Three points that the rules leave open are
+//! decided here:
 //!
-//! - **The newest command counts.** The referee repeats its current command many times a second, so a command that does not
-//!   follow from the one before means that some were missed; it is followed and said ([`Heard::OffGraph`]).
-//! - **Nobody starts off a standstill by surprise.** People may be on the field in HALT and time-outs, which STOP alone
-//!   ends. Any other command is read as STOP for [`GRACE`] first ([`Heard::AsStop`]). NORMAL_START with nothing
-//!   prepared (somebody joins in the middle of a game) is read as STOP until the longest kick-off or penalty is
-//!   over, counted from when the command was given: then the ball is in play, whatever it was.
+//! - **The newest command counts.** The referee repeats its current command many times a second, so a command
+//!   that does not follow from the one before means that some were missed; it is followed and reported
+//!   ([`Heard::OffGraph`]).
+//! - **No robot starts from a standstill without warning.** Team members may be on the field in HALT and
+//!   time-outs, which STOP alone ends. Any other command is read as STOP for [`GRACE`] first
+//!   ([`Heard::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
+//!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
+//!   then the ball is in play in either case.
 //! - **The same command again is no new command**, though its counter rises (operators and automatic continuation issue
 //!   some twice). It only restarts the clock of a restart that is not yet in play. A free kick that comes again after the
 //!   ball was in play is a new one: a ball that rolls is back in play at once, and one that lies may not be approached.
@@ -22,7 +25,7 @@ use crate::{Colour, Limits, Phase};
 /// A command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// Nobody moves.
+    /// No robot moves.
     Halt,
     /// Slow, away from the ball.
     Stop,
@@ -127,7 +130,7 @@ impl Stage {
         )
     }
 
-    /// Whether teams rest and people may do as they like.
+    /// Whether teams pause and team members may enter the field.
     pub const fn is_break(self) -> bool {
         matches!(
             self,
@@ -176,18 +179,18 @@ pub enum Ticked {
     Released,
 }
 
-/// Where a game stands, as its commands, clock and ball tell.
+/// State of a game, derived from its commands, clock and ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GameState {
     phase: Phase<Colour>,
     command: Option<Command>,
-    /// When the phase began, µs.
+    /// When the phase started, µs.
     since: u64,
-    /// Where the ball lay when the restart began.
+    /// Where the ball lay when the restart started.
     ball_at: Option<Point<Field>>,
     penalty_in_play: bool,
     later: Option<(Phase<Colour>, u64)>,
-    /// Nobody starts off before, µs: a standstill was left without a STOP.
+    /// No robot starts before, µs: a standstill was left without a STOP.
     still_until: u64,
 }
 
@@ -198,7 +201,7 @@ impl Default for GameState {
 }
 
 impl GameState {
-    /// Nothing heard yet: nobody moves.
+    /// Nothing received yet: no robot moves.
     pub const fn new() -> Self {
         let phase = Phase::Halt;
         let (ball_at, later) = (None, None);
@@ -210,12 +213,12 @@ impl GameState {
         self.phase
     }
 
-    /// The newest command; none: nothing heard yet.
+    /// The newest command; none: nothing received yet.
     pub const fn command(&self) -> Option<Command> {
         self.command
     }
 
-    /// When this phase began or its clock was restarted, µs.
+    /// When this phase started or its clock was restarted, µs.
     pub const fn since(&self) -> u64 {
         self.since
     }

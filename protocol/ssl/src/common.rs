@@ -79,7 +79,7 @@ pub struct Duration {
     /// Whole seconds.
     #[prost(int64, optional, tag = "1")]
     pub seconds: Option<i64>,
-    /// The rest, ns, of the same sign.
+    /// Remaining nanoseconds, of the same sign.
     #[prost(int32, optional, tag = "2")]
     pub nanos: Option<i32>,
 }

@@ -1,7 +1,7 @@
 //! `referee`: referee packets. One [`Referee`] a datagram from the game controller, to 224.5.23.1:10003,
 //! about 38 a second.
 //!
-//! Units: all times in µs; `designated_position` in **mm**; what game events tell in **m**; field frame.
+//! Units: all times in µs; `designated_position` in **mm**; positions in game events in **m**; field frame.
 
 use prost::{Enumeration, Message};
 
@@ -49,7 +49,7 @@ pub struct Referee {
     /// What was decided since the last command that let the ball move.
     #[prost(message, repeated, tag = "16")]
     pub game_events: Vec<GameEvent>,
-    /// What automatic referees proposed and nobody decided yet.
+    /// Events that automatic referees proposed and that are not decided yet.
     #[prost(message, repeated, tag = "17")]
     pub game_event_proposals: Vec<GameEventProposalGroup>,
     /// Which program sends, the same through a session.
@@ -58,7 +58,7 @@ pub struct Referee {
     /// What kind of match, [`MatchType`].
     #[prost(enumeration = "MatchType", optional, tag = "19")]
     pub match_type: Option<i32>,
-    /// What the controller waits for, in words.
+    /// What the controller waits for, as text.
     #[prost(string, optional, tag = "20")]
     pub status_message: Option<String>,
 }
@@ -96,7 +96,7 @@ pub struct TeamInfo {
     /// Failed placements in a row.
     #[prost(uint32, optional, tag = "10")]
     pub ball_placement_failures: Option<u32>,
-    /// Can the team place the ball?
+    /// Whether the team can place the ball.
     #[prost(bool, optional, tag = "12")]
     pub can_place_ball: Option<bool>,
     /// Robots it may have on the field now.
@@ -139,7 +139,7 @@ pub struct GameEventProposalGroup {
     /// Each one's account.
     #[prost(message, repeated, tag = "1")]
     pub game_events: Vec<GameEvent>,
-    /// Was it accepted? Absent while open.
+    /// Whether it was accepted; absent while open.
     #[prost(bool, optional, tag = "2")]
     pub accepted: Option<bool>,
     /// Which group.

@@ -1,7 +1,7 @@
-//! `stream`: message framing on TCP. On TCP a varint length stands before each; a datagram is one message.
+//! `stream`: message framing on TCP. On TCP a varint length precedes each message; a datagram is one message.
 //!
-//! Sans-IO: whoever owns the socket pushes what it read, however torn, and takes whole messages out. The league's own
-//! code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.
+//! Sans-IO: the owner of the socket pushes the bytes it read, however split, and takes whole messages out.
+//! The league's own code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.
 
 use prost::Message;
 
@@ -16,7 +16,8 @@ pub const MESSAGE_MAX: usize = 256 * 1024;
 /// Most bytes of a UDP datagram over IPv4: 65,535 less the headers.
 pub const DATAGRAM_MAX: usize = 65_507;
 
-/// Most bytes of a datagram the league's own programs can hear (ssl-game-controller, ssl-go-tools: 8192).
+/// Most bytes of a datagram that the league's own programs can receive (ssl-game-controller, ssl-go-tools:
+/// 8192).
 pub const LEAGUE_DATAGRAM_MAX: usize = 8192;
 
 /// The message as it goes over TCP: its length, then its bytes.
@@ -54,8 +55,8 @@ impl FrameReader {
 
     /// The next whole message, or `None` until more is pushed.
     ///
-    /// After an error there is no telling where a message begins: the error comes again, and the connection is to be
-    /// opened anew.
+    /// After an error the start of the next message is unknown: the error is returned again, and the
+    /// connection must be reopened.
     pub fn next_message(&mut self) -> Result<Option<&[u8]>, StreamError> {
         if let Some(error) = self.lost {
             return Err(error);
@@ -83,7 +84,7 @@ impl FrameReader {
     }
 }
 
-/// A stream whose messages cannot be told apart any more.
+/// A stream whose messages cannot be separated any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamError {
     /// A message is longer than is accepted.

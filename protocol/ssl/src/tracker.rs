@@ -6,13 +6,13 @@ use prost::{Enumeration, Message};
 
 use crate::common::{Vector2, Vector3};
 
-/// A frame with who made it.
+/// A frame with its source.
 #[derive(Clone, PartialEq, Message)]
 pub struct TrackerWrapperPacket {
     /// Names the source, the same through a session.
     #[prost(string, required, tag = "1")]
     pub uuid: String,
-    /// The source in words.
+    /// Name of the source.
     #[prost(string, optional, tag = "2")]
     pub source_name: Option<String>,
     /// What it believes.
@@ -57,7 +57,7 @@ pub struct TrackedBall {
     pub visibility: Option<f32>,
 }
 
-/// A ball that was kicked, and where it will end if nobody touches it.
+/// A ball that was kicked, and where it will end if it is not touched.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KickedBall {
     /// Where it was kicked, m.
@@ -69,13 +69,13 @@ pub struct KickedBall {
     /// When it was kicked, s.
     #[prost(double, required, tag = "3")]
     pub start_timestamp: f64,
-    /// When it will be at rest, s.
+    /// When it will stop, s.
     #[prost(double, optional, tag = "4")]
     pub stop_timestamp: Option<f64>,
-    /// Where it will be at rest, m.
+    /// Stop position, m.
     #[prost(message, optional, tag = "5")]
     pub stop_pos: Option<Vector2>,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(message, optional, tag = "6")]
     pub robot_id: Option<TrackedRobotId>,
 }

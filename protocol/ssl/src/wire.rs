@@ -117,7 +117,7 @@ mod tests {
             0x11, 0, 0, 0, 0, 0, 0, 0, 0, // 2: eight bytes
             0x1a, 2, 7, 8, // 3: two bytes of content
             0x25, 0, 0, 0, 0,    // 4: four bytes
-            0x2b, // 5: a group begins
+            0x2b, // 5: start of a group
         ];
         let fields: Vec<_> = Fields::of(&bytes).collect();
         let field = |number, value| Ok(Field { number, value });

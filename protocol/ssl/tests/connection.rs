@@ -69,7 +69,7 @@ fn what_is_no_message_is_told() {
     stream.write_all(&[2, 0x0a, 9]).expect("sent");
     let error = controller.receive::<ControllerToTeam>(SOON).expect_err("no message");
     assert!(matches!(error, NetError::NotDecoded { .. }), "{error}");
-    // The next one is heard all the same.
+    // The next one is received all the same.
     stream.write_all(&ssl::stream::delimited(&reply("token"))).expect("sent");
     assert_eq!(controller.receive(SOON).expect("no error"), Some(reply("token")));
 }

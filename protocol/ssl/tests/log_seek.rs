@@ -132,7 +132,7 @@ fn without_index(file: &[u8]) -> Vec<u8> {
     file[..file.len() - back as usize].to_vec()
 }
 
-/// A folder of one test's own, gone when it ends.
+/// A directory of one test's own, removed when it ends.
 struct Scratch {
     folder: PathBuf,
 }
@@ -153,7 +153,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // A folder that stays behind harms nobody.
+        // A directory that is left over is harmless.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

@@ -89,7 +89,7 @@ fn both<M: Message + Default + std::fmt::Debug>(bytes: &[u8]) -> (String, Vec<u8
     (format!("{message:?}"), message.encode_to_vec())
 }
 
-/// The same bytes in whatever order of fields.
+/// The same bytes independent of the order of fields.
 fn sorted(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     bytes.sort_unstable();

@@ -38,7 +38,7 @@ impl Analog {
         share(self.converter.blocking_read(&mut self.capacitor, TIME)) * SUPPLY * CAPACITOR_DIVIDER
     }
 
-    /// What the light barrier's receiver sees, 0 to 1.
+    /// Light at the receiver of the break-beam sensor, 0 to 1.
     pub fn barrier(&mut self) -> f32 {
         share(self.converter.blocking_read(&mut self.barrier, TIME))
     }

@@ -33,7 +33,8 @@ pub fn config() -> Config {
     rcc.apb4_pre = APBPrescaler::DIV2;
     // The analogue converters by the chip's own 64 MHz.
     rcc.mux.adcsel = mux::Adcsel::PER;
-    // No calendar; its registers keep the record of the last life (`fault`), and the watchdog starts its own oscillator.
+    // No calendar; its registers keep the record of the last boot epoch (`fault`), and the watchdog starts
+    // its own oscillator.
     rcc.ls = LsConfig::off();
     config
 }

@@ -35,7 +35,7 @@ impl Encoders {
         [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]
     }
 
-    /// Rim speeds, m/s; NaN for one that is broken, judged from the duty its motor had.
+    /// Rim speeds, m/s; NaN for one that is broken, judged from its motor's duty cycle.
     pub fn rims(&mut self, now: Instant, duty: [f32; WHEELS]) -> [f32; WHEELS] {
         let mut rims = [0.0; WHEELS];
         let counts = self.counts();
@@ -51,5 +51,5 @@ const WHEEL_RADIUS: f32 = 0.027;
 /// Edges a turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours; negative where it counts down
 /// when the wheel turns the robot counter-clockwise).
 const COUNTS_A_TURN: f32 = 4096.0;
-/// Way of the rim for a count, m.
+/// Distance of the rim for a count, m.
 pub const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * WHEEL_RADIUS / COUNTS_A_TURN;

@@ -13,14 +13,14 @@ use runtime::ending::Ending;
 
 use crate::off;
 
-/// What is known of the lives before this one, since power came.
+/// Record of the boot epochs before this one, since power-on.
 #[derive(Clone, Copy, Debug)]
 pub struct Life {
     /// Starts since power came, this one included.
     pub boots: u32,
     /// Panics and faults since then.
     pub panics: u32,
-    /// Whether the watchdog ended the last life.
+    /// Whether the watchdog ended the last boot epoch.
     pub bitten: bool,
     place: [u8; PLACE_LEN],
     place_len: usize,
@@ -72,7 +72,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     ended(Ending::Fault(frame.pc()))
 }
 
-/// Keeps and tells the place, then starts anew.
+/// Keeps and prints the place, then restarts.
 fn ended(how: Ending<'_>) -> ! {
     open();
     write(PANICS_AT, read(PANICS_AT).wrapping_add(1));

@@ -1,10 +1,10 @@
-//! `flash`: flash storage besides the image. The key page, which only a probe writes, and the ledger of
+//! `flash`: flash storage besides the firmware: the key page, which only a probe writes, and the counter of
 //! starts.
 //!
 //! | address | what |
 //! |---|---|
-//! | 0x0800_0000 | the image |
-//! | 0x081a_0000, 0x081c_0000 | the ledger's halves (`runtime::ledger`), a sector each |
+//! | 0x0800_0000 | the firmware |
+//! | 0x081a_0000, 0x081c_0000 | the two halves that count starts (`runtime::ledger`), a sector each |
 //! | 0x081e_0000 | the key page (`protocol::provision`), the last sector |
 
 use embassy_stm32::Peri;
@@ -15,7 +15,7 @@ use runtime::ledger::{self, CELL_LEN, Cell, Place};
 
 /// What provisioning wrote.
 pub fn page() -> &'static [u8] {
-    // SAFETY: flash behind the image (memory.x), of a sector that this program never writes.
+    // SAFETY: flash behind the firmware (memory.x), of a sector that this program never writes.
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }
 }
 
@@ -28,8 +28,8 @@ pub enum LedgerError {
     Worn,
 }
 
-/// Writes this start into the ledger: its epoch, larger than all before. Up to two seconds where a half has to be erased, once in
-/// 4,096 starts.
+/// Records this start: its epoch, larger than all before. Up to two seconds where a half has to be erased,
+/// once in 4,096 starts.
 pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, LedgerError> {
     let mut flash = Flash::new_blocking(flash);
     for _ in 0..TRIES {
@@ -63,7 +63,7 @@ fn read(at: Place) -> Cell {
     let address = START + offset(at);
     unfaulted(|| {
         for (byte, address) in bytes.iter_mut().zip(address..) {
-            // SAFETY: flash behind the image (memory.x), that is written by `begin` alone.
+            // SAFETY: flash behind the firmware (memory.x), written only by `begin`.
             *byte = unsafe { (address as *const u8).read_volatile() };
         }
     });
@@ -73,8 +73,8 @@ fn read(at: Place) -> Cell {
 /// Runs `work` with faults of data accesses let pass (Armv7-M, B3.2.8: BFHFNMIGN at the priority that FAULTMASK gives).
 fn unfaulted(work: impl FnOnce()) {
     const BFHFNMIGN: u32 = 1 << 8;
-    // SAFETY: one bit of the core's own register, which nobody else changes, and no interrupt comes between: FAULTMASK holds all
-    // of them back. Both are put back at once.
+    // SAFETY: one bit of the core's own register, which no other code changes, and no interrupt comes
+    // between: FAULTMASK holds all of them back. Both are put back at once.
     unsafe {
         core::arch::asm!("cpsid f");
         (*cortex_m::peripheral::SCB::PTR).ccr.modify(|ccr| ccr | BFHFNMIGN);
@@ -95,7 +95,7 @@ fn offset(at: Place) -> u32 {
     HALVES + SECTOR * at.half as u32 + (CELL_LEN * at.index) as u32
 }
 
-/// The flash's start (RM0433, 2.3.2), the ledger's and the key page's from there.
+/// The flash's start (RM0433, 2.3.2), then the offsets of the counter of starts and of the key page.
 const START: u32 = 0x0800_0000;
 const HALVES: u32 = 0x001a_0000;
 const PAGE: u32 = 0x001e_0000;

@@ -20,7 +20,7 @@ pub struct Imu {
 pub enum ImuError {
     /// The bus failed.
     Bus,
-    /// Somebody else answers, or nobody (0x00, 0xff): this instead of 0x47.
+    /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
     Stranger(u8),
     /// A line that never moves: the sensor is pulled out, or without supply.
     Silent,

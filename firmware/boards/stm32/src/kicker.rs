@@ -1,5 +1,5 @@
 //! `kicker`: driver of the kicker board: charger and coils by timers that end by themselves; the capacitor
-//! stays off its discharge resistor only as long as that is requested anew.
+//! stays off its discharge resistor only as long as that is requested again.
 
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_time::{Duration, Timer};

@@ -1,5 +1,5 @@
-//! `pins`: pin assignment. This table is the only place that says it; README.md shows it as wiring, and a
-//! test holds both equal.
+//! `pins`: pin assignment. This table is the only source; README.md lists it as wiring, and a test holds both
+//! equal.
 //!
 //! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left as they are. A line
 //! `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
@@ -84,7 +84,7 @@ parts! {
         select: PD2, "out: low selects the IMU";
     }
 
-    /// What is measured as a voltage, 0 to 3.3 V, and the lamp of the light barrier.
+    /// Inputs measured as a voltage, 0 to 3.3 V, and the lamp of the break-beam sensor.
     Analog analog {
         converter: ADC1, "reads them";
         battery: PA3, "in: battery, divided by 11";
@@ -102,7 +102,7 @@ parts! {
         rx_dma: DMA1_CH1, "carries what comes";
     }
 
-    /// What people look at.
+    /// Indicator lamps.
     Lamps lamps {
         alive: PB0, "out: green, blinks as long as the robot runs";
         alarm: PB14, "out: red, lit when nobody can command the robot";

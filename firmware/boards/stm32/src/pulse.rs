@@ -1,5 +1,5 @@
-//! `pulse`: one-shot hardware pulses of exact length, whatever becomes of the program. A timer that counts
-//! once to its end and stops (RM0433, 39.3.15: one-pulse mode).
+//! `pulse`: one-shot hardware pulses of exact length, even if the program stops. A timer that counts once to
+//! its end and stops (RM0433, 39.3.15: one-pulse mode).
 //!
 //! The driver of embassy-stm32 starts such a pulse from a pin only, and knows no timers of one or two channels; these start by the
 //! program and end by themselves. A microsecond is a tick.
@@ -54,7 +54,8 @@ impl Coils {
         Self { timer, _pins: [flat, chip] }
     }
 
-    /// Current into that coil for so long, at most [`PULSE_MAX`]; `false` and nothing while a pulse is under way.
+    /// Current into that coil for the time `long`, at most [`PULSE_MAX`]; `false` and nothing while a pulse
+    /// runs.
     pub fn fire(&mut self, coil: Coil, long: Duration) -> bool {
         let registers = self.timer.regs_2ch_cmp();
         if registers.cr1().read().cen() {
@@ -75,7 +76,7 @@ impl Coils {
     }
 }
 
-/// The charger, that runs on for three milliseconds each time it is told to.
+/// The charger, which runs on for three milliseconds after each request.
 pub struct Charger {
     timer: Timer<'static, TIM16>,
     _pin: Flex<'static>,
@@ -130,7 +131,7 @@ fn wire(pin: Peri<'static, impl Pin>, function: u8) -> Flex<'static> {
 
 /// No pulse is longer, however it is asked for; the kicker's own table ends there.
 pub const PULSE_MAX: Duration = Duration::millis(6);
-/// How long the charger runs on when nobody tells it anything more: three steps of the kicker.
+/// How long the charger runs on without another request: three steps of the kicker.
 pub const CHARGE_RUNS_ON: Duration = Duration::millis(3);
 /// A count that no pulse reaches.
 const NEVER: u16 = u16::MAX;

@@ -27,7 +27,7 @@ pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
     static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
     let mut config = usart::Config::default();
     config.baudrate = BAUD;
-    // Where no radio is plugged in, the line is at rest.
+    // Where no radio is plugged in, the line is idle.
     config.rx_pull = Pull::Up;
     let line =
         Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
@@ -36,7 +36,7 @@ pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
     Some((Mouth { tx, line: LINE.init([0; LINE_LEN_MAX]) }, Ear::new(rx)))
 }
 
-/// Hears frames.
+/// Receives frames.
 pub struct Ear {
     rx: RingBufferedUartRx<'static>,
     lines: Lines,
@@ -118,7 +118,7 @@ static NOISE: AtomicU32 = AtomicU32::new(0);
 const BAUD: u32 = 1_000_000;
 /// What comes in 5 ms; the half of it rings. The brain's longest step takes a fifth of a millisecond.
 const RING_LEN: usize = 512;
-/// After an error, before it listens again: shorter than the pause between two of the host's pictures.
+/// After an error, before it listens again: shorter than the pause between two of the host's snapshots.
 const REST: Duration = Duration::from_millis(1);
 /// Looked at in one go.
 const CHUNK: usize = 64;

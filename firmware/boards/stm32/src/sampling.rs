@@ -1,7 +1,8 @@
-//! `sampling`: sensor sampling at 1 kHz. One task reads gyroscope, battery, capacitor and light barrier;
+//! `sampling`: sensor sampling at 1 kHz. One task reads gyroscope, battery, capacitor and break-beam sensor;
 //! kicker and brain take the newest.
 //!
-//! What is older than ten steps is no reading: then the kicker neither charges nor fires, and nobody turns by an old gyroscope.
+//! A reading older than ten steps is invalid: then the kicker neither charges nor fires, and the gyroscope is
+//! not used.
 
 use core::cell::Cell;
 
@@ -21,7 +22,7 @@ pub struct Sample {
     pub turn: Option<f32>,
     /// It lies on its side.
     pub tipped: bool,
-    /// The light barrier is broken.
+    /// The beam is interrupted.
     pub ball: bool,
     /// V.
     pub battery: f32,
@@ -40,8 +41,8 @@ pub fn newest() -> Sample {
     if at.elapsed() < STALE { sample } else { Sample::NONE }
 }
 
-/// Reads everything, for ever. A sensor that does not answer is told and tried again each second; until then the wheels tell how
-/// the robot turns.
+/// Reads everything, for ever. A sensor that does not answer is reported and tried again each second; until
+/// then the turning rate comes from the wheels.
 pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
     let (mut turn, mut tilt, mut barrier) = (Turn::new(), Tilt::new(), Barrier::new());
     let mut answers = false;

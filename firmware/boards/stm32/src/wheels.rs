@@ -128,7 +128,7 @@ impl ports::Wheels for Wheels {
     }
 }
 
-/// A share of full duty; none for a number that is none.
+/// A share of full duty cycle; none for NaN.
 fn share(duty: f32, full: u32) -> u32 {
     // The cast takes what is out of range to the range's end, and NaN to 0.
     ((duty * full as f32) as u32).min(full)
@@ -136,5 +136,5 @@ fn share(duty: f32, full: u32) -> u32 {
 
 /// In the order of the wire.
 const CHANNELS: [Channel; WHEELS] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
-/// Above what people hear; motor drivers with current control take 20 to 50 kHz.
+/// Above the audible range; motor drivers with current control take 20 to 50 kHz.
 const PWM: Hertz = Hertz(25_000);

@@ -3,7 +3,7 @@
 //! ```text
 //! elect      the lowest id present proposes a cycle and names its coordinator: the retriever nearest the ball
 //! retrieve   the coordinator announces case, correspondence and the ball it used, or that no case fits
-//! reuse      each robot involved: ADAPT → EXECUTE → WAIT END, everybody else WAIT END at once
+//! reuse      each robot involved: ADAPT → EXECUTE → WAIT END, the others WAIT END at once
 //! end        the coordinator closes the cycle when all have finished; anyone involved may abort it
 //! ```
 //!

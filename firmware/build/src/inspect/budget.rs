@@ -1,25 +1,26 @@
-//! `budget`: size budget of an image. The budget of docs/architecture.md §9, and the computers it is compared
-//! with.
+//! `budget`: size budget of a firmware image: the budget of docs/architecture.md §9, and the computers it is
+//! compared with.
 
 use std::fmt;
 
 use super::Sizes;
 
-/// What an image may take, bytes.
+/// Limits of a firmware image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     /// Flash.
     pub flash: u64,
-    /// RAM that is taken before the program begins.
+    /// RAM that is taken before the program starts.
     pub ram: u64,
 }
 
 impl Budget {
-    /// Of a robot's image with its cases (docs/architecture.md §9).
+    /// Of a robot's firmware with its cases (docs/architecture.md §9).
     pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
 
-    /// Of the image for a real robot's board: the same robot, and 27 kB of drivers, clocks and log of its chip, which has 2 MiB. What
-    /// thinks is compiled as for the emulator, so that what is counted there is what is flashed.
+    /// Of the firmware for a real robot's board: the same robot, and 27 kB of drivers, clocks and log of its
+    /// chip, which has 2 MiB. The brain is compiled as for the emulator, so that what is counted there is
+    /// what is flashed.
     pub const BOARD: Self = Self { flash: 192 * 1024, ..Self::IMAGE };
 
     /// Whether `sizes` keep to it.
@@ -33,7 +34,7 @@ impl Budget {
     }
 }
 
-/// An image that takes more than it may.
+/// A firmware image that exceeds its budget.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverBudget {
     /// What it may take.

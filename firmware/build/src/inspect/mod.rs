@@ -1,8 +1,8 @@
-//! `inspect`: inspection of a firmware image. Its sections and symbols (ELF), and the source line behind
+//! `inspect`: inspection of a firmware image: its sections and symbols (ELF), and the source line behind
 //! every instruction (DWARF).
 //!
-//! Needs an image with debug information, as the profile `firmware` makes them. The bytes that are flashed do not change
-//! with it.
+//! Needs an ELF file with debug information, as the profile `firmware` makes them. The bytes that are flashed
+//! do not change with it.
 
 mod budget;
 mod panics;
@@ -17,7 +17,7 @@ pub use budget::{Budget, Chip, OverBudget, STACK_BUDGET, STEP_BUDGET};
 pub use panics::{Allowed, AllowedError, PanicSite, PanicVerdict, panic_sites};
 pub use size::{Part, Sizes};
 
-/// An image, taken apart.
+/// A firmware image, parsed.
 pub struct Image<'a> {
     sections: Vec<Section>,
     symbols: Vec<Symbol>,
@@ -32,7 +32,7 @@ type Reader<'a> = EndianSlice<'a, RunTimeEndian>;
 struct Section {
     address: u64,
     size: u64,
-    /// Empty where the image holds nothing for it (`.bss`).
+    /// Empty where the file holds no bytes for it (`.bss`).
     bytes: Vec<u8>,
     is_code: bool,
 }
@@ -47,13 +47,13 @@ impl Section {
 #[derive(Clone, Debug)]
 struct Symbol {
     name: String,
-    /// Without the bit that says "Thumb".
+    /// Without the bit that marks "Thumb".
     address: u64,
     size: u64,
     is_code: bool,
 }
 
-/// Why an image cannot be read.
+/// Why a firmware image cannot be read.
 #[derive(Debug)]
 pub enum ImageError {
     /// It is no ELF file.
@@ -153,7 +153,7 @@ fn crate_of(path: &str) -> &str {
         let name = segments.get(at + 3).copied().unwrap_or("?");
         return name.rsplit_once('-').map_or(name, |(name, _)| name);
     }
-    // Ours: the folder above `src`.
+    // Ours: the directory above `src`.
     let above = after("src").and_then(|at| segments.get(at.checked_sub(1)?).copied());
     match above {
         Some("library") => "case-library",

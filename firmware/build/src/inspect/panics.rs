@@ -1,15 +1,15 @@
-//! `panics`: panic locations of an image. Every call of a panic function, told by the line it was written in,
+//! `panics`: panic locations of a firmware image. Every call of a panic function, located by its source line,
 //! against a list of those that are known to be impossible or wanted (`panics.allow`).
 //!
-//! The list may only shrink without a word: a site that is gone has to be taken off it, and one of the crates that read what
-//! comes from outside, or think ([`NEVER`]), has no place on it.
+//! The list may only shrink: a site that is gone has to be removed from it, and one of the crates that read
+//! external input, or of the brain ([`NEVER`]), must not be on it.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use super::{Image, Section, crate_of};
 
-/// A call of a panic function, and how often the image has it.
+/// A call of a panic function, with its number of occurrences in the firmware.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PanicSite {
     /// The crate it is written in.
@@ -24,7 +24,7 @@ impl fmt::Display for PanicSite {
     }
 }
 
-/// All of an image, with a source line of each for people.
+/// All of a firmware image, each with a source line for the report.
 pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
     let mut sites: BTreeMap<PanicSite, Vec<String>> = BTreeMap::new();
     let callee = |address: u64| {
@@ -47,12 +47,12 @@ pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
     sites
 }
 
-/// What the list says of an image.
+/// Comparison of a firmware image with the list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PanicVerdict {
     /// Sites that are not allowed, with where they stand.
     pub unknown: Vec<(PanicSite, Vec<String>)>,
-    /// Entries that no image has any more.
+    /// Entries that no firmware image has any more.
     pub gone: Vec<PanicSite>,
 }
 
@@ -101,7 +101,7 @@ impl Allowed {
         Ok(Self(sites))
     }
 
-    /// What the sites of all images together are by this list.
+    /// Compares the sites of all firmware images together with this list.
     pub fn judge(&self, sites: &BTreeMap<PanicSite, Vec<String>>) -> PanicVerdict {
         let unknown = sites.iter().filter(|(site, _)| !self.0.contains(site));
         PanicVerdict {
@@ -131,7 +131,7 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             let is_std = STANDARD.contains(&site.crate_name.as_str());
             innermost.get_or_insert((site.clone(), line.clone()));
             match &mut found {
-                // Whoever it was inlined into may be the one to mend.
+                // The function it was inlined into may be the one to fix.
                 Some((_, lines)) => *lines = format!("{lines} in {}", plain(&name)),
                 None if is_std => {}
                 None => found = Some((site, line)),
@@ -191,7 +191,7 @@ fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     let mut at = address;
     while at + 1 < address + size {
         let Some(first) = half(at) else { break };
-        // 0b111 and one of 01, 10, 11 next begin an instruction of 32 bits.
+        // 0b111 and one of 01, 10, 11 next start an instruction of 32 bits.
         if first >> 11 < 0b11101 {
             at += 2;
             continue;
@@ -221,7 +221,7 @@ fn target(at: u64, first: u16, second: u16) -> u64 {
 
 /// Crates that may not panic at all: what reads the air, what computes, what thinks.
 const NEVER: [&str; 6] = ["brain", "protocol", "casebase", "motion", "rules", "geometry"];
-/// A panic in one of these is the fault of whoever called it.
+/// A panic in one of these is the fault of its caller.
 const STANDARD: [&str; 5] = ["core", "alloc", "std", "compiler-builtins", "heapless"];
 
 #[cfg(test)]
@@ -234,7 +234,7 @@ mod tests {
 
     #[test]
     fn calls_are_decoded_as_the_manual_says() {
-        // From the image's own listing: 63d6 is bl to 2a120 in both directions, b.w likewise.
+        // From the firmware's own disassembly: 63d6 is bl to 2a120 in both directions, b.w likewise.
         for (at, first, second, to) in [
             (0x8e16_u64, 0xf001_u16, 0xf97f_u16, 0xa118_u64),
             (0x2000, 0xf7ff, 0xfffe, 0x2000),

@@ -297,8 +297,9 @@ impl<F: Copy> Turns<F> {
     }
 }
 
-/// Where the tangents of a disc from both points meet on one side; where they meet far out or not at all, a
-/// corner half-way round. With `flank`, the tangent along it takes the place of the one from `to`.
+/// The intersection of the tangents of a disc from both points on one side; where they intersect far out or
+/// not at all, a corner half-way round. With `flank`, the tangent along it takes the place of the one from
+/// `to`.
 fn around<F: Copy>(
     center: Point<F>,
     radius: f32,

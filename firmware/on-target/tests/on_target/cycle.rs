@@ -42,7 +42,7 @@ mod tests {
             }
         }
         assert_eq!(robot.progress.map(kind), Some(2), "{:?}", robot.progress);
-        // Somebody takes the ball away, to the other end of the field.
+        // The ball is taken away, to the other end of the field.
         for _ in 0..25 {
             robot.step(Point::new(1.45, 0.0), Point::new(-2.2, 1.0));
         }
@@ -74,7 +74,7 @@ mod tests {
             Self { brain, now: Instant(0), progress: None, playing: false, ends: Vec::new() }
         }
 
-        /// One step of thought; what it told of its progress, if it said anything.
+        /// One step of the brain; the progress it reported, if any.
         fn step(&mut self, at: Point<geometry::Field>, ball: Point<geometry::Field>) -> Option<Progress> {
             self.now = Instant(self.now.0 + STEP.0);
             while let Some(due) = self.brain.poll_timeout().filter(|due| *due <= self.now) {

@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// That a failed test is told as failed.
+    /// That a failed test is reported as failed.
     #[test]
     #[should_panic]
     fn a_panic_ends_the_test() {

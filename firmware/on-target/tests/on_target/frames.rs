@@ -1,4 +1,4 @@
-//! Frames are the bytes that `protocol/SPEC.md` says, on this processor too.
+//! Frames are the bytes of `protocol/SPEC.md`, on this processor too.
 
 #[embedded_test::tests]
 mod tests {

@@ -30,7 +30,7 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
     let got = crossing(&field, p(1.0, 2.9), p(1.2, 3.1)).unwrap();
     assert_eq!(got.line, Line::Touch { positive: true });
     assert!(got.at.distance(p(1.1, 3.0)) < 1e-5);
-    // Past the corner: from (4.4, 2.8) to (4.6, 3.1) x reaches 4.5 half-way, y reaches 3 at two thirds.
+    // Past the corner: from (4.4, 2.8) to (4.6, 3.1) x reaches 4.5 at half, y reaches 3 at two thirds.
     let got = crossing(&field, p(4.4, 2.8), p(4.6, 3.1)).unwrap();
     assert_eq!(got.line, Line::Goal(P));
     assert!(got.at.distance(p(4.5, 2.95)) < 1e-5);

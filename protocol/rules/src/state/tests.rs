@@ -45,7 +45,7 @@ fn commands() -> Vec<Command> {
     plain.into_iter().chain(with).collect()
 }
 
-/// For every phase a way that leads to it, over edges of the graph only.
+/// For every phase a path that leads to it, over edges of the graph only.
 fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
     let stop = Command::Stop;
     let mut ways = vec![
@@ -122,7 +122,7 @@ fn every_command_in_every_phase_has_a_safe_reading() {
                     counts[3] += 1;
                 }
             }
-            // Whatever came before, HALT and STOP work at once.
+            // After any command, HALT and STOP work at once.
             assert_eq!(
                 state.hear(Command::Halt, now + 2 * S, None) == Heard::Repeated,
                 command == Command::Halt
@@ -218,7 +218,7 @@ fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     state.hear(Command::NormalStart, 40 * S, None);
     assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
-    // And whoever joins in a standing phase takes it as it is.
+    // A program that joins in a standing phase takes it as it is.
     let mut state = GameState::new();
     assert_eq!(state.hear(Command::FreeKick(B), S, None), Heard::Followed);
     assert_eq!(state.phase(), Phase::FreeKick(B));

@@ -31,7 +31,7 @@ pub struct CiInput {
 /// What the step brought: none, one or several a step.
 #[derive(Clone, PartialEq, Message)]
 pub struct CiOutput {
-    /// What the referee says.
+    /// The referee's message.
     #[prost(message, optional, tag = "1")]
     pub referee_msg: Option<Referee>,
 }
@@ -42,18 +42,18 @@ pub struct Input {
     /// A change of the match, encoded.
     #[prost(bytes = "vec", optional, tag = "1")]
     pub change: Option<Vec<u8>>,
-    /// Begin anew.
+    /// Restart the match.
     #[prost(bool, optional, tag = "2")]
     pub reset_match: Option<bool>,
     /// Changed settings, encoded.
     #[prost(bytes = "vec", optional, tag = "3")]
     pub config_delta: Option<Vec<u8>>,
-    /// A way to go on, encoded.
+    /// A continue action, encoded.
     #[prost(bytes = "vec", optional, tag = "4")]
     pub continue_action: Option<Vec<u8>>,
 }
 
-/// What the controller's interface shows; absent parts did not change.
+/// State for the controller's interface; absent parts did not change.
 #[derive(Clone, PartialEq, Message)]
 pub struct Output {
     /// Score, cards and all else of the match, encoded.
@@ -90,10 +90,10 @@ pub struct ProtocolEntry {
     /// The change, encoded.
     #[prost(bytes = "vec", optional, tag = "2")]
     pub change: Option<Vec<u8>>,
-    /// Since the match began.
+    /// Since the start of the match.
     #[prost(message, optional, tag = "3")]
     pub match_time_elapsed: Option<Duration>,
-    /// Since the stage began.
+    /// Since the start of the stage.
     #[prost(message, optional, tag = "4")]
     pub stage_time_elapsed: Option<Duration>,
 }

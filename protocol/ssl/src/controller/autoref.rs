@@ -1,5 +1,5 @@
-//! `autoref`: messages between automatic referee and game controller. Port 10007; under somebody's clock port
-//! 10013.
+//! `autoref`: messages between automatic referee and game controller. Port 10007; under an external clock
+//! port 10013.
 
 use prost::Message;
 
@@ -31,7 +31,7 @@ pub struct AutoRefToController {
     pub game_event: Option<GameEvent>,
 }
 
-/// What it hears.
+/// Messages from the controller to an automatic referee.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToAutoRef {
     /// The answer to its last message.
@@ -42,7 +42,7 @@ pub struct ControllerToAutoRef {
 /// One step of an automatic referee whose clock the sender drives.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefCiInput {
-    /// What the referee says.
+    /// The referee's message.
     #[prost(message, optional, tag = "1")]
     pub referee_message: Option<Referee>,
     /// What a tracker believes.

@@ -20,7 +20,7 @@ pub use remote::{
     RemoteControlRequestType, RemoteControlTeamState, RemoteControlToController,
 };
 
-/// The controller's answer to whatever was sent.
+/// The controller's answer to any message.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerReply {
     /// Accepted or not, [`StatusCode`].
@@ -32,7 +32,7 @@ pub struct ControllerReply {
     /// What the next signature must be over.
     #[prost(string, optional, tag = "3")]
     pub next_token: Option<String>,
-    /// Was the signature checked? [`Verification`].
+    /// Result of the signature check, [`Verification`].
     #[prost(enumeration = "Verification", optional, tag = "4")]
     pub verification: Option<i32>,
 }
@@ -47,7 +47,7 @@ pub enum StatusCode {
     Rejected = 2,
 }
 
-/// Was the sender's signature checked?
+/// Whether the sender's signature was checked.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -57,7 +57,7 @@ pub enum Verification {
     Unverified = 2,
 }
 
-/// Proof of who sends.
+/// Proof of the sender's identity.
 #[derive(Clone, PartialEq, Message)]
 pub struct Signature {
     /// The controller's last `next_token`.
@@ -71,7 +71,7 @@ pub struct Signature {
 /// A team's first message.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamRegistration {
-    /// Must be the name the controller shows.
+    /// Must be the team's name in the controller.
     #[prost(string, required, tag = "1")]
     pub team_name: String,
     /// Proof, where the controller has the team's key.
@@ -82,13 +82,13 @@ pub struct TeamRegistration {
     pub team: Option<i32>,
 }
 
-/// A team's wish; with `msg` absent it does nothing.
+/// A team's request; with `msg` absent it does nothing.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamToController {
     /// Proof.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The wish.
+    /// The request.
     #[prost(oneof = "TeamRequest", tags = "2, 3, 4, 5")]
     pub msg: Option<TeamRequest>,
 }
@@ -105,12 +105,12 @@ pub enum TeamRequest {
     /// Ask for, or take back, a substitution.
     #[prost(bool, tag = "4")]
     SubstituteBot(bool),
-    /// Is anybody there? The answer is a reply.
+    /// Requests a reply as a sign of life.
     #[prost(bool, tag = "5")]
     Ping(bool),
 }
 
-/// What a team hears.
+/// Messages from the controller to a team.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToTeam {
     /// The answer to its last message.

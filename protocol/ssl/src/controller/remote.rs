@@ -59,7 +59,7 @@ pub enum RemoteControlRequest {
     FailBallplacement = 4,
 }
 
-/// What a remote control hears.
+/// Messages from the controller to a remote control.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToRemoteControl {
     /// The answer to its last message.
@@ -70,7 +70,7 @@ pub struct ControllerToRemoteControl {
     pub state: Option<RemoteControlTeamState>,
 }
 
-/// What a remote control shows.
+/// State of a team for display on a remote control.
 #[derive(Clone, PartialEq, Message)]
 pub struct RemoteControlTeamState {
     /// What may be asked for now, [`RemoteControlRequestType`].

@@ -7,7 +7,7 @@ use crate::common::{Team, Vector2};
 /// The ball left the field.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BallLeftField {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that touched it last.
@@ -21,10 +21,10 @@ pub struct BallLeftField {
 /// The ball was kicked over the opponent's goal line from the own half.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AimlessKick {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
     /// Where it crossed the line, m.
@@ -41,7 +41,7 @@ pub struct Goal {
     /// The team that scores.
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub kicking_bot: Option<u32>,
     /// Where it crossed the line, m.
@@ -70,10 +70,10 @@ pub struct Goal {
 /// A goal straight from an indirect free kick (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct IndirectGoal {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
     /// Where it crossed the line, m.
@@ -87,10 +87,10 @@ pub struct IndirectGoal {
 /// A goal by a ball that was too high (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct ChippedGoal {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
     /// Where it crossed the line, m.
@@ -107,7 +107,7 @@ pub struct ChippedGoal {
 /// A kick over the speed limit.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotKickedBallTooFast {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -119,7 +119,7 @@ pub struct BotKickedBallTooFast {
     /// The ball's speed after the kick, in space, m/s.
     #[prost(float, optional, tag = "4")]
     pub initial_ball_speed: Option<f32>,
-    /// Did it fly?
+    /// Whether it was chipped.
     #[prost(bool, optional, tag = "5")]
     pub chipped: Option<bool>,
 }
@@ -127,13 +127,13 @@ pub struct BotKickedBallTooFast {
 /// A dribble over the limit.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotDribbledBallTooFar {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where the contact began, m.
+    /// Where the contact started, m.
     #[prost(message, optional, tag = "3")]
     pub start: Option<Vector2>,
     /// Where the distance was over the limit, m.
@@ -144,7 +144,7 @@ pub struct BotDribbledBallTooFar {
 /// An attacker touched the ball in the opponent's defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTouchedBallInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -161,7 +161,7 @@ pub struct AttackerTouchedBallInDefenseArea {
 /// The kicker touched the ball again before another robot did.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerDoubleTouchedBall {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -175,7 +175,7 @@ pub struct AttackerDoubleTouchedBall {
 /// A robot held the ball.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotHeldBallDeliberately {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -192,7 +192,7 @@ pub struct BotHeldBallDeliberately {
 /// The keeper held the ball in its defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KeeperHeldBall {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Where, m.
@@ -206,7 +206,7 @@ pub struct KeeperHeldBall {
 /// The kick was not taken in time (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KickTimeout {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Where the ball lay, m.
@@ -217,7 +217,7 @@ pub struct KickTimeout {
     pub time: Option<f32>,
 }
 
-/// Nobody got the ball going.
+/// No team got the ball moving.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct NoProgressInGame {
     /// Where the ball lay, m.
@@ -231,7 +231,7 @@ pub struct NoProgressInGame {
 /// The ball was not placed in time.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct PlacementFailed {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Ball to its target, m.
@@ -245,7 +245,7 @@ pub struct PlacementFailed {
 /// The ball was placed.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct PlacementSucceeded {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// How long it took, s.
@@ -270,7 +270,7 @@ pub struct Prepared {
 /// A ball flew over the boundary's wall.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BoundaryCrossing {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Where it crossed, m.
@@ -281,13 +281,13 @@ pub struct BoundaryCrossing {
 /// The penalty kick brought no goal.
 #[derive(Clone, PartialEq, Message)]
 pub struct PenaltyKickFailed {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Where the ball was, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// Why, in words.
+    /// Reason, as text.
     #[prost(string, optional, tag = "3")]
     pub reason: Option<String>,
 }

@@ -1,6 +1,7 @@
 //! `event`: game events. Events that automatic referees see and the game controller decides and repeats.
 //!
-//! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is who did it.
+//! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is the team that caused
+//! the event.
 
 mod ball;
 mod robot;
@@ -12,13 +13,13 @@ pub use ball::*;
 pub use robot::*;
 pub use team::*;
 
-/// One event with who saw it.
+/// One event with its origin.
 #[derive(Clone, PartialEq, Message)]
 pub struct GameEvent {
     /// Kind of event, [`GameEventType`]; its numbers are not the field numbers of [`Event`].
     #[prost(enumeration = "GameEventType", optional, tag = "40")]
     pub r#type: Option<i32>,
-    /// Who saw it: names of automatic referees, or `UI`.
+    /// Its sources: names of automatic referees, or `UI`.
     #[prost(string, repeated, tag = "41")]
     pub origin: Vec<String>,
     /// When it was made, µs, Unix time.
@@ -41,7 +42,7 @@ pub enum Event {
     /// Both teams were ready for the restart (deprecated).
     #[prost(message, tag = "1")]
     Prepared(Prepared),
-    /// Nobody got the ball going.
+    /// No team got the ball moving.
     #[prost(message, tag = "2")]
     NoProgressInGame(NoProgressInGame),
     /// A team failed to place the ball.
@@ -92,7 +93,7 @@ pub enum Event {
     /// An attacker was within 0.2 m of the opponent's defence area at a restart.
     #[prost(message, tag = "19")]
     AttackerTooCloseToDefenseArea(AttackerTooCloseToDefenseArea),
-    /// A robot stood in the way of the placement.
+    /// A robot interfered with the placement.
     #[prost(message, tag = "20")]
     BotInterferedPlacement(BotInterferedPlacement),
     /// Two robots crashed, both at fault.
@@ -110,7 +111,7 @@ pub enum Event {
     /// The same, play went on (deprecated).
     #[prost(message, tag = "25")]
     BotPushedBotSkipped(BotPushedBot),
-    /// A robot held the ball so that nobody else could reach it.
+    /// A robot held the ball so that no other robot could reach it.
     #[prost(message, tag = "26")]
     BotHeldBallDeliberately(BotHeldBallDeliberately),
     /// A robot fell over.

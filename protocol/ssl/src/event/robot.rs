@@ -7,7 +7,7 @@ use crate::common::{Team, Vector2};
 /// A robot was too fast in STOP.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotTooFastInStop {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -24,7 +24,7 @@ pub struct BotTooFastInStop {
 /// An opponent was too close to the ball at a free kick.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderTooCloseToKickPoint {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -64,7 +64,7 @@ pub struct BotCrashDrawn {
 /// Two robots crashed; the faster one is at fault.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotCrashUnique {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The faster one, of `by_team`.
@@ -90,13 +90,13 @@ pub struct BotCrashUnique {
 /// A robot pushed another.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotPushedBot {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who pushed, of `by_team`.
+    /// The robot that pushed, of `by_team`.
     #[prost(uint32, optional, tag = "2")]
     pub violator: Option<u32>,
-    /// Who was pushed.
+    /// The robot that was pushed.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
     /// Where, m.
@@ -110,7 +110,7 @@ pub struct BotPushedBot {
 /// A robot fell over.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotTippedOver {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -127,7 +127,7 @@ pub struct BotTippedOver {
 /// A robot lost parts.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotDroppedParts {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -144,7 +144,7 @@ pub struct BotDroppedParts {
 /// A defender other than the keeper touched the ball, entirely in its own defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -161,7 +161,7 @@ pub struct DefenderInDefenseArea {
 /// The same, partly in the area (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderInDefenseAreaPartially {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -181,7 +181,7 @@ pub struct DefenderInDefenseAreaPartially {
 /// An attacker touched an opponent in the opponent's defence area (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTouchedOpponentInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -190,7 +190,7 @@ pub struct AttackerTouchedOpponentInDefenseArea {
     /// Where, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Who was touched.
+    /// The robot that was touched.
     #[prost(uint32, optional, tag = "4")]
     pub victim: Option<u32>,
 }
@@ -198,7 +198,7 @@ pub struct AttackerTouchedOpponentInDefenseArea {
 /// An attacker was too close to the opponent's defence area at a restart.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTooCloseToDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -218,7 +218,7 @@ pub struct AttackerTooCloseToDefenseArea {
 /// A robot was too close to the line between ball and target.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotInterferedPlacement {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
@@ -232,7 +232,7 @@ pub struct BotInterferedPlacement {
 /// A team had too many robots on the field.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TooManyRobots {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// How many it may have.

@@ -1,4 +1,4 @@
-//! `error`: errors of opening a log file. Each answer says what was met and what mends it.
+//! `error`: errors of opening a log file. Each error states the cause and the fix.
 
 use std::fmt;
 use std::io;
@@ -21,14 +21,14 @@ pub enum LogError {
         /// How many of the header's 16 bytes there are.
         bytes: usize,
     },
-    /// It begins otherwise than a log file.
+    /// It does not start like a log file.
     NotALog {
         /// Its first bytes.
         begins: Vec<u8>,
     },
     /// It is of the league's first logger: Qt's strings and compression.
     LegacyQt,
-    /// It is of a version that nobody writes.
+    /// Its version is unknown.
     Version(i32),
 }
 

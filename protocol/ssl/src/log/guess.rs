@@ -68,7 +68,7 @@ fn is(fields: &[Field<'_>], known: &Known, required: &[u32]) -> bool {
         && required.iter().all(|number| fields.iter().any(|field| field.number == *number))
 }
 
-/// Is a field of the wrapper what vision puts there?
+/// Whether a field of the wrapper is one of vision's.
 fn vision_part(field: &Field<'_>) -> bool {
     match (field.number, field.value) {
         (1, Value::Bytes(frame)) => {

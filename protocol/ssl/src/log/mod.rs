@@ -4,8 +4,9 @@
 //! size, payload; all integers big-endian. An index of the messages may stand at the end of an uncompressed file; a
 //! `.log.gz` is the whole file gzipped and has none.
 //!
-//! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end anywhere and hold
-//! anything: what is whole is given, and [`LogReader::end`] says what was met instead of an end.
+//! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end
+//! anywhere and hold anything: every whole message is returned, and [`LogReader::end`] reports what was found
+//! instead of an end.
 
 mod error;
 mod guess;

@@ -1,4 +1,4 @@
-//! `open`: opening of a log file. By its first bytes, whatever its name ends in.
+//! `open`: opening of a log file, by its first bytes, independent of its file name.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -45,8 +45,8 @@ pub fn open(path: &Path) -> Result<LogReader<Source>, LogError> {
 
 /// Opens a file at its first message of `timestamp_ns` (ns, Unix time) or later; at its end if there is none.
 ///
-/// "First" is as the file stands, whichever way it is found: times may step back (README, trap 6), and with an index a
-/// step back is seen over [`BACK_STEP_MESSAGES`] messages.
+/// "First" is in the order of the file, with either search method: times may step back (README, trap 6), and
+/// with an index a step back is detected over [`BACK_STEP_MESSAGES`] messages.
 pub fn open_at(path: &Path, timestamp_ns: i64) -> Result<(LogReader<Source>, Place), LogError> {
     let mut reader = open(path)?;
     let Source::Plain(mut file) = source(path)? else {
@@ -126,7 +126,7 @@ fn header_at(file: &mut BufReader<File>, at: u64) -> io::Result<(i64, i32)> {
     Ok((time, size))
 }
 
-/// Walks over the headers from `at` on; where they end or break, the reader that comes after says how.
+/// Walks over the headers from `at` on; where they end or break, the reader that follows reports how.
 fn scan(file: &mut BufReader<File>, mut at: u64, timestamp_ns: i64) -> Result<u64, LogError> {
     use super::MessageKind::{Blank, Index2021};
     file.seek(SeekFrom::Start(at)).map_err(LogError::Read)?;

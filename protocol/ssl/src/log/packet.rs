@@ -19,7 +19,8 @@ pub enum Packet {
 }
 
 impl Packet {
-    /// Decodes what `kind` says, or what [`guess`] finds where it says `Unknown`; `None` for blank and index.
+    /// Decodes a payload of the type `kind`, or of the type that [`guess`] finds where it is `Unknown`;
+    /// `None` for blank and index.
     pub fn decode(kind: MessageKind, payload: &[u8]) -> Result<Option<Self>, PacketError> {
         let broken = |kind| move |error| PacketError::Broken { kind, error };
         let packet = match kind {
@@ -51,7 +52,7 @@ impl Packet {
 /// A payload without a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PacketError {
-    /// It is not what its type says.
+    /// It is not of its declared type.
     Broken {
         /// Its type.
         kind: MessageKind,

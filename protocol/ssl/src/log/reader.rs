@@ -1,7 +1,7 @@
 //! `reader`: reader of log files.
 //!
-//! Streams from any `Read`; holds one message at a time. Whatever the bytes are: every whole message before the first
-//! damage is given, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is told.
+//! Streams from any `Read`; holds one message at a time. For any input: every whole message before the first
+//! damage is returned, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is reported.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -12,7 +12,7 @@ use super::{FILE_HEADER, LogError, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_M
 #[derive(Debug)]
 pub struct LogReader<R> {
     source: R,
-    /// Where the next message begins, bytes from the (unzipped) file's begin.
+    /// Start of the next message, bytes from the (unzipped) file's start.
     at: u64,
     ahead: Option<Record>,
     last_ns: Option<i64>,
@@ -20,7 +20,7 @@ pub struct LogReader<R> {
     end: Option<End>,
 }
 
-/// What was met on the way.
+/// Counters of the messages read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Messages given.
@@ -42,21 +42,21 @@ pub enum End {
     Whole,
     /// Within a message.
     Cut {
-        /// Where that message begins.
+        /// Start of that message.
         at: u64,
         /// How many bytes of it there are.
         bytes: u64,
     },
-    /// At a message of an impossible size; where the next one begins cannot be told.
+    /// At a message of an impossible size; the start of the next one is unknown.
     Size {
-        /// Where that message begins.
+        /// Start of that message.
         at: u64,
         /// The size it claims.
         size: i32,
     },
     /// Where it cannot be read or gunzipped any more.
     Read {
-        /// Where the message that was being read begins.
+        /// Start of the message that was being read.
         at: u64,
         /// Why.
         error: io::Error,
@@ -64,7 +64,7 @@ pub enum End {
 }
 
 impl End {
-    /// Did the file end as it should?
+    /// Whether the file ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
@@ -129,7 +129,7 @@ impl<R: Read> LogReader<R> {
         &self.counts
     }
 
-    /// Where the next unread message begins, bytes of the unzipped file.
+    /// Start of the next unread message, bytes of the unzipped file.
     pub(super) fn position(&self) -> u64 {
         self.at
     }
@@ -225,7 +225,7 @@ pub(super) fn parse_header(header: &[u8; MESSAGE_HEADER]) -> (i64, MessageKind, 
     )
 }
 
-/// Reads until the buffer is full or the source ends; says how far it came.
+/// Reads until the buffer is full or the source ends; returns the number of bytes read.
 pub(super) fn fill(source: &mut impl Read, buffer: &mut [u8]) -> Result<usize, (usize, io::Error)> {
     let mut filled = 0;
     while filled < buffer.len() {

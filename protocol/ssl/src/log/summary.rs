@@ -9,7 +9,8 @@ use super::{Counts, LogReader, MessageKind, Packet, PacketError};
 /// A file in numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// By the kind the file names; a message of kind `Unknown` stands there, whatever it was found to be.
+    /// By the kind that the file names; a message of kind `Unknown` is counted there, even if its kind was
+    /// found.
     pub kinds: BTreeMap<MessageKind, KindSummary>,
     /// Messages of kind `Unknown` that were found to be something.
     pub guessed: u64,
@@ -17,13 +18,13 @@ pub struct Summary {
     pub counts: Counts,
     /// First and last time of any message, ns, Unix time.
     pub span_ns: Option<(i64, i64)>,
-    /// Images by camera.
+    /// Camera frames by camera.
     pub cameras: BTreeMap<u32, u64>,
     /// Trackers by their id, with what they call themselves.
     pub trackers: BTreeMap<String, String>,
     /// The first message that could not be decoded: its number among all, from 0, and why.
     pub first_undecodable: Option<(u64, PacketError)>,
-    /// How the file ended, in words; empty if whole.
+    /// How the file ended, as text; empty if whole.
     pub damage: String,
 }
 

@@ -15,7 +15,7 @@ use super::{FILE_HEADER, Index, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX,
 pub struct LogWriter<W: Write> {
     sink: W,
     at: u64,
-    /// Where each message begins; `None` where no index is wanted.
+    /// Start of each message; `None` where no index is wanted.
     offsets: Option<Vec<u64>>,
 }
 

@@ -26,7 +26,7 @@ impl Connection {
         Self::over(stream)
     }
 
-    /// Talks over a stream that somebody else opened or accepted.
+    /// Communicates over a stream that the caller opened or accepted.
     pub fn over(stream: TcpStream) -> Result<Self, NetError> {
         let unknown = SocketAddr::from(([0; 4], 0));
         let system = |address| move |error| NetError::System { doing: "talk with", address, error };
@@ -93,7 +93,7 @@ fn is_silence(error: &io::Error) -> bool {
 /// A wait of zero would be forever.
 const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
-/// The game controller answers within its tick of 25 ms; who takes a second does not read any more.
+/// The game controller answers within its tick of 25 ms; a peer that takes a second does not read any more.
 const WRITE_WAIT: Duration = Duration::from_secs(1);
 
 /// Bytes read at once; a reply has about a hundred.

@@ -13,7 +13,7 @@ pub enum NetError {
     Busy {
         /// Which port.
         address: SocketAddr,
-        /// Was the port to be shared (multicast), so that the other program is at fault?
+        /// Whether the port was to be shared (multicast), so that the other program is at fault.
         shared: bool,
     },
     /// No interface of that name or address.
@@ -32,7 +32,7 @@ pub enum NetError {
     },
     /// The group's address is not one: multicast is 224.0.0.0 to 239.255.255.255.
     NotMulticast(Ipv4Addr),
-    /// The machine has no way to that address.
+    /// The machine has no route to that address.
     NoRoute {
         /// Where to.
         to: SocketAddr,
@@ -44,7 +44,7 @@ pub enum NetError {
         /// Its bytes.
         bytes: usize,
     },
-    /// Nobody took the TCP connection.
+    /// The TCP connection was not accepted.
     NotConnected {
         /// Where to.
         to: SocketAddr,

@@ -15,7 +15,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Does it lead to this machine only?
+    /// Whether it leads to this machine only.
     pub const fn is_loopback(&self) -> bool {
         self.address.is_loopback()
     }
@@ -30,7 +30,7 @@ impl fmt::Display for Interface {
 /// Which interfaces to use.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
-    /// Every one that can, loopback included: wherever vision comes from, it is heard.
+    /// Every interface that can, loopback included: vision is received from any of them.
     #[default]
     All,
     /// These, by name or IPv4 address; one that is missing or cannot is an error.

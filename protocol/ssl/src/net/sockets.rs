@@ -1,4 +1,4 @@
-//! `sockets`: multicast and unicast sockets. One that hears a group, one that speaks to it, one of its own
+//! `sockets`: multicast and unicast sockets: one that receives a group, one that sends to it, one of its own
 //! port.
 
 use std::io;
@@ -16,11 +16,12 @@ use super::{Interface, Interfaces, NetError, interfaces};
 pub struct Datagram<'a> {
     /// One message.
     pub bytes: &'a [u8],
-    /// Who sent it.
+    /// Address of the sender.
     pub from: SocketAddr,
 }
 
-/// Hears a multicast group, beside other programs that hear it too. Datagrams sent straight to its port come as well.
+/// Receives a multicast group, beside other programs that receive it too. Datagrams sent straight to its port
+/// come as well.
 #[derive(Debug)]
 pub struct Receiver {
     inbox: Inbox,
@@ -52,7 +53,7 @@ impl Receiver {
         Ok(Self { inbox: Inbox::new(socket.into(), bound), joined })
     }
 
-    /// The interfaces it hears.
+    /// The interfaces it receives on.
     pub fn joined(&self) -> &[Interface] {
         &self.joined
     }
@@ -72,9 +73,10 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// To a group: by the interface named, or by the one the system chooses. Programs on this machine hear it too.
+    /// To a group: by the interface named, or by the one the system chooses. Programs on this machine receive
+    /// it too.
     ///
-    /// One interface only: a program that hears several would hear everything several times.
+    /// One interface only: a program that receives on several would receive every packet several times.
     pub fn multicast(group: SocketAddrV4, by: Option<&str>) -> Result<Self, NetError> {
         multicast_group(group)?;
         let to = SocketAddr::from(group);
@@ -176,7 +178,7 @@ impl Inbox {
     }
 }
 
-/// Nothing came, a signal came instead, or an earlier answer of ours found nobody.
+/// Nothing came, a signal came instead, or an earlier answer of ours found no receiver.
 fn is_silence(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
@@ -186,7 +188,7 @@ fn udp() -> io::Result<Socket> {
     Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))
 }
 
-/// Lets other programs hear the same port.
+/// Lets other programs receive on the same port.
 fn share(socket: &Socket) -> io::Result<()> {
     socket.set_reuse_address(true)?;
     #[cfg(unix)]

@@ -24,7 +24,7 @@ pub struct RealismConfigErForce {
     /// Robots can hide the ball from the camera.
     #[prost(bool, optional, tag = "5")]
     pub enable_invisible_ball: Option<bool>,
-    /// The ball is seen where at least this part of it shows, 0–1.
+    /// The ball is detected where at least this part of it is visible, 0–1.
     #[prost(float, optional, tag = "6")]
     pub ball_visibility_threshold: Option<f32>,
     /// How far the cameras' views overlap, m.
@@ -33,22 +33,22 @@ pub struct RealismConfigErForce {
     /// False balls seen at dribblers, probability.
     #[prost(float, optional, tag = "8")]
     pub dribbler_ball_detections: Option<f32>,
-    /// How wrong the cameras' places are told, m.
+    /// Error of the reported camera positions, m.
     #[prost(float, optional, tag = "9")]
     pub camera_position_error: Option<f32>,
-    /// Commands lost on the way, probability.
+    /// Commands lost in transmission, probability.
     #[prost(float, optional, tag = "10")]
     pub robot_command_loss: Option<f32>,
-    /// Feedback lost on the way, probability.
+    /// Feedback lost in transmission, probability.
     #[prost(float, optional, tag = "11")]
     pub robot_response_loss: Option<f32>,
     /// Balls not seen, probability a frame.
     #[prost(float, optional, tag = "12")]
     pub missing_ball_detections: Option<f32>,
-    /// Image to packet, ns.
+    /// Latency from camera frame to packet, ns.
     #[prost(int64, optional, tag = "13")]
     pub vision_delay: Option<i64>,
-    /// Part of it that `t_sent` − `t_capture` tells, ns.
+    /// Part of it that `t_sent` − `t_capture` includes, ns.
     #[prost(int64, optional, tag = "14")]
     pub vision_processing_time: Option<i64>,
     /// Simulate the dribbler's roller instead of a force.
@@ -65,7 +65,7 @@ pub struct RealismConfigErForce {
     pub command_delay: Option<u64>,
 }
 
-/// Measures of a robot's mouth.
+/// Dimensions of a robot's dribbler opening.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotSpecErForce {
     /// Centre to the kicker, m.

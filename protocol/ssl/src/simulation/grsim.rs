@@ -17,7 +17,7 @@ pub struct GrsimPacket {
 /// Commands for one team.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimCommands {
-    /// The sender's time, s; nobody reads it.
+    /// The sender's time, s; read by no known program.
     #[prost(double, required, tag = "1")]
     pub timestamp: f64,
     /// True: for yellow.
@@ -120,7 +120,7 @@ pub struct GrsimRobotReplacement {
     pub turnon: Option<bool>,
 }
 
-/// To port 30011 (blue) or 30012 (yellow) of whoever commanded last: robots whose state changed.
+/// To port 30011 (blue) or 30012 (yellow) of the last commander: robots whose state changed.
 #[derive(Clone, PartialEq, Message)]
 pub struct RobotsStatus {
     /// One a robot.

@@ -29,7 +29,7 @@ pub struct SimulatorError {
     /// For programs, of the simulator's own choice.
     #[prost(string, optional, tag = "1")]
     pub code: Option<String>,
-    /// For people.
+    /// Text for the user.
     #[prost(string, optional, tag = "2")]
     pub message: Option<String>,
 }
@@ -88,7 +88,7 @@ pub struct TeleportBall {
     /// Velocity upwards, m/s.
     #[prost(float, optional, tag = "6")]
     pub vz: Option<f32>,
-    /// Push robots out of the way instead of putting the ball inside one.
+    /// Push robots aside instead of putting the ball inside one.
     #[prost(bool, optional, tag = "7")]
     pub teleport_safely: Option<bool>,
     /// Start as a rolling ball, without a sliding phase.

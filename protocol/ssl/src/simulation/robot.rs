@@ -34,10 +34,10 @@ pub struct RobotCommand {
     pub dribbler_speed: Option<f32>,
 }
 
-/// How to move: one of three ways.
+/// Motion command, in one of three forms.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotMoveCommand {
-    /// Which way.
+    /// The form.
     #[prost(oneof = "MoveCommand", tags = "1, 2, 3")]
     pub command: Option<MoveCommand>,
 }
@@ -118,7 +118,7 @@ pub struct RobotFeedback {
     /// Shell number, 0–15.
     #[prost(uint32, required, tag = "1")]
     pub id: u32,
-    /// Is the ball at the dribbler?
+    /// Whether the ball is at the dribbler.
     #[prost(bool, optional, tag = "2")]
     pub dribbler_ball_contact: Option<bool>,
     /// What this simulator adds.

@@ -32,7 +32,7 @@ impl Decoder {
         if let Some(parts) = Parts::of(bytes) {
             self.decode_parts(&parts)?;
         } else {
-            // Not as SSL-Vision sends it; whether it is a packet all the same, prost says.
+            // Not as SSL-Vision sends it; prost decides whether it is a packet all the same.
             self.geometry_bytes.clear();
             self.packet = WrapperPacket::decode(bytes)?;
         }

@@ -17,13 +17,13 @@ pub struct DetectionBall {
     /// To the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
-    /// Height, mm; nearly nobody sets it.
+    /// Height, mm; set by few programs.
     #[prost(float, optional, tag = "5")]
     pub z: Option<f32>,
-    /// Column in the camera's image, px; simulators send dummies.
+    /// Column in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "6")]
     pub pixel_x: f32,
-    /// Row in the camera's image, px; simulators send dummies.
+    /// Row in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "7")]
     pub pixel_y: f32,
 }
@@ -46,10 +46,10 @@ pub struct DetectionRobot {
     /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
     #[prost(float, optional, tag = "5")]
     pub orientation: Option<f32>,
-    /// Column in the camera's image, px; simulators send dummies.
+    /// Column in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "6")]
     pub pixel_x: f32,
-    /// Row in the camera's image, px; simulators send dummies.
+    /// Row in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "7")]
     pub pixel_y: f32,
     /// Height of the pattern, mm.
@@ -57,13 +57,13 @@ pub struct DetectionRobot {
     pub height: Option<f32>,
 }
 
-/// What one camera saw in one image.
+/// Detections of one camera in one camera frame.
 #[derive(Clone, PartialEq, Message)]
 pub struct DetectionFrame {
-    /// Counts this camera's images.
+    /// Counts this camera's frames.
     #[prost(uint32, required, tag = "1")]
     pub frame_number: u32,
-    /// When the image was taken, s: Unix time, or the simulation's own (README, trap 1).
+    /// Capture time of the camera frame, s: Unix time, or the simulation's own (README, trap 1).
     #[prost(double, required, tag = "2")]
     pub t_capture: f64,
     /// When the packet was sent, s, on the same clock.
@@ -81,7 +81,7 @@ pub struct DetectionFrame {
     /// Robots with a blue centre marker.
     #[prost(message, repeated, tag = "7")]
     pub robots_blue: Vec<DetectionRobot>,
-    /// When the image was taken by the camera's own clock, s.
+    /// Capture time of the camera frame by the camera's own clock, s.
     #[prost(double, optional, tag = "8")]
     pub t_capture_camera: Option<f64>,
 }

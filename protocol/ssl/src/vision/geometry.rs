@@ -163,10 +163,10 @@ pub struct GeometryCameraCalibration {
     /// How high the camera hangs, mm.
     #[prost(float, optional, tag = "15")]
     pub derived_camera_world_tz: Option<f32>,
-    /// Columns of the image, px.
+    /// Columns of the camera frame, px.
     #[prost(uint32, optional, tag = "16")]
     pub pixel_image_width: Option<u32>,
-    /// Rows of the image, px.
+    /// Rows of the camera frame, px.
     #[prost(uint32, optional, tag = "17")]
     pub pixel_image_height: Option<u32>,
 }

@@ -17,7 +17,7 @@ pub(crate) struct Tally {
     pub decoded: u64,
     /// Those that do not.
     pub refused: u64,
-    /// Broken packets that are still told to be vision, referee or tracker.
+    /// Broken packets that are still recognized as vision, referee or tracker.
     pub guessed: u64,
     /// Messages a log file of broken bytes gave.
     pub logged: u64,
@@ -59,7 +59,7 @@ const DATAGRAMS: [(&str, &str); 10] = [
     ("radio", "RadioProtocolWrapper"),
 ];
 
-/// Is it a message? If so, what we encode must decode to the same bytes. (`Debug` runs on the way.)
+/// Whether it is a message. If so, what we encode must decode to the same bytes. (`Debug` runs in between.)
 fn survives(decode: Decode, bytes: &[u8]) -> bool {
     let Ok((_, encoded)) = decode(bytes) else { return false };
     let (_, again) = decode(&encoded).expect("what we encode decodes");
@@ -129,7 +129,7 @@ pub(crate) fn mutated(seeds: &[Seed], random: &mut impl RngCore) -> (Decode, Vec
             10 => packet.truncate(at),
             11 => packet.insert(at, random.next_u32() as u8),
             12 => drop(packet.remove(at)),
-            // A part of another packet takes the place of the rest.
+            // A part of another packet replaces the tail.
             13 => {
                 let (_, other) = &seeds[below(random, seeds.len())];
                 packet.truncate(at);

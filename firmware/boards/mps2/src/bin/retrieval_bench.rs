@@ -1,5 +1,5 @@
-//! `retrieval_bench`: retrieval benchmark on the target. Retrieves for every problem that lies in memory,
-//! with the table beside them, three ways: `retrieve_best`, `retrieve`, the plain scan; an answer a line,
+//! `retrieval_bench`: retrieval benchmark on the target. Retrieves for every problem in memory, with the
+//! table beside them, by three methods: `retrieve_best`, `retrieve`, the plain scan; one line per answer,
 //! instructions included.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems there and reads the lines.
@@ -43,7 +43,8 @@ mod measure {
     }
 
     fn memory(address: usize) -> &'static [u8] {
-        // SAFETY: plain memory of the board that the image does not use (build.rs), and nobody writes after the start.
+        // SAFETY: plain memory of the board that the firmware does not use (build.rs), never written after
+        // the start.
         unsafe { core::slice::from_raw_parts(address as *const u8, LEN_MAX) }
     }
 }

@@ -1,9 +1,9 @@
 //! `eth`: Ethernet driver for lockstep messages. One Ethernet frame each, through the board's LAN9118
 //! controller (data sheet DS00002266).
 //!
-//! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message. Frames that
-//! are not of that form are counted and skipped. QEMU needs about 100 µs for the way there and back, 30 times less than
-//! through the UART.
+//! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message.
+//! Frames that are not of that form are counted and skipped. QEMU needs about 100 µs for a round trip, 30
+//! times less than through the UART.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -14,7 +14,7 @@ use zerocopy::IntoBytes;
 
 use super::register::Register;
 
-/// Starts the controller: its ear and its mouth. Call once; `None` if there is no such controller.
+/// Starts the controller: receiver and sender. Call once; `None` if there is no such controller.
 pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     if BYTE_TEST.read() != BYTE_TEST_VALUE {
         return None;
@@ -89,7 +89,7 @@ pub(crate) struct Outlet {
 }
 
 impl Outlet {
-    /// Sends the message that `write` puts into the buffer it is given; `write` says how long it is.
+    /// Sends the message that `write` puts into the buffer it is given; `write` returns its length.
     pub(crate) fn send(&mut self, write: impl FnOnce(&mut [u8]) -> usize) {
         let Some((header, rest)) = self.frame.as_mut_bytes().split_first_chunk_mut::<HEADER_LEN>() else {
             return;
@@ -104,7 +104,7 @@ impl Outlet {
         for word in self.frame.iter().take(frame_len.div_ceil(4)) {
             TX_DATA_FIFO.write(*word);
         }
-        // Nobody reads how the sending went; the queue of reports must not fill up.
+        // Transmission status is not used; the status queue must not fill up.
         while TX_FIFO_INF.read() >> 16 & 0xff != 0 {
             TX_STATUS_FIFO.read();
         }
@@ -129,7 +129,7 @@ fn sleep_until(mut ready: impl FnMut() -> bool) {
     }
 }
 
-/// Destination (everybody), source (a locally administered address), type.
+/// Destination (broadcast), source (a locally administered address), type.
 const HEADER: [u8; HEADER_LEN] = {
     let [high, low] = ETHERTYPE.to_be_bytes();
     [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 0x01, high, low]

@@ -15,9 +15,9 @@ fn built_in() -> CaseBase<'static> {
     if cfg!(feature = "legged") { case_library::four_legged() } else { case_library::division_b() }
 }
 
-/// What lies in the slot, if its header says that something does.
+/// The table in the slot, if the slot's header is valid.
 fn table_in_slot() -> Option<&'static [u8]> {
-    // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
+    // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
     let slot: &'static [u8] = unsafe { core::slice::from_raw_parts(slot::ADDRESS as *const u8, slot::LEN) };
     let (header, rest) = slot.split_first_chunk::<{ slot::HEADER_LEN }>()?;
     let len = u32::from_le_bytes(*header.last_chunk()?) as usize;

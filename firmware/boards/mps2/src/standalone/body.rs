@@ -1,5 +1,5 @@
-//! `body`: simulated actuators of a board without motors. Wheels that follow their duty as motors do, a
-//! capacitor that fills, and probes that see nothing amiss.
+//! `body`: simulated actuators of a board without motors. Wheels that follow their duty cycle as motors do, a
+//! capacitor that fills, and probes without disturbances.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -15,7 +15,7 @@ static DRIVEN: AtomicBool = AtomicBool::new(false);
 /// The capacitor's voltage, V, as bits.
 static VOLTS: AtomicU32 = AtomicU32::new(0);
 
-/// Takes the current off everything at once, whatever else goes on: what a panic does first.
+/// Takes the current off all actuators at once, in any state: the first act of a panic.
 pub(crate) fn stop() {
     DRIVEN.store(false, Ordering::Relaxed);
     for speed in &SPEEDS {
@@ -86,7 +86,8 @@ fn volts() -> f32 {
     f32::from_bits(VOLTS.load(Ordering::Relaxed))
 }
 
-/// Rim speed at full duty, m/s, and the share of a change that happens in a millisecond (a motor's 30 ms).
+/// Rim speed at a duty cycle of 1, m/s, and the share of a change that happens in a millisecond (a motor's 30
+/// ms).
 const FREE_SPEED: f32 = 6.0;
 const FOLLOWS: f32 = 1.0 / 30.0;
 /// What a step of the kicker adds or takes, V: full in 0.4 s.

@@ -42,7 +42,7 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
         // SAFETY: nothing here stands on interrupts being off.
         unsafe { cortex_m::interrupt::enable() };
         if work {
-            // SAFETY: nobody else polls this executor, and no task calls this function.
+            // SAFETY: this is the only place that polls this executor, and no task calls this function.
             unsafe { executor.poll() };
         }
     }
@@ -60,7 +60,7 @@ impl Driver for Time {
         critical_section::with(|_| {
             let mut millis = self.millis.load(Ordering::Relaxed);
             let mut left = SYST::get_current();
-            // It began anew, and its interrupt waits for us.
+            // The counter has wrapped, and its interrupt is pending.
             if SCB::is_pendst_pending() {
                 left = SYST::get_current();
                 millis = millis.wrapping_add(1);

@@ -22,12 +22,12 @@ impl Dog for Watchdog {
     const PATIENCE: Duration = PATIENCE;
 
     fn feed(&mut self) {
-        // Any value loads the counter anew.
+        // Any value reloads the counter.
         CLEAR.write(1);
     }
 }
 
-/// Whether the last life was ended by it.
+/// Whether the watchdog ended the last boot epoch.
 pub(crate) fn has_bitten() -> bool {
     fault::was_bitten()
 }

@@ -1,7 +1,7 @@
 //! `fault`: fault handler: motors off, crash record kept and reported, restart (docs/architecture.md §6.2).
 //!
-//! A record in memory that no start clears outlives the reset: how often the robot was started since power came, and what
-//! ended the last life.
+//! A record in memory that no start clears outlives the reset: the number of starts since power-on, and what
+//! ended the last boot epoch.
 
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
@@ -14,7 +14,7 @@ use runtime::ending::Ending;
 use super::body;
 use super::console::say;
 
-/// What is known of this life and the last.
+/// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
 pub(crate) struct Life {
     /// Starts since power came, this one included.
@@ -23,7 +23,8 @@ pub(crate) struct Life {
     pub(crate) panics: u32,
     place: [u8; PLACE_LEN],
     place_len: usize,
-    /// Not 0: the watchdog ended the last life. No `bool`, for memory nobody wrote may hold anything.
+    /// Not 0: the watchdog ended the last boot epoch. No `bool`, because uninitialized memory may hold any
+    /// value.
     bitten: u32,
     magic: u32,
 }
@@ -47,18 +48,18 @@ pub(crate) fn life() -> Life {
     life.boots = life.boots.wrapping_add(1);
     BITTEN.store(life.bitten != 0, Ordering::Relaxed);
     let told = life;
-    // Told once: the next life has its own end.
+    // Reported once: the next boot epoch has its own end.
     life.bitten = 0;
     with(|kept| *kept = life);
     told
 }
 
-/// Whether this is the first life since power came.
+/// Whether this is the first boot epoch since power-on.
 pub(crate) fn is_first_life() -> bool {
     with(|life| life.boots) == 1
 }
 
-/// Whether the last life was ended by the watchdog.
+/// Whether the watchdog ended the last boot epoch.
 pub(crate) fn was_bitten() -> bool {
     BITTEN.load(Ordering::Relaxed)
 }
@@ -83,7 +84,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     ended(Ending::Fault(frame.pc()))
 }
 
-/// Keeps and tells the place, then starts anew.
+/// Keeps and prints the place, then restarts.
 fn ended(how: Ending<'_>) -> ! {
     with(|life| {
         life.panics = life.panics.wrapping_add(1);
@@ -93,7 +94,8 @@ fn ended(how: Ending<'_>) -> ! {
     SCB::sys_reset()
 }
 
-/// The record. Nobody is interrupted by a panic who holds it: it is touched at the start, in the watchdog's NMI, and here.
+/// Access to the record. A panic never interrupts another access: the record is used at the start, in the
+/// watchdog's NMI, and here.
 fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
     #[unsafe(link_section = ".uninit.life")]
     static mut LIFE: MaybeUninit<Life> = MaybeUninit::uninit();

@@ -51,7 +51,7 @@ unsafe fn DefaultHandler(number: i16) {
     }
 }
 
-/// Hears frames.
+/// Receives frames.
 pub(crate) struct Ear(Lines);
 
 impl Ear {
