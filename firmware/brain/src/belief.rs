@@ -18,7 +18,7 @@ use crate::belief::shown::Handling;
 use crate::body::{self, BodySpec};
 use crate::mates::Mates;
 
-/// Own sight older than this counts as none.
+/// Own detections older than this are ignored.
 const SIGHT_LEASE: Duration = Duration::millis(400);
 /// A sight this sharp needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
@@ -28,12 +28,12 @@ const GRAB_SPEED: f32 = 0.4;
 /// stationary ball.
 pub const REST_SPEED: f32 = 0.05;
 
-/// The ball as believed.
+/// Estimated state of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Where it is.
+    /// Position, m.
     pub position: Point<Field>,
-    /// Where it goes.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
     /// Stop position: cut at the first opponent on its path and at the lines of the field.
     pub rest: Point<Field>,
@@ -58,30 +58,30 @@ impl Ball {
     }
 }
 
-/// Robots besides oneself: two teams of the largest league.
+/// Other robots: two teams of the largest league, less this one.
 pub const OTHERS_MAX: usize = 2 * OPPONENTS_MAX - 1;
 
 /// Another robot as received from the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Other {
-    /// Whose.
+    /// Team of the robot.
     pub side: Side,
-    /// Which of that side.
+    /// Number in its team.
     pub id: RobotId,
-    /// Where it is and faces.
+    /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
 }
 
-/// What may be done now, and what this robot is for its team.
+/// Phase of the game, and this robot's role in its team.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Game {
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed, while that matters.
+    /// Target of a ball placement, while one is running.
     pub placement: Option<Point<Field>>,
-    /// What the rules allow this robot beyond others.
+    /// Role under the rules, which allow it more than others.
     pub duty: Duty,
     /// The goal its team defends.
     pub defending: GoalEnd,
@@ -106,27 +106,27 @@ impl Default for Game {
 /// The robot's world model.
 #[derive(Clone, Debug)]
 pub struct Belief {
-    /// Where it is itself.
+    /// Own pose.
     pub pose: Pose<Field>,
     /// The ball; `None` if its position is unknown.
     pub ball: Option<Ball>,
-    /// Opponents.
+    /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
     /// It holds the ball itself.
     pub holds_ball: bool,
-    /// Its body is in the middle of a grab or kick.
+    /// Its body is executing a grab or kick.
     pub busy: bool,
-    /// How it moves itself, m/s.
+    /// Own velocity, m/s.
     pub velocity: Vector<Field>,
-    /// How it turns, rad/s.
+    /// Own turning rate, rad/s.
     pub angular: f32,
     /// The kicker is charged.
     pub kicker_ready: bool,
     /// All other robots whose motion the host sends.
     pub others: heapless::Vec<Other, OTHERS_MAX>,
-    /// What may be done now, and what it is for its team.
+    /// Phase of the game, and its role in the team.
     pub game: Game,
-    /// What the ball at its front is for, once that is settled: where it is kicked to, and how.
+    /// Fixed target of the held ball: where it is kicked to, and how.
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
@@ -144,7 +144,7 @@ struct Sight {
 }
 
 impl Belief {
-    /// Knows nothing yet.
+    /// A belief without any observation.
     pub fn new(league: League) -> Self {
         Self {
             pose: Pose::default(),
@@ -166,7 +166,7 @@ impl Belief {
         }
     }
 
-    /// Knows nothing yet but the goal its team defends.
+    /// A belief that knows only the goal its team defends.
     pub fn defending(league: League, defending: GoalEnd) -> Self {
         Self { game: Game { defending, ..Game::default() }, ..Self::new(league) }
     }
@@ -205,7 +205,8 @@ impl Belief {
             && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < self.spec.opponent_holds_within)
     }
 
-    /// The ball lies still enough to be grabbed; a ball that has just left the legs does not, though its speed is unknown.
+    /// Whether the ball lies still enough to be grabbed; a ball that has just left the legs does not, though
+    /// its speed is unknown.
     pub fn may_grab(&self) -> bool {
         self.slow_sights >= 2
     }

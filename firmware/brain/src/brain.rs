@@ -1,5 +1,4 @@
-//! The brain as a value: what comes in, what goes out, and in which order it thinks
-//! (docs/architecture.md §3.1).
+//! The brain as a value: inputs, outputs, and the order of its steps (docs/architecture.md §3.1).
 //!
 //! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
 //! `poll_timeout` when to come back.
@@ -28,7 +27,7 @@ use crate::team::{Cycle, retrieval};
 use crate::timer::{Timer, TimerTable};
 use tell::Spoken;
 
-/// What has come since the last step, beside time.
+/// Inputs since the last step, besides time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
     /// Number of frames received from teammates and host.
@@ -61,7 +60,7 @@ pub struct Brain<'a> {
     was_available: bool,
     actuators: Option<ActuatorFrame>,
     beacon_due: bool,
-    /// What has come since its last step.
+    /// Inputs since its last step.
     since: Since,
     /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
     onwards: u8,
@@ -122,7 +121,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A host that was not believed before leads from now on.
+    /// A host that was not trusted before leads from now on.
     pub fn handle_new_host(&mut self) {
         if let Some(host) = &mut self.host {
             host.begin_anew();
@@ -130,7 +129,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// The body's senses: one whole step of thought.
+    /// Handles a sensor frame: one whole step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
         self.mates.forget_the_silent(now);
@@ -171,7 +170,7 @@ impl<'a> Brain<'a> {
     /// A deadline has come.
     pub fn handle_timeout(&mut self, now: Instant) {
         self.timers.advance(now);
-        // What follows from it is the next step's where that is near.
+        // Its consequences follow in the next step where that is near.
         if self.has_short_steps() {
             return;
         }
@@ -198,12 +197,12 @@ impl<'a> Brain<'a> {
         Some(TeamMessage::Beacon(beacon))
     }
 
-    /// What the body shall do, once per step.
+    /// The actuator orders, once per step.
     pub fn poll_actuators(&mut self, _now: Instant) -> Option<ActuatorFrame> {
         self.actuators.take()
     }
 
-    /// When [`Brain::handle_timeout`] wants to be called.
+    /// Time at which [`Brain::handle_timeout`] must be called.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.timers.next()
     }
@@ -213,7 +212,7 @@ impl<'a> Brain<'a> {
         self.limbs.has_short_steps()
     }
 
-    /// What it believes.
+    /// The robot's belief.
     pub fn belief(&self) -> &Belief {
         &self.belief
     }
@@ -223,12 +222,12 @@ impl<'a> Brain<'a> {
         self.limbs.ruling()
     }
 
-    /// What it knows of the running cycle.
+    /// State of the running cycle.
     pub fn cycle(&self) -> &Cycle {
         &self.cycle
     }
 
-    /// The problem it would retrieve for, if it had to decide now.
+    /// The problem for which it would retrieve now.
     pub fn problem(&self, now: Instant) -> Option<Problem> {
         let Self { config, base, belief, mates, .. } = self;
         retrieval::problem(now, config.robot, base, belief.game.defending, belief, mates)

@@ -17,7 +17,7 @@ pub struct Errand {
 }
 
 impl Errand {
-    /// What is wanted of the body for `directive`; `None` where the robots choose for themselves.
+    /// The intent for `directive`; `None` where the robots choose for themselves.
     pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
         if !matches!(directive, Directive::PlaceBall { .. }) {
             self.placement = Placement::default();
@@ -62,7 +62,7 @@ fn touches(directive: &Directive) -> bool {
     )
 }
 
-/// From the wire's cm/s.
+/// Converts the wire's cm/s.
 fn order(kick: KickOrder) -> OmniKick {
     match kick {
         KickOrder::Flat(speed) => OmniKick::Flat(f32::from(speed) * 0.01),

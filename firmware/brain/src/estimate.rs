@@ -7,7 +7,7 @@ use protocol::Duration;
 
 use crate::execution::Scene;
 
-/// The limit for something expected to take `expected` seconds.
+/// Time limit for a task expected to take `expected` seconds.
 pub(crate) fn limit(expected: f32) -> Duration {
     Duration::from_secs_f32(1.5 * expected + 2.0)
 }

@@ -1,9 +1,9 @@
 //! `execution`: execution of a robot's part of a case. Preconditions start actions, no clock does (paper
 //! §2.2; docs/case-format.md §4).
 //!
-//! The place in the action list is the whole memory that teammates see: `done` counts finished actions, is repeated in
-//! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
-//! the coordinator used. Field frame, SI.
+//! The place in the action list is the only state that teammates receive: `done` counts finished actions, is
+//! repeated in every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case
+//! are adapted by the ball the coordinator used. Field frame, SI.
 
 use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, TurnTarget};
 use geometry::{Angle, Field, Point};
@@ -20,9 +20,9 @@ use crate::timer::{Timer, TimerTable};
 /// Everything an execution looks at in one step.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
-    /// The time.
+    /// Present time.
     pub now: Instant,
-    /// What this robot believes.
+    /// This robot's belief.
     pub belief: &'s Belief,
     /// Its teammates' beacons.
     pub mates: &'s Mates,
@@ -30,11 +30,11 @@ pub struct Scene<'s> {
     pub cycle: CycleId,
     /// The gameplay of the cycle.
     pub play: &'s Play,
-    /// Its case.
+    /// The case being played.
     pub case: Case<'s>,
-    /// Its case base.
+    /// The case base it is from.
     pub base: &'s CaseBase<'s>,
-    /// What plays it.
+    /// The body that plays it.
     pub body: &'s dyn Body,
 }
 
@@ -44,7 +44,7 @@ impl Scene<'_> {
         point.plus(self.case.shift(self.ball_used())).into()
     }
 
-    /// Where case robot `part` has its place.
+    /// Adapted position of case robot `part`.
     pub fn place_of(&self, part: CaseRobot) -> Point<Field> {
         self.case.adapted(part, self.ball_used()).into()
     }
@@ -69,21 +69,21 @@ impl Scene<'_> {
         self.case.legs(self.ball_used()).into_iter().find(|leg| leg.robot == part && leg.action == action)
     }
 
-    /// Where that leg leads: field point of its end, and its direction.
+    /// End of that leg on the field, and its direction.
     fn leg_of(&self, part: CaseRobot, action: usize) -> Option<(Point<Field>, Angle)> {
         let leg = self.leg(part, action)?;
         Some((leg.end(), leg.start().direction_to(leg.end())))
     }
 }
 
-/// What came of one step of execution.
+/// Result of one step of execution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// Wanting this of the body.
     Running(Intent),
     /// All actions are done.
     Finished,
-    /// This cannot be finished.
+    /// The part cannot be finished.
     Failed(AbortReason),
 }
 
@@ -96,7 +96,7 @@ pub struct Execution {
     held: bool,
     kicked: bool,
     started: bool,
-    /// The hand-overs of the actions asked for last, by their number: finding one walks the whole case.
+    /// The hand-overs of the actions looked up last, by their number: finding one walks the whole case.
     partners: [Option<(usize, Partner)>; 2],
 }
 
@@ -172,7 +172,7 @@ impl Execution {
 
     /// The other end of the hand-over of action number `index`; looked up once.
     fn partner_of(&mut self, scene: &Scene<'_>, index: usize) -> Partner {
-        // The current action and the next are asked for in turn: two places are enough.
+        // The current action and the next are looked up in turn: two places are enough.
         let slot = &mut self.partners[index % 2];
         if let Some((of, partner)) = *slot
             && of == index
@@ -310,7 +310,7 @@ impl Execution {
         }
     }
 
-    /// Going for the ball fails when an opponent has had it for too long.
+    /// Getting the ball fails when an opponent has had it for too long.
     fn take(scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
         if scene.belief.opponent_on_ball(scene.now, scene.mates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
@@ -354,7 +354,7 @@ impl Execution {
         Some(scene.body.pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
     }
 
-    /// Where the action after the ball is had will want to face.
+    /// Heading that the action after getting the ball needs.
     fn onwards(&self, scene: &Scene<'_>) -> Option<Angle> {
         let next = self.done + 1;
         match scene.case.action(self.part, next)? {
@@ -398,9 +398,9 @@ fn attack_direction(scene: &Scene<'_>) -> Angle {
 const ACTIONS_A_STEP: usize = 8;
 /// A robot has turned within 10° (docs/case-format.md §4).
 const TURNED_WITHIN: f32 = 0.175;
-/// How long the passer waits for its receiver (docs/case-format.md §4).
+/// Time for which the passer waits for its receiver (docs/case-format.md §4).
 const PASS_PATIENCE: Duration = Duration::millis(1000);
-/// How long an opponent may hold the ball before `get_ball` gives up (docs/case-format.md §4).
+/// Time for which an opponent may hold the ball before `get_ball` gives up (docs/case-format.md §4).
 const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
 /// A ball rolling within this distance of a receiver comes to it, m.
 const COMING_WITHIN: f32 = 0.4;

@@ -21,19 +21,19 @@ use protocol::robot_io::{Health, OmniKick};
 use protocol::{Duration, Instant};
 use rules::{League, Phase, Side};
 
-/// What the brain wants of wheels, dribbler and kicker for the coming step.
+/// Motion, dribbler and kick that the brain wants for the coming step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
-    /// How the body shall move.
+    /// Velocity of the body, m/s and rad/s.
     pub twist: Twist<Body>,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// What the kicker shall do.
+    /// Kick order.
     pub kick: OmniKick,
 }
 
 impl Wanted {
-    /// To stand.
+    /// Standing still.
     pub const STAND: Self = Self {
         twist: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
         dribbler: 0.0,
@@ -41,10 +41,10 @@ impl Wanted {
     };
 }
 
-/// What the governor knows of robot, host and game.
+/// Inputs of the governor about robot, host and game.
 #[derive(Clone, Copy, Debug)]
 pub struct Circumstances<'s> {
-    /// The time.
+    /// Present time.
     pub now: Instant,
     /// Reception of the host's frames; `None` where no host is expected.
     pub host: Option<Hearing>,
@@ -52,18 +52,18 @@ pub struct Circumstances<'s> {
     pub phase: Option<Phase<Side>>,
     /// It knows where it is.
     pub placed: bool,
-    /// How the body is.
+    /// State of the body.
     pub health: &'s Health,
-    /// How it moves by its own measure.
+    /// Measured motion of the body.
     pub odometry: Twist<Body>,
 }
 
 /// How recently frames of the host were received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hearing {
-    /// When its last frame came.
+    /// Time of its last frame.
     pub frame: Option<Instant>,
-    /// When its last command to this robot came.
+    /// Time of its last command to this robot.
     pub command: Option<Instant>,
 }
 
@@ -79,15 +79,15 @@ pub enum Why {
     NoCommand = 1 << 2,
     /// It does not know where it is.
     Lost = 1 << 3,
-    /// It lies on its side.
+    /// The robot lies on its side.
     Tipped = 1 << 4,
     /// It turns faster than any robot should.
     Spinning = 1 << 5,
     /// The battery is too low to play.
     Battery = 1 << 6,
-    /// A number that is none, wanted or measured.
+    /// NaN, wanted or measured.
     NotANumber = 1 << 7,
-    /// STOP's speed.
+    /// Speed limit of STOP.
     StopSpeed = 1 << 8,
     /// The host has missed a few frames.
     Hesitant = 1 << 9,
@@ -126,14 +126,14 @@ impl Reasons {
     }
 }
 
-/// What the governor made of what was wanted.
+/// The governor's decision on a wanted motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ruling {
-    /// All of it.
+    /// Passed unchanged.
     Allowed,
-    /// Less of it.
+    /// Passed with less speed or kick.
     Limited(Reasons),
-    /// Nothing of it: it brakes, or stands.
+    /// Refused: it brakes, or stands.
     Braking(Reasons),
 }
 
@@ -141,7 +141,7 @@ pub enum Ruling {
 #[derive(Clone, Debug)]
 pub struct Governor {
     league: League,
-    /// What it let through last.
+    /// The motion allowed last.
     last: Twist<Body>,
     last_at: Option<Instant>,
     /// Since when the host has been received without a long silence.
@@ -154,7 +154,7 @@ pub struct Governor {
 }
 
 impl Governor {
-    /// Of a robot of that league that has just booted.
+    /// The governor of a robot of that league that has just booted.
     pub fn new(league: League) -> Self {
         Self {
             league,
@@ -176,7 +176,7 @@ impl Governor {
         self.last_frame = Some(heard);
     }
 
-    /// What may be done of what is wanted. Call it every step, with what was done of it going to the body.
+    /// The allowed part of the wanted motion. Must be called every step; its result goes to the body.
     pub fn rule(&mut self, at: &Circumstances<'_>, wanted: &Wanted) -> (Wanted, Ruling) {
         let step = self.last_at.map_or(STEP_MAX, |last| at.now.since(last)).min(STEP_MAX).as_secs_f32();
         self.last_at = Some(at.now);
@@ -198,7 +198,7 @@ impl Governor {
         self.let_go
     }
 
-    /// What it let through last.
+    /// The motion allowed last.
     pub fn last(&self) -> Twist<Body> {
         self.last
     }
@@ -329,7 +329,7 @@ fn is_kick(kick: OmniKick) -> bool {
     }
 }
 
-/// From this silence of the host on the speed left shrinks (docs/architecture.md §6.2).
+/// From this silence of the host on the remaining speed shrinks (docs/architecture.md §6.2).
 const RAMP_FROM: Duration = Duration::millis(50);
 /// At this one the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
 pub const SILENCE: Duration = Duration::millis(100);
@@ -346,17 +346,18 @@ const LONG_SILENCE: Duration = Duration::millis(500);
 /// After a boot or a long silence, the host must be received for this time before the robot may move
 /// (docs/architecture.md §6.2).
 const ARM_AFTER: Duration = Duration::millis(500);
-/// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.
+/// Speed limit of a robot in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's
+/// noise.
 pub const STOP_SPEED: f32 = 1.3;
 /// No robot is faster, m/s (an estimate; the fastest teams publish 4).
 const SPEED_MAX: f32 = 4.0;
-/// Nor turns faster, rad/s (an estimate).
+/// Largest turning rate, rad/s (an estimate).
 const TURN_MAX: f32 = 20.0;
 /// Deceleration on the field surface, m/s²: about what wheels hold (the simulator's 5.5, less a tenth).
 pub const BRAKE: f32 = 5.0;
 /// The same for turning, rad/s².
 const BRAKE_TURN: f32 = 40.0;
-/// A robot that turns this fast has gone mad, rad/s (TIGERs' robots use the same).
+/// A robot that turns this fast is out of control, rad/s (TIGERs' robots use the same).
 const SPINNING: f32 = 30.0;
 /// The battery is too low to play, V: four lithium cells of 3.5 V, where teams change them.
 const BATTERY_LOW: f32 = 14.0;
@@ -366,7 +367,7 @@ const LOW_FOR: Duration = Duration::millis(1000);
 const LETS_GO: [Why; 3] = [Why::Silence, Why::Tipped, Why::Battery];
 /// Standstill time before the motors are released: ten times the host's shortest silence that counts.
 const LET_GO_AFTER: Duration = Duration::millis(500);
-/// Slower than this it stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
+/// A slower robot stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
 const STANDS: f32 = 0.05;
 const STANDS_TURN: f32 = 0.2;
 /// No step is longer: after a gap a robot brakes as in one of these.

@@ -22,7 +22,7 @@ pub struct Hosted {
     picture: Picture,
     command: Option<(Instant, Command)>,
     frame: Option<Instant>,
-    /// When the last frame came, however old it was.
+    /// Arrival of the last frame, of any age.
     arrived: Option<Instant>,
     phase: Option<Phase<Side>>,
     restart: Restart,
@@ -31,7 +31,7 @@ pub struct Hosted {
 /// Touch state of our restart (rules 2026: the kicker touches the ball once, until another robot has).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Restart {
-    /// Nothing of the kind.
+    /// No restart of ours with a touch.
     #[default]
     None,
     /// This robot has touched the ball as the kicker of the restart; the ball lay here.
@@ -114,7 +114,7 @@ impl Hosted {
         self.phase
     }
 
-    /// When the last frame came, however old it was.
+    /// Arrival of the last frame, of any age.
     pub fn arrived(&self) -> Option<Instant> {
         self.arrived
     }
@@ -159,7 +159,7 @@ fn heard_at(now: Instant, age: Duration) -> Instant {
     now - Duration(age.0.saturating_sub(LATENCY_MAX.0))
 }
 
-/// The ball has left where it lay.
+/// Whether the ball has left its place `lay`.
 fn gone(belief: &Belief, lay: Point<Field>) -> bool {
     belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }

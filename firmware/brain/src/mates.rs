@@ -4,7 +4,7 @@ use geometry::{Field, Pose};
 use protocol::team::{Beacon, CycleState, Progress, Status};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
-/// Silent for longer, and a robot is gone (docs/architecture.md §5.1).
+/// Silence after which a robot counts as absent (docs/architecture.md §5.1).
 pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
 /// A teammate's newest beacon.
@@ -22,12 +22,12 @@ impl Mate {
         self.beacon.pose.into()
     }
 
-    /// How far it has come in cycle `id`; `None` while it speaks of another.
+    /// Its progress in cycle `id`; `None` while it reports another.
     pub fn progress_in(&self, id: CycleId) -> Option<Progress> {
         self.beacon.cycle.as_ref().filter(|c| c.id == id).map(|_| self.beacon.progress)
     }
 
-    /// What it knows of cycle `id`.
+    /// Its state of cycle `id`.
     pub fn knows(&self, id: CycleId) -> Option<&CycleState> {
         self.beacon.cycle.as_ref().filter(|c| c.id == id)
     }
@@ -40,7 +40,7 @@ pub struct Mates {
 }
 
 impl Mates {
-    /// Takes in a beacon.
+    /// Stores a beacon.
     pub fn hear(&mut self, now: Instant, from: RobotId, beacon: &Beacon) {
         self.table[from.index()] = Some(Mate { beacon: beacon.clone(), heard: now });
     }

@@ -13,7 +13,7 @@ use protocol::quantized::from_mm;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side};
 
-/// What became of a part.
+/// Result of handling a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// The first part received of a newer snapshot.
@@ -31,11 +31,11 @@ pub enum Taken {
 /// A robot of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// Whose, and which.
+    /// Team and number.
     pub who: WireWho,
-    /// Where it is.
+    /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
     at: Instant,
     picture: u8,
@@ -44,11 +44,11 @@ pub struct Shown {
 /// The ball of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownBall {
-    /// Where it is, above the ground or on it.
+    /// Position above or on the ground, m.
     pub position: geometry::Point<Field>,
-    /// How it moves along the ground, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// How high it is, m.
+    /// Height, m.
     pub height: f32,
     at: Instant,
 }
@@ -58,13 +58,13 @@ pub struct ShownBall {
 pub struct Picture {
     me: RobotId,
     number: Option<u8>,
-    /// When the newest part came.
+    /// Arrival of the newest part.
     heard: Instant,
     /// Parts of this snapshot that were received, a bit each.
     parts: u8,
     /// The phase of the game.
     phase: Option<Phase<Side>>,
-    /// Where the ball is to be placed.
+    /// Target of a ball placement.
     placement: Option<geometry::Point<Field>>,
     ball: Option<ShownBall>,
     robots: [[Option<Shown>; RobotId::COUNT]; 2],
@@ -140,7 +140,7 @@ impl Picture {
         self.carry_own_to(now);
     }
 
-    /// When the newest part came; `None` before the first.
+    /// Arrival of the newest part; `None` before the first.
     pub fn heard(&self) -> Option<Instant> {
         self.number.map(|_| self.heard)
     }
@@ -150,7 +150,7 @@ impl Picture {
         self.phase
     }
 
-    /// Where the ball is to be placed, while that matters.
+    /// Target of a ball placement, while one is running.
     pub fn placement(&self) -> Option<geometry::Point<Field>> {
         self.placement
     }
@@ -265,7 +265,8 @@ fn shown_ball(now: Instant, ball: WireBall) -> ShownBall {
 const ROBOT_LEASE: Duration = Duration::millis(200);
 /// The ball too; longer, as it is hidden often.
 const BALL_LEASE: Duration = Duration::millis(500);
-/// How long odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an estimate).
+/// Maximum time for which odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an
+/// estimate).
 const OWN_LEASE: Duration = Duration::millis(500);
 /// After this silence any snapshot is a new one.
 const SILENCE: Duration = Duration::millis(300);

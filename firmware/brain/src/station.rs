@@ -23,7 +23,7 @@ pub struct Station<'a> {
 }
 
 impl<'a> Station<'a> {
-    /// A robot that wakes up at `now`.
+    /// A robot that starts at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
         Self::with_keys(now, config, base, TeamKey::ZERO.of_robot(config.robot))
     }
@@ -98,12 +98,12 @@ impl<'a> Station<'a> {
         Some(self.link.seal(&message))
     }
 
-    /// What the body shall do, if something new was decided.
+    /// The actuator orders, if there are new ones.
     pub fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame> {
         self.brain.poll_actuators(now)
     }
 
-    /// When to call [`Station::handle_timeout`], if nothing else happens before.
+    /// Time at which [`Station::handle_timeout`] must be called without an earlier input.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.brain.poll_timeout()
     }

@@ -34,7 +34,7 @@ impl Timer {
 #[derive(Clone, Debug, Default)]
 pub struct TimerTable {
     slots: [Slot; Timer::COUNT],
-    /// The first deadline of those that run: asked for after every packet, changed far more rarely.
+    /// The first deadline of those that run: read after every packet, changed far more rarely.
     first: Option<Instant>,
 }
 

@@ -14,7 +14,7 @@ use rules::{Duty, League, Phase, Side};
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 const DUTIES: [Duty; 3] = [Duty::Keeper, Duty::Taker, Duty::Player];
 const STEP: f32 = 0.01;
-/// What the controller gives teams to prepare, s.
+/// Time that the controller gives teams to prepare, s.
 const TIME: f32 = 10.0;
 /// A robot that has to move stands no longer than this, s.
 const STANDS: f32 = 1.0;
@@ -87,7 +87,7 @@ impl Player {
         self.belief.pose.position
     }
 
-    /// Where it must not be, if it is there.
+    /// Reason why it must not be where it is, if any.
     fn offence(&self) -> Option<Why> {
         let (belief, game) = (&self.belief, &self.belief.game);
         let field = belief.league().field();
@@ -147,7 +147,7 @@ fn ball(dice: &mut Dice, league: League, phase: Phase<Side>, own: GoalEnd) -> (P
     (at, dice.on_carpet(league, 0.5))
 }
 
-/// In a goal's walls no robot can be.
+/// Whether the point is inside a goal's walls, where no robot can be.
 fn in_walls(league: League, at: Point<Field>) -> bool {
     let field = league.field();
     let (x, y) = (at.x().abs() - 0.5 * field.length, at.y().abs());
@@ -202,7 +202,7 @@ fn alone(phases: &[Phase<Side>], starts: u32, obstacles: usize, may_fail: usize)
     judge(drives, &failed, may_fail);
 }
 
-/// One drive; what was wrong with it, if anything was.
+/// One drive; returns its failure, if any.
 fn one(
     dice: &mut Dice,
     (league, phase, own, duty): (League, Phase<Side>, GoalEnd, Duty),

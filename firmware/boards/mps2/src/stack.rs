@@ -27,7 +27,7 @@ fn end() -> *const u32 {
 }
 
 unsafe extern "C" {
-    // The linker script's (`cortex-m-rt`): only their addresses mean something.
+    // Symbols of the linker script (`cortex-m-rt`): only their addresses have a meaning.
     static _stack_start: u8;
     static _stack_end: u8;
 }

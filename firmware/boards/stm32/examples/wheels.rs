@@ -16,7 +16,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     use embassy_time::Timer;
 
     const NAMES: [&str; 4] = ["front right", "back right", "back left", "front left"];
-    /// Of the battery's voltage: a wheel without load runs 1 m/s at the rim.
+    /// Duty cycle, share of the battery's voltage: a wheel without load runs 1 m/s at the rim.
     const DUTY: f32 = 0.16;
 
     // One task is enough.

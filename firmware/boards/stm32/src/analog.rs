@@ -49,7 +49,7 @@ impl Analog {
     }
 }
 
-/// Of full range, 16 bits.
+/// Share of full range, 16 bits.
 fn share(raw: u16) -> f32 {
     f32::from(raw) * (1.0 / 65_535.0)
 }

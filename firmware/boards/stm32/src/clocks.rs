@@ -1,5 +1,5 @@
-//! `clocks`: clock tree. 400 MHz from a quartz of 8 MHz: what every revision of the chip bears (480 MHz is
-//! for later ones).
+//! `clocks`: clock tree. 400 MHz from a quartz of 8 MHz: the maximum for every revision of the chip (480 MHz
+//! is for later ones).
 
 use embassy_stm32::Config;
 use embassy_stm32::rcc::{

@@ -8,7 +8,7 @@ use runtime::wheel::WHEELS;
 
 use crate::pins;
 
-/// The four counters, and what their counts mean.
+/// The four counters, and the conversion of their counts.
 pub struct Encoders {
     front_right: Qei<'static, TIM2>,
     back_right: Qei<'static, TIM3>,
@@ -46,10 +46,10 @@ impl Encoders {
     }
 }
 
-/// Of a wheel, m: 27 mm, as most robots' (to be set for yours).
+/// Radius of a wheel, m: 27 mm, as most robots' (to be set for yours).
 const WHEEL_RADIUS: f32 = 0.027;
-/// Edges a turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours; negative where it counts down
-/// when the wheel turns the robot counter-clockwise).
+/// Counts per turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours;
+/// negative where it counts down when the wheel turns the robot counter-clockwise).
 const COUNTS_A_TURN: f32 = 4096.0;
 /// Distance of the rim for a count, m.
 pub const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * WHEEL_RADIUS / COUNTS_A_TURN;

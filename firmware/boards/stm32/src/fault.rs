@@ -1,8 +1,8 @@
 //! `fault`: fault handler: everything off, crash record kept and reported, restart
 //! (docs/architecture.md §6.2).
 //!
-//! The record lies in the calendar's backup registers: a reset leaves them alone, and unlike memory they have no check bits that a
-//! power-up would leave wrong.
+//! The record is kept in the calendar's backup registers: a reset leaves them alone, and unlike memory they
+//! have no check bits that a power-up would leave wrong.
 
 use core::panic::PanicInfo;
 
@@ -27,14 +27,14 @@ pub struct Life {
 }
 
 impl Life {
-    /// Where the last panic was: file and line.
+    /// File and line of the last panic.
     pub fn place(&self) -> &str {
         let place = self.place.get(..self.place_len).unwrap_or_default();
         core::str::from_utf8(place).unwrap_or("an unreadable place")
     }
 }
 
-/// Counts this start; call once, after the clocks are started.
+/// Counts this start; must be called once, after the clocks are started.
 pub fn life() -> Life {
     let reset = pac::RCC.rsr().read();
     pac::RCC.rsr().modify(|flags| flags.set_rmvf(true));
@@ -83,7 +83,7 @@ fn ended(how: Ending<'_>) -> ! {
         write(register, u32::from_le_bytes(*word));
     }
     cortex_m::asm::dsb();
-    // Last: the log itself may be what failed.
+    // Last, because the log itself may be what failed.
     if let Ok(text) = core::str::from_utf8(place.get(..len).unwrap_or_default()) {
         defmt::error!("panic at {=str}; everything off, starting anew", text);
     }

@@ -13,7 +13,7 @@ use embassy_stm32::peripherals::FLASH;
 use protocol::provision::PAGE_LEN;
 use runtime::ledger::{self, CELL_LEN, Cell, Place};
 
-/// What provisioning wrote.
+/// The provisioned page.
 pub fn page() -> &'static [u8] {
     // SAFETY: flash behind the firmware (memory.x), of a sector that this program never writes.
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }
@@ -56,8 +56,8 @@ fn write(
     flash.blocking_write(offset(at), &ledger::cell(epoch))
 }
 
-/// A cell as it is. One that was written while the power went may have wrong check bits, and reading it is a fault: such a fault is
-/// let pass here, and what comes instead is no cell.
+/// The content of a cell. A cell that was written while the power went may have wrong check bits, and reading
+/// it is a fault: such a fault is tolerated here, and the bytes read are no valid cell.
 fn read(at: Place) -> Cell {
     let mut bytes = [0; CELL_LEN];
     let address = START + offset(at);
@@ -90,7 +90,7 @@ fn unfaulted(work: impl FnOnce()) {
     }
 }
 
-/// From the flash's start.
+/// Offset of a cell from the flash's start, bytes.
 fn offset(at: Place) -> u32 {
     HALVES + SECTOR * at.half as u32 + (CELL_LEN * at.index) as u32
 }
@@ -100,7 +100,7 @@ const START: u32 = 0x0800_0000;
 const HALVES: u32 = 0x001a_0000;
 const PAGE: u32 = 0x001e_0000;
 const SECTOR: u32 = 0x0002_0000;
-/// Of a half.
+/// Number of cells in a half.
 const CELLS: usize = SECTOR as usize / CELL_LEN;
 /// A cell that does not keep what is written is skipped.
 const TRIES: usize = 3;

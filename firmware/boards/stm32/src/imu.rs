@@ -9,7 +9,7 @@ use embassy_time::Timer;
 
 use crate::pins;
 
-/// The sensor.
+/// The IMU on its bus.
 pub struct Imu {
     bus: Spi<'static, Blocking, Master>,
     select: Output<'static>,
@@ -35,14 +35,14 @@ impl From<Error> for ImuError {
 /// A reading, in the sensor's axes.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Reading {
-    /// g.
+    /// Acceleration, g.
     pub acceleration: [f32; 3],
-    /// rad/s.
+    /// Turning rate, rad/s.
     pub rate: [f32; 3],
 }
 
 impl Imu {
-    /// Not asked for anything yet.
+    /// A sensor without any transfer yet.
     pub fn new(parts: pins::Imu) -> Self {
         let mut config = Config::default();
         config.mode = MODE_3;
@@ -51,7 +51,7 @@ impl Imu {
         Self { bus, select: Output::new(parts.select, Level::High, Speed::Low) }
     }
 
-    /// Asks for its name and starts it: 2,000 degrees a second, 16 g, 1,000 readings a second.
+    /// Reads its identification and starts it: 2,000 degrees a second, 16 g, 1,000 readings a second.
     pub async fn start(&mut self) -> Result<(), ImuError> {
         self.write(DEVICE_CONFIG, 1)?;
         // After a reset it needs a millisecond.
@@ -63,7 +63,7 @@ impl Imu {
         self.write(GYRO_CONFIG0, RATE_1_KHZ)?;
         self.write(ACCEL_CONFIG0, RATE_1_KHZ)?;
         self.write(PWR_MGMT0, BOTH_LOW_NOISE)?;
-        // No register may be written for 200 µs; the gyroscope needs 45 ms to be of use.
+        // No register may be written for 200 µs; the gyroscope is valid after 45 ms.
         Timer::after_millis(45).await;
         Ok(())
     }

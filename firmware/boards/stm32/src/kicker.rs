@@ -19,7 +19,7 @@ pub struct Kicker {
 }
 
 impl Kicker {
-    /// Running empty.
+    /// A kicker that discharges.
     pub fn new(parts: pins::Kicker) -> Self {
         let (coils, charger, hold) = pulse::of(parts);
         Self { coils, charger, hold: Output::new(hold, Level::Low, Speed::Low) }

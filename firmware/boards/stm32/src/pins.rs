@@ -16,7 +16,7 @@ macro_rules! parts {
             }
         )*
 
-        /// All that is on the board.
+        /// All parts of the board.
         #[allow(missing_debug_implementations, reason = "pins have none")]
         pub struct Parts {
             $(#[doc = concat!("[`", stringify!($part), "`].")] pub $field: $part,)*
@@ -108,7 +108,7 @@ parts! {
         alarm: PB14, "out: red, lit when nobody can command the robot";
     }
 
-    /// What keeps the robot in order.
+    /// Watchdog and backup registers.
     Keeper keeper {
         watchdog: IWDG1, "resets the chip";
         flash: FLASH, "keeps the ledger of starts";

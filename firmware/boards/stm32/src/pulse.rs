@@ -14,7 +14,7 @@ use protocol::Duration;
 
 use crate::pins;
 
-/// Which coil.
+/// Coil to fire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coil {
     /// The flat kicker's.
@@ -30,7 +30,7 @@ pub struct Coils {
 }
 
 impl Coils {
-    /// Both without current.
+    /// Both coils without current.
     fn new(timer: Peri<'static, TIM15>, flat: Flex<'static>, chip: Flex<'static>) -> Self {
         let mut timer = Timer::new(timer);
         timer.set_tick_freq(Hertz::mhz(1));
@@ -83,7 +83,7 @@ pub struct Charger {
 }
 
 impl Charger {
-    /// Off.
+    /// Charger switched off.
     fn new(timer: Peri<'static, TIM16>, pin: Flex<'static>) -> Self {
         let mut timer = Timer::new(timer);
         timer.set_tick_freq(Hertz::mhz(1));
@@ -108,7 +108,7 @@ impl Charger {
         registers.cr1().modify(|control| control.set_cen(true));
     }
 
-    /// Off now.
+    /// Switches off at once.
     pub fn stop(&mut self) {
         let registers = self.timer.regs_1ch_cmp();
         registers.cr1().modify(|control| control.set_cen(false));
@@ -129,7 +129,7 @@ fn wire(pin: Peri<'static, impl Pin>, function: u8) -> Flex<'static> {
     pin
 }
 
-/// No pulse is longer, however it is asked for; the kicker's own table ends there.
+/// No pulse is longer, for any request; the kicker's own table ends there.
 pub const PULSE_MAX: Duration = Duration::millis(6);
 /// How long the charger runs on without another request: three steps of the kicker.
 pub const CHARGE_RUNS_ON: Duration = Duration::millis(3);

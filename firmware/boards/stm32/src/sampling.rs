@@ -15,18 +15,18 @@ use runtime::sense::{Barrier, Tilt, Turn};
 use crate::analog::Analog;
 use crate::imu::Imu;
 
-/// What was read last.
+/// The last reading of all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Sample {
-    /// How fast the body turns, rad/s, counter-clockwise.
+    /// Turning rate of the body, rad/s, counter-clockwise.
     pub turn: Option<f32>,
-    /// It lies on its side.
+    /// The robot lies on its side.
     pub tipped: bool,
     /// The beam is interrupted.
     pub ball: bool,
-    /// V.
+    /// Battery voltage, V.
     pub battery: f32,
-    /// V.
+    /// Capacitor voltage, V.
     pub capacitor: f32,
 }
 
@@ -35,7 +35,8 @@ impl Sample {
         Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
 }
 
-/// The newest sample, as long as it is young; else nothing is known, and a battery of which nothing is known brakes the robot.
+/// The newest sample, if it is recent enough; else all readings are unknown, and an unknown battery brakes
+/// the robot.
 pub fn newest() -> Sample {
     let (at, sample) = NEWEST.lock(Cell::get);
     if at.elapsed() < STALE { sample } else { Sample::NONE }
@@ -81,7 +82,7 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
     }
 }
 
-/// What the brain asks for.
+/// The probes that the brain reads.
 pub struct Probes;
 
 impl ports::Probes for Probes {
@@ -95,9 +96,9 @@ static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =
     CriticalSectionMutex::new(Cell::new((Instant::MIN, Sample::NONE)));
 /// As the control loop.
 const STEP: Duration = Duration::from_millis(1);
-/// Ten steps.
+/// Maximum age of a sample: ten steps.
 const STALE: Duration = Duration::from_millis(10);
-/// How often a sensor that is silent is asked again.
+/// Period in which a silent sensor is tried again.
 const ASKED_AGAIN: Duration = Duration::from_secs(1);
-/// The sensor's axis that points up when it lies flat on the board.
+/// Index of the sensor's axis that points up when it lies flat on the board.
 const UP: usize = 2;

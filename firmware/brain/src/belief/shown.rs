@@ -23,13 +23,13 @@ pub(super) struct Handling {
     touched: Option<Instant>,
     /// Ball position at the start of this touch.
     from: Option<Point<Field>>,
-    /// How high the ball is, m.
+    /// Height of the ball, m.
     height: f32,
     /// Break-beam sensor in the present step.
     contact: bool,
     /// Start time of this touch.
     since: Option<Instant>,
-    /// How long it has lasted, s.
+    /// Duration of this touch, s.
     held: f32,
     /// Since when this robot and an opponent have both been at the ball.
     disputed: Option<Instant>,
@@ -79,7 +79,7 @@ impl Belief {
         self.handling.height > IN_THE_AIR
     }
 
-    /// How far the ball has been carried since it was touched first, m.
+    /// Distance over which the ball has been carried since the first touch, m.
     pub fn carried(&self) -> f32 {
         match (self.handling.from, self.holds_ball) {
             (Some(from), true) => from.distance(self.mouth()),
@@ -166,7 +166,7 @@ fn is_at_mouth(pose: Pose<Field>, ball: Point<Field>) -> bool {
 const BEYOND: f32 = 0.1;
 /// The break-beam sensor may miss the ball for at most this time: a few turns of the ball on the roller.
 const BRIDGED: Duration = Duration::millis(60);
-/// A robot whose centre is so near to the ball is at it, m: half a body more than where it touches.
+/// A robot whose centre is this near the ball is at it, m: half a body more than where it touches.
 const AT_BALL: f32 = 0.2;
 /// A faster ball is not stuck between two robots, m/s.
 const SLOW: f32 = 0.5;

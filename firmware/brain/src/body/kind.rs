@@ -13,7 +13,7 @@ use rules::League;
 /// A kind of body that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Four legs.
+    /// A body with four legs.
     Legged(Legs),
     /// Four omnidirectional wheels.
     Wheeled(Wheels),

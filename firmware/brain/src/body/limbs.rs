@@ -19,9 +19,9 @@ use crate::mates::Mates;
 #[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
 #[derive(Clone, Debug)]
 pub enum Limbs {
-    /// Four legs.
+    /// Actuation of four legs.
     Legs(kind::Legs),
-    /// Four wheels.
+    /// Actuation of four wheels.
     Wheels(kind::Wheels, Wheels),
 }
 
@@ -35,7 +35,7 @@ pub struct Wheels {
 }
 
 impl Limbs {
-    /// Of that league's robots.
+    /// Actuation for that league's robots.
     pub fn of(league: League) -> Self {
         match Kind::of(league) {
             Kind::Legged(built) => Self::Legs(built),
@@ -101,7 +101,7 @@ impl Limbs {
         self.reasons().has(Why::Battery)
     }
 
-    /// The order that makes the body do `intent`, as far as it may.
+    /// The order that makes the body do `intent`, within its limits.
     pub fn act(
         &mut self,
         now: Instant,
@@ -142,5 +142,5 @@ impl Limbs {
 
 /// 20 beacons a second, in steps of 10 ms (docs/architecture.md §2.3, §5.1).
 const BEACON_STEPS: u8 = 5;
-/// No rim is asked to run faster, m/s: below what wheels run free (the simulator's 6).
+/// Largest rim speed ordered, m/s: below what wheels run free (the simulator's 6).
 const RIM_MAX: f32 = 5.0;

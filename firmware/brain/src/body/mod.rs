@@ -18,17 +18,17 @@ use crate::skills::{Reception, Step};
 pub use kind::Kind;
 pub use limbs::Limbs;
 
-/// What the robot wants of its body for the coming step. Points and angles of the field.
+/// Motion or primitive wanted for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intent {
     /// Stay, turning to this heading if one is given.
     Stand {
-        /// Where to look.
+        /// Heading to turn to; `None` keeps the present one.
         face: Option<Angle>,
     },
     /// Go to a place, around robots, and end facing `face`.
     Walk {
-        /// Where to.
+        /// Target position.
         to: Point<Field>,
         /// Heading at the end.
         face: Angle,
@@ -37,12 +37,12 @@ pub enum Intent {
     },
     /// Turn on the spot, with the ball or without.
     Turn {
-        /// To this heading.
+        /// Heading of the kick.
         heading: Angle,
     },
     /// On legs: walk with the ball held.
     Carry {
-        /// Where to.
+        /// Target position.
         to: Point<Field>,
     },
     /// On legs: take the ball.
@@ -73,9 +73,9 @@ impl Intent {
 /// Properties of a body that planning depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySpec {
-    /// How fast it goes from place to place, m/s.
+    /// Average speed from place to place, m/s.
     pub speed: f32,
-    /// How fast it goes with the ball, m/s.
+    /// Average speed with the ball, m/s.
     pub carry_speed: f32,
     /// A quarter turn with the ball, s.
     pub turn: f32,
@@ -105,13 +105,13 @@ pub struct BodySpec {
 
 /// A kind of body: its numbers and its skills in the case language.
 pub trait Body: Sync {
-    /// Its numbers.
+    /// Properties of this body.
     fn spec(&self) -> &'static BodySpec;
 
     /// Moves to the ball and takes it; faces `onwards` afterwards unless that loses a race.
     fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step;
 
-    /// Goes for a ball that has been passed to this robot.
+    /// Receives a ball that has been passed to this robot.
     fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception;
 
     /// Brings the ball held to a place.

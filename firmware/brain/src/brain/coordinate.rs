@@ -1,4 +1,4 @@
-//! What concerns the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
+//! Coordination of the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
 //! docs/architecture.md §5).
 
 use casebase::CaseRobot;
@@ -30,7 +30,7 @@ impl Brain<'_> {
         match &state.decision {
             Decision::Undecided => self.timers.set(Timer::NoDecision, now + DECISION_PATIENCE),
             Decision::NoCase => self.timers.set(Timer::Retry, now + RETRY_AFTER),
-            // Where no case was found nothing was played that there is to stop after.
+            // Without a case no gameplay was run that robots would pause after.
             Decision::Closed(closure)
                 if *closure != Closure::NoCase && self.config.pause_after_cycle > Duration(0) =>
             {
@@ -243,9 +243,9 @@ impl Brain<'_> {
 /// Between being present and proposing: three steps of a walking robot, in which robots that booted at the
 /// same moment receive each other's beacons.
 const SETTLE_FOR: Duration = Duration::millis(120);
-/// How long the coordinator may keep its decision to itself: one lease.
+/// Maximum delay of the coordinator's decision: one lease.
 const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
-/// How soon the coordinator tries again after "no case": six steps of a walking robot.
+/// Delay before the coordinator tries again after "no case": six steps of a walking robot.
 const RETRY_AFTER: Duration = Duration::millis(240);
 /// A faster ball is intercepted before it stops, m/s: it rolls 1.4 m and 2.9 s (v²/0.7, v/0.35).
 const ON_ITS_WAY: f32 = 1.0;

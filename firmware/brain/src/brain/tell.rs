@@ -14,7 +14,7 @@ use crate::governor::{Ruling, Why};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spoken {
     beacon: Option<Instant>,
-    /// Steps, counted round: see [`Spoken::has_turn`].
+    /// Step counter, wrapping: see [`Spoken::has_turn`].
     steps: u8,
     telemetry: Option<(Instant, Condition)>,
     /// The host that leads has not yet received telemetry that names it.
@@ -105,14 +105,14 @@ impl Brain<'_> {
             return None;
         }
         (self.spoken.telemetry, self.spoken.new_host) = (Some((now, condition)), false);
-        // In 0.1 ms: the host takes its round trips from it.
+        // In 0.1 ms: the host computes its round trips from it.
         let silence = arrived.map_or(u64::MAX, |last| now.since(last).0 / 100);
         let battery = self.spoken.battery.map_or(0.0, |volts| volts * 100.0);
         Some(Telemetry {
             condition,
             battery: battery.clamp(0.0, f32::from(u16::MAX)) as u16,
             silence: silence.min(u64::from(u16::MAX)) as u16,
-            // What the link knows, the link fills in.
+            // The link fills in its own counters.
             ..Telemetry::default()
         })
     }

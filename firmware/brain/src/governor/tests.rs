@@ -117,7 +117,7 @@ fn braking_from_3_m_per_s_at_the_limit_takes_0_6_s_and_then_it_stands() {
             break;
         }
     }
-    // Sixty steps of 50 mm/s, and one for what rounding leaves.
+    // Sixty steps of 50 mm/s, and one for rounding.
     assert!((60..=61).contains(&steps), "{steps}");
 }
 

@@ -33,7 +33,7 @@ pub struct Reactive {
 }
 
 impl Reactive {
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
     }
@@ -43,7 +43,7 @@ impl Reactive {
         *self = Self::default();
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,
@@ -164,7 +164,7 @@ fn disputed(belief: &Belief, ball: &Ball) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < DISPUTED_WITHIN)
 }
 
-/// The hard kick where it stays within the lines, else the soft one.
+/// The hard kick if it stays within the lines, else the soft one.
 fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
     let (_, length) = legged::nominal(LeggedKick::ForwardHard);
     let end = ball.position + Vector::polar(length, direction);
@@ -200,7 +200,7 @@ fn beside(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
         let direction = to_goal + if left { SUPPORT_ANGLE } else { -SUPPORT_ANGLE };
         ball.position + Vector::polar(SUPPORT_DISTANCE, direction)
     };
-    // The other side where this one lies outside the field.
+    // The other side where this place is outside the field.
     let side = if field.contains(place(left)) || !field.contains(place(!left)) { left } else { !left };
     field.clamp(place(side), KEEP_INSIDE)
 }
@@ -270,9 +270,9 @@ const BLOCKED_WITHIN: f32 = 0.4;
 const DISPUTED_WITHIN: f32 = 0.5;
 /// An opponent in this half angle about the goal's direction blocks a forward kick.
 const BLOCKED_ANGLE: f32 = 0.8;
-/// Diagonally: 45°.
+/// Angle of a dodge: diagonally, 45°.
 const DODGE_ANGLE: Angle = Angle::const_new(core::f32::consts::FRAC_PI_4);
-/// Where the dodge leads, m ahead.
+/// Length of a dodge, m ahead.
 const DODGE_STEP: f32 = 0.5;
 /// A ball may be held for 3 s by the league's rule; dodge for half of it.
 const DODGE_FOR: Duration = Duration::millis(1500);
@@ -292,7 +292,7 @@ const FIRST_BY: f32 = 0.5;
 const INNER_SIDE: f32 = 0.05;
 /// A hard kick should end this far within the lines, m: half of its scatter in distance.
 const KICK_INSIDE: f32 = 0.3;
-/// A ball this far off the field's long axis lies on one side, m.
+/// A ball this far off the field's long axis is on one side, m.
 const ACROSS_FROM: f32 = 0.3;
 /// A robot that waits across the field waits this far ahead of the ball, m: within one pass and one
 /// adaptation.

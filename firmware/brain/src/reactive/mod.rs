@@ -13,10 +13,10 @@ use crate::body::Intent;
 use crate::body::kind::{self, Kind};
 use crate::mates::Mates;
 
-/// How much of the behaviour is wanted.
+/// Extent of the behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// All of it.
+    /// The whole behaviour.
     Full,
     /// Keep near the ball, leave it to others: a robot that waits for the end of a gameplay.
     KeepNear,
@@ -42,7 +42,7 @@ impl Reactive {
         }
     }
 
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         match self {
             Self::Legged(_, legs) => legs.role(),
@@ -58,7 +58,7 @@ impl Reactive {
         }
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,

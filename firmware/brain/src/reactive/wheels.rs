@@ -24,7 +24,7 @@ pub struct Reactive {
 }
 
 impl Reactive {
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
     }
@@ -34,7 +34,7 @@ impl Reactive {
         *self = Self::default();
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,
@@ -60,7 +60,7 @@ impl Reactive {
         }
         let face = ball.position.direction_to(goal);
         if freedom == Freedom::Approach && !contested(belief, &ball) {
-            // Between two gameplays: near enough, but the ball lies as the next one will find it.
+            // Between two gameplays: near enough, but without moving the ball before the next one.
             let behind = ball.rest - Vector::polar(APPROACH, face);
             return Drive::shy(behind, face).into();
         }
@@ -137,9 +137,9 @@ fn contested(belief: &Belief, ball: &Ball) -> bool {
 const APPROACH: f32 = 0.3;
 /// An opponent this near the ball is about to have it, m.
 const CONTESTED: f32 = 0.6;
-/// From here the goal is shot at, m.
+/// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.5;
-/// A shot with that much room beside bodies' reach is taken, m.
+/// A shot with that much room beyond the reach of bodies is taken, m.
 const OPEN: f32 = 0.03;
 /// It checks this far ahead for opponents on its path, m.
 const LOOKS_AHEAD: f32 = 0.6;
@@ -147,7 +147,7 @@ const LOOKS_AHEAD: f32 = 0.6;
 const BLOCKS: f32 = 0.25;
 /// A ball is carried no farther, m: the rules' metre, less what it takes to kick.
 const CARRIES: f32 = 0.55;
-/// Nearer to the goal's centre carrying on gains nothing, m.
+/// Nearer to the goal's centre carrying on has no benefit, m.
 const TOO_NEAR: f32 = 1.8;
 /// The robot that goes for the ball keeps it unless another is nearer by this, m.
 const KEEPS: f32 = 0.3;

@@ -8,16 +8,16 @@ pub mod wheels;
 
 use crate::body::Intent;
 
-/// How a skill stands after a step.
+/// Result of a step of a skill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Go on, wanting this.
+    /// The skill continues with this intent.
     Running(Intent),
-    /// It is done.
+    /// The skill is done.
     Done,
 }
 
-/// How a reception stands.
+/// Result of a step of a reception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reception {
     /// Moving to the ball, or to its stop position.

@@ -13,14 +13,14 @@ pub struct Cycle {
     learned_asleep: bool,
     /// Own progress in it.
     pub progress: Progress,
-    /// Some robot of the case has had the ball.
+    /// Some robot of the case has touched the ball.
     pub touched: bool,
 }
 
-/// What adopting a state meant.
+/// Effect of adopting a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News {
-    /// Nothing new.
+    /// The state was known.
     Known,
     /// More about the cycle, but no other gameplay.
     More,
@@ -34,7 +34,7 @@ impl Cycle {
         Self { me, state: None, learned_asleep: false, progress: Progress::Idle, touched: false }
     }
 
-    /// What is known.
+    /// The newest cycle state known.
     pub fn state(&self) -> Option<&CycleState> {
         self.state.as_ref()
     }
@@ -49,7 +49,7 @@ impl Cycle {
         self.state.as_ref().and_then(CycleState::play)
     }
 
-    /// How the newest cycle ended, if it did.
+    /// The end of the newest cycle, if it has ended.
     pub fn closure(&self) -> Option<Closure> {
         match self.state.as_ref()?.decision {
             Decision::Closed(closure) => Some(closure),

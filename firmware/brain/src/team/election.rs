@@ -6,7 +6,7 @@ use protocol::{CycleId, Instant, RobotId};
 
 use crate::mates::Mates;
 
-/// The robot whose task it is to propose cycles.
+/// The robot that must propose cycles.
 pub fn elector(now: Instant, me: RobotId, mates: &Mates) -> RobotId {
     mates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
 }

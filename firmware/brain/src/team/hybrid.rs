@@ -51,7 +51,8 @@ fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
     duration + left.map_or(0.0, |ball| until_shot(scene, ball))
 }
 
-/// Expected seconds from having come to a ball that lies at `ball` until a shot: grabs, and short kicks on until the goal is in reach.
+/// Expected seconds from reaching a ball at `ball` until a shot: grabs, and short kicks on until the goal is
+/// in reach.
 fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
     let mut pushes = 0.0;
@@ -71,11 +72,11 @@ const MARGIN: f32 = 1.0;
 /// An opponent this far ahead of the ball, and this far beside its path to the goal, will dispute it, m: what
 /// it walks in 3 s.
 const DUEL_AHEAD: f32 = 1.0;
-/// See [`DUEL_AHEAD`].
+/// Sideways limit, m; see [`DUEL_AHEAD`].
 const DUEL_BESIDE: f32 = 0.6;
-/// What a duel takes, s: a few grabs by either side.
+/// Duration of a duel, s: a few grabs by either side.
 const DUEL: f32 = 6.0;
-/// From this far shots have a chance, m: a hard kick (2.15 m) less its scatter in length.
+/// Distance up to which shots can reach the goal, m: a hard kick (2.15 m) less its scatter in length.
 const SHOT_FROM: f32 = 1.6;
 /// A short kick's nominal distance, m.
 const PUSH: f32 = 0.8;

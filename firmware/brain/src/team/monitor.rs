@@ -1,5 +1,5 @@
-//! `monitor`: monitoring of a running case. What every robot involved watches while it plays
-//! (docs/architecture.md §5.3, docs/papers.md R27).
+//! `monitor`: monitoring of a running case by every robot involved (docs/architecture.md §5.3, docs/papers.md
+//! R27).
 //!
 //! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
 //! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
@@ -64,5 +64,5 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
 }
 
-/// How far outside a leg's trapezoid a resting ball is still where the case expects it, m.
+/// Distance outside a leg's trapezoid up to which a stationary ball is still where the case expects it, m.
 const STRAY: f32 = 0.3;

@@ -11,7 +11,7 @@ use protocol::{Instant, RobotId};
 use crate::belief::Belief;
 use crate::mates::Mates;
 
-/// The problem as this robot believes it; `None` while no ball is known.
+/// The problem from this robot's belief; `None` while no ball is known.
 pub fn problem(
     now: Instant,
     me: RobotId,

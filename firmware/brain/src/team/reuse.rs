@@ -8,12 +8,12 @@ use crate::config::Positioning;
 use crate::execution::{Execution, Outcome, Scene, face_ball};
 use crate::timer::TimerTable;
 
-/// What a step of reuse wants.
+/// Result of a step of reuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wish {
     /// This of the body.
     Body(Intent),
-    /// Nothing: this robot's part is over, default behaviour.
+    /// This robot's part is over: default behaviour.
     Nothing,
     /// The cycle's end.
     Abort(AbortReason),

@@ -1,6 +1,6 @@
 //! `math_hash`: golden-hash test of `geometry::math` and of the runtime's memory copy on the target. Prints
-//! the golden hash of `geometry::math` (docs/architecture.md §2.4); exit code 0 if it is the PC's and the
-//! runtime's copying moves exactly the bytes it shall, else 1.
+//! the golden hash of `geometry::math` (docs/architecture.md §2.4); exit code 0 if it equals the PC's and the
+//! runtime's memory copy moves exactly the requested bytes, else 1.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -28,7 +28,7 @@ mod measure {
         instructions::start(core.SYST);
         let base = CaseBase::from_bytes(behind_header(memory(TABLE_ADDRESS))).expect("a table in memory");
         let settings = Settings::default();
-        // What counting itself takes.
+        // Instructions of the counting itself.
         let ((), idle) = counted(|| ());
         for problem in problems(memory(PROBLEMS_ADDRESS)) {
             let (best, first) = counted(|| retrieve_best(black_box(&base), black_box(&problem), &settings));

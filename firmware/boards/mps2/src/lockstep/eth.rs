@@ -29,17 +29,17 @@ pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     INT_STS.write(u32::MAX);
     INT_EN.write(INT_RX_STATUS_LEVEL);
     IRQ_CFG.write(IRQ_CFG_ENABLE | IRQ_CFG_ACTIVE_HIGH | IRQ_CFG_PUSH_PULL);
-    // SAFETY: the interrupt does no more than `acknowledge`; nothing else stands on it being masked.
+    // SAFETY: the interrupt only runs `acknowledge`; no other code relies on it being masked.
     unsafe { NVIC::unmask(EthernetIrq) }
     Some((Inlet { frame: [0; FRAME_WORDS] }, Outlet { frame: [0; FRAME_WORDS] }))
 }
 
-/// What the controller's interrupt does; the frame itself is fetched outside.
+/// Handles the controller's interrupt; the frame itself is fetched outside.
 pub(crate) fn acknowledge() {
     INT_STS.write(u32::MAX);
 }
 
-/// How many frames came that were none of ours, or too long.
+/// Number of foreign or too long frames.
 pub(crate) static STRANGE_FRAMES: AtomicU32 = AtomicU32::new(0);
 
 /// Takes frames from the controller.
@@ -74,7 +74,7 @@ impl Inlet {
     }
 }
 
-/// Where in a frame its message lies, if the frame is one of ours.
+/// Range of the message in a frame, if the frame is one of ours.
 fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
     let (header, rest) = frame?.split_first_chunk::<HEADER_LEN>()?;
     let (len, rest) = rest.split_first_chunk::<2>()?;

@@ -1,5 +1,4 @@
-//! `library`: the case library of this robot. Those put into the slot, or else the ones of its league that
-//! are built in.
+//! `library`: the case library of this robot: the table in the slot, or else the built-in one of its league.
 
 use casebase::{CaseBase, TableError};
 
@@ -10,7 +9,7 @@ pub(crate) fn case_base() -> Result<CaseBase<'static>, TableError> {
     table_in_slot().map_or_else(|| Ok(built_in()), CaseBase::from_bytes)
 }
 
-/// Of the league this body plays in.
+/// The built-in case base of the league this body plays in.
 fn built_in() -> CaseBase<'static> {
     if cfg!(feature = "legged") { case_library::four_legged() } else { case_library::division_b() }
 }

@@ -75,7 +75,7 @@ fn live(clock: &Clock, tick: TickIn<'_>) {
         if BOXES.is_full() {
             clock.settle();
         }
-        // A packet longer than any frame is none of ours; a radio would not have taken it either.
+        // A packet longer than any frame is invalid; a radio would not have received it either.
         if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.hear(packet)) {
             STRANGE.fetch_add(1, Ordering::Relaxed);
         }
@@ -108,9 +108,9 @@ static STRANGE: AtomicU32 = AtomicU32::new(0);
 /// Packets sent beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
 static UNHEARD: AtomicU32 = AtomicU32::new(0);
 
-/// What the tick hands to the senses; its packets go straight into the inbox, as there is no radio here.
+/// Input of the tick for the sensor task; its packets go straight into the inbox, as there is no radio here.
 static SEEN: Channel<CriticalSectionRawMutex, SensorFrame, 1> = Channel::new();
-/// What the tasks made of the tick.
+/// Output of the tasks in this tick.
 static DONE: Mutex<RefCell<Done>> = Mutex::new(RefCell::new(Done { air: Vec::new(), actuators: None }));
 
 #[derive(Default)]

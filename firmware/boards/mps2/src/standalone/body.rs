@@ -24,7 +24,7 @@ pub(crate) fn stop() {
     VOLTS.store(0, Ordering::Relaxed);
 }
 
-/// Four wheels.
+/// Four simulated wheels.
 pub(crate) struct Motors;
 
 impl Wheels for Motors {
@@ -72,7 +72,7 @@ impl Kicker for Coil {
     }
 }
 
-/// Probes that see nothing amiss.
+/// Probes of an undisturbed robot.
 pub(crate) struct Senses;
 
 impl Probes for Senses {
@@ -90,7 +90,7 @@ fn volts() -> f32 {
 /// ms).
 const FREE_SPEED: f32 = 6.0;
 const FOLLOWS: f32 = 1.0 / 30.0;
-/// What a step of the kicker adds or takes, V: full in 0.4 s.
+/// Change of the capacitor's voltage in a step of the kicker, V: full in 0.4 s.
 const CHARGES: f32 = 0.5;
 /// A step of the kicker.
 const STEP: Duration = Duration::millis(1);

@@ -39,7 +39,7 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
             cortex_m::asm::dsb();
             cortex_m::asm::wfi();
         }
-        // SAFETY: nothing here stands on interrupts being off.
+        // SAFETY: no code here relies on interrupts being off.
         unsafe { cortex_m::interrupt::enable() };
         if work {
             // SAFETY: this is the only place that polls this executor, and no task calls this function.
@@ -48,7 +48,7 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
     }
 }
 
-/// Embassy's clock.
+/// Embassy's time driver.
 struct Time {
     /// Whole milliseconds since the start; 49 days of them.
     millis: AtomicU32,
@@ -97,7 +97,7 @@ fn pender(_executor: *mut ()) {
     WORK.store(true, Ordering::Release);
 }
 
-/// 25 MHz.
+/// Timer ticks per microsecond: 25 MHz.
 const TICKS_A_MICRO: u32 = 25;
-/// Of the timer, in its ticks: a millisecond.
+/// Period of the timer in its ticks: a millisecond.
 const PERIOD: u32 = 1_000 * TICKS_A_MICRO;

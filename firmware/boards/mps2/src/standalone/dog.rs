@@ -64,5 +64,5 @@ const INTERRUPT: u32 = 1;
 const RESET: u32 = 1 << 1;
 /// Until the first time-out.
 const PATIENCE: Duration = Duration::millis(100);
-/// In ticks of 25 MHz.
+/// The same in ticks of 25 MHz.
 const PATIENCE_TICKS: u32 = 25 * PATIENCE.0 as u32;

@@ -33,13 +33,13 @@ impl Life {
     const FIRST: Self =
         Self { boots: 0, panics: 0, place: [0; PLACE_LEN], place_len: 0, bitten: 0, magic: MAGIC };
 
-    /// Where the last panic was: file and line.
+    /// File and line of the last panic.
     pub(crate) fn place(&self) -> &[u8] {
         self.place.get(..self.place_len).unwrap_or_default()
     }
 }
 
-/// Counts this start; call once, first of all.
+/// Counts this start; must be called once, before anything else.
 pub(crate) fn life() -> Life {
     let mut life = with(|life| *life);
     if life.magic != MAGIC {
@@ -99,8 +99,8 @@ fn ended(how: Ending<'_>) -> ! {
 fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
     #[unsafe(link_section = ".uninit.life")]
     static mut LIFE: MaybeUninit<Life> = MaybeUninit::uninit();
-    // SAFETY: one processor, and no two of its users run at the same time. The record consists of whole numbers, for which
-    // every pattern of bits is a value; a start whose `magic` is wrong replaces all of it.
+    // SAFETY: one processor, and no two of its users run at the same time. The record consists of integers,
+    // for which every bit pattern is valid; a start whose `magic` is wrong replaces all of it.
     unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
 }
 

@@ -59,7 +59,7 @@ fn main() -> ! {
     })
 }
 
-/// What provisioning wrote.
+/// The provisioned page.
 fn page() -> &'static [u8] {
     // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
     unsafe { core::slice::from_raw_parts(protocol::slot::PAGE_ADDRESS as *const u8, PAGE_LEN) }

@@ -21,7 +21,7 @@ use super::register::Register;
 pub(crate) fn start() {
     BAUD_DIVIDER.write(DIVIDER_LEAST);
     CONTROL.write(TX_ON | RX_ON | TX_INTERRUPT | RX_INTERRUPT);
-    // SAFETY: the interrupts do no more than move a byte and wake a task.
+    // SAFETY: the interrupts only move a byte and wake a task.
     unsafe {
         NVIC::unmask(Irq(RX_IRQ));
         NVIC::unmask(Irq(TX_IRQ));
@@ -72,7 +72,7 @@ impl RadioReceiver for Ear {
     }
 }
 
-/// Speaks frames.
+/// Sends frames.
 pub(crate) struct Mouth;
 
 impl RadioSender for Mouth {

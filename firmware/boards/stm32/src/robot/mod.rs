@@ -50,7 +50,7 @@ fn main() -> ! {
     defmt::info!("robot {=u8}, team {=u8}, epoch {=u32}", who.robot.number(), who.team.0, epoch);
     let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
     let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
-    // The last step that may take long lies behind us.
+    // The last step that may take long is over.
     let dog = Watchdog::start(parts.keeper.watchdog);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {

@@ -61,7 +61,7 @@ impl Body for Legged {
     }
 }
 
-/// The body's kick for a kind of the library: the one it names, else by reach.
+/// The body's kick for a kick kind of the library: the one it names, else by reach.
 fn legged_kick(kind: &Kick) -> LeggedKick {
     match (kind.primitive, kind.aim) {
         (Primitive::ForwardSoft, _) => LeggedKick::ForwardSoft,

@@ -71,7 +71,7 @@ fn turn(pose: Pose<Field>, heading: Angle, limit: f32) -> f32 {
     math::clamp((heading - pose.heading).radians() * TURN_GAIN, -limit, limit)
 }
 
-/// Velocity towards `way_point`, within what the gait can do in that direction, slowing down before `end`.
+/// Velocity towards `way_point`, within the gait's limits in that direction, slowing down before `end`.
 fn step_to(pose: Pose<Field>, way_point: Point<Field>, end: Point<Field>) -> Vector<Body> {
     let Some(direction) = (way_point - pose.position).unit() else { return Vector::default() };
     let left = pose.position.distance(end);
@@ -91,7 +91,7 @@ fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of
         .iter()
         .copied()
         .chain(others)
-        // What stands where we must go cannot be walked around.
+        // A robot on the target itself cannot be walked around.
         .filter(|robot| robot.distance(to) > ROBOT_CLEARANCE)
         .map(|robot| (robot, ROBOT_CLEARANCE));
     let ball = belief.ball.filter(|_| shy_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));

@@ -37,12 +37,12 @@ struct UnderWay {
     drive: Drive,
     /// The goal, or a point past the first corner of the path to it.
     towards: Point<Field>,
-    /// It leads around something.
+    /// Whether it leads around something.
     winds: bool,
 }
 
 impl Drivetrain {
-    /// What the body shall do for `intent`.
+    /// The motion, dribbler and kick for `intent`.
     pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
         let since = self.stepped.map_or(STEP, |last| now.since(last));
         let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
@@ -76,8 +76,8 @@ impl Drivetrain {
         }
     }
 
-    /// What was let through in the end: the next plan starts from it. The body turns in the step, and `twist` is meant for the
-    /// heading in the middle of it.
+    /// Records the motion that the governor allowed: the next plan starts from it. The body turns in the
+    /// step, and `twist` is meant for the heading in the middle of it.
     pub fn told(&mut self, belief: &Belief, twist: Twist<Body>) {
         let half = half_turn(twist.angular, self.step);
         self.velocity = belief.pose.vector_to_field(twist.linear.rotated(half));
@@ -106,7 +106,7 @@ impl Drivetrain {
         let from = belief.pose.position;
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
-            // Nothing to plan.
+            // No plan is needed.
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
@@ -191,7 +191,7 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
 const EFFORT_BALL_MOVES: u32 = 100;
 /// The same while the ball is stationary.
 const EFFORT_BALL_RESTS: u32 = 115;
-/// The same while the ball is not in play: neither a case nor an interception is sought then.
+/// The same while the ball is not in play: neither a case nor an interception is computed then.
 const EFFORT_STOPPED: u32 = 230;
 /// Behind a goal line.
 const EFFORT_BEHIND_GOAL: u32 = 312;
@@ -226,10 +226,12 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     limits.slowed_to(drive.speed.min(stop))
 }
 
-/// What is planned with, free: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan can be kept.
+/// Planning limits without the ball: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan
+/// can be kept.
 pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
-/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4: it brakes a ball that it caught on the
-/// run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
+/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it sideways with 4: it brakes a
+/// ball that it caught while moving before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no
+/// harder than the roller follows.
 const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
 /// ω² · 95 mm stays below 1.2 m/s².

@@ -32,7 +32,7 @@ pub const BALL_AT: f32 = FRONT + rules::limits::BALL_RADIUS;
 pub struct Drive {
     /// Target position, at which the robot stops.
     pub to: Point<Field>,
-    /// Where to look.
+    /// Heading to turn to.
     pub face: Angle,
     /// No faster than this, m/s.
     pub speed: f32,
@@ -40,7 +40,7 @@ pub struct Drive {
     pub manner: Manner,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// What the kicker does as soon as the ball touches it, once it is armed.
+    /// Kick to fire as soon as the ball touches the kicker, once it is armed.
     pub kick: OmniKick,
     /// It is armed: the robot looks where the kick shall go.
     pub armed: bool,
@@ -51,7 +51,7 @@ pub struct Drive {
 /// How a robot treats the ball on its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
-    /// Something to go around.
+    /// An obstacle to go around.
     Shy,
     /// It is no obstacle: it may be touched.
     Bold,
@@ -60,7 +60,7 @@ pub enum Manner {
 }
 
 impl Drive {
-    /// To a place, around the ball, as fast as may be.
+    /// Drives to a place, around the ball, at full speed.
     pub fn shy(to: Point<Field>, face: Angle) -> Self {
         Self {
             to,
@@ -74,12 +74,12 @@ impl Drive {
         }
     }
 
-    /// To a place on which the ball may be.
+    /// Drives to a place; the ball may be touched.
     pub fn bold(to: Point<Field>, face: Angle) -> Self {
         Self { manner: Manner::Bold, ..Self::shy(to, face) }
     }
 
-    /// To a place with the ball.
+    /// Drives to a place with the ball.
     pub fn holding(to: Point<Field>, face: Angle) -> Self {
         Self { manner: Manner::Holding, dribbler: 1.0, ..Self::shy(to, face) }
     }
@@ -145,7 +145,7 @@ impl Body for Wheeled {
 
 /// The fastest kick wanted, m/s; the governor limits it.
 pub const SHOT: f32 = 5.8;
-/// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
+/// Remaining speed of a ball kicked into free space at the case's end point, m/s: nearly stationary.
 const ROLLS_ON: f32 = 0.3;
 
 const SPEC: BodySpec = BodySpec {

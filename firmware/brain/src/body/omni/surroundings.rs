@@ -1,7 +1,8 @@
 //! `surroundings`: obstacles of a wheeled robot: all other robots, the rules' shapes, goal walls, and the
 //! ball where it avoids it.
 //!
-//! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
+//! Regions are for the robot's centre: grown by its radius and by the errors of vision and wheels. Field
+//! frame, m.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
@@ -12,17 +13,17 @@ use rules::{Duty, FieldSpec, Phase, Side};
 use super::Manner;
 use crate::belief::Belief;
 
-/// What stands around, and where the body may be.
+/// Obstacles around the robot, and the region it must stay in.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
-    /// To be kept out of.
+    /// Regions and bodies to keep out of.
     pub obstacles: heapless::Vec<Obstacle<Field>, OBSTACLES_MAX>,
-    /// To stay in.
+    /// Region to stay in.
     pub within: Shape<Field>,
 }
 
 impl Surroundings {
-    /// Where nothing stands around; [`Surroundings::look`] comes next, for they are large to be handed around.
+    /// An empty value to be filled by [`Surroundings::look`]; it is too large to be moved around.
     pub fn none(field: &FieldSpec) -> Self {
         Self { obstacles: heapless::Vec::new(), within: field.carpet().grown(-BODY - BORDER) }
     }
@@ -37,7 +38,7 @@ impl Surroundings {
         // The planned path, and the one on which it could stop.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
-        // A robot at a ball that lies beside an area may be as near as the rules let it.
+        // A robot at a ball that lies beside an area may be as near as the rules allow.
         let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
         let at_ball = belief.game.phase == Phase::Run
             && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
@@ -88,7 +89,8 @@ impl Surroundings {
         }
     }
 
-    /// Where there is no room for another one it is left out: rules and goals come first, and robots leave room.
+    /// Without capacity for another obstacle it is left out: rules and goals are added first, and other
+    /// robots keep their distance too.
     fn add(&mut self, obstacle: Obstacle<Field>) {
         let _ = self.obstacles.push(obstacle);
     }
@@ -117,8 +119,8 @@ fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
         .any(|share| shape.distance_to(way.from + along * *share) < stretch + ASIDE)
 }
 
-/// Where the ball goes that a teammate is about to kick at our restart: a teammate behind it looks over it. Not to be crossed; who
-/// is sent into it waits there for the ball.
+/// The path of a ball that a teammate is about to kick at our restart: a teammate behind the ball faces along
+/// it. It must not be crossed; a robot that is sent into it waits there for the ball.
 fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
     let phase = belief.game.phase;
     let ours = matches!(
@@ -155,28 +157,28 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
 const SIXTH: f32 = 1.0 / 6.0;
 /// The robot's own radius, m.
 const BODY: f32 = ROBOT_RADIUS;
-/// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
+/// Added to the rules' distances, m: vision's noise, its delay at walking pace, and overshoot of the wheels.
 const LAW: f32 = 0.04;
-/// Beside areas at a ball that lies, m: what wheels overshoot at 0.35 m/s.
+/// Added beside areas at a ball that lies, m: overshoot of the wheels at 0.35 m/s.
 const LAW_AT_BALL: f32 = 0.01;
 /// A placement's stadium moves with the ball by what it rolls in this time, s: snapshot and radio latency,
 /// and the lag of the wheels; …
 const LEADS: f32 = 0.15;
 /// … at most this, m: the places that hosts order are 0.15 m clear of it.
 const LEADS_MOST: f32 = 0.3;
-/// A slower ball lies, m/s.
+/// A slower ball counts as stationary, m/s.
 const LIES: f32 = 0.3;
 /// A robot whose path ends this near the ball lines up behind it, m.
 const AT_BALL: f32 = 0.2;
 /// From the edge of the field surface, m.
 const BORDER: f32 = 0.02;
-/// From goal walls, m.
+/// Distance kept from goal walls, m.
 const WALL: f32 = 0.01;
-/// From a ball that is not to be touched, m.
+/// Distance kept from a ball that must not be touched, m.
 const SHY: f32 = 0.03;
-/// From other robots, m.
+/// Distance kept from other robots, m.
 const ROBOTS: f32 = 0.03;
-/// From other robots beside the ball, m.
+/// Distance kept from other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
 /// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room for a swing.
 const KICKS_WITHIN: f32 = 0.35;

@@ -32,7 +32,7 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     {
         return Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true });
     }
-    // Not slowing down before the ball is in reach: the walk would end beyond that.
+    // No slowing down before the ball is in reach: the walk would end beyond that.
     let to = meeting - Vector::polar(WALK_UP_TO, direct);
     let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
     Step::Running(Intent::Walk { to, face, shy_of_ball: false })
@@ -75,15 +75,15 @@ pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
     (ball.rest, walk(ball.rest).max(duration))
 }
 
-/// Where the robot's centre stands to grab, behind the ball, m: the ball lies between the front legs.
+/// Distance of the robot's centre behind the ball for a grab, m: the ball lies between the front legs.
 const STAND_OFF: f32 = 0.14;
-/// Where a walk straight to the ball would end, before its centre, m: less than the grab's reach.
+/// End of a walk straight to the ball, before its centre, m: less than the grab's reach.
 const WALK_UP_TO: f32 = 0.08;
 /// Within this distance only the time to the ball counts, m.
 const NEAR: f32 = 0.5;
 /// Standing behind the ball must gain this much, s: the steps that a robot needs to stand still there.
 const WORTH_TURNING: f32 = 0.3;
-/// How far off the ball a robot walks around it, m.
+/// Distance from the ball at which a robot walks around it, m.
 const BALL_CLEARANCE: f32 = 0.2;
 /// Points tried on the ball's path.
 const MEETING_STEPS: u32 = 16;
@@ -152,7 +152,7 @@ mod tests {
             panic!("walks")
         };
         assert!(shy_of_ball && to.x() > 0.7);
-        // With an opponent at the ball it goes straight for it.
+        // With an opponent at the ball it walks straight to it.
         let mut contested = b.clone();
         let _ = contested.opponents.push(Point::new(1.0, 0.0));
         let Step::Running(Intent::Walk { to, .. }) = get_ball(&contested, Some(Angle::HALF_TURN)) else {

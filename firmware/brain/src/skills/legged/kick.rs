@@ -51,9 +51,9 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
 /// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which
 /// can still be grabbed, and in 1.6 s instead of the 2.4 s of one that stops there (0.35 m/s²).
 const PASS_FIRMLY: f32 = 1.2;
-/// A head kick may miss the wanted length by this share: as much as kicks scatter anyway.
+/// A head kick may miss the wanted length by this share: about the scatter of kicks.
 const SIDE_PASS_WITHIN: f32 = 0.3;
-/// How well a kick is aimed before it is let go, rad: half of the 10° by which it scatters anyway.
+/// Aiming tolerance of a kick, rad: half of the 10° by which it scatters anyway.
 const AIM_WITHIN: f32 = 0.087;
 
 #[cfg(test)]

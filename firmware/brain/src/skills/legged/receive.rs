@@ -6,7 +6,7 @@ use crate::belief::Belief;
 use crate::skills::legged::get_ball;
 use crate::skills::{Reception, Step};
 
-/// Goes for a ball that has been passed to this robot.
+/// Receives a ball that has been passed to this robot.
 pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);

@@ -17,16 +17,17 @@ use crate::skills::legged as skills;
 /// A shot at goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shot {
-    /// Where to, on the field.
+    /// Direction on the field.
     direction: Angle,
-    /// With which kick.
+    /// Kick to use.
     kick: LeggedKick,
     /// The chance of a goal, 0 to 1.
     chance: f32,
 }
 
-/// With the ball near their goal: shoot if the chance is good, or fair while an opponent is about to take the ball (or there is
-/// no more time); else walk with the ball to where shots come from best. `None` while neither is near.
+/// With the ball near their goal: shoot if the probability of a goal is good, or fair while an opponent is
+/// about to take the ball (or there is no more time); else walk with the ball to the best place for shots.
+/// `None` while neither is near.
 pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Intent> {
     let pressed = is_pressed(belief);
     let enough = if pressed || !patient { FAIR_SHOT } else { GOOD_SHOT };
@@ -58,7 +59,8 @@ pub fn push_on(belief: &Belief, attacked: GoalEnd) -> Intent {
     skills::shoot(belief, belief.pose.position.direction_to(place), LeggedKick::ForwardSoft)
 }
 
-/// Where a shot comes from best: before the goal, aside of its middle, where a goalie opposite the ball leaves the far post open.
+/// Best place for a shot: before the goal, beside its middle, where a goalkeeper opposite the ball leaves the
+/// far post open.
 fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
     let field = belief.league().field();
     let goal = field.goal_center(attacked);
@@ -67,7 +69,8 @@ fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
     Point::new(goal.x() - out, 0.5 * field.penalty_width * side)
 }
 
-/// The shot at the goal at `attacked` with the best chance, less what turning for it costs; `None` from behind the goal line.
+/// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
+/// behind the goal line.
 fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     let fan = Fan::new(belief, attacked)?;
     let mut best: Option<(f32, Shot)> = None;
@@ -104,7 +107,7 @@ struct Fan {
     along: [Vector<Field>; RAYS],
     /// Probability density of a kick by the number of rays off its aim; 1 for none.
     density: [f32; RAYS],
-    /// To the goal's centre, m.
+    /// Distance to the goal's centre, m.
     distance: f32,
 }
 
@@ -122,7 +125,7 @@ impl Fan {
             return None;
         }
         let step = width / (RAYS - 1) as f32;
-        // Both are asked for again and again: each is computed once.
+        // Both are needed repeatedly: each is computed once.
         let along = core::array::from_fn(|index| Vector::polar(1.0, right + Angle::new(step * index as f32)));
         let density = core::array::from_fn(|off| {
             let z = step * off as f32 / KICK_ANGLE_SPREAD;
@@ -163,7 +166,7 @@ impl Fan {
     }
 }
 
-/// How far a robot that stands now walks aside within `time`, m.
+/// Distance that a robot that now stands walks sideways within `time`, m.
 fn sidestep(time: f32) -> f32 {
     let time = (time - REACTION).max(0.0);
     let speeding = WALK_SIDEWAYS / WALK_ACCELERATION;
@@ -188,7 +191,7 @@ const SHOT_BEFORE_AREA: f32 = 0.5;
 const CARRIED_AT_MOST: f32 = 0.8;
 /// This far off the goal's middle axis the far post is worth waiting for, m.
 const ASIDE: f32 = 0.35;
-/// Where beside the goal's middle to wait aiming at, as a share of the own distance from the axis.
+/// Aim while waiting, beside the goal's middle, as a share of the own distance from the axis.
 const FAR_POST: f32 = 0.4;
 /// Rays in a fan: at 1 m from the goal they stand 3° apart, a third of a kick's spread.
 const RAYS: usize = 15;
@@ -259,7 +262,7 @@ mod tests {
             panic!("waits")
         };
         assert!(heading.radians() < -0.4, "{heading:?}");
-        // In the middle it walks aside first; far away it is no business of this skill.
+        // In the middle it walks aside first; far away this skill does not apply.
         let middle = belief(1.4, 0.1, &[(2.05, 0.1)]);
         assert!(matches!(attempt(&middle, GoalEnd::Positive, true), Some(Intent::Carry { .. })));
         assert_eq!(attempt(&belief(0.0, 0.0, &[(2.05, 0.0)]), GoalEnd::Positive, true), None);

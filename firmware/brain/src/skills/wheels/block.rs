@@ -29,7 +29,7 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     Drive::shy(threatened(belief, &ball, stretch), face).into()
 }
 
-/// Where a ball that comes crosses the stretch.
+/// Point at which an approaching ball crosses the stretch.
 fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
     if ball.velocity.norm() < COMING {
         return None;
@@ -58,7 +58,7 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     }
 }
 
-/// Where a ball that does not come would cross the stretch.
+/// Point at which a ball that does not approach would cross the stretch.
 fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
     // The kicker of a penalty reveals its aim by where it lines up: there is no time to wait for the ball.
@@ -77,7 +77,8 @@ fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Fi
     shot.or(straight).unwrap_or_else(|| stretch.closest_to(ball.position))
 }
 
-/// Where two stretches cross; the second one is longer by `beyond` at either end, and what crosses there is moved onto it.
+/// Intersection of two stretches; the second one is longer by `beyond` at either end, and a crossing there is
+/// moved onto it.
 fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option<Point<Field>> {
     let (v, w) = (way.vector(), stretch.vector());
     let across = v.cross(w);
@@ -134,7 +135,7 @@ mod tests {
         let to = goes_to(block(&b, line()));
         // On its line, but no nearer the ball than helps.
         assert!((to.y() - 0.4).abs() < 1e-3 && to.x() >= -4.3 - BALL_AT - 1e-3, "{to:?}");
-        // One too fast to be met is still gone for, on the stretch.
+        // A ball too fast to be intercepted is still approached, on the stretch.
         let b = rolling(belief((-4.3, -0.5, 0.0), (-3.6, 0.45)), (-6.0, 0.0));
         assert!(goes_to(block(&b, line())).distance(Point::new(-4.3, 0.45)) < 1e-3);
     }

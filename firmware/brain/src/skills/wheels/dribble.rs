@@ -101,7 +101,7 @@ fn aims(intent: &Intent) -> bool {
     matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
 }
 
-/// How far that league's rules let a robot dribble, m.
+/// Distance over which that league's rules let a robot dribble, m.
 fn limit(league: League) -> f32 {
     league.limits().map_or(f32::INFINITY, |limits| limits.dribble)
 }
@@ -121,22 +121,22 @@ const DISPUTES: f32 = 0.8;
 const TURNS: f32 = 1.3;
 /// It kicks this much farther round than where the ball came free, rad: past the other robot.
 const TURN: f32 = 0.8;
-/// How fast that kick is, m/s: out of reach, not out of the field.
+/// Speed of that kick, m/s: out of reach, not out of the field.
 const FREED: f32 = 2.5;
 /// No such kick within this angle of the direction of the own goal, rad.
 const OWN_GOAL: f32 = 0.8;
-/// What is aimed at is about so far, m.
+/// Approximate distance of a target, m.
 const AFAR: f32 = 3.0;
 /// Distance before the limit at which the ball is let go, m: what the ball rolls on from a crawl, a robot's
 /// delay, and noise.
 const SPARE: f32 = 0.25;
-/// How fast it slows down towards that, m/s².
+/// Deceleration towards that, m/s².
 const SLOWS: f32 = 1.0;
-/// How fast it still is then, m/s.
+/// Remaining speed then, m/s.
 const CRAWL: f32 = 0.15;
-/// How far back, m.
+/// Distance of the step back, m.
 const STEP_BACK: f32 = 0.2;
-/// How fast, m/s.
+/// Speed of the step back, m/s.
 const AWAY: f32 = 0.8;
 /// Nearer than this it keeps its heading, m.
 const TURNS_FROM: f32 = 0.2;

@@ -30,7 +30,8 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
-    // Where an opponent stands behind the ball there is no room to line up: it is taken first, and turned.
+    // Where an opponent stands behind the ball there is no room to line up: the ball is taken first, and
+    // turned.
     let behind = ball.position - Vector::polar(LINES_UP, face);
     let blocked = belief.nearest_opponent(behind).is_some_and(|(_, distance)| distance < BODIES);
     if !once && (ball.velocity.norm() > LIES || blocked) {
@@ -62,7 +63,7 @@ pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     let me = belief.pose.position;
     let face = me.direction_to(at);
     let off = (face - belief.pose.heading).abs();
-    // Who is kept from aiming well kicks as well as it can.
+    // A robot that cannot aim well kicks as well as it can.
     let slack = 1.0 + LOOSENS * (belief.held() - AIMS_FOR).max(0.0);
     let still = belief.angular.abs() < STILL_TURNING * slack && sideways(belief) < STILL_SIDEWAYS * slack;
     let armed = off < tolerance(me.distance(at)) * slack && still;
@@ -78,7 +79,7 @@ pub fn pass_speed(distance: f32) -> f32 {
     BallModel::default().kick_speed(distance, ARRIVES).clamp(SLOWEST, SHOT)
 }
 
-/// How exactly a kick over that distance must be aimed, rad: a robot's width at the end, never more than 3°.
+/// Aiming tolerance of a kick over that distance, rad: a robot's width at the end, never more than 3°.
 fn tolerance(distance: f32) -> f32 {
     (AIM_WIDTH / distance.max(0.1)).clamp(AIM_BEST, AIM_WORST)
 }
@@ -88,14 +89,14 @@ fn sideways(belief: &Belief) -> f32 {
     Vector::polar(1.0, belief.pose.heading).cross(belief.velocity).abs()
 }
 
-/// A slower ball lies, m/s.
+/// A slower ball counts as stationary, m/s.
 const LIES: f32 = 0.25;
 /// From a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 0.18;
-/// How fast a robot goes in for a kick, m/s.
+/// Approach speed for a kick, m/s.
 const GO_IN: f32 = 0.35;
-/// This near the ball it must look right before it goes on, m.
+/// Within this distance of the ball it must face the target before it continues, m.
 const CLOSE: f32 = 0.02;
 /// Between front and ball while the robot waits for the order to kick, m.
 const WAIT_OFF: f32 = 0.04;
@@ -119,7 +120,7 @@ const LOOSENS: f32 = 7.0;
 const GOES_ON: f32 = 0.03;
 /// A robot that turns no faster than this kicks where it looks, rad/s.
 const STILL_TURNING: f32 = 0.6;
-/// Nor moves aside faster than this, m/s.
+/// Sideways speed below which it kicks, m/s.
 const STILL_SIDEWAYS: f32 = 0.15;
 
 #[cfg(test)]

@@ -76,13 +76,13 @@ fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
 fn onwards(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let field = belief.league().field();
     let goal = field.goal_center(belief.game.defending.opposite());
-    // At their goal as hard as may be, else as a pass.
+    // At their goal at full speed, else as a pass.
     let shot = then.distance(goal) < 0.5 * field.goal_width + 0.1;
     let speed = if shot { SHOT } else { pass_speed(belief.mouth().distance(then)) };
     (OmniKick::Flat(speed), speed)
 }
 
-/// The heading from which the ball that comes goes on to `then`; `None` where that is too far round.
+/// The heading from which the incoming ball is redirected to `then`; `None` where that is too far round.
 fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> Option<Angle> {
     let wanted = at.direction_to(then);
     let back = (-ball.velocity).angle();
@@ -105,7 +105,7 @@ const RESTS: f32 = 0.15;
 const COMING: f32 = 0.4;
 /// A pass that ends within this distance is fetched, m.
 const FETCHED: f32 = 1.0;
-/// One that goes by within this distance is had, m.
+/// A ball that passes within this distance can be taken, m.
 const REACH: f32 = 1.0;
 /// The largest angle between where the ball comes from and where it goes at first touch, rad: 60° (docs/papers.md D11).
 const DEFLECTS: f32 = core::f32::consts::FRAC_PI_3;
@@ -145,7 +145,8 @@ mod tests {
         let (at, goal) = (Point::new(2.0, 0.0), Point::new(0.0, 2.0));
         let sent = drive(receive(&b, at, Some(goal)));
         assert!(matches!(sent.kick, OmniKick::Flat(_)));
-        // It drifts on to +x: aimed farther back than straight at the goal (135°), not as far as it came from (180°).
+        // The ball drifts on to +x: aimed farther back than straight at the goal (135°), not as far as it
+        // came from (180°).
         assert!(
             sent.face.to_degrees() > 135.0 && sent.face.to_degrees() < 180.0,
             "{}",

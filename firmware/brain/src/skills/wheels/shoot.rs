@@ -19,7 +19,7 @@ pub fn shoot(belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
     kick_held(belief, at, if open { OmniKick::Flat(SHOT) } else { OmniKick::None })
 }
 
-/// Where to shoot from `from`, and how much room the ball has there, m.
+/// Target of a shot from `from`, and the free distance beside the ball's path, m.
 pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<Field>, f32) {
     let field = belief.league().field();
     let center = field.goal_center(attacked);
@@ -32,7 +32,7 @@ pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<
     aims.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((center, 0.0))
 }
 
-/// The kick with the ball held when nothing better is at hand: at their goal from near, else up the freer wing.
+/// The kick with a held ball without a better option: at their goal from near, else up the freer wing.
 pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     let field = belief.league().field();
     let me = belief.pose.position;
@@ -76,7 +76,7 @@ const AIMS: usize = 9;
 const INSIDE_POST: f32 = 0.08;
 /// A gap this wide is shot through, m beside bodies' reach.
 const GAP: f32 = 0.02;
-/// From this far the goal is shot at, m.
+/// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.0;
 /// A clearance goes so far ahead, m: no aimless kick over the half (division B).
 const CLEARS_AHEAD: f32 = 2.5;
@@ -84,19 +84,19 @@ const CLEARS_AHEAD: f32 = 2.5;
 const CLEARS_WITH: f32 = 4.0;
 /// As good as stationary, m/s.
 const RESTS: f32 = 0.2;
-/// From the goal line, m.
+/// Distance of a clearing target from the goal line, m.
 const INSIDE: f32 = 1.2;
-/// From the side line, m.
+/// Distance of a clearing target from the side line, m.
 const WING_INSIDE: f32 = 1.1;
 /// More room than this is no better, m.
 const ROOM_ENOUGH: f32 = 0.5;
 /// Radii of a robot and a ball, m.
 const BODY: f32 = 0.1115;
-/// How fast a shot is on average, m/s.
+/// Average speed of a shot, m/s.
 const FAIR_SPEED: f32 = 5.0;
-/// What an opponent sees late, s.
+/// Reaction time of an opponent, s.
 const REACTION: f32 = 0.15;
-/// How fast it speeds up, m/s².
+/// Acceleration of an opponent, m/s².
 const OPPONENT_ACCELERATION: f32 = 3.0;
 
 #[cfg(test)]
