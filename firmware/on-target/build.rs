@@ -8,7 +8,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return Ok(());
     }
-    // The tests' attribute asks whether an editor looks at them.
+    // The tests' attribute checks whether an editor analyses them.
     println!("cargo:rustc-check-cfg=cfg(rust_analyzer)");
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("memory.x"), MEMORY)?;

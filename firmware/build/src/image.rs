@@ -57,11 +57,11 @@ pub enum Program {
     Stm32,
     /// Ends well where `geometry::math` has the bits it has on the PC.
     MathHash,
-    /// Counts the instructions of retrievals.
+    /// Program that counts the instructions of retrievals.
     RetrievalBench,
-    /// Counts the instructions of motion.
+    /// Program that counts the instructions of motion planning.
     MotionBench,
-    /// Counts the instructions of radio frames.
+    /// Program that counts the instructions of radio frames.
     RadioBench,
 }
 
@@ -111,7 +111,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Both.
+    /// Both bodies.
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
     /// Its name in options, which is the feature's name.
@@ -134,18 +134,18 @@ pub fn target_dir(root: &Path) -> PathBuf {
 /// Why there is no firmware image to run.
 #[derive(Debug)]
 pub enum BuildError {
-    /// Nothing here compiles for the robot's processor.
+    /// No compiler here builds for the robot's processor.
     Target(TargetError),
     /// The sources or cargo are missing, and there is no earlier build.
     NothingToBuild {
-        /// What is missing.
+        /// The missing part.
         why: String,
         /// Where the build was looked for.
         image: PathBuf,
     },
     /// cargo could not be run.
     Cargo {
-        /// The command.
+        /// The command that failed.
         command: String,
         /// The system's error.
         error: std::io::Error,
@@ -154,12 +154,12 @@ pub enum BuildError {
     Failed {
         /// The command that repeats it.
         command: String,
-        /// How it ended.
+        /// Exit status of the command.
         status: ExitStatus,
     },
     /// cargo succeeded, but its output is not where it belongs.
     NoImage {
-        /// Where it should be.
+        /// Path at which it was expected.
         image: PathBuf,
     },
 }

@@ -24,12 +24,12 @@ pub struct OnTarget {
     /// Address of its function.
     address: u32,
     should_panic: bool,
-    /// Not to be run.
+    /// Whether the test is not to be run.
     pub ignored: bool,
     timeout: Duration,
 }
 
-/// How a test went.
+/// Result of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// As it should.
@@ -126,7 +126,7 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<V
     Ok(judged(test, status.map(|status| status.success()), said.trim()))
 }
 
-/// What an end means; `None` is none within the test's time.
+/// The verdict for an exit status; `None` is no exit within the test's time.
 fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
     match (well, test.should_panic) {
         (Some(true), false) | (Some(false), true) => Verdict::Passed,
@@ -136,11 +136,11 @@ fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
     }
 }
 
-/// Where `embedded-test` lists its tests.
+/// Section in which `embedded-test` lists its tests.
 const SECTION: &str = ".embedded_test";
-/// Of a test that names none: a hundred times what the longest takes, for a busy machine.
+/// Time limit of a test that names none: a hundred times the longest run, for a busy machine.
 const TIMEOUT: Duration = Duration::from_mins(1);
-/// How often an emulator is looked at.
+/// Period in which an emulator is polled.
 const LOOK: Duration = Duration::from_millis(5);
 
 #[cfg(test)]

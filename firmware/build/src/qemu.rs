@@ -38,7 +38,7 @@ pub enum QemuError {
     },
     /// It is there but lacks the machine our firmware is made for: too old, or built without it.
     UnknownMachine {
-        /// The program that was asked.
+        /// The program that was run.
         program: PathBuf,
     },
 }

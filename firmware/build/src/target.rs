@@ -27,7 +27,7 @@ pub fn ensure_target(root: &Path, install: Install) -> Result<ThumbToolchain, Ta
     Err(TargetError::NoWay { attempts })
 }
 
-/// How to compile for the robot's processor on this machine.
+/// Toolchain that compiles for the robot's processor on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ThumbToolchain {
     /// The toolchain has `core` ready made for the target.
@@ -79,7 +79,7 @@ impl fmt::Display for ThumbToolchain {
 pub struct Attempt {
     /// The method.
     pub way: &'static str,
-    /// Why not.
+    /// Why it failed.
     pub why: String,
 }
 
@@ -93,7 +93,7 @@ pub enum TargetError {
     },
     /// Every method failed.
     NoWay {
-        /// In the order they were tried.
+        /// The attempts, in their order.
         attempts: Vec<Attempt>,
     },
 }
@@ -121,7 +121,7 @@ impl fmt::Display for TargetError {
 
 impl std::error::Error for TargetError {}
 
-/// `cargo` as it was called, so that the same toolchain goes on.
+/// `cargo` as it was called, so that the same toolchain is used.
 pub(crate) fn cargo_program() -> PathBuf {
     env::var_os("CARGO").map(PathBuf::from).filter(|path| path.is_file()).unwrap_or_else(|| "cargo".into())
 }
@@ -130,7 +130,7 @@ pub(crate) fn cargo_program() -> PathBuf {
 struct Compiler {
     root: PathBuf,
     sysroot: PathBuf,
-    /// `1.95.0`
+    /// Release of the compiler, such as `1.95.0`.
     release: String,
 }
 
@@ -236,7 +236,7 @@ fn distribution(compiler: &Compiler, install: Install) -> Result<ThumbToolchain,
     Ok(ThumbToolchain::Distribution { linker: linker.ok_or("no LLVM linker (package lld-19)")? })
 }
 
-/// What the distribution's compiler consists of, sources of its `core` included.
+/// Parts of the distribution's compiler, sources of its `core` included.
 const DISTRIBUTION: [&str; 3] = ["/usr/bin/rustc", "/usr/bin/cargo", "/usr/lib/rustlib/src/rust/library"];
 /// The target is 10 MB; a server that is silent for this time is given up.
 const RUSTUP: Duration = Duration::from_mins(2);

@@ -28,12 +28,12 @@ use self::item::Scene;
 use self::route::Route;
 use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usable};
 
-/// What the robot's centre must not enter.
+/// A region that the robot's centre must not enter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle<F> {
-    /// Where, m.
+    /// Shape, m.
     pub shape: Shape<F>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
     /// Whether it is a body to collide with. A robot that leaves a region without a body may go through
     /// others.
@@ -46,7 +46,7 @@ impl<F: Copy> Obstacle<F> {
         Self { shape, velocity: Vector::default(), is_body: true }
     }
 
-    /// A region in which nothing stands, but that must not be entered: a rule's.
+    /// A region without a body that the rules forbid to enter.
     pub fn region(shape: Shape<F>) -> Self {
         Self { is_body: false, ..Self::standing(shape) }
     }
@@ -62,22 +62,22 @@ impl<F: Copy> Obstacle<F> {
     }
 }
 
-/// What is asked.
+/// Input of the planner.
 #[derive(Clone, Copy, Debug)]
 pub struct Course<'o, F> {
-    /// Where the robot is.
+    /// Position of the robot's centre, m.
     pub from: Point<F>,
-    /// How it moves.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
     /// Stop position.
     pub to: Point<F>,
-    /// What it can do, and may now.
+    /// Present limits of its motion.
     pub limits: FreeLimits,
-    /// What it must keep out of; the first [`OBSTACLES_MAX`] count.
+    /// Obstacles to keep out of; only the first [`OBSTACLES_MAX`] are used.
     pub obstacles: &'o [Obstacle<F>],
     /// Where its centre must stay, such as the field surface less the robot's radius; any convex shape.
     pub within: Option<Shape<F>>,
-    /// Until it asks again, s, at most 1.
+    /// Time until the next plan, s, at most 1.
     pub step: f32,
     /// Most effort for planning a path: a unit for one straight piece and one obstacle, about forty
     /// instructions of a Cortex-M4; a piece takes twelve units more. [`EFFORT_MAX`] suffices for every scene.
@@ -93,7 +93,7 @@ pub struct Course<'o, F> {
 pub enum Verdict<F> {
     /// Straight to the goal.
     Direct,
-    /// Around something.
+    /// Around at least one obstacle.
     Around {
         /// The first corner.
         via: Point<F>,
@@ -110,7 +110,7 @@ pub enum Verdict<F> {
     },
 }
 
-/// What became of the motion that the route asks for.
+/// Restraint of the route's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restraint {
     /// It is driven.
@@ -119,11 +119,11 @@ pub enum Restraint {
     Straightened,
     /// Neither would be safe: it brakes.
     Braked,
-    /// Not even braking avoids a touch: it brakes.
+    /// Not even braking avoids a contact: it brakes.
     Unavoidable,
 }
 
-/// What came of it.
+/// Result of the planner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way<F> {
     /// Kind of path.
@@ -132,11 +132,11 @@ pub struct Way<F> {
     pub goal: Point<F>,
     /// Length of the route to the goal, m; of what is known of it where blocked.
     pub length: f32,
-    /// Whether it drives what the route asks for.
+    /// Whether the route's motion is driven.
     pub restraint: Restraint,
-    /// **What to drive**: place, velocity and acceleration at the end of the step.
+    /// **Motion to drive**: place, velocity and acceleration at the end of the step.
     pub next: State<F>,
-    /// The motion that the route asks for: to the goal, or past the first corner.
+    /// Motion along the route: to the goal, or past the first corner.
     pub motion: FreeMotion<F>,
 }
 
@@ -169,11 +169,11 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     Way { verdict, goal, length: route.length, restraint, next, motion }
 }
 
-/// Out of what holds the start: to a free point, around all bodies, through any region.
+/// Out of the obstacle that holds the start: to a free point, around all bodies, through any region.
 fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let Course { from, velocity, to, limits, .. } = *course;
     let exit = scene.exit(from, course.effort_to_leave);
-    // One search a step: a free point for a covered target is sought when the robot is out.
+    // One search a step: a free point for a covered target is searched for when the robot is out.
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
     scene.allow(course.effort_to_leave);
@@ -238,7 +238,8 @@ fn straightened<F: Copy>(course: &Course<'_, F>, towards: Point<F>) -> State<F> 
     let (ahead, side) = (velocity.dot(along), velocity.dot(across));
     let loss = limits.braking * step;
     let lost = math::clamp(side, -loss, loss);
-    // Nothing is left for speeding up where all of it is needed; a robot that goes back brakes that first.
+    // No acceleration is left along the path where all of it is needed; a robot that moves backwards brakes
+    // that first.
     let left = (1.0 - lost.abs() / loss.max(f32::MIN_POSITIVE)).max(0.0);
     let gain = limits.acceleration * step * left;
     let next = velocity + across * -lost + along * gain.min((limits.speed - ahead).max(0.0));

@@ -31,8 +31,8 @@ impl Default for BallModel {
 }
 
 impl BallModel {
-    /// From `BallModelStraightTwoPhase` of the league's geometry packets: `acc_slide`, `acc_roll` (m/s²; simulators send
-    /// them negative), `k_switch`. `None` where no ball could behave like that.
+    /// From `BallModelStraightTwoPhase` of the league's geometry packets: `acc_slide`, `acc_roll` (m/s²;
+    /// simulators send them negative), `k_switch`. `None` where the numbers are not physical.
     pub fn from_wire(acc_slide: f64, acc_roll: f64, k_switch: f64) -> Option<Self> {
         let (slide, roll, switch) = (acc_slide.abs() as f32, acc_roll.abs() as f32, k_switch as f32);
         let deceleration = |a: f32| (DECELERATION_MIN..=DECELERATION_MAX).contains(&a);
@@ -95,7 +95,7 @@ impl BallModel {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallPath<F> {
     from: Point<F>,
-    /// Of length 1.
+    /// Direction, of length 1.
     along: Vector<F>,
     speed: f32,
     roll_speed: f32,
@@ -108,7 +108,7 @@ pub struct BallPath<F> {
 }
 
 impl<F: Copy> BallPath<F> {
-    /// Where it starts.
+    /// Start of the path.
     pub fn from(&self) -> Point<F> {
         self.from
     }
@@ -123,12 +123,12 @@ impl<F: Copy> BallPath<F> {
         self.from + self.along * self.rest_distance
     }
 
-    /// How far it gets, m.
+    /// Distance until it stops, m.
     pub fn rest_distance(&self) -> f32 {
         self.rest_distance
     }
 
-    /// How far it got, and how fast it is, after `time` seconds.
+    /// Distance travelled, m, and speed, m/s, after `time` seconds.
     pub fn progress(&self, time: f32) -> (f32, f32) {
         if time >= self.rest_time {
             return (self.rest_distance, 0.0);

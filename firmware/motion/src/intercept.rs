@@ -11,16 +11,16 @@ use geometry::{Point, Vector};
 use crate::ball::BallPath;
 use crate::trajectory::{CalcMotion, Motion};
 
-/// What is asked.
+/// Input of an interception.
 #[derive(Clone, Copy, Debug)]
 pub struct Interception<'b, F> {
-    /// Where the robot is.
+    /// Position of the robot, m.
     pub robot: Point<F>,
-    /// How it moves.
+    /// Velocity of the robot, m/s.
     pub velocity: Vector<F>,
-    /// Where the ball goes.
+    /// Predicted path of the ball.
     pub ball: &'b BallPath<F>,
-    /// Where the ball shall be kicked to: the robot comes to stand on the far side of the ball.
+    /// Target of the kick: the robot stops on the far side of the ball.
     pub target: Point<F>,
     /// From the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm ([`kick_reach`]), m.
     pub reach: f32,
@@ -29,7 +29,7 @@ pub struct Interception<'b, F> {
     pub until: f32,
 }
 
-/// Which of the places that can be reached in time.
+/// Which of the reachable interceptions to choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
     /// arg min t_ball: for an attacker, whose failure is cheap.
@@ -38,7 +38,7 @@ pub enum Wish {
     Safest,
 }
 
-/// What came of it.
+/// Result of an interception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
     /// The robot can be there in time.
@@ -47,9 +47,9 @@ pub enum Verdict<F> {
     Chase {
         /// The ball, then.
         ball: Point<F>,
-        /// Where the robot stands behind it.
+        /// Position of the robot behind it.
         place: Point<F>,
-        /// When the robot can be there, s.
+        /// Time at which the robot can be there, s.
         robot_time: f32,
     },
 }
@@ -59,16 +59,16 @@ pub enum Verdict<F> {
 pub struct Meeting<F> {
     /// The ball, then.
     pub ball: Point<F>,
-    /// Where the robot stands behind it.
+    /// Position of the robot behind it.
     pub place: Point<F>,
-    /// When the ball is there, s from now.
+    /// Time at which the ball is there, s from now.
     pub ball_time: f32,
-    /// When the robot can be there, s from now.
+    /// Time at which the robot can be there, s from now.
     pub robot_time: f32,
 }
 
 impl<F> Meeting<F> {
-    /// How long the robot waits, s.
+    /// Time that the robot waits, s.
     pub fn slack(&self) -> f32 {
         self.ball_time - self.robot_time
     }
@@ -158,7 +158,7 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// From the end backwards, as slack mostly grows to the end, after some probes for what is there to be had.
+    /// From the end backwards, as slack mostly grows to the end, after some probes for the slack available.
     fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
         let mut best = self.look(limits, horizon, 0.0).meeting();
@@ -180,7 +180,7 @@ impl<F: Copy> Interception<'_, F> {
                 continue;
             }
             for step in (first..=last).rev() {
-                // Of equal ones the first.
+                // The first of equal ones.
                 if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
                     least = meeting.slack();
                     best = Some(meeting);
@@ -205,7 +205,7 @@ impl<F: Copy> Interception<'_, F> {
         if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
             return Look::OutOfReach;
         }
-        // A little more than is asked, as both differences are rounded.
+        // Slightly more than required, as both differences are rounded.
         let within = time - least + ROUNDING;
         let Some(robot_time) = limits.time_within(self.robot, self.velocity, place, within) else {
             return Look::TooLate;
@@ -246,7 +246,7 @@ pub const STEP: f32 = 0.02;
 const BLOCK: u32 = 8;
 /// In bounded time, factor by which the stride grows after each run of points without an interception.
 const COARSER: u32 = 4;
-/// s.
+/// Tolerance for rounding, s.
 const ROUNDING: f32 = 1e-5;
 /// Shares of the horizon that are tried first for how much slack there is.
 const PROBES: u32 = 6;

@@ -9,12 +9,12 @@ use geometry::{Angle, Body, Twist, Vector};
 /// Rim speeds in the order of the wire, m/s.
 pub type Rims = [f32; 4];
 
-/// Where the wheels are.
+/// Arrangement of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheels {
     /// Angles from where the robot faces, counter-clockwise, in the order of the wire.
     pub angles: [Angle; 4],
-    /// From the robot's centre to a wheel, m.
+    /// Distance from the robot's centre to a wheel, m.
     pub distance: f32,
 }
 
@@ -55,7 +55,7 @@ impl Default for Omni {
 }
 
 impl Omni {
-    /// Of these wheels.
+    /// Kinematics of these wheels.
     pub fn new(wheels: &Wheels) -> Result<Self, WheelsError> {
         let rows = wheels.angles.map(|angle| {
             let (s, c) = angle.sin_cos();
@@ -95,7 +95,7 @@ impl Omni {
         self.rows.map(|[x, y, turn]| x * linear.x() + y * linear.y() + turn * angular)
     }
 
-    /// How the body moves at these rim speeds: the motion that fits them best.
+    /// Motion of the body at these rim speeds: least-squares fit.
     pub fn twist(&self, rims: Rims) -> Twist<Body> {
         let [x, y, angular] = self.inverse.map(|row| {
             let [a, b, c, d] = row;
@@ -111,8 +111,8 @@ impl Omni {
         rims.iter().zip(explained).map(|(rim, explained)| (rim - explained).abs()).fold(0.0, f32::max)
     }
 
-    /// The motion, slowed as a whole until no rim is faster than `rim_max` m/s: direction and curve stay. And by which
-    /// factor, 1 where nothing had to be slowed.
+    /// The motion, slowed as a whole until no rim is faster than `rim_max` m/s: direction and curve stay.
+    /// Also returns the factor, 1 where no slowing was needed.
     pub fn saturated(&self, twist: Twist<Body>, rim_max: f32) -> (Twist<Body>, f32) {
         let fastest = self.rims(twist).into_iter().map(f32::abs).fold(0.0, f32::max);
         if fastest <= rim_max || fastest.is_nan() {
@@ -122,8 +122,8 @@ impl Omni {
         (Twist { linear: twist.linear * factor, angular: twist.angular * factor }, factor)
     }
 
-    /// How fast the body can move in this direction while it turns with `angular` rad/s and no rim exceeds `rim_max`,
-    /// m/s; 0 where turning alone takes more.
+    /// Largest speed of the body in this direction while it turns with `angular` rad/s and no rim exceeds
+    /// `rim_max`, m/s; 0 where turning alone takes more.
     pub fn speed_limit(&self, direction: Angle, angular: f32, rim_max: f32) -> f32 {
         let (s, c) = direction.sin_cos();
         let mut limit = f32::INFINITY;

@@ -20,7 +20,7 @@ impl RollingBall {
         math::sqrt(2.0 * self.deceleration * distance.max(0.0))
     }
 
-    /// How long it takes for `distance`, s; `None` if it stops before.
+    /// Time for `distance`, s; `None` if it stops before.
     pub fn travel_time(self, speed: f32, distance: f32) -> Option<f32> {
         let squared = speed * speed - 2.0 * self.deceleration * distance;
         (squared >= 0.0 && distance >= 0.0).then(|| (speed - math::sqrt(squared)) / self.deceleration)

@@ -3,8 +3,9 @@
 //! `CalcMotion2D(x_s, v_s, x_f) → (t*, V*)` is [`CalcMotion::plan`]: `t*` is [`Motion::duration`], `V*` is
 //! [`Motion::at`]. The motion always ends at standstill. Two robot models implement it:
 //!
-//! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a trapezoid
-//!   or triangle, and one angle shares the limits out between the axes. What to use unless a robot was measured.
+//! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a
+//!   trapezoid or triangle, and one angle shares the limits out between the axes. The default for a robot
+//!   that was not measured.
 //! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy, D'Andrea,
 //!   Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
 //!
@@ -28,16 +29,16 @@ pub use turn::{Turn, TurnLimits};
 
 use geometry::{Point, Vector, math};
 
-/// Largest coordinate (m) and speed (m/s) that is taken for a true one: 1 km, above any field and below where squares of
+/// Largest coordinate (m) and speed (m/s) that is accepted: 1 km, above any field and below where squares of
 /// `f32` lose their last use.
 pub const COORDINATE_MAX: f32 = 1_000.0;
 
-/// Where a robot is and how it moves, at one time of a motion.
+/// Position and velocity of a robot at one time of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<F> {
-    /// m.
+    /// Position, m.
     pub position: Point<F>,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
     /// m/s²; where it jumps, the value after the jump.
     pub acceleration: Vector<F>,
@@ -60,7 +61,7 @@ pub trait Motion<F> {
     fn at(&self, time: f32) -> State<F>;
 }
 
-/// What a robot can do, as far as its motion from place to place is concerned.
+/// Motion model of a robot from place to place.
 pub trait CalcMotion {
     /// The motion it plans.
     type Motion<F: Copy>: Motion<F>;
@@ -92,9 +93,9 @@ pub trait CalcMotion {
     ) -> bool;
 }
 
-/// All the numbers are ones that a field can have.
+/// Whether all coordinates and speeds are within the accepted range.
 pub(crate) fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bool {
-    // NaN is not below anything.
+    // False for NaN.
     let small = |x: f32| x.abs() <= COORDINATE_MAX;
     small(from.x())
         && small(from.y())
@@ -109,12 +110,12 @@ fn somewhere<F>(from: Point<F>) -> Point<F> {
     if from.x().abs() <= COORDINATE_MAX && from.y().abs() <= COORDINATE_MAX { from } else { Point::default() }
 }
 
-/// The fastest a robot may be within a bound.
+/// Largest acceleration and speed of a robot within a bound.
 #[derive(Clone, Copy)]
 struct Utmost {
-    /// m/s².
+    /// Acceleration, m/s².
     acceleration: f32,
-    /// m/s.
+    /// Speed, m/s.
     speed: f32,
 }
 
@@ -130,7 +131,7 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     if far.dot(far) > reach * reach {
         return true;
     }
-    // Straight there: what speeding up and braking take at least, and the speed.
+    // On the straight line: lower bounds of speeding up and braking, and the speed.
     let length = offset.norm();
     let Utmost { acceleration, speed } = utmost;
     let distance = length - radius;
@@ -157,7 +158,7 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     least > time * BOUND_SLACK
 }
 
-/// What rounding may take from a bound: 10⁻⁴, a thousand times what `f32` errs.
+/// Allowance for rounding in a bound: 10⁻⁴, a thousand times the error of `f32`.
 const BOUND_SLACK: f32 = 1.0001;
 
 #[cfg(test)]

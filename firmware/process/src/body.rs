@@ -27,13 +27,13 @@ pub const TICK: Duration = Duration::millis(10);
 /// How long the last response on ball contact holds: five responses in a row are lost once in 100,000 at the
 /// 10 % loss of ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
-/// Of a dribbler's full speed, rpm: what ours and our other simulated robots' turn at; ER-Force's is full at 1432.
+/// Full speed of a dribbler, rpm: that of our simulated robots; ER-Force's is full at 1432.
 const DRIBBLER_FULL: f32 = 1000.0;
-/// Of a chip kick, degrees above the ground.
+/// Angle of a chip kick, degrees above the ground.
 const CHIP_ANGLE: f32 = 45.0;
 /// No known kicker, simulated or real, is faster: a larger value is an error, m/s.
 const SPEED_MAX: f32 = 10.0;
-/// rad/s.
+/// Largest turning rate, rad/s.
 const TURN_MAX: f32 = 30.0;
 
 /// A robot's body as the simulation protocol knows it.
@@ -64,7 +64,8 @@ impl SimulatedBody {
         }
     }
 
-    /// The brain wants this from now on. What no wheels can do (NaN, a walking body's order) is standing.
+    /// Sets the brain's orders. Orders that wheels cannot execute (NaN, a walking body's order) are standing
+    /// still.
     pub fn obey(&mut self, order: ActuatorFrame) {
         let ActuatorFrame::Omni { wheels, dribbler, kick } = order else {
             (self.motion, self.dribbler, self.kick) = (Twist::default(), 0.0, OmniKick::None);
@@ -118,7 +119,7 @@ impl SimulatedBody {
         }
     }
 
-    /// What the robot feels.
+    /// The robot's sensor frame.
     pub fn sensors(&self, now: Instant) -> SensorFrame {
         SensorFrame {
             pose: None,

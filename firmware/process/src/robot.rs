@@ -21,7 +21,7 @@ pub struct VirtualRobot<'a> {
 }
 
 impl<'a> VirtualRobot<'a> {
-    /// A robot that wakes up at `now`.
+    /// A robot that starts at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
             station: Station::with_keys(now, config, base, keys),
@@ -63,7 +63,7 @@ impl<'a> VirtualRobot<'a> {
         self.tick = if now.since(self.tick) < TICK { self.tick + TICK } else { now + TICK };
     }
 
-    /// When to call [`VirtualRobot::handle_timeout`].
+    /// Time at which [`VirtualRobot::handle_timeout`] must be called.
     pub fn poll_timeout(&self) -> Instant {
         self.station.poll_timeout().map_or(self.tick, |due| due.min(self.tick))
     }

@@ -17,9 +17,9 @@ use crate::robot::VirtualRobot;
 /// Identity of the robot, and its peers.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Its brain.
+    /// Configuration of its brain.
     pub brain: BrainConfig,
-    /// Its keys.
+    /// Its radio keys.
     pub keys: RobotKeys,
     /// Address of the host.
     pub host: SocketAddr,
@@ -30,14 +30,14 @@ pub struct Options {
 /// Why a robot ended, where that is no mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It was asked to.
+    /// The parent process requested it.
     Asked,
 }
 
 /// Why a robot cannot run.
 #[derive(Debug)]
 pub enum RunError {
-    /// No socket could be had.
+    /// A socket could not be opened.
     Socket(io::Error),
 }
 

@@ -6,10 +6,10 @@
 
 use core::panic::Location;
 
-/// What ended the program.
+/// Cause of the program's end.
 #[derive(Clone, Copy, Debug)]
 pub enum Ending<'a> {
-    /// A panic, and where, as far as that is known.
+    /// A panic, with its place as far as known.
     Panic(Option<&'a Location<'a>>),
     /// A hard fault, and where the program counter stood.
     Fault(u32),

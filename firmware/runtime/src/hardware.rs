@@ -32,7 +32,7 @@ use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
 pub struct Wires {
     /// Rim speeds as measured, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
-    /// What the kicker shall do.
+    /// Kicker request.
     wish: Signal<CriticalSectionRawMutex, OmniKick>,
 }
 
@@ -49,7 +49,7 @@ impl Default for Wires {
     }
 }
 
-/// Leads the wheels to what the brain orders, and to a stop where it orders nothing. Takes the place of
+/// Controls the wheels to the brain's orders, and to a stop without orders. Replaces
 /// [`tasks::body`](crate::tasks::body).
 pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
@@ -72,7 +72,7 @@ pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) 
     }
 }
 
-/// Charges and fires, as far as the interlock lets it.
+/// Charges and fires, as far as the interlock allows.
 pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
     let mut interlock = Interlock::new();
     loop {

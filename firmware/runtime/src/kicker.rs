@@ -11,7 +11,7 @@
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
 
-/// What the kicker's board shall do until the next step.
+/// Output of the kicker's board until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KickerAct {
     /// Neither charge nor fire.
@@ -42,12 +42,12 @@ pub struct Interlock {
 }
 
 impl Interlock {
-    /// Of a kicker that has not fired yet.
+    /// A kicker that has not fired yet.
     pub const fn new() -> Self {
         Self { fired: None }
     }
 
-    /// One step.
+    /// Output for the next step.
     pub fn step(&mut self, now: Instant, wish: OmniKick, state: KickerState) -> KickerAct {
         // A voltage that cannot be read is taken for a full capacitor: it is not charged, and not fired.
         let (full, readable) = (state.volts.is_nan() || state.volts >= FULL_VOLTS, !state.volts.is_nan());
@@ -79,7 +79,7 @@ impl Default for Interlock {
     }
 }
 
-/// How long a pulse gives the ball this speed; `None` for a speed that is none. Never longer than the table's last.
+/// Pulse length for a ball speed; `None` for an invalid speed. Never longer than the table's last.
 fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
     if !speed.is_finite() || speed <= 0.0 {
         return None;

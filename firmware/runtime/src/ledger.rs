@@ -8,23 +8,23 @@
 //!
 //! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, padded with 0xff.
 
-/// Bytes of a cell: what an STM32H7 writes into its flash at once.
+/// Bytes of a cell: the unit in which an STM32H7 writes its flash.
 pub const CELL_LEN: usize = 32;
 const MAGIC: [u8; 4] = *b"1-2B";
 
-/// What lies in a cell.
+/// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// Erased.
+    /// Erased flash.
     Empty,
     /// A start with this epoch.
     Epoch(u32),
-    /// Something else, or something that cannot be read.
+    /// Other content, or unreadable.
     Damaged,
 }
 
 impl Cell {
-    /// Of its bytes.
+    /// Decodes a cell's bytes.
     pub fn of(bytes: &[u8; CELL_LEN]) -> Self {
         let [m0, m1, m2, m3, e0, e1, e2, e3, i0, i1, i2, i3, rest @ ..] = *bytes;
         let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
@@ -47,23 +47,23 @@ pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
     bytes
 }
 
-/// Where a cell is.
+/// Position of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Which half, 0 or 1.
+    /// Half, 0 or 1.
     pub half: usize,
-    /// Which of its cells.
+    /// Index of the cell in its half.
     pub index: usize,
 }
 
 /// What a start has to do before it sends anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Its epoch.
+    /// Epoch of this start.
     pub epoch: u32,
-    /// Where to write it.
+    /// Cell to write it to.
     pub at: Place,
-    /// Erase that half first.
+    /// Whether that half must be erased first.
     pub erase: bool,
 }
 
@@ -92,7 +92,7 @@ pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
     })
 }
 
-/// Erased flash.
+/// Value of an erased byte.
 const EMPTY: u8 = 0xff;
 
 #[cfg(test)]
@@ -120,7 +120,7 @@ mod tests {
             let Plan { epoch, at, erase } = self.plan();
             if erase {
                 if steps == 0 {
-                    // Erasing was cut: some of it is gone, and some is neither.
+                    // Erasing was interrupted: some cells are erased, and some are undefined.
                     self.0[at.half * CELLS] = [0xf0; CELL_LEN];
                     self.0[at.half * CELLS + 1] = [EMPTY; CELL_LEN];
                     return None;

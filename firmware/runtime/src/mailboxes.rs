@@ -45,7 +45,7 @@ pub struct Mailboxes {
 }
 
 impl Mailboxes {
-    /// All empty.
+    /// Empty mailboxes.
     pub const fn new() -> Self {
         Self {
             inbox: Channel::new(),
@@ -62,7 +62,8 @@ impl Mailboxes {
         self.unsent.load(Ordering::Relaxed)
     }
 
-    /// How many arrivals found the inbox full: none, as long as all tasks of a robot run on one executor.
+    /// Number of arrivals that found the inbox full: none, as long as all tasks of a robot run on one
+    /// executor.
     pub fn undelivered(&self) -> u32 {
         self.undelivered.load(Ordering::Relaxed)
     }
@@ -82,14 +83,15 @@ impl Mailboxes {
         poll_fn(|context| self.inbox.poll_ready_to_send(context)).await;
     }
 
-    /// Something for the brain. Call when there is room and nothing was awaited since; else it is lost, and counted.
+    /// Puts an input into the inbox. Must be called when there is room, without an await since the check;
+    /// else the input is lost, and counted.
     pub(crate) fn deliver(&self, arrival: Arrival) {
         if self.inbox.try_send(arrival).is_err() {
             self.undelivered.fetch_add(1, Ordering::Relaxed);
         }
     }
 
-    /// A packet for the air, or one more that is lost.
+    /// Sends a packet, or counts it as lost.
     pub(crate) fn post(&self, packet: Packet) {
         if self.outbox.try_send(packet).is_err() {
             self.unsent.fetch_add(1, Ordering::Relaxed);

@@ -25,15 +25,15 @@ pub trait RadioSender {
     async fn send(&mut self, packet: Packet);
 }
 
-/// What a robot perceives with.
+/// Sensors of a robot.
 pub trait Senses {
     /// The next sensor frame, at the pace of the control loop.
     async fn sense(&mut self) -> SensorFrame;
 }
 
-/// What a robot moves with.
+/// Actuators of a robot.
 pub trait Body {
-    /// Does what is wanted from now on, until the next call.
+    /// Executes the orders until the next call.
     async fn act(&mut self, wanted: ActuatorFrame);
 }
 
@@ -59,7 +59,7 @@ pub trait Kicker {
     async fn act(&mut self, act: KickerAct);
 }
 
-/// What a robot on wheels feels, besides its wheels.
+/// Sensors of a wheeled robot, besides its encoders.
 pub trait Probes {
     /// Everything at this moment.
     fn look(&mut self) -> Seen;
@@ -68,7 +68,7 @@ pub trait Probes {
 /// Readings of the probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// How fast the body turns, rad/s; `None` without a gyroscope.
+    /// Turning rate of the body, rad/s; `None` without a gyroscope.
     pub turn: Option<f32>,
     /// The beam at the dribbler is interrupted.
     pub ball: bool,
@@ -82,7 +82,7 @@ pub struct Seen {
 
 /// A watchdog that resets the computer unless it is fed.
 pub trait Dog {
-    /// How long it waits.
+    /// Time-out.
     const PATIENCE: Duration;
 
     /// Restarts its time-out.

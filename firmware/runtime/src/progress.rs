@@ -10,7 +10,7 @@ pub enum Part {
     Control = 1,
     /// The radio receiver, whether it receives something or not.
     Radio = 1 << 1,
-    /// The brain: it had a thought.
+    /// The brain: it has run.
     Brain = 1 << 2,
 }
 
@@ -30,7 +30,7 @@ impl Progress {
         self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);
     }
 
-    /// Whether all have run since the last time this was true.
+    /// Whether all parts have run since the last time this was true.
     pub fn all(&self) -> bool {
         let all = self.0.load(Ordering::Relaxed) == ALL;
         if all {

@@ -15,7 +15,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// One whose count is `per_count` m of rim; negative where it counts down forwards.
+    /// An encoder whose count is `per_count` m of rim; negative where it counts down forwards.
     pub const fn new(per_count: f32) -> Self {
         Self { per_count, last: None, speed: 0.0, stuck: None }
     }
@@ -90,7 +90,7 @@ impl Default for Turn {
     }
 }
 
-/// Whether the robot lies on its side.
+/// Detector of a robot that lies on its side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Tilt {
     tipped: bool,
@@ -98,7 +98,7 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// Upright.
+    /// Starts as upright.
     pub const fn new() -> Self {
         Self { tipped: false, otherwise_since: None }
     }
@@ -127,13 +127,13 @@ pub struct Barrier {
 }
 
 impl Barrier {
-    /// Nothing seen yet.
+    /// A sensor without readings.
     pub const fn new() -> Self {
         Self { dark: None, broken: false }
     }
 
-    /// Whether something stands in the beam, from what the receiver sees now, 0 to 1, and whether the lamp is lit. A receiver that
-    /// is blinded, or gives no number, sees no ball: the kicker fires by it.
+    /// Whether the beam is interrupted, from the receiver's reading, 0 to 1, and whether the lamp is lit. A
+    /// receiver that is blinded, or reads NaN, detects no ball, because the kicker fires by it.
     pub fn step(&mut self, lit: bool, level: f32) -> bool {
         if !lit {
             self.dark = Some(level);
@@ -155,9 +155,9 @@ impl Barrier {
 const HARD: f32 = 0.8;
 /// A wheel that has not moved by then, at that duty cycle, is broken: the motor follows in 30 ms.
 const STUCK_FOR: Duration = Duration::millis(200);
-/// Counts by which a line that is broken, or a blocked wheel, may shake.
+/// Counts by which a broken line, or a blocked wheel, may fluctuate.
 const SHAKES: u16 = 8;
-/// Of a gyroscope that stands, rad/s: noise of 0.3° a second, and some.
+/// Turning rate of a standing gyroscope, rad/s: noise of 0.3° a second, and a margin.
 const UNREST: f32 = 0.1;
 /// A zero further off is none, rad/s: data sheets allow 1° a second.
 const ZERO_MAX: f32 = 0.05;
@@ -167,7 +167,8 @@ const STILL_SAMPLES: u16 = 500;
 const UPRIGHT: f32 = 0.5;
 /// A kick or a bump is over by then.
 const TILT_FOR: Duration = Duration::millis(300);
-/// Share of the receiver's range by which the lamp lifts it where a ball hides it, and where nothing does (to be measured on a robot).
+/// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without (to be
+/// measured on a robot).
 const LAMP_HIDDEN: f32 = 0.08;
 const LAMP_SEEN: f32 = 0.16;
 /// Daylight that leaves no room for the lamp.
@@ -188,7 +189,7 @@ mod tests {
         // 20 counts of 0.1 mm in a millisecond.
         assert!((encoder.step(ms(1), 14, 0.3) - 2.0).abs() < 1e-5);
         assert!((encoder.step(ms(3), 65_530, -0.3) + 1.0).abs() < 1e-5);
-        // Asked twice at one time: as before.
+        // Two calls at one time: as before.
         assert!((encoder.step(ms(3), 65_530, -0.3) + 1.0).abs() < 1e-5);
         let mut mirrored = Encoder::new(-0.0001);
         mirrored.step(ms(0), 100, 0.0);

@@ -35,7 +35,7 @@ pub async fn brain_with_keys(
     think(&mut station, boxes).await
 }
 
-/// From the air into the inbox.
+/// Moves received packets into the inbox.
 pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
     loop {
         let packet = radio.receive().await;
@@ -44,7 +44,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// From the outbox onto the air.
+/// Sends the packets of the outbox.
 pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
     loop {
         let packet = boxes.outbox.receive().await;
@@ -52,7 +52,7 @@ pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// From the senses into the inbox.
+/// Moves sensor frames into the inbox.
 pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     loop {
         let picture = senses.sense().await;
@@ -61,7 +61,7 @@ pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// From the brain's latest order to the body.
+/// Passes the brain's latest orders to the body.
 pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
     loop {
         let wanted = boxes.orders.wait().await;

@@ -213,14 +213,14 @@ impl<M: Mind> Plain<M> {
     }
 }
 
-/// What a clerk was asked, and when.
+/// Calls of a test brain, with their times.
 type Diary = Rc<RefCell<Vec<String>>>;
 
 /// A test brain that records its inputs, answers every packet, and sets a deadline where a packet wants one.
 struct Clerk {
     diary: Diary,
     deadlines: Vec<u64>,
-    /// How far the clock goes while it works on one.
+    /// Time by which the clock advances while it handles a packet.
     packet_takes: u64,
     answers: Vec<Packet>,
     order: Option<ActuatorFrame>,

@@ -7,26 +7,26 @@ use protocol::{Duration, Instant};
 
 /// Wheels of a robot.
 pub const WHEELS: usize = 4;
-/// How often the loop runs (docs/architecture.md §2.3).
+/// Period of the control loop (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
 
-/// What the motors shall do until the next step.
+/// Output of the motors until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motors {
     /// Duty cycle of each wheel, −1 to 1.
     Driven([f32; WHEELS]),
-    /// No current.
+    /// Motors without current.
     Released,
 }
 
-/// What is wanted of everything that moves, after the loop's own check.
+/// Outputs of one step, after the loop's own check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// The wheels.
+    /// Output of the wheels.
     pub motors: Motors,
     /// The dribbler's share of full speed, 0–1.
     pub dribbler: f32,
-    /// The kicker.
+    /// Kick order.
     pub kick: OmniKick,
 }
 
@@ -34,13 +34,13 @@ pub struct Step {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
     order: Option<(Instant, ActuatorFrame)>,
-    /// What the wheels are led to now; runs down where orders stay away.
+    /// Present target rim speeds, m/s; decrease without orders.
     wanted: [f32; WHEELS],
     integral: [f32; WHEELS],
 }
 
 impl Control {
-    /// Nothing ordered yet: the motors are without current.
+    /// A controller without orders: the motors are without current.
     pub const fn new() -> Self {
         Self { order: None, wanted: [0.0; WHEELS], integral: [0.0; WHEELS] }
     }
@@ -82,7 +82,7 @@ impl Control {
             let trial = *integral + error * INTEGRAL_A_STEP;
             let free = open + trial;
             *duty = free.clamp(-1.0, 1.0);
-            // At the voltage's end nothing is added up that would have to be taken back later.
+            // At the voltage limit the integral does not grow (anti-windup).
             if free == *duty || free.abs() < (open + *integral).abs() {
                 *integral = trial;
             }

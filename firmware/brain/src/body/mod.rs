@@ -23,7 +23,7 @@ pub use limbs::Limbs;
 pub enum Intent {
     /// Stay, turning to this heading if one is given.
     Stand {
-        /// Heading to turn to; `None` keeps the present one.
+        /// Heading to turn to; `None`: no turn.
         face: Option<Angle>,
     },
     /// Go to a place, around robots, and end facing `face`.
@@ -37,7 +37,7 @@ pub enum Intent {
     },
     /// Turn on the spot, with the ball or without.
     Turn {
-        /// Heading of the kick.
+        /// Heading to turn to.
         heading: Angle,
     },
     /// On legs: walk with the ball held.

@@ -8,7 +8,7 @@ use super::Sizes;
 /// Limits of a firmware image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Flash.
+    /// Flash, bytes.
     pub flash: u64,
     /// RAM that is taken before the program starts.
     pub ram: u64,
@@ -37,11 +37,11 @@ impl Budget {
 /// A firmware image that exceeds its budget.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverBudget {
-    /// What it may take.
+    /// The budget that is exceeded.
     pub budget: Budget,
-    /// What it takes of flash.
+    /// Flash used, bytes.
     pub flash: u64,
-    /// What it takes of RAM.
+    /// RAM used, bytes.
     pub ram: u64,
     /// Its largest symbols, and their bytes.
     pub largest: Vec<(String, u64)>,
@@ -60,18 +60,19 @@ impl std::error::Error for OverBudget {}
 /// A computer that a robot may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chip {
-    /// Its name.
+    /// Name of the computer.
     pub name: &'static str,
     /// Flash, bytes; `None` where programs are loaded into RAM.
     pub flash: Option<u64>,
     /// RAM, bytes.
     pub ram: u64,
-    /// Clock, Hz.
+    /// Clock frequency, Hz.
     pub clock: u64,
 }
 
 impl Chip {
-    /// What reports compare with: the first paper's robot, a credible floor, and what today's teams use.
+    /// Computers that reports compare with: the first paper's robot, a credible minimum, and those of today's
+    /// teams.
     pub const ALL: [Self; 3] = [
         // Sony AIBO ERS-7: MIPS R7000 at 576 MHz, 64 MB (its data sheet); programs run from RAM.
         Self { name: "AIBO ERS-7", flash: None, ram: 64 << 20, clock: 576_000_000 },
@@ -82,8 +83,9 @@ impl Chip {
     ];
 }
 
-/// Bytes of stack that a program may ever use, painted: with [`Budget::IMAGE`]'s RAM it leaves half of an STM32F405's 128 KiB free
-/// (docs/architecture.md §9 asks for a painted stack that is checked and names no number).
+/// Budget for the deepest stack use of a program, bytes, measured by painting: with [`Budget::IMAGE`]'s RAM
+/// it leaves half of an STM32F405's 128 KiB free (docs/architecture.md §9 asks for a painted stack that is
+/// checked and names no number).
 pub const STACK_BUDGET: u32 = 16 * 1024;
 
 /// Guest instructions of one brain step on its worst path (docs/architecture.md §9), the tasks around the

@@ -148,7 +148,7 @@ fn crate_of(path: &str) -> &str {
     {
         return segments.get(at + 1).copied().unwrap_or("core");
     }
-    // Of the registry: …/registry/src/HOST/name-version/src/…
+    // A crate of the registry: …/registry/src/HOST/name-version/src/…
     if let Some(at) = after("registry") {
         let name = segments.get(at + 3).copied().unwrap_or("?");
         return name.rsplit_once('-').map_or(name, |(name, _)| name);
@@ -178,7 +178,7 @@ const SOFT_DOUBLE: [&str; 12] = [
     "__aeabi_f2d",
     "__aeabi_d2f",
 ];
-/// Where a Cortex-M has its RAM.
+/// Address range of a Cortex-M's RAM.
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x4000_0000;
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ pub struct PanicVerdict {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowed(Vec<PanicSite>);
 
-/// What is wrong with the list.
+/// Errors of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AllowedError {
     /// A line that is not `crate function  # reason`.
@@ -162,7 +162,7 @@ fn plain(name: &str) -> String {
     segments[last..].join("::")
 }
 
-/// Whether the function does nothing but panic.
+/// Whether the function only panics.
 fn panics(name: &str) -> bool {
     let of_core = [
         "core::panicking::",
@@ -207,7 +207,7 @@ fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     found
 }
 
-/// Where a BL or B.W at `at` leads.
+/// Target address of a BL or B.W at `at`.
 fn target(at: u64, first: u16, second: u16) -> u64 {
     let bit = |half: u16, n: u32| u32::from(half >> n) & 1;
     let s = bit(first, 10);
@@ -219,7 +219,7 @@ fn target(at: u64, first: u16, second: u16) -> u64 {
     at.wrapping_add(4).wrapping_add_signed(offset)
 }
 
-/// Crates that may not panic at all: what reads the air, what computes, what thinks.
+/// Crates that may not panic at all: those that read the radio, compute, or decide.
 const NEVER: [&str; 6] = ["brain", "protocol", "casebase", "motion", "rules", "geometry"];
 /// A panic in one of these is the fault of its caller.
 const STANDARD: [&str; 5] = ["core", "alloc", "std", "compiler-builtins", "heapless"];

@@ -1,6 +1,7 @@
 //! `size`: flash and RAM usage by crate and symbol.
 //!
-//! Crates by source line: an inlined instruction counts for the crate it was written in, whichever function it ended up in.
+//! Crates by source line: an inlined instruction counts for the crate it was written in, not for the function
+//! that contains it.
 
 use std::collections::BTreeMap;
 
@@ -13,20 +14,20 @@ pub struct Sizes {
     pub flash: u64,
     /// RAM that is taken before the program starts; the stack has what is left.
     pub ram: u64,
-    /// By crate, the largest first.
+    /// Sizes by crate, the largest first.
     pub crates: Vec<Part>,
-    /// By symbol, the largest first.
+    /// Sizes by symbol, the largest first.
     pub symbols: Vec<Part>,
 }
 
-/// What something takes, in bytes.
+/// Size of a crate or symbol, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its name.
+    /// Name of the crate or symbol.
     pub name: String,
-    /// Flash.
+    /// Flash, bytes.
     pub flash: u64,
-    /// RAM.
+    /// RAM, bytes.
     pub ram: u64,
 }
 
@@ -80,7 +81,7 @@ impl Sizes {
         Self { flash, ram, crates: sorted(crates), symbols: sorted(symbols) }
     }
 
-    /// What holds RAM for good: each static of that many bytes or more, the largest first, after the crate it belongs to.
+    /// Statics: each of that many bytes or more, the largest first, after the crate it belongs to.
     pub fn pools(&self, least: u64) -> Vec<(&str, &Part)> {
         let mut pools: Vec<_> = self
             .symbols
@@ -112,7 +113,7 @@ fn crate_of_symbol(name: &str) -> &str {
     }
 }
 
-/// Instructions without a source line: assembly, and what the linker put between functions.
+/// Instructions without a source line: assembly, and the linker's padding between functions.
 const ASSEMBLY: &str = "(assembly, padding)";
 /// Values without a name: texts, tables of jumps, literals.
 const CONSTANTS: &str = "(constants without a name)";

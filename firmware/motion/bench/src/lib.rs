@@ -16,14 +16,14 @@ use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
-/// What is measured.
+/// Functions that are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// `t*` without drag.
     FreeTime,
     /// The whole motion without drag.
     FreePlan,
-    /// Its state at one time.
+    /// State of a motion without drag at one time.
     FreeState,
     /// `t*` with drag.
     DragTime,
@@ -35,7 +35,7 @@ pub enum Work {
     Safest,
     /// A step among 12 discs and 4 shapes that stand.
     Avoid,
-    /// ... whose discs move.
+    /// The same with moving discs.
     AvoidMoving,
 }
 
@@ -86,14 +86,14 @@ impl Work {
     }
 }
 
-/// What is to be done.
+/// Inputs of one task.
 #[derive(Clone, Debug)]
 pub struct Task {
     /// A start, a velocity and an end on a field of 12 × 9 m; every second path is short.
     pub from: Point<Field>,
-    /// m/s.
+    /// Velocity at the start, m/s.
     pub velocity: Vector<Field>,
-    /// The end.
+    /// End of the motion, m.
     pub to: Point<Field>,
     motion: <FreeLimits as CalcMotion>::Motion<Field>,
     time: f32,
@@ -151,7 +151,7 @@ const OBSTACLES: usize = 16;
 pub struct Tasks(Xoshiro128PlusPlus);
 
 impl Tasks {
-    /// From their beginning.
+    /// Tasks from the start of the seed's sequence.
     pub fn new(seed: u64) -> Self {
         Self(Xoshiro128PlusPlus::seed_from_u64(seed))
     }
@@ -217,17 +217,17 @@ impl Iterator for Tasks {
     }
 }
 
-/// What one task came to: instructions of each work, and a hash of all that was found.
+/// Result of one task: instructions of each work, and a hash of all results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counted {
-    /// In the order of [`Work::ALL`].
+    /// Instructions, in the order of [`Work::ALL`].
     pub instructions: [u32; Work::ALL.len()],
-    /// Of the bits.
+    /// Hash of the results' bits.
     pub found: u32,
 }
 
 impl Counted {
-    /// Does all works on a task. `count` does one, and counts.
+    /// Runs all works on a task. `count` runs one, and counts its instructions.
     pub fn of(task: &Task, mut count: impl FnMut(Work, &Task) -> (u32, u32)) -> Self {
         let mut found = 0_u32;
         let instructions = Work::ALL.map(|work| {
@@ -238,7 +238,7 @@ impl Counted {
         Self { instructions, found }
     }
 
-    /// From a line of numbers.
+    /// Reads a line of numbers.
     pub fn from_line(line: &str) -> Option<Self> {
         let mut words = line.split(' ').map_while(|word| word.parse().ok());
         let mut counted = Self { instructions: [0; _], found: words.next()? };
@@ -258,7 +258,7 @@ impl fmt::Display for Counted {
 
 /// Tasks that the board is given, from this seed on.
 pub const TASKS: usize = 500;
-/// Of the tasks.
+/// Seed of the tasks.
 pub const SEED: u64 = 2013;
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ use geometry::{Point, Shape, Vector, math};
 use super::item::Scene;
 
 impl<F: Copy> Scene<'_, F> {
-    /// The point itself if it is free, else one nearby that is; the point brought inside where there is none. For a target, in
-    /// every step: few candidates, then the first free point on rings around it.
+    /// The point itself if it is free, else one nearby that is; without one, the point moved inside. For a
+    /// target, in every step: few candidates, then the first free point on rings around it.
     pub(super) fn nearest_free(&self, point: Point<F>) -> Point<F> {
         let start = self.within().map_or(point, |within| inside(&within, point));
         self.search(start, TRIES_TO_GOAL_MAX, |_| true)
@@ -80,7 +80,8 @@ impl<F: Copy> Scene<'_, F> {
             Shape::Disc { center, radius } => {
                 let out = (at - center).unit().unwrap_or(Vector::new(1.0, 0.0)) * (radius + OFF);
                 let left = Vector::new(-out.y(), out.x());
-                // Along both axes, as walls and boxes lie, first: of candidates that are nearly the same the first one counts.
+                // Along both axes first, parallel to walls and boxes: of nearly equal candidates the first
+                // one is used.
                 let off = at - center;
                 let reach =
                     |off: f32| math::sqrt(math::max((radius + OFF) * (radius + OFF) - off * off, 0.0));

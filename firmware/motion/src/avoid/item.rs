@@ -14,7 +14,7 @@ pub(super) struct Item<F> {
     /// Squares of the circle's radius, with the margins of routes and of braking.
     route: f32,
     brake: f32,
-    /// What routes keep from the shape, m: [`SKIN`], or less where start or goal are nearer.
+    /// Distance that routes keep from the shape, m: [`SKIN`], or less where start or goal are nearer.
     pub(super) margin: f32,
     /// The circle is the shape.
     is_disc: bool,
@@ -27,7 +27,7 @@ pub(super) struct Scene<'o, F> {
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
     within: Option<Shape<F>>,
-    /// What may still be spent on looking.
+    /// Effort that is left for tests.
     effort: Cell<u32>,
 }
 
@@ -38,7 +38,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
     }
 
-    /// Takes in the obstacles.
+    /// Computes the items of all obstacles.
     pub(super) fn look(&mut self) {
         for obstacle in self.obstacles {
             let velocity = obstacle.velocity;
@@ -123,12 +123,12 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.effort.set(self.effort.get().saturating_sub(looked + besides));
     }
 
-    /// Sets what may be spent from now on.
+    /// Sets the effort available from now on.
     pub(super) fn allow(&self, effort: u32) {
         self.effort.set(effort);
     }
 
-    /// Whether a plan has had its share of a step.
+    /// Whether a plan has used its share of a step.
     pub(super) fn is_spent(&self) -> bool {
         self.effort.get() == 0
     }
@@ -141,7 +141,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within.is_none_or(|within| within.distance_to(point) <= 0.0)
     }
 
-    /// As [`Self::stays_within`]; who is outside already may come no farther out.
+    /// As [`Self::stays_within`]; a robot that is outside already may move no farther out.
     pub(super) fn stays_within_or_returns(&self, from: Point<F>, to: Point<F>) -> bool {
         self.within.is_none_or(|within| within.distance_to(to) <= math::max(within.distance_to(from), 0.0))
     }
@@ -186,7 +186,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         })
     }
 
-    /// Nothing is touched, with a smaller margin: what is left of braking.
+    /// Whether no obstacle is touched, with the smaller margin that braking keeps.
     pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
             Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
@@ -216,7 +216,8 @@ impl<F: Copy> Item<F> {
         };
         self.is_disc = matches!(shape, Shape::Disc { .. });
         self.center = center;
-        // A box that shrinks keeps its circle: the corners of what is left of it may be farther out than a smaller one.
+        // A box that shrinks keeps its circle: the corners that remain may be farther out than a smaller
+        // circle.
         let margin = if corner > 1.0 { math::max(self.margin, 0.0) } else { self.margin };
         self.route = square(radius + corner * margin);
         self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
@@ -227,7 +228,7 @@ impl<F: Copy> Item<F> {
         (self.route, self.brake) = (NOWHERE, NOWHERE);
     }
 
-    /// Whether the point is in the circle, or its coordinates are NaN.
+    /// Whether the point is in the circle.
     #[inline]
     fn may_hold(&self, point: Point<F>) -> bool {
         let off = point - self.center;
@@ -279,7 +280,7 @@ fn square(x: f32) -> f32 {
     x * x
 }
 
-/// By how much the shape may grow and not hold the point: corners of a box stay corners.
+/// Distance by which the shape may grow without holding the point: corners of a box stay corners.
 fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     match *shape {
         Shape::Box { low, high } => {
@@ -327,7 +328,7 @@ fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, rad
         .or_else(|| end(from + way, 1.0))
 }
 
-/// By slabs: the shares between which it is inside of each pair of sides.
+/// Slab test: the shares between which it is inside of each pair of sides.
 fn hits_box<F: Copy>(
     from: Point<F>,
     way: Vector<F>,
@@ -362,13 +363,13 @@ impl<F: Copy> Obstacle<F> {
     }
 }
 
-/// What routes keep from shapes, m: what a following controller may be off.
+/// Distance that routes keep from shapes, m: the error of a controller that follows them.
 pub(super) const SKIN: f32 = 0.02;
-/// What braking keeps, m.
+/// Distance that braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
 /// A share of a path long enough to give its direction.
 const A_LITTLE: f32 = 0.1;
-/// The square of no circle's radius: nothing comes nearer.
+/// Square radius of an empty circle: it is never touched.
 const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.
 const TOUCH: f32 = 0.000_5;

@@ -6,16 +6,16 @@ use super::item::{Item, Scene, at, tangent};
 use super::{CHECKS_LONG, Obstacle};
 use crate::trajectory::FreeLimits;
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Copy)]
 pub(super) struct Route<F> {
     /// Whether it leads to the goal.
     pub(super) arrives: bool,
     /// The first corner; none where it is straight.
     pub(super) via: Option<Point<F>>,
-    /// What comes after the first corner.
+    /// Point after the first corner.
     pub(super) behind: Point<F>,
-    /// Where it ends.
+    /// End of the route.
     pub(super) end: Point<F>,
     pub(super) length: f32,
 }
@@ -26,7 +26,7 @@ struct Node<F> {
     at: Point<F>,
     /// Number of the corner before.
     parent: usize,
-    /// Length so far, and with what turning costs.
+    /// Length so far, without and with the cost of turning.
     length: f32,
     cost: f32,
     /// Cost including the straight line to the goal; infinite once tested.
@@ -77,7 +77,7 @@ impl<F: Copy> Search<'_, F> {
             let (number, node) = self.cheapest()?;
             self.nodes.get_mut(number)?.estimate = f32::INFINITY;
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
-            // What stands before a corner is gone around as well; each obstacle once on each side.
+            // Obstacles before a corner are avoided as well; each obstacle once on each side.
             let mut turns = Turns::new(hit, self.goal);
             while let Some(Turn { item: hit, side, to }) = turns.next() {
                 let Some((item, obstacle)) = self.scene.get(hit) else { continue };
@@ -117,7 +117,7 @@ impl<F: Copy> Search<'_, F> {
         self.scene.first_hit(node.at, way, at, time)
     }
 
-    /// About when the robot has gone so far: speeding up from its present speed to its limit, s.
+    /// Approximate time to travel this far: accelerating from its present speed to its limit, s.
     fn time_after(&self, length: f32) -> f32 {
         let peak = math::sqrt(self.speed * self.speed + 2.0 * self.limits.acceleration * length);
         let faster = self.speed + peak;
@@ -125,7 +125,7 @@ impl<F: Copy> Search<'_, F> {
         math::max(speeding, length / self.limits.speed)
     }
 
-    /// Adds a corner that can be reached from the node; else the number of what stands before it.
+    /// Adds a corner that can be reached from the node; else returns the number of the obstacle before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
         if !self.scene.stays_within(at) || self.checks == 0 || self.scene.is_spent() {
             return None;
@@ -139,7 +139,7 @@ impl<F: Copy> Search<'_, F> {
         let (length, cost) = (node.length + piece, node.cost + piece + turning + extra);
         if piece > PIECE_MIN {
             let estimate = cost + at.distance(self.goal);
-            // Where there is no room for more corners, those there are must do.
+            // Without capacity for more corners the search continues with those there are.
             let _ = self.nodes.push(Node { at, parent: number, length, cost, estimate });
         }
         None
@@ -169,7 +169,7 @@ impl<F: Copy> Search<'_, F> {
         let mut gap = item.margin + CORNER_SKIN;
         let mut meeting = 0.0;
         if item.moves {
-            // Where it will be when the robot comes by, and room for being early or late there.
+            // The obstacle's position when the robot passes, with a margin for being early or late there.
             for _ in 0..2 {
                 let distance = math::max(at(obstacle, meeting).distance_to(from), 0.0);
                 meeting = self.time_after(node.length + distance);
@@ -179,7 +179,7 @@ impl<F: Copy> Search<'_, F> {
         match if item.moves { at(obstacle, meeting) } else { obstacle.shape } {
             Shape::Disc { center, radius } => around(center, radius + gap, from, to, side, None),
             Shape::Capsule { spine, radius } => {
-                // The end whose tangent leaves the other end on the inner side.
+                // The end of the spine whose tangent leaves the other end on the inner side.
                 let outer = |seen: Point<F>, side: f32| {
                     let normal = tangent(seen, spine.from, radius + gap, side);
                     if normal.dot(spine.vector()) > 0.0 { spine.to } else { spine.from }
@@ -194,7 +194,8 @@ impl<F: Copy> Search<'_, F> {
                 around(first, radius + gap, from, to, side, flank)
             }
             Shape::Box { low, high } => {
-                // The outermost corner as seen over what routes keep; a robot may be within the skin of corners.
+                // The outermost corner, measured at the routes' distance; a robot may be within the skin of
+                // corners.
                 let off = |sx: f32, sy: f32, by: f32| {
                     let (x, y) = (
                         if sx < 0.0 { low.x() } else { high.x() },
@@ -249,7 +250,7 @@ impl<F: Copy> Search<'_, F> {
     }
 }
 
-/// What it costs to pass in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
+/// Cost of passing in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
 fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straight: Vector<F>) -> f32 {
     if !moves {
         return 0.0;
@@ -266,7 +267,7 @@ struct Turn<F> {
     to: Point<F>,
 }
 
-/// What is still to be tried from a corner, first come, first served.
+/// Turns still to be tried from a corner, in order of arrival.
 struct Turns<F> {
     list: heapless::Vec<Turn<F>, TURNS_MAX>,
     begin: usize,
@@ -328,7 +329,7 @@ fn around<F: Copy>(
 const TURNS_MAX: usize = 12;
 /// Most corners of a search: one a piece, and the start.
 const NODES_MAX: usize = CHECKS_LONG as usize + 1;
-/// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
+/// Distance of corners outside of the routes' margin, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
 /// What passing in front costs, by the obstacle's speed across the path, s: a robot may be late by as much.
 const LATENESS: f32 = 0.5;

@@ -1,4 +1,4 @@
-//! Tests: a robot that follows its plan arrives and touches nothing.
+//! Tests: a robot that follows its plan arrives without a contact.
 
 extern crate std;
 
@@ -33,11 +33,11 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
     }
 }
 
-/// What came of driving it.
+/// Result of a drive.
 struct Drive {
     time: f32,
     arrived: bool,
-    /// Deepest that it was in anything, m; negative: it stayed away so far.
+    /// Deepest penetration of an obstacle, m; negative: smallest distance kept.
     deepest: f32,
     left: f32,
 }
@@ -100,7 +100,7 @@ impl Dice {
         ((self.0.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range
     }
 
-    /// A point that is in nothing.
+    /// A point outside all obstacles.
     fn free(&mut self, scene: &[Obstacle<Field>]) -> Point<Field> {
         loop {
             let point = at(self.within(4.6), self.within(3.1));
@@ -167,7 +167,8 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
             closed += 1;
         }
     }
-    // What was measured, with a little room: 992 arrive, 16 % later than straight through everything would.
+    // Measured values, with a small tolerance: 992 arrive, 16 % later than on straight lines through the
+    // obstacles.
     assert!(arrived >= 988 && missed <= 12, "arrived {arrived}, no way {closed}, missed {missed}");
     assert!(time < 1.2 * straight, "{time} s; {straight} s straight through everything");
 }
@@ -316,7 +317,7 @@ fn a_robot_that_crosses_is_let_by() {
     assert!(course.from.distance(at(3.0, 0.0)) < 0.005);
 }
 
-/// In how many of 300 drives through four robots that cross as they like, and see nothing, it is touched.
+/// Number of contacts in 300 drives through four robots that cross without avoiding it.
 fn touched(knows_their_velocity: bool) -> u32 {
     let mut dice = Dice::new(3);
     let mut touched = 0;

@@ -7,7 +7,7 @@ use super::BallModel;
 use crate::rolling::RollingBall;
 use crate::trajectory::State;
 
-/// What a bounce takes.
+/// Share of its speed that a bounce leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipModel {
     /// Share of the speed along the ground that the first touch leaves, 0 to 1.
@@ -26,7 +26,8 @@ impl Default for ChipModel {
 }
 
 impl ChipModel {
-    /// From `BallModelChipFixedLoss` of the league's geometry packets. `None` where no ball could behave like that.
+    /// From `BallModelChipFixedLoss` of the league's geometry packets. `None` where the numbers are not
+    /// physical.
     pub fn from_wire(damping_xy_first_hop: f64, damping_xy_other_hops: f64, damping_z: f64) -> Option<Self> {
         let model = Self {
             first: damping_xy_first_hop as f32,
@@ -105,7 +106,7 @@ pub struct ChipPath<F> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 struct Hop {
-    /// Its beginning.
+    /// Start of the hop, s.
     time: f32,
     distance: f32,
     speed: f32,
@@ -125,7 +126,7 @@ pub struct ChipState<F> {
     pub ground: State<F>,
     /// Height of the ball above its position on the field surface, m.
     pub height: f32,
-    /// Upwards, m/s.
+    /// Vertical velocity, upwards, m/s.
     pub rise: f32,
 }
 
@@ -139,12 +140,12 @@ impl<F: Copy> ChipPath<F> {
         self.roll_time + self.roll_speed / self.roll.deceleration
     }
 
-    /// When it rolls, s: from then on a robot may stop it.
+    /// Time from which it rolls, s: from then on a robot may stop it.
     pub fn roll_time(&self) -> f32 {
         self.roll_time
     }
 
-    /// Where it rolls from.
+    /// Point from which it rolls.
     pub fn roll_point(&self) -> Point<F> {
         self.from + self.along * self.roll_distance
     }
@@ -201,7 +202,7 @@ impl<F: Copy> ChipPath<F> {
     }
 }
 
-/// m/s².
+/// Acceleration of gravity, m/s².
 const GRAVITY: f32 = 9.81;
 /// A hop lower than this is rolling, m (TIGERs).
 const HOP_MIN: f32 = 0.01;

@@ -7,7 +7,7 @@ use geometry::math;
 
 use super::FreeLimits;
 
-/// Limits of an axis with what every evaluation needs of them.
+/// Limits of an axis with the values that every evaluation needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AxisLimits {
     speed: f32,
@@ -139,7 +139,7 @@ impl AxisLimits {
 pub(super) struct Phases {
     /// Speed at the start.
     start: f32,
-    /// Where it ends, counted from the start.
+    /// Distance of its end from the start, m or rad.
     pub(super) end: f32,
     /// Size and direction of both brakings; of the speeding up, or of the slowing down to the limit.
     brake: f32,

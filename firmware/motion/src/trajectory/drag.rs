@@ -13,9 +13,9 @@ use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 /// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v / `speed`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragLimits {
-    /// Where push and drag are equal: approached, never reached, m/s, > 0.
+    /// Speed at which push and drag are equal: approached, never reached, m/s, > 0.
     pub speed: f32,
-    /// From standing, m/s², > 0.
+    /// Acceleration from standstill, m/s², > 0.
     pub acceleration: f32,
 }
 
@@ -32,7 +32,7 @@ impl DragLimits {
         positive(self.speed) && positive(self.acceleration)
     }
 
-    /// s.
+    /// Unit of time, s.
     fn time_unit(self) -> f32 {
         self.speed / self.acceleration
     }
@@ -40,7 +40,7 @@ impl DragLimits {
     fn shares<F>(self, offset: Vector<F>, velocity: Vector<F>, within: f32) -> Balance {
         let (v, d) =
             (velocity * (1.0 / self.speed), offset * (self.acceleration / (self.speed * self.speed)));
-        // From where coasting would stop: about how much each axis has to do.
+        // Distance from where coasting would stop: approximately the work of each axis.
         let (x, y) = ((d.x() - v.x()).abs(), (d.y() - v.y()).abs());
         let sum = x + y;
         let first = if sum > 0.0 { y / sum } else { 0.5 };
@@ -183,7 +183,7 @@ impl Pushes {
         let per_size = 1.0 / size;
         let sign = if beyond < 0.0 { -1.0 } else { 1.0 };
         let (x, v) = (beyond.abs() * per_size, sign * speed * per_size);
-        // e^x may be infinite; then its inverse is 0 and all goes on.
+        // e^x may be infinite; then its inverse is 0 and the result is still right.
         let grown = math::exp(x);
         // Towards the end, against `beyond`; or with it, where one already moves away from `beyond` too fast.
         let (push, run, root) = if v - (grown - 1.0) > 0.0 {

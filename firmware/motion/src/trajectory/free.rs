@@ -145,9 +145,9 @@ impl<F: Copy> Motion<F> for FreeMotion<F> {
     }
 }
 
-/// The smallest limit that is still one: below a micrometre a second nothing moves.
+/// The smallest valid limit: slower than a micrometre a second counts as standing.
 const LIMIT_MIN: f32 = 1e-6;
-/// Times of the axes are evaluated at most so often; see firmware/motion/README.md for what more would win.
+/// Most evaluations of the axes' times; firmware/motion/README.md has the gain of more.
 const ROUNDS: u32 = 5;
 /// Times that differ by less than 2 × this share are together.
 const TOLERANCE: f32 = 0.005;

@@ -47,7 +47,7 @@ fn holds_together<M: Motion<Field> + Debug>(motion: &M, (from, velocity, to): Ta
     for step in 1..=steps {
         let now = motion.at(dt * step as f32);
         let middle = motion.at(dt * (step as f32 - 0.5));
-        // Simpson's rule.
+        // Integral by Simpson's rule.
         place += (before.velocity + middle.velocity * 4.0 + now.velocity) * (dt / 6.0);
         speed += middle.acceleration * dt;
         before = now;
@@ -99,7 +99,7 @@ fn with_drag_push_and_speed_hold_as_they_are_told() {
         let fastest = math::sqrt(9.0 + velocity.dot(velocity));
         for step in 0..200 {
             let state = motion.at(motion.duration() * step as f32 / 200.0);
-            // What the motors push is what moves it and what drag takes.
+            // The motors' push equals acceleration plus drag.
             let push = state.acceleration + state.velocity * (3.5 / 3.0);
             assert!(push.norm() <= 3.5 * 1.001 && state.velocity.norm() <= fastest * 1.001);
         }

@@ -26,7 +26,7 @@ impl TurnLimits {
     /// From `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner there.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
-        // NaN is not above anything.
+        // False for NaN.
         let usable = speed > 0.0 && braking > 0.0 && rate.abs() <= RATE_MAX;
         if !usable {
             return Turn { from, phases: Phases::default() };

@@ -18,7 +18,7 @@ mod tests {
         let mut robot = Robot::new();
         let mut told = Vec::<Progress, 8>::new();
         let mut first_at = None;
-        // Behind the ball, which lies before the goal; the robot has yet to come to it.
+        // Behind the ball, which lies before the goal; the robot has not reached it yet.
         for _ in 0..75 {
             let before = robot.now;
             if let Some(progress) = robot.step(Point::new(1.2, 0.0), Point::new(1.6, 0.0))

@@ -7,7 +7,7 @@ mod tests {
     use protocol::RobotId;
     use retrieval_bench::{Found, scan};
 
-    /// So far from the ball is a robot that may take part.
+    /// Largest distance from the ball of a robot that may take part, mm.
     const NEAR: i32 = 1_200;
 
     /// The problem of docs/case-format.md §5.1: the ball at the centre, a teammate, an opponent on the path.
@@ -66,7 +66,7 @@ mod tests {
     /// Marsaglia's xorshift (2003), 64 bits.
     struct Dice(u64);
     impl Dice {
-        /// From −most to most.
+        /// A number from −`most` to `most`.
         fn within(&mut self, most: i32) -> i32 {
             self.0 ^= self.0 << 13;
             self.0 ^= self.0 >> 7;
