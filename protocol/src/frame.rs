@@ -1,4 +1,4 @@
-//! `frame`: the radio's envelope: sender, epoch, counter, payload and what proves them genuine
+//! `frame`: the radio's envelope: sender, epoch, counter, payload and tags that prove them genuine
 //! (docs/architecture.md §6.1).
 //!
 //! ```text
@@ -6,10 +6,11 @@
 //! version 1 | team 1 | 17       | epoch 4 LE | counter 4 LE | audience 2 LE | payload n | 3 for each robot in the audience
 //! ```
 //!
-//! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one is its first three
-//! bytes. The host seals what it sends to several robots once for each of them, so that no robot's key makes a frame that another
-//! one believes. Checks run in the order length → version, team, sender → epoch and counter → tag → decode; the epoch and counter
-//! are [`Sessions`]' business, the payload is its reader's. `protocol/SPEC.md` has worked bytes.
+//! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one
+//! is its first three bytes. The host seals a frame for several robots once for each of them, so that no
+//! robot's key makes a frame that another one accepts. Checks run in the order length → version, team, sender
+//! → epoch and counter → tag → decode; epoch and counter are checked by [`Sessions`], the payload by its
+//! reader. `protocol/SPEC.md` has worked bytes.
 
 use crate::{RobotId, TeamId};
 
@@ -111,7 +112,7 @@ impl Audience {
         RobotId::all().filter(move |robot| self.has(*robot))
     }
 
-    /// How many of its robots have a lower number.
+    /// Number of its robots with a lower number.
     const fn before(self, robot: RobotId) -> usize {
         (self.0 & ((1 << robot.number()) - 1)).count_ones() as usize
     }
@@ -126,17 +127,17 @@ impl FromIterator<RobotId> for Audience {
 /// A frame, its payload borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Whose air this is.
+    /// Team of the network.
     pub team: TeamId,
     /// The sender.
     pub sender: Sender,
-    /// For whom it is sealed, where for several: a short tag each. Only the host's frames have one.
+    /// Robots for which it is sealed, if several: a short tag each. Only the host's frames have one.
     pub audience: Option<Audience>,
     /// The sender's boot epoch: rises with every boot.
     pub epoch: u32,
     /// Rises with every frame of an epoch.
     pub counter: u32,
-    /// postcard bytes.
+    /// Payload in postcard encoding.
     pub payload: &'a [u8],
 }
 
@@ -149,7 +150,7 @@ pub enum Refusal {
     Version(u8),
     /// Another team's frame.
     Team(TeamId),
-    /// No such sender, our own number, or one that does not speak to us.
+    /// No such sender, our own number, or one that does not send to us.
     Sender(u8),
     /// An earlier boot epoch of the sender.
     Epoch {
@@ -158,7 +159,7 @@ pub enum Refusal {
         /// The sender's current epoch.
         current: u32,
     },
-    /// Not newer than the last frame of this epoch: a duplicate, a straggler or a replay.
+    /// Not newer than the last frame of this epoch: a duplicate, a late frame or a replay.
     Counter {
         /// The counter in the frame.
         seen: u32,
@@ -228,7 +229,7 @@ pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
     }
 }
 
-/// Where the sender stands: after version and team.
+/// Offset of the sender: after version and team.
 const SENDER_AT: usize = 2;
 
 impl<'a> Frame<'a> {
@@ -313,7 +314,7 @@ impl<'a> Frame<'a> {
         Some(())
     }
 
-    /// Writes what tags cover.
+    /// Writes the bytes that tags cover.
     #[inline]
     fn write_covered(&self, out: &mut FrameBytes) -> Option<()> {
         let ([e0, e1, e2, e3], [c0, c1, c2, c3]) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
@@ -341,7 +342,7 @@ fn short_tag([a, b, c]: [u8; SHORT_TAG_LEN]) -> u64 {
     u64::from(u32::from_le_bytes([a, b, c, 0]))
 }
 
-/// What a receiver remembers of every sender: its epoch and the last counter accepted.
+/// State of every sender at a receiver: its epoch and the last counter accepted.
 #[derive(Clone, Debug, Default)]
 pub struct Sessions {
     last: [Option<(u32, u32)>; Sender::COUNT],
@@ -369,7 +370,7 @@ impl Sessions {
         self.last[sender.index()].map(|(_, counter)| counter)
     }
 
-    /// Remembers a frame that was checked and found genuine.
+    /// Records a frame that was checked and found genuine.
     pub fn accept(&mut self, frame: &Frame<'_>) {
         self.last[frame.sender.index()] = Some((frame.epoch, frame.counter));
     }

@@ -35,9 +35,9 @@ pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 pub enum HostMessage {
     /// To all: a part of the snapshot.
     World(WorldPart),
-    /// To one robot: what to do.
+    /// To one robot: its directive.
     Command(Command),
-    /// To one robot: the host's answer to hearing it for the first time; repeated now and then.
+    /// To one robot: the host's answer to receiving it for the first time; repeated occasionally.
     Welcome(Welcome),
 }
 
@@ -66,7 +66,7 @@ impl HostMessage {
 /// clock to the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
-    /// Who is meant.
+    /// Addressee.
     pub to: RobotId,
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
@@ -82,13 +82,13 @@ pub struct Welcome {
 pub struct WorldPart {
     /// Number of the snapshot; parts of one snapshot carry one number, the next snapshot the next (wrapping).
     pub picture: u8,
-    /// Which part of it, from 0.
+    /// Index of the part, from 0.
     pub part: u8,
-    /// How many parts it has.
+    /// Number of parts of the snapshot.
     pub parts: u8,
     /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed; only while that matters.
+    /// Target of a ball placement, while one is running.
     pub placement: Option<WirePoint>,
     /// The ball; in every part, the same.
     pub ball: Option<WireBall>,
@@ -109,15 +109,15 @@ impl WorldPart {
     }
 }
 
-/// Bytes of a robot in a part: who, x, y, heading, two velocities.
+/// Bytes of a robot in a part: identity, x, y, heading, two velocities.
 pub(crate) const WIRE_ROBOT_LEN: usize = 11;
 
 /// The ball on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireBall {
-    /// Where it is.
+    /// Position, mm.
     pub at: WirePoint,
-    /// How high, mm; 0 on the ground.
+    /// Height, mm; 0 on the ground.
     #[serde(with = "postcard::fixint::le")]
     pub height: u16,
     /// Along +x, mm/s.
@@ -131,9 +131,9 @@ pub struct WireBall {
 /// A robot on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireRobot {
-    /// Whose, and its number.
+    /// Team and number.
     pub who: WireWho,
-    /// Where it is and faces.
+    /// Position, mm, and heading, mrad.
     pub pose: WirePose,
     /// Along +x, mm/s.
     #[serde(with = "postcard::fixint::le")]
@@ -147,9 +147,9 @@ pub struct WireRobot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct WireWho {
-    /// Whose.
+    /// Team.
     pub side: Side,
-    /// Which.
+    /// Number in the team.
     pub id: RobotId,
 }
 
@@ -168,18 +168,18 @@ impl TryFrom<u8> for WireWho {
     }
 }
 
-/// What one robot shall do.
+/// Command to one robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Command {
-    /// Who is meant.
+    /// Addressee.
     pub to: RobotId,
     /// The goal we defend: teams change ends at half-time.
     pub defending: GoalEnd,
     /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// What it is now, besides a field player.
+    /// Its present role under the rules.
     pub duty: Duty,
-    /// What to do.
+    /// The directive.
     pub directive: Directive,
 }
 
@@ -192,28 +192,28 @@ pub enum Directive {
     /// Be at this place with this heading, around all obstacles; away from the ball too unless the kicker of
     /// a restart.
     GoTo {
-        /// Where and how.
+        /// Target pose.
         pose: WirePose,
     },
     /// Have the ball at the dribbler, then face this point.
     GetBall {
-        /// What to face with it; nothing: the attacked goal.
+        /// Point to face with it; `None`: the attacked goal.
         face: Option<WirePoint>,
     },
     /// Kick the ball at a point; a shot at the goal and a clearance too.
     Kick {
         /// At this point.
         at: WirePoint,
-        /// How.
+        /// Kick of the pass.
         kick: KickOrder,
     },
     /// Pass to a teammate, who will have the ball at `at`; waits, facing it, until ordered to be `ready`.
     Pass {
         /// The interception point.
         at: WirePoint,
-        /// To whom.
+        /// Robot that receives the pass.
         receiver: RobotId,
-        /// How.
+        /// Kick of the pass.
         kick: KickOrder,
         /// Whether the ball may leave now.
         ready: bool,
@@ -222,17 +222,17 @@ pub enum Directive {
     Receive {
         /// The interception point.
         at: WirePoint,
-        /// Shoot or pass it on at this point at first touch; nothing: take it.
+        /// Point to redirect the ball to at first touch; `None`: take it.
         then: Option<WirePoint>,
     },
     /// Carry the ball there, at most a metre (rules: the dribbling limit).
     Dribble {
-        /// Where to and how to face.
+        /// Target pose.
         pose: WirePose,
     },
     /// Stand on this stretch where the ball would cross it; stop a ball that comes.
     Block {
-        /// One end.
+        /// One end of the stretch.
         from: WirePoint,
         /// The other end.
         to: WirePoint,
@@ -249,7 +249,7 @@ pub enum Directive {
     },
 }
 
-/// How a ball is kicked.
+/// Kick order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum KickOrder {
     /// Along the ground, with this speed, cm/s.
@@ -265,7 +265,7 @@ pub struct Hint {
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: heapless::Vec<RobotId, CASE_ROBOTS_MAX>,
-    /// Where its first pass shall be received, if not at the adapted position.
+    /// Place at which its first pass shall be received, if not at the adapted position.
     pub pass_point: Option<WirePoint>,
 }
 
@@ -288,7 +288,7 @@ pub struct Telemetry {
     pub refused: [u16; Refusal::KINDS],
     /// The newest snapshot of which a part was received; meaningless before the first.
     pub picture: u8,
-    /// How long ago the last frame of the host came, 0.1 ms, saturating.
+    /// Time since the last frame of the host, 0.1 ms, saturating.
     #[serde(with = "postcard::fixint::le")]
     pub silence: u16,
     /// The epoch of the host that this robot follows; 0 before it was welcomed.
@@ -299,7 +299,7 @@ pub struct Telemetry {
     pub clock: u32,
 }
 
-/// How a robot is, one bit each.
+/// Condition of a robot, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Condition(#[serde(with = "postcard::fixint::le")] pub u16);
@@ -313,12 +313,12 @@ impl Condition {
     pub const TIPPED: Self = Self(1 << 2);
     /// The battery is too low to play.
     pub const BATTERY_LOW: Self = Self(1 << 3);
-    /// The governor has cut down what the brain wanted.
+    /// The governor has limited the brain's orders.
     pub const GOVERNED: Self = Self(1 << 4);
     /// The host has been silent for too long: brakes.
     pub const LINK_LOST: Self = Self(1 << 5);
 
-    /// Both sets together.
+    /// Union of both sets.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)

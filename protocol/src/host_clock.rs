@@ -28,12 +28,12 @@ pub const fn ticks(at: Instant) -> u32 {
 /// A tick is 2⁶ µs, so that a shift does what a division would.
 pub(crate) const TICK_BITS: u32 = 6;
 
-/// What a robot knows of its host's clock.
+/// A robot's estimate of its host's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostClock {
     /// The host's clock less the robot's, at most, when it was learned.
     offset: u32,
-    /// When that was, on the robot's clock.
+    /// Time of that reading, on the robot's clock.
     learned: u32,
 }
 
@@ -49,7 +49,7 @@ pub enum Age {
 }
 
 impl HostClock {
-    /// After a welcome with this offset; `known` is what was known of the same host.
+    /// State after a welcome with this offset; `known` is the earlier state for the same host.
     pub const fn learned(known: Option<Self>, now: Instant, offset: u32) -> Self {
         let learned = ticks(now);
         let offset = match known {
@@ -59,7 +59,7 @@ impl HostClock {
         Self { offset, learned }
     }
 
-    /// How old a frame with this counter is.
+    /// Age of a frame with this counter.
     pub const fn age(&self, now: Instant, counter: u32) -> Age {
         let now = ticks(now);
         let age = now.wrapping_add(self.offset_at(now)).wrapping_sub(counter);
@@ -80,7 +80,7 @@ impl HostClock {
     }
 }
 
-/// In ticks.
+/// The same in ticks.
 const AGE_MAX_TICKS: u32 = (AGE_MAX.0 >> TICK_BITS) as u32;
 
 const fn is_before(a: u32, b: u32) -> bool {

@@ -28,12 +28,13 @@ pub struct HostLink {
     /// The newest telemetry of each robot that named our epoch, and the newest of its other frames.
     own: Sessions,
     shared: Sessions,
-    /// By the newest telemetry of each robot, whether it named our epoch or not: its epoch, and our clock then less its own.
+    /// For each robot, from its newest telemetry: its epoch, and the difference of our clock to its own,
+    /// whether it named our epoch or not.
     newest: [Option<(u32, u32)>; RobotId::COUNT],
     refused: [u32; Refusal::KINDS],
 }
 
-/// What became of a packet.
+/// Result of opening a packet.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Opened {
@@ -60,12 +61,12 @@ impl HostLink {
         }
     }
 
-    /// Whom parts of snapshots are sealed for from now on.
+    /// Sets the robots for which parts of snapshots are sealed from now on.
     pub fn set_audience(&mut self, audience: Audience) {
         self.audience = audience;
     }
 
-    /// Our epoch.
+    /// The host's epoch.
     pub fn epoch(&self) -> u32 {
         self.epoch
     }
@@ -100,7 +101,7 @@ impl HostLink {
         opened
     }
 
-    /// How many packets were refused, by [`Refusal::kind`].
+    /// Number of refused packets, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         &self.refused
     }
@@ -111,7 +112,7 @@ impl HostLink {
         Some(Welcome { to: robot, life, offset })
     }
 
-    /// The boot epoch in which that robot is believed.
+    /// The boot epoch in which that robot is trusted.
     pub fn life(&self, robot: RobotId) -> Option<u32> {
         self.own.epoch(Sender::Robot(robot))
     }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct RobotId(u8);
 
 impl RobotId {
-    /// The lowest.
+    /// The lowest number.
     pub const ZERO: Self = Self(0);
     /// Number of ids there are.
     pub const COUNT: usize = 16;
@@ -21,7 +21,7 @@ impl RobotId {
         if (id as usize) < Self::COUNT { Some(Self(id)) } else { None }
     }
 
-    /// 0–15.
+    /// The number, 0–15.
     pub const fn number(self) -> u8 {
         self.0
     }
@@ -83,10 +83,10 @@ impl TeamId {
     }
 }
 
-/// Which robot of which team; yellow sorts first.
+/// Identity of a robot: team colour and number; yellow sorts first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Who {
-    /// Its team.
+    /// Colour of its team.
     pub colour: Colour,
     /// Its shell number.
     pub id: RobotId,

@@ -26,7 +26,7 @@ pub struct TeamKey(pub [u8; 16]);
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Key(pub [u8; 16]);
 
-/// What one robot holds.
+/// Keys of one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotKeys {
     /// Between this robot and the host.
@@ -35,7 +35,7 @@ pub struct RobotKeys {
     pub team: Key,
 }
 
-/// What the host holds: every robot's key.
+/// Keys of the host: every robot's key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TeamKeys {
     robots: [Key; RobotId::COUNT],
@@ -113,7 +113,7 @@ impl fmt::Debug for Key {
     }
 }
 
-/// Keeps derived keys apart from anything else that is ever hashed under a team key; 2 is the frame's version.
+/// Separates derived keys from any other input that is hashed under a team key; 2 is the frame's version.
 const LABEL: &[u8; 12] = b"onetwo key 2";
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `protocol`: what travels between robots, host and simulator (docs/architecture.md §5–§7).
+//! `protocol`: messages between robots, host and simulator (docs/architecture.md §5–§7).
 //!
 //! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of
 //! the wire; [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags),

@@ -41,12 +41,12 @@ pub struct Link {
     counter: u32,
     sessions: Sessions,
     acquaintances: Acquaintances,
-    /// What is known of the clock of the host that is believed.
+    /// State of the trusted host's clock.
     clock: Option<HostClock>,
-    /// Of the host's last frame that was opened.
+    /// Age of the host's last frame that was opened.
     age: Duration,
     refused: [u32; Refusal::KINDS],
-    /// Of these, its own messages given back.
+    /// Number of these that were its own messages, echoed.
     echoes: u32,
     pictures: Pictures,
 }
@@ -99,17 +99,18 @@ impl Link {
         opened
     }
 
-    /// The epoch of the host that is believed, if there is one; when it changes, what the last one's numbers meant is over.
+    /// The epoch of the trusted host, if there is one; when it changes, numbers of the last host's frames are
+    /// invalid.
     pub fn host_epoch(&self) -> Option<u32> {
         self.sessions.epoch(Sender::Host)
     }
 
-    /// How old the host's last frame was at most when it was opened.
+    /// Maximum age of the host's last frame when it was opened.
     pub fn age(&self) -> Duration {
         self.age
     }
 
-    /// How many packets were refused, by [`Refusal::kind`].
+    /// Number of refused packets, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         &self.refused
     }
@@ -119,7 +120,7 @@ impl Link {
         &self.pictures
     }
 
-    /// Fills in what the link knows of itself; all but condition, battery and silence.
+    /// Fills in the link's counters; all but condition, battery and silence.
     pub fn tell(&self, now: Instant, telemetry: &mut Telemetry) {
         telemetry.host = self.host_epoch().unwrap_or(0);
         telemetry.clock = ticks(now);
@@ -192,7 +193,7 @@ impl Link {
         {
             clock = Some(HostClock::learned(clock, now, welcome.offset));
         }
-        // Without a welcome nothing is known of a host's clock.
+        // Without a welcome the host's clock is unknown.
         let age = clock.ok_or(Refusal::Stranger { epoch: frame.epoch })?.age(now, frame.counter);
         if known {
             self.clock = if age == Age::Ahead && frame.audience.is_none() { None } else { clock };
@@ -240,7 +241,7 @@ impl Pictures {
         self.now.map(|now| now.number)
     }
 
-    /// Another host: its numbers have nothing to do with the last one's.
+    /// Another host: its numbers are unrelated to the last one's.
     fn forget(&mut self) {
         self.now = None;
     }
@@ -263,8 +264,9 @@ impl Pictures {
     }
 }
 
-/// Reads a robot's packet without being part of the team: for an observer of the air (the keys are needed, order and repetition are
-/// not judged). The host's are refused as a sender's that does not speak to us.
+/// Reads a robot's packet without being part of the team: for an observer of the radio channel (the keys are
+/// needed, order and repetition are not judged). The host's packets are refused as those of a sender that
+/// does not send to us.
 pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId, TeamMessage), Refusal> {
     let frame = Frame::parse(packet, team)?;
     let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };

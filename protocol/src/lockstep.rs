@@ -34,12 +34,12 @@ pub enum ToRobot<'a> {
         /// The brain's configuration.
         config: &'a [u8],
     },
-    /// One step.
+    /// One brain step.
     #[serde(borrow)]
     Tick(TickIn<'a>),
 }
 
-/// What a robot's computer learns in one tick.
+/// Input of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickIn<'a> {
     /// Number of the tick; the answer carries it back.
@@ -49,16 +49,16 @@ pub struct TickIn<'a> {
     /// Packets that arrived, in order.
     #[serde(borrow)]
     pub air: heapless::Vec<&'a [u8], AIR_IN_MAX>,
-    /// What the robot perceives now.
+    /// The sensor frame of this tick.
     pub sensors: SensorFrame,
 }
 
 /// From a robot's computer to the simulator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromRobot<'a> {
-    /// Awake, waiting for a set-up.
+    /// Started, waiting for a set-up.
     Hello,
-    /// Set up.
+    /// The set-up was accepted.
     Ready,
     /// The set-up could not be read, or the library in flash is not one.
     Unusable,
@@ -67,7 +67,7 @@ pub enum FromRobot<'a> {
     Tick(TickOut<'a>),
 }
 
-/// What a robot's computer answers in one tick.
+/// Output of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickOut<'a> {
     /// The tick answered.
@@ -77,7 +77,7 @@ pub struct TickOut<'a> {
     /// Packets to send, in order.
     #[serde(borrow)]
     pub air: heapless::Vec<&'a [u8], AIR_OUT_MAX>,
-    /// Guest instructions the tick took, where they can be counted; else 0.
+    /// Guest instructions of the tick, where they can be counted; else 0.
     pub instructions: u32,
     /// Bytes of its stack that were ever used, as measured last; 0 where it is not measured.
     pub stack: u32,

@@ -16,32 +16,32 @@ use crate::{RobotId, TeamId};
 
 /// Bytes of a page; the remainder of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
-/// Of those, the ones that mean something.
+/// Bytes of a page that are used.
 const USED: usize = CHECKED + 8;
 const CHECKED: usize = 40;
 const MAGIC: [u8; 4] = *b"1-2K";
 /// 1 held the team's key.
 const VERSION: u8 = 2;
 
-/// What is written into a robot.
+/// Content of a robot's page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Provision {
-    /// Its number.
+    /// The robot's number.
     pub robot: RobotId,
-    /// Its team.
+    /// The robot's team.
     pub team: TeamId,
-    /// What it plays.
+    /// League it plays in.
     pub league: League,
-    /// Its keys.
+    /// The robot's keys.
     pub keys: RobotKeys,
 }
 
 /// Why a robot's identity cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvisionError {
-    /// Nothing was ever written, or something else.
+    /// Never written, or foreign content.
     Empty,
-    /// Of another version of the firmware.
+    /// Written for another version of the firmware.
     Version(u8),
     /// Written halfway, or damaged.
     Damaged,
@@ -115,7 +115,7 @@ fn league_number(league: League) -> u8 {
     LEAGUES.iter().position(|known| *known == league).unwrap_or(0) as u8
 }
 
-/// By their number in a page; only ever added to.
+/// Leagues by their number in a page; new ones are only appended.
 const LEAGUES: [League; 4] = [League::FourLegged, League::Ssl2013, League::DivisionB, League::DivisionA];
 
 #[cfg(test)]

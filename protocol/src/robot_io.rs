@@ -1,8 +1,8 @@
 //! `robot_io`: interface between body and brain (docs/architecture.md §3.2). SI units, field frame where not
 //! stated otherwise.
 //!
-//! Noise enters the system here and nowhere else: the simulator (or a real camera) fills a [`SensorFrame`], and that
-//! is all a robot knows of the world besides its teammates' beacons.
+//! Noise enters the system only here: the simulator (or a real camera) fills a [`SensorFrame`], and that is
+//! all a robot knows of the world besides its teammates' beacons.
 
 use geometry::{Body, Field, Point, Pose, Twist};
 use serde::{Deserialize, Serialize};
@@ -12,10 +12,11 @@ use crate::Duration;
 /// Opponents a robot can see at once: a whole team of the largest league.
 pub const OPPONENTS_MAX: usize = 11;
 
-/// What a robot perceives at one moment.
+/// Measurements of a robot at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
-    /// Where it sees itself; a robot on wheels has no camera and knows that from its host alone.
+    /// Own pose as the robot's camera measures it; a robot on wheels has no camera and knows its pose from
+    /// its host alone.
     pub pose: Option<Pose<Field>>,
     /// The ball, if it is seen.
     pub ball: Option<BallSight>,
@@ -25,18 +26,18 @@ pub struct SensorFrame {
     pub ball_contact: bool,
     /// A grab or kick is running; the body takes no other until it ends.
     pub busy: bool,
-    /// How it moves by its own measure (joints, or wheels and gyroscope), in its own frame.
+    /// Motion by its own measurement (joints, or wheels and gyroscope), in the body frame.
     pub odometry: Twist<Body>,
-    /// How the body is.
+    /// State of the body.
     pub health: Health,
 }
 
-/// How a body is.
+/// State of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Health {
     /// Battery, V; `None` where it is not measured.
     pub battery: Option<f32>,
-    /// It lies on its side.
+    /// The robot lies on its side.
     pub tipped: bool,
     /// The kicker is charged; never for a walking robot.
     pub kicker_ready: bool,
@@ -45,7 +46,7 @@ pub struct Health {
 /// The ball as perceived.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallSight {
-    /// Where it seems to be.
+    /// Measured position.
     pub position: Point<Field>,
     /// Standard deviation of that, m.
     pub sigma: f32,
@@ -53,12 +54,12 @@ pub struct BallSight {
     pub age: Duration,
 }
 
-/// What the brain wants of its body for the coming step.
+/// Orders of the brain to its body for the coming step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ActuatorFrame {
     /// A walking robot.
     Legged {
-        /// Wanted velocity in the body frame, m/s and rad/s; the body does what it can.
+        /// Wanted velocity in the body frame, m/s and rad/s; the body follows within its limits.
         walk: Twist<Body>,
         /// A primitive to start, unless one is running.
         primitive: LeggedPrimitive,
@@ -69,7 +70,7 @@ pub enum ActuatorFrame {
         wheels: [f32; 4],
         /// Share of the dribbler's full speed, 0–1.
         dribbler: f32,
-        /// What the kicker shall do.
+        /// Kick order.
         kick: OmniKick,
     },
     /// A robot on wheels that stands without a command: no current in the motors, dribbler off, kicker
@@ -80,7 +81,7 @@ pub enum ActuatorFrame {
 /// A short motion of the whole body of a walking robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum LeggedPrimitive {
-    /// Just walk.
+    /// No primitive: walking only.
     None,
     /// Take the ball between the front legs.
     Grab,
@@ -95,18 +96,18 @@ pub enum LeggedKick {
     ForwardSoft,
     /// Long, straight ahead.
     ForwardHard,
-    /// With the head, to the left.
+    /// Head kick to the left.
     Left,
-    /// With the head, to the right.
+    /// Head kick to the right.
     Right,
     /// Straight ahead, meant to roll this far, m.
     Pass(f32),
 }
 
-/// What a kicker shall do.
+/// Order to the kicker.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OmniKick {
-    /// Nothing.
+    /// No kick.
     None,
     /// Along the ground, ball speed in m/s.
     Flat(f32),

@@ -69,7 +69,7 @@ impl Lines {
         None
     }
 
-    /// How often something between two zeros was no frame.
+    /// Number of byte sequences between two zeros that were no frame.
     pub fn dropped(&self) -> u32 {
         self.dropped
     }

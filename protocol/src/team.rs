@@ -24,7 +24,7 @@ pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 pub enum TeamMessage {
     /// To all: the sender's whole state.
     Beacon(Beacon),
-    /// To the host: how the sender's body and link are.
+    /// To the host: state of the sender's body and link.
     Telemetry(Telemetry),
     /// Handshake to teammates that do not know yet that the sender is live.
     Greeting(Greeting),
@@ -52,12 +52,12 @@ pub const GREETED_MAX: usize = 7;
 /// A teammate named in a handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Greeted {
-    /// Who.
+    /// The teammate's number.
     pub who: RobotId,
     /// The epoch of its frames.
     #[serde(with = "postcard::fixint::le")]
     pub life: u32,
-    /// How far the two are with each other.
+    /// State of the handshake between the two.
     pub bond: Bond,
 }
 
@@ -66,56 +66,56 @@ pub struct Greeted {
 pub enum Bond {
     /// The sender has received the other, and does not trust it yet.
     Heard,
-    /// It believes the other.
+    /// The sender trusts the other.
     Believed,
-    /// And knows that the other believes it: no answer is needed.
+    /// It also knows that the other trusts it: no answer is needed.
     Mutual,
 }
 
 /// A robot's whole state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beacon {
-    /// Where the robot is.
+    /// Pose of the robot.
     pub pose: WirePose,
-    /// Where it sees the ball, if it does.
+    /// Position of the ball, if it is detected.
     pub ball: Option<BallReport>,
-    /// What it is fit for.
+    /// Abilities of the robot.
     pub status: Status,
-    /// Which case base it carries (the hash of its table); robots with another base execute only what they can verify.
+    /// Hash of the table of its case base; robots with another base execute only what they can verify.
     #[serde(with = "postcard::fixint::le")]
     pub case_base: u32,
     /// The newest cycle it knows.
     pub cycle: Option<CycleState>,
-    /// How far it has come in that cycle.
+    /// Its progress in that cycle.
     pub progress: Progress,
-    /// What it does when no case binds it.
+    /// Its role while it plays no case.
     pub role: Role,
 }
 
 /// Ball as seen by the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BallReport {
-    /// Where it lies.
+    /// Position of the ball.
     pub at: WirePoint,
-    /// From the sender's centre, mm: what the elector compares.
+    /// Distance from the sender's centre, mm: compared by the elector.
     #[serde(with = "postcard::fixint::le")]
     pub distance: u16,
 }
 
-/// What a robot is fit for, one bit each.
+/// Abilities of a robot, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Status(pub u8);
 
 impl Status {
-    /// Present for election and retrieval: awake, on the field, under `Gameplay`.
+    /// Present for election and retrieval: started up, on the field, under `Gameplay`.
     pub const AVAILABLE: Self = Self(1);
     /// Able to retrieve cases (paper §4.1: one of the k).
     pub const RETRIEVER: Self = Self(2);
     /// Holds the ball.
     pub const HOLDS_BALL: Self = Self(4);
 
-    /// Both sets together.
+    /// Union of both sets.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -130,11 +130,11 @@ impl Status {
 /// A retrieve–reuse cycle as one robot knows it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct CycleState {
-    /// Which cycle.
+    /// Id of the cycle.
     pub id: CycleId,
     /// The retriever nearest the ball, named by the proposer.
     pub coordinator: RobotId,
-    /// What became of it. The order of variants is the order of knowledge: later ones replace earlier ones.
+    /// State of the cycle. The order of variants is the order of knowledge: later ones replace earlier ones.
     pub decision: Decision,
 }
 
@@ -154,7 +154,7 @@ impl CycleState {
     }
 }
 
-/// What the coordinator made of its cycle.
+/// Decision of the coordinator in its cycle.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Decision {
     /// The coordinator has not announced its decision yet.
@@ -163,7 +163,7 @@ pub enum Decision {
     NoCase,
     /// This case, by these robots.
     Play(Play),
-    /// Over.
+    /// The cycle is over.
     Closed(Closure),
 }
 
@@ -186,7 +186,7 @@ impl Play {
     }
 }
 
-/// How a cycle ended.
+/// End of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Closure {
     /// Every robot involved reported the end of its actions.
@@ -195,9 +195,9 @@ pub enum Closure {
     NoCase,
     /// A robot involved stopped it.
     Aborted {
-        /// Who.
+        /// Robot that stopped it.
         by: RobotId,
-        /// Why.
+        /// Reason of the abort.
         reason: AbortReason,
     },
 }
@@ -225,10 +225,10 @@ pub enum AbortReason {
     UnknownCase,
 }
 
-/// How far a robot has come in its cycle (paper §4.2, Fig. 10).
+/// Progress of a robot in its cycle (paper §4.2, Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub enum Progress {
-    /// Not bound by a case.
+    /// No case is being played.
     #[default]
     Idle,
     /// Walking to its adapted position.
@@ -248,15 +248,15 @@ pub enum Progress {
     },
 }
 
-/// What a robot does by itself while no case binds it (paper §5: possessor and backers-up).
+/// Role of a robot while it plays no case (paper §5: possessor and backers-up).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Role {
     /// Bound by a case, or standing still.
     #[default]
     None,
-    /// Goes for the ball.
+    /// Gets the ball.
     Attacker,
-    /// Backs up.
+    /// Backs the attacker up.
     Supporter,
 }
 

@@ -17,7 +17,7 @@ use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, R
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::{Phase, Side};
 
-/// How often each work is done.
+/// Number of repetitions of each work.
 pub const ROUNDS: usize = 20;
 
 /// One thing a robot's radio does.
@@ -25,13 +25,13 @@ pub const ROUNDS: usize = 20;
 pub enum Work {
     /// Seals the first message after a boot.
     SealShort,
-    /// The longest beacon.
+    /// Seals the longest beacon.
     SealLong,
-    /// Telemetry.
+    /// Seals telemetry.
     SealTelemetry,
     /// Opens the shortest command.
     OpenCommand,
-    /// The longest one.
+    /// Opens the longest command.
     OpenLongCommand,
     /// Opens a teammate's short beacon.
     OpenShort,
@@ -50,7 +50,7 @@ pub enum Work {
 }
 
 impl Work {
-    /// Each.
+    /// All works, in the order of the report.
     pub const ALL: [Self; 12] = [
         Self::SealShort,
         Self::SealLong,
@@ -66,7 +66,7 @@ impl Work {
         Self::RefuseForged,
     ];
 
-    /// What it is, for a table.
+    /// Its name in tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::SealShort => "seal a short beacon",
@@ -84,7 +84,7 @@ impl Work {
         }
     }
 
-    /// Whether it opens something, or refuses it; else it seals.
+    /// Whether it opens or refuses a frame; else it seals one.
     pub const fn opens(self) -> bool {
         !matches!(self, Self::SealShort | Self::SealLong | Self::SealTelemetry)
     }
@@ -100,13 +100,13 @@ pub struct Bench {
 /// A work with all it needs.
 pub struct Task<'b> {
     link: &'b mut Link,
-    /// Frame to open; empty for what seals.
+    /// Frame to open; empty for works that seal.
     packet: Packet,
     message: Option<TeamMessage>,
 }
 
 impl Bench {
-    /// With a key that is not all zeros.
+    /// A bench with a key that is not all zeros.
     pub fn new() -> Self {
         let (team, key) = (TeamId(2), TeamKey(core::array::from_fn(|i| 7 * i as u8 + 1)));
         let mut bench = Self {
@@ -166,7 +166,7 @@ impl Default for Bench {
 }
 
 impl Task<'_> {
-    /// Does it; gives the frame's length, and 1,000 more where a frame was believed.
+    /// Runs the work; returns the frame's length, and 1,000 more where a frame was accepted.
     #[inline(never)]
     pub fn run(&mut self) -> u32 {
         if let Some(message) = &self.message {

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// The text with every character escaped that a terminal would obey: `\n`, `\r`, `\t`, and the others as `\u001b`. So one value
-/// stays within its line, and cannot colour, move or hide what stands around it.
+/// The text with every character escaped that a terminal would execute: `\n`, `\r`, `\t`, and the others as
+/// `\u001b`. So one value stays within its line, and cannot colour, move or hide the text around it.
 ///
 /// The escapes are JSON's: text in a JSON document stays the same text.
 pub fn printable(text: &str) -> Cow<'_, str> {
@@ -33,7 +33,7 @@ fn push(out: &mut String, character: char) {
         '\n' => out.push_str("\\n"),
         '\r' => out.push_str("\\r"),
         '\t' => out.push_str("\\t"),
-        // All of them lie in the first 65,536, as JSON's escapes do.
+        // All of them are in the first 65,536, as JSON's escapes are.
         _ if is_obeyed(character) => {
             let _ = write!(out, "\\u{:04x}", u32::from(character));
         }
@@ -41,7 +41,7 @@ fn push(out: &mut String, character: char) {
     }
 }
 
-/// A terminal or a text view does something about it instead of showing it.
+/// Whether a terminal or a text view executes it instead of displaying it.
 fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(
@@ -53,17 +53,17 @@ fn is_obeyed(character: char) -> bool {
         )
 }
 
-/// A writer for text: what passes through it is escaped as by [`printable`], except line ends and tabs, which are the program's own.
-/// Bytes that are no UTF-8 become `\u{fffd}`.
+/// A writer for text: its input is escaped as by [`printable`], except line ends and tabs, which are the
+/// program's own. Bytes that are no UTF-8 become `\u{fffd}`.
 #[derive(Debug)]
 pub struct Printable<W: Write> {
     into: W,
-    /// The first bytes of a character whose others have not come: at most 3.
+    /// The first bytes of a character whose others have not arrived: at most 3.
     begun: Vec<u8>,
 }
 
 impl<W: Write> Printable<W> {
-    /// Around `into`.
+    /// A writer that passes escaped text to `into`.
     pub const fn new(into: W) -> Self {
         Self { into, begun: Vec::new() }
     }

@@ -23,7 +23,7 @@ use ssl::stream::FrameReader;
 /// A target: its name, which is its corpus' directory too, and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// All of them.
+/// All fuzz targets.
 pub const TARGETS: [Target; 6] = [
     ("frame", frame),
     ("line", line),
@@ -47,7 +47,7 @@ pub fn frame(bytes: &[u8]) {
         let covered = out.len() - tags;
         assert_eq!(out[..covered], bytes[..covered]);
     }
-    // The key belongs to no one: nothing is believed.
+    // The key belongs to no sender: every frame is refused.
     let (mut robot, now) = (Link::new(team, RobotId::ZERO, key.of_robot(RobotId::ZERO), 3), Instant(0));
     let opened = robot.open(now, bytes);
     assert!(matches!(opened, Err(_) | Ok(Heard::Elsewhere)));
@@ -70,12 +70,12 @@ pub fn line(bytes: &[u8]) {
     }
 }
 
-/// A robot's message.
+/// Target: a robot's message.
 pub fn team(bytes: &[u8]) {
     same_again::<TeamMessage>(bytes);
 }
 
-/// The host's message.
+/// Target: the host's message.
 pub fn host(bytes: &[u8]) {
     if let Some(message) = same_again::<HostMessage>(bytes) {
         let _sound = message.is_sound();

@@ -68,7 +68,7 @@ macro_rules! common {
             }
         }
         impl<F> $name<F> {
-            /// From its two coordinates.
+            /// Vector from its two coordinates.
             #[inline]
             pub const fn new(x: f32, y: f32) -> Self {
                 Self($inner::new(x, y), PhantomData)
@@ -100,7 +100,7 @@ impl<F> Point<F> {
         (self - other).norm()
     }
 
-    /// The direction in which `other` lies, seen from here.
+    /// The direction from here to `other`.
     #[inline]
     pub fn direction_to(self, other: Self) -> Angle {
         (other - self).angle()
@@ -115,19 +115,19 @@ impl<F> Vector<F> {
         Self::new(length * c, length * s)
     }
 
-    /// Scalar product.
+    /// Scalar product with `other`.
     #[inline]
     pub fn dot(self, other: Self) -> f32 {
         self.0.x * other.0.x + self.0.y * other.0.y
     }
 
-    /// z of the cross product: positive when `other` lies to the left.
+    /// z of the cross product: positive when `other` points to the left.
     #[inline]
     pub fn cross(self, other: Self) -> f32 {
         self.0.x * other.0.y - self.0.y * other.0.x
     }
 
-    /// Length.
+    /// Euclidean length.
     #[inline]
     pub fn norm(self) -> f32 {
         math::sqrt(self.dot(self))

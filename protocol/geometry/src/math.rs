@@ -53,7 +53,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
 }
 
-/// eˣ.
+/// Exponential function, eˣ.
 #[inline]
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
@@ -118,7 +118,8 @@ pub fn golden_hash(rounds: u32) -> u64 {
 
 /// Rounds of [`golden_hash`] that [`GOLDEN_HASH`] was taken with.
 pub const GOLDEN_ROUNDS: u32 = 10_000;
-/// What [`golden_hash`] gives everywhere; a new value means that shared mathematics changed its bits.
+/// The value of [`golden_hash`] on every platform; a new value means that shared mathematics changed its
+/// bits.
 pub const GOLDEN_HASH: u64 = 0x1c00e65377661807;
 
 /// Cody–Waite reduction by π/2 in three pieces: the remainder in about ±π/4 and the quadrant.

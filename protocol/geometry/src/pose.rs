@@ -10,7 +10,7 @@ use crate::{Angle, Body, Field, Point, Vector};
 pub struct Pose<F> {
     /// The robot's centre, m.
     pub position: Point<F>,
-    /// Where it faces.
+    /// Direction it faces.
     pub heading: Angle,
 }
 
@@ -18,9 +18,9 @@ pub struct Pose<F> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Twist<F> {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: Vector<F>,
-    /// rad/s, counter-clockwise.
+    /// Turning rate, rad/s, counter-clockwise.
     pub angular: f32,
 }
 
@@ -37,7 +37,7 @@ impl<F> Default for Twist<F> {
 }
 
 impl Pose<Field> {
-    /// From millimetres and degrees, as files have them.
+    /// Pose from millimetres and degrees, the units of case files.
     pub fn from_mm_deg(x: f32, y: f32, heading: f32) -> Self {
         Self { position: Point::new(x * 0.001, y * 0.001), heading: Angle::degrees(heading) }
     }

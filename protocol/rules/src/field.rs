@@ -1,7 +1,7 @@
 //! `field`: dimensions of the field. All lengths in metres, points in the field frame.
 //!
-//! Lines are measured between their centres (rules 2026, playing environment), so a line's outer edge lies half a line's
-//! width further out.
+//! Distances are measured between the lines' centres (rules 2026, playing environment), so a line's outer
+//! edge lies half a line's width further out.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
 use heapless::Vec;
@@ -14,9 +14,9 @@ pub const AREA_SHAPES_MAX: usize = 3;
 /// The lines of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSpec {
-    /// From goal line to goal line.
+    /// Distance from goal line to goal line.
     pub length: f32,
-    /// From touch line to touch line.
+    /// Distance from touch line to touch line.
     pub width: f32,
     /// Field surface beyond the touch lines, up to the wall.
     pub margin: f32,
@@ -26,7 +26,7 @@ pub struct FieldSpec {
     pub goal_substitution: f32,
     /// Between the goalposts.
     pub goal_width: f32,
-    /// From the goal line to the goal's back.
+    /// Distance from the goal line to the goal's back.
     pub goal_depth: f32,
     /// From the field surface to the goal's upper edge.
     pub goal_height: f32,
@@ -38,7 +38,7 @@ pub struct FieldSpec {
     pub penalty_width: f32,
     /// Penalty (defence) area: what its border looks like.
     pub penalty_form: AreaForm,
-    /// From the attacked goal's centre to the mark that penalties are taken from.
+    /// Distance from the attacked goal's centre to the penalty mark.
     pub penalty_mark: f32,
     /// Radius of the centre circle.
     pub center_radius: f32,
@@ -58,13 +58,13 @@ pub enum AreaForm {
 /// A number that no field can have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldFault {
-    /// Which number, by its field in [`FieldSpec`].
+    /// Name of the number's field in [`FieldSpec`].
     pub field: &'static str,
-    /// What it was, m.
+    /// Its value, m.
     pub value: f32,
-    /// The least it may be, m.
+    /// Smallest valid value, m.
     pub least: f32,
-    /// The most it may be, m; some limits follow from other numbers of the same field.
+    /// Largest valid value, m; some limits follow from other numbers of the same field.
     pub most: f32,
 }
 
@@ -77,11 +77,11 @@ impl core::fmt::Display for FieldFault {
 
 impl core::error::Error for FieldFault {}
 
-/// Shortest and longest field that is believed, m: a table top, and twice division A's length.
+/// Shortest and longest valid field, m: a table top, and twice division A's length.
 const LENGTH: [f32; 2] = [1.0, 24.0];
 /// The widest margin that is accepted, m: more than any venue leaves around a field.
 const MARGIN_MAX: f32 = 3.0;
-/// The deepest goal and the thickest line that are believed, m.
+/// The deepest valid goal and the thickest valid line, m.
 const GOAL_DEPTH_MAX: f32 = 1.0;
 const LINE_WIDTH_MAX: f32 = 0.1;
 
@@ -146,8 +146,8 @@ impl FieldSpec {
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
     }
 
-    /// Where the centre of a robot that defends `goal` lies while the robot does not count as being on the field: all of it in
-    /// the goal substitution area. None where that area is narrower than a robot.
+    /// Region of the centre of a robot that defends `goal` and does not count as being on the field: the
+    /// whole robot in the goal substitution area. `None` where that area is narrower than a robot.
     ///
     /// The league's game controller counts every robot outside this box (its `NumTeamRobotsExcludingSubstitutionZone`), in
     /// both divisions; the centre substitution area does not stop it from counting.
@@ -190,13 +190,13 @@ impl FieldSpec {
         self.defence_area(goal).iter().map(|shape| shape.distance_to(p)).fold(f32::INFINITY, f32::min)
     }
 
-    /// In the penalty area at that end, lines included.
+    /// Whether the point is in the penalty area at that end, lines included.
     pub fn in_penalty_area(&self, goal: GoalEnd, p: Point<Field>) -> bool {
         let depth = self.length * 0.5 - p.x() * goal.sign() as f32;
         depth >= 0.0 && self.defence_area(goal).iter().any(|shape| shape.contains(p))
     }
 
-    /// Where a penalty at that goal is taken from.
+    /// Penalty mark for that goal.
     pub fn penalty_spot(&self, attacked: GoalEnd) -> Point<Field> {
         Point::new(self.goal_line(attacked) - attacked.sign() as f32 * self.penalty_mark, 0.0)
     }
@@ -242,7 +242,7 @@ mod tests {
         assert!(!field.in_penalty_area(goal, Point::new(-3.0 + 0.567, 0.175 + 0.567)));
         assert!(!field.in_penalty_area(goal, Point::new(-2.25, 0.95)));
         assert!(!field.in_penalty_area(goal, Point::new(-3.01, 0.0)));
-        // From the front, straight; from beside the curve, along its radius.
+        // Straight from the front; along its radius beside the curve.
         assert!((field.distance_to_area(goal, Point::new(-1.2, 0.0)) - 1.0).abs() < 1e-6);
         assert!((field.distance_to_area(goal, Point::new(-3.0, 1.475)) - 0.5).abs() < 1e-6);
     }

@@ -33,19 +33,19 @@ impl Colour {
 /// A team as seen from one of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Side {
-    /// The speaker's.
+    /// The own team's.
     Ours,
-    /// The opponents'.
+    /// The opponents' team's.
     Theirs,
 }
 
-/// What the rules allow a robot beyond others.
+/// A robot's role under the rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Duty {
-    /// Nothing more.
+    /// Field player without special rights.
     #[default]
     Player,
-    /// The one that may be in the own defence area.
+    /// The robot that may be in the own defence area.
     Keeper,
     /// The one that takes our restart: it may come near the ball before it is in play.
     Taker,

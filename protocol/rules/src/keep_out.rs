@@ -17,20 +17,20 @@ use crate::{Duty, FieldSpec, Phase, Side};
 /// The longest list of shapes: a keeper at a penalty, with room to spare.
 pub const FORBIDDEN_MAX: usize = 12;
 
-/// What decides where a robot may be. `Side` is as its own team sees it.
+/// Inputs that decide where a robot may be. `Side` is from its own team's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation<'a> {
-    /// The field.
+    /// Dimensions of the field.
     pub field: &'a FieldSpec,
     /// The goal its team defends.
     pub own: GoalEnd,
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// What it is in its team.
+    /// Its role in the team.
     pub duty: Duty,
-    /// Where the ball is; unknown: nothing around it is forbidden.
+    /// Position of the ball; `None`: nothing around it is forbidden.
     pub ball: Option<Point<Field>>,
-    /// Where the ball is to be placed; only asked in ball placement.
+    /// Placement target of the ball; only used in ball placement.
     pub placement: Option<Point<Field>>,
     /// Whether the ball has left its place since NORMAL_START; only used for a penalty's keeper, who then may
     /// move.
@@ -44,13 +44,13 @@ pub enum Why {
     BallDistance,
     /// On the ball before NORMAL_START.
     BallTouch,
-    /// In the own defence area without being the keeper.
+    /// In the own defence area, except for the keeper.
     OwnArea,
     /// In the opponents' defence area, or within 0.2 m of it on STOP and at free kicks.
     OpponentArea,
     /// In the other half at a kick-off.
     OtherHalf,
-    /// In the centre circle at a kick-off without being the kicker.
+    /// In the centre circle at a kick-off, except for the kicker.
     CentreCircle,
     /// Less than 1 m behind the ball at a penalty.
     BehindBall,
@@ -83,11 +83,11 @@ impl Why {
 pub struct Forbidden {
     /// No part of the body in here.
     pub shape: Shape<Field>,
-    /// Because.
+    /// Reason for the region.
     pub why: Why,
 }
 
-/// Where a robot must not be.
+/// Regions where a robot must not be, and the one it must stay in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeepOut {
     /// No part of the body in any of these.
@@ -105,7 +105,7 @@ impl KeepOut {
     }
 }
 
-/// Where this robot must not be.
+/// Keep-out regions of this robot.
 pub fn keep_out(s: &Situation) -> KeepOut {
     let mut list = List(Vec::new());
     let keeper = s.duty == Duty::Keeper;
@@ -160,7 +160,7 @@ pub fn keep_out(s: &Situation) -> KeepOut {
     KeepOut { forbidden: list.0, within: s.field.carpet() }
 }
 
-/// How fast a robot may go, m/s; none: as fast as it can.
+/// Speed limit of a robot, m/s; `None`: no limit.
 pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
     match phase {
         Phase::Halt | Phase::Timeout(_) => Some(0.0),
@@ -172,7 +172,7 @@ pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
 /// Whether a robot may touch the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// It may.
+    /// It may touch the ball.
     Allowed,
     /// The phase allows no robot, not its team, or only its team's kicker (or keeper).
     NotNow,
@@ -208,7 +208,7 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     }
 }
 
-/// The list while it is made. It never overflows: a test counts every situation.
+/// The list under construction. It never overflows: a test counts every situation.
 struct List(Vec<Forbidden, FORBIDDEN_MAX>);
 
 impl List {

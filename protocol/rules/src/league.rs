@@ -35,12 +35,12 @@ pub struct RobotSpec {
     pub radius: f32,
 }
 
-/// The ball.
+/// Properties of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSpec {
-    /// m.
+    /// Radius, m.
     pub radius: f32,
-    /// How fast a rolling ball slows down, m/s².
+    /// Deceleration of a rolling ball, m/s².
     pub rolling_deceleration: f32,
 }
 
@@ -55,7 +55,7 @@ impl League {
         }
     }
 
-    /// Its field.
+    /// Field of the league.
     pub const fn field(self) -> FieldSpec {
         match self {
             Self::FourLegged => FieldSpec {
@@ -129,7 +129,7 @@ impl League {
         }
     }
 
-    /// Its robots.
+    /// Robots of the league.
     pub const fn robot(self) -> RobotSpec {
         match self {
             Self::FourLegged => RobotSpec { radius: 0.12 },

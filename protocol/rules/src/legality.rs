@@ -1,5 +1,4 @@
-//! `legality`: predicates of offences. The predicates an automatic referee needs, each with its rule (2026);
-//! none of them remembers anything.
+//! `legality`: predicates of offences for an automatic referee, each with its rule (2026), without state.
 //!
 //! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
 //! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.
@@ -17,7 +16,7 @@ use crate::{FieldSpec, Limits};
 pub enum Line {
     /// A touch line: the one at +y, or the one at −y.
     Touch {
-        /// At +y.
+        /// Whether it is the line at +y.
         positive: bool,
     },
     /// A goal line beside the goal.
@@ -26,16 +25,16 @@ pub enum Line {
     Mouth(GoalEnd),
 }
 
-/// Where a ball left the field.
+/// Position and line where a ball left the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Which line.
+    /// Line that was crossed.
     pub line: Line,
     /// The point of that line where the ball's centre went over it.
     pub at: Point<Field>,
 }
 
-/// How far beyond a line's centre the ball's centre is when the whole ball is over the whole line, m.
+/// Distance of the ball's centre beyond a line's centre when the whole ball is over the whole line, m.
 fn beyond(field: &FieldSpec) -> f32 {
     BALL_RADIUS + field.line_width * 0.5
 }
@@ -114,19 +113,19 @@ pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option
     }
 }
 
-/// How much of a robot is in a defence area.
+/// Share of a robot in a defence area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InArea {
-    /// Nothing.
+    /// No part of it.
     Out,
     /// Some of it.
     Partly,
-    /// All of it.
+    /// The whole robot.
     Entirely,
 }
 
-/// How much of a robot with its centre here is in the defence area at that end, lines included; a robot behind the goal line is
-/// out.
+/// Share of a robot with its centre here that is in the defence area at that end, lines included; a robot
+/// behind the goal line is out.
 pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea {
     let behind = (robot.x() - field.goal_line(goal)) * goal.sign() as f32;
     let edge = field.line_width * 0.5;
@@ -146,7 +145,7 @@ pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea 
     }
 }
 
-/// How far the robot's side is from the ball's centre, m.
+/// Distance from the robot's edge to the ball's centre, m.
 pub fn ball_distance(robot: Point<Field>, ball: Point<Field>) -> f32 {
     robot.distance(ball) - ROBOT_RADIUS
 }
@@ -188,7 +187,7 @@ pub fn double_touch(place: Point<Field>, ball: Point<Field>, touched_by_other: b
     !touched_by_other && place.distance(ball) >= IN_PLAY_DISTANCE
 }
 
-/// Who is to blame for a collision.
+/// Team that is responsible for a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
     /// The first robot.
@@ -202,7 +201,7 @@ pub enum Blame {
 /// A collision that was too hard.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crash {
-    /// Whose foul.
+    /// Team that commits the foul.
     pub blame: Blame,
     /// Speed difference along the line between the robots, m/s.
     pub speed: f32,

@@ -5,7 +5,8 @@
 
 use crate::League;
 
-/// Robots on STOP are slower than this, m/s (referee commands, stop). Not asked for in ball placement (offenses).
+/// Robots on STOP are slower than this, m/s (referee commands, stop). Not required in ball placement
+/// (offenses).
 pub const STOP_SPEED: f32 = 1.5;
 /// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line between ball and
 /// target while opponents place, m (referee commands; offenses).
@@ -26,13 +27,13 @@ pub const PENALTY_BEHIND: f32 = 1.0;
 pub const NEAR_MARK: f32 = 0.3;
 /// Placing the ball may take this long, s (referee commands, ball placement).
 pub const PLACEMENT_TIME: f32 = 30.0;
-/// What an interference adds to it, s (offenses).
+/// Time that an interference adds to it, s (offenses).
 pub const PLACEMENT_EXTRA_TIME: f32 = 10.0;
 /// A placed ball is this near its target, m (referee commands, ball placement).
 pub const PLACEMENT_TOLERANCE: f32 = 0.15;
 /// Robots are this far from a placed ball where the placing team's free kick follows, m (same).
 pub const PLACEMENT_CLEARANCE: f32 = 0.05;
-/// The game goes on no earlier than this after the command to place, s (same).
+/// Play continues no earlier than this after the command to place, s (same).
 pub const PLACEMENT_TIME_MIN: f32 = 2.0;
 /// A team that failed so often places no more in this half (same).
 pub const PLACEMENT_FAILURES_MAX: u32 = 5;
@@ -40,7 +41,8 @@ pub const PLACEMENT_FAILURES_MAX: u32 = 5;
 pub const PLACEMENT_SKIP_DISTANCE: f32 = 1.0;
 /// … and farther than this from both defence areas, m (same).
 pub const PLACEMENT_SKIP_AREA_DISTANCE: f32 = 0.7;
-/// A ball slower than this lies still, m/s. The rules name no number; trackers' noise on a lying ball stays below it.
+/// A ball slower than this is stationary, m/s. The rules give no number; trackers' noise on a stationary ball
+/// stays below it.
 pub const BALL_STILL: f32 = 0.05;
 /// A goal counts up to this height of the ball after the scorers' last touch, m (scoring goals).
 pub const GOAL_BALL_HEIGHT: f32 = 0.15;
@@ -101,7 +103,7 @@ pub const ROBOT_IDS: u32 = 16;
 /// Robots of a team on any field of these leagues, at most.
 pub const ROBOTS_MAX: usize = 11;
 
-/// What differs between the leagues with a referee of the Small Size League.
+/// Limits that differ between the leagues with a referee of the Small Size League.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Robots of a team, keeper included (robots).
@@ -145,7 +147,8 @@ const DIVISION_B: Limits = Limits {
 };
 
 impl League {
-    /// Its limits; none for the four-legged league, whose rules are in the scenarios of the first paper.
+    /// Limits of the league; `None` for the four-legged league, whose rules are in the scenarios of the first
+    /// paper.
     pub const fn limits(self) -> Option<Limits> {
         match self {
             Self::FourLegged => None,

@@ -13,7 +13,7 @@ use crate::{FieldSpec, Limits};
 
 /// Throw-in and corner lie this far from their lines, m.
 const FROM_LINE: f32 = 0.2;
-/// A spot that is this little off counts as valid, m: the wire's places are whole millimetres.
+/// A spot that is invalid by at most this counts as valid, m: places on the wire are whole millimetres.
 const SPOT_TOLERANCE: f32 = 1e-3;
 /// Steps along the border of the valid places, m, before the search halves them.
 const SPOT_STEP: f32 = 0.01;
@@ -25,19 +25,19 @@ const SPOT_HALVINGS: usize = 10;
 pub enum SpotFault {
     /// Too near to a touch line or goal line, or beyond it.
     Line {
-        /// How far inside the nearest line, m.
+        /// Distance inside the nearest line, m.
         distance: f32,
     },
     /// Too near to this end's defence area.
     Area {
-        /// Whose.
+        /// Goal whose area it is.
         goal: GoalEnd,
-        /// How far from it, m.
+        /// Distance from it, m.
         distance: f32,
     },
 }
 
-/// Whether a free kick may be taken here.
+/// Why a free kick may not be taken here; `None` if it may.
 pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -> Option<SpotFault> {
     let inside = (field.length * 0.5 - spot.x().abs()).min(field.width * 0.5 - spot.y().abs());
     if inside < limits.spot_line_distance - SPOT_TOLERANCE {
@@ -55,7 +55,8 @@ pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -
 pub fn nearest_free_kick_spot(field: &FieldSpec, limits: &Limits, wanted: Point<Field>) -> Point<Field> {
     let inside = field.clamp(wanted, limits.spot_line_distance);
     let valid = |spot: &Point<Field>| free_kick_fault(field, limits, *spot).is_none();
-    // Valid places are a rectangle with two bites out of it. The nearest one lies inside, on the rectangle's border or on a bite's.
+    // Valid places are a rectangle with two cut-outs. The nearest one is inside, on the rectangle's border or
+    // on a cut-out's.
     let on_bites = [GoalEnd::Negative, GoalEnd::Positive]
         .into_iter()
         .flat_map(|goal| pushed_out(field, goal, limits.spot_area_distance, wanted));
@@ -132,16 +133,16 @@ fn border_spots(
     spots.into_iter()
 }
 
-/// How play goes on after the ball has left the field without a goal.
+/// Restart after the ball has left the field without a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AfterOut {
     /// Kind of restart; each is a free kick for the team that did not touch the ball last.
     pub kind: OutKind,
-    /// Where.
+    /// Spot of the restart, m.
     pub spot: Point<Field>,
 }
 
-/// Which restart follows a ball that left the field.
+/// Kind of restart after a ball that left the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutKind {
     /// Over a touch line.
@@ -177,7 +178,8 @@ pub fn after_out(
         }
         Line::Goal(goal) | Line::Mouth(goal) => {
             let aimless = kicked_from.filter(|from| {
-                // Where it was touched last decides: from the own half it has crossed the halfway line since.
+                // The place of the last touch decides: from the own half it has crossed the halfway line
+                // since.
                 limits.aimless_kick && !from_kickoff && from.x() * own.sign() as f32 > 0.0
             });
             if let Some(from) = aimless {
@@ -190,7 +192,7 @@ pub fn after_out(
     }
 }
 
-/// What follows the placement of a ball.
+/// Continuation after the placement of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterPlacement {
     /// The placing team's free kick.
@@ -200,7 +202,7 @@ pub enum AfterPlacement {
 }
 
 impl AfterPlacement {
-    /// How far robots' sides are from the placed ball, m.
+    /// Distance of robots' edges from the placed ball, m.
     pub const fn clearance(self) -> f32 {
         match self {
             Self::FreeKick => PLACEMENT_CLEARANCE,
@@ -209,7 +211,7 @@ impl AfterPlacement {
     }
 }
 
-/// What a placement still lacks.
+/// Condition that a placement does not meet yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlacementLack {
     /// The ball is this far from its target, m.

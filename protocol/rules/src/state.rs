@@ -13,9 +13,10 @@
 //!   ([`Heard::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
 //!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
 //!   then the ball is in play in either case.
-//! - **The same command again is no new command**, though its counter rises (operators and automatic continuation issue
-//!   some twice). It only restarts the clock of a restart that is not yet in play. A free kick that comes again after the
-//!   ball was in play is a new one: a ball that rolls is back in play at once, and one that lies may not be approached.
+//! - **The same command again is no new command**, though its counter rises (operators and automatic
+//!   continuation issue some twice). It only restarts the clock of a restart that is not yet in play. A free
+//!   kick that comes again after the ball was in play is a new one: a ball that rolls is back in play at
+//!   once, and a stationary one may not be approached.
 
 use geometry::{Field, Point};
 
@@ -46,7 +47,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The phase that it leads to; none for NORMAL_START where nothing is prepared.
+    /// The phase that it leads to; `None` for NORMAL_START without a preparation.
     pub const fn leads_to(self, from: Phase<Colour>) -> Option<Phase<Colour>> {
         Some(match self {
             Self::Halt => Phase::Halt,
@@ -93,7 +94,7 @@ pub enum Stage {
     ExtraSecondHalf,
     /// The break before the shoot-out.
     ShootOutBreak,
-    /// Penalties decide.
+    /// The penalty shoot-out.
     ShootOut,
     /// The match is over.
     PostGame,
@@ -143,14 +144,14 @@ impl Stage {
     }
 }
 
-/// What came of a command.
+/// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heard {
     /// It follows from the phase before.
     Followed,
-    /// It is what stands already.
+    /// The command that holds already.
     Repeated,
-    /// It does not follow from this phase, but counts.
+    /// It does not follow from this phase, but is accepted.
     OffGraph {
         /// The phase before.
         from: Phase<Colour>,
@@ -159,23 +160,23 @@ pub enum Heard {
     AsStop {
         /// The phase before.
         from: Phase<Colour>,
-        /// What it becomes.
+        /// Next phase.
         then: Phase<Colour>,
-        /// When, µs.
+        /// Time of the change, µs.
         at: u64,
     },
 }
 
-/// What came of time and ball.
+/// Effect of time and ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ticked {
-    /// Nothing.
+    /// No change.
     Same,
     /// The ball has moved [`IN_PLAY_DISTANCE`] from its place: in play.
     BallMoved,
     /// The time for the restart is over: in play, or for a penalty stopped.
     TimeUp,
-    /// What was read as STOP is followed now.
+    /// A command that was read as STOP is followed now.
     Released,
 }
 

@@ -89,7 +89,7 @@ fn a_fresh_host_believes_no_recording() {
         );
     }
     assert_eq!(fresh.life(id(2)), None);
-    // The robot itself is welcomed, and believed.
+    // The robot itself is welcomed, and trusted.
     meet(&mut fresh, &mut link, 2, ms(400));
     // From then on its recordings are refused outright.
     for packet in &recorded {

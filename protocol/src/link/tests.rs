@@ -59,7 +59,7 @@ fn welcome(to: u8, life: u32) -> HostMessage {
     HostMessage::Welcome(Welcome { to: robot(to), life, offset: 0 })
 }
 
-/// Its telemetry.
+/// Telemetry of the robot.
 fn tell(link: &mut Link) -> Packet {
     let mut telemetry = Telemetry::default();
     link.tell(NOW, &mut telemetry);
@@ -285,7 +285,7 @@ fn a_withheld_welcome_of_a_dead_host_does_not_lead_a_robot() {
 #[test]
 fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_frames_for_fresh() {
     let (mut a, mut host) = acquainted();
-    // The host's clock has gone on by ten seconds, the robot's has not.
+    // The host's clock has advanced by ten seconds, the robot's has not.
     let later = NOW + Duration::millis(10_000);
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stale));
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stranger { epoch: 70 }));
@@ -317,7 +317,7 @@ fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
         bytes[tags..].copy_from_slice(&[x, y, z, x, y, z]);
         assert_eq!(a.open(NOW, &bytes), Err(Refusal::Tag));
     }
-    // Nor a command that only a short tag would protect.
+    // Also refused: a command that only a short tag would protect.
     let mut payload = [0; 64];
     let payload = &*postcard::to_slice(&stand(2), &mut payload).unwrap();
     let smuggled = Frame { payload, ..forged };

@@ -6,7 +6,7 @@
 
 use prost::{Enumeration, Message};
 
-/// Which team: the colour of its centre markers.
+/// Team, by the colour of its centre markers.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -16,7 +16,7 @@ pub enum Team {
     Blue = 2,
 }
 
-/// Which of the league's two divisions.
+/// Division of the league.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -32,7 +32,7 @@ pub struct Vector2 {
     /// Along the field's length, m (m/s).
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, m (m/s).
+    /// Coordinate to the left of +x, m (m/s).
     #[prost(float, required, tag = "2")]
     pub y: f32,
 }
@@ -43,7 +43,7 @@ pub struct Vector3 {
     /// Along the field's length, m (m/s).
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, m (m/s).
+    /// Coordinate to the left of +x, m (m/s).
     #[prost(float, required, tag = "2")]
     pub y: f32,
     /// Up from the ground, m (m/s).
@@ -57,7 +57,7 @@ pub struct RobotId {
     /// Shell number, 0–15.
     #[prost(uint32, optional, tag = "1")]
     pub id: Option<u32>,
-    /// Its team, [`Team`].
+    /// Team of the robot, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "2")]
     pub team: Option<i32>,
 }

@@ -12,19 +12,19 @@ pub struct RadioProtocolWrapper {
     pub command: Vec<RadioProtocolCommand>,
 }
 
-/// What one robot shall do.
+/// Command to one robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RadioProtocolCommand {
     /// Shell number.
     #[prost(int32, required, tag = "1")]
     pub robot_id: i32,
-    /// Forward, m/s.
+    /// Velocity forward, m/s.
     #[prost(float, required, tag = "2")]
     pub velocity_x: f32,
-    /// To the left, m/s.
+    /// Velocity to the left, m/s.
     #[prost(float, required, tag = "3")]
     pub velocity_y: f32,
-    /// Counter-clockwise, rad/s.
+    /// Turning rate, counter-clockwise, rad/s.
     #[prost(float, required, tag = "4")]
     pub velocity_r: f32,
     /// Kick flat at this speed, m/s; wins over `chip_kick`.

@@ -44,7 +44,7 @@ impl FrameReader {
         Self { buffer: Vec::new(), taken: 0, limit, lost: None }
     }
 
-    /// What was read from the stream, in any pieces.
+    /// Takes bytes read from the stream, in pieces of any size.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.lost.is_none() {
             self.buffer.drain(..self.taken);
@@ -89,9 +89,9 @@ impl FrameReader {
 pub enum StreamError {
     /// A message is longer than is accepted.
     TooLong {
-        /// Its length, bytes.
+        /// Length of the message, bytes.
         length: u64,
-        /// What is accepted, bytes.
+        /// Accepted length, bytes.
         limit: usize,
     },
     /// Ten bytes and no end of the length.

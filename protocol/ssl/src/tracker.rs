@@ -15,7 +15,7 @@ pub struct TrackerWrapperPacket {
     /// Name of the source.
     #[prost(string, optional, tag = "2")]
     pub source_name: Option<String>,
-    /// What it believes.
+    /// The tracked frame.
     #[prost(message, optional, tag = "3")]
     pub tracked_frame: Option<TrackedFrame>,
 }
@@ -38,21 +38,21 @@ pub struct TrackedFrame {
     /// The last kick while it lasts.
     #[prost(message, optional, tag = "5")]
     pub kicked_ball: Option<KickedBall>,
-    /// What this source can do, [`Capability`].
+    /// Abilities of this source, [`Capability`].
     #[prost(enumeration = "Capability", repeated, packed = "false", tag = "6")]
     pub capabilities: Vec<i32>,
 }
 
-/// A ball.
+/// State of a ball.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedBall {
-    /// Where, m.
+    /// Position, m.
     #[prost(message, required, tag = "1")]
     pub pos: Vector3,
-    /// How fast, m/s.
+    /// Velocity, m/s.
     #[prost(message, optional, tag = "2")]
     pub vel: Option<Vector3>,
-    /// How well it was seen of late, 0–1.
+    /// Recent visibility, 0–1.
     #[prost(float, optional, tag = "3")]
     pub visibility: Option<f32>,
 }
@@ -60,7 +60,7 @@ pub struct TrackedBall {
 /// A ball that was kicked, and where it will end if it is not touched.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KickedBall {
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, required, tag = "1")]
     pub pos: Vector2,
     /// Its velocity after the kick, m/s.
@@ -80,25 +80,25 @@ pub struct KickedBall {
     pub robot_id: Option<TrackedRobotId>,
 }
 
-/// A robot.
+/// State of a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedRobot {
-    /// Which.
+    /// Identity of the robot.
     #[prost(message, required, tag = "1")]
     pub robot_id: TrackedRobotId,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, required, tag = "2")]
     pub pos: Vector2,
     /// Heading, rad, counter-clockwise from +x.
     #[prost(float, required, tag = "3")]
     pub orientation: f32,
-    /// How fast, m/s, field frame.
+    /// Velocity, m/s, field frame.
     #[prost(message, optional, tag = "4")]
     pub vel: Option<Vector2>,
-    /// How fast it turns, rad/s, counter-clockwise.
+    /// Turning rate, rad/s, counter-clockwise.
     #[prost(float, optional, tag = "5")]
     pub vel_angular: Option<f32>,
-    /// How well it was seen of late, 0–1.
+    /// Recent visibility, 0–1.
     #[prost(float, optional, tag = "6")]
     pub visibility: Option<f32>,
 }
@@ -114,7 +114,7 @@ pub struct TrackedRobotId {
     pub team_color: i32,
 }
 
-/// Which team, with the numbers of [`crate::common::Team`].
+/// Team, with the numbers of [`crate::common::Team`].
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -124,7 +124,7 @@ pub enum TeamColor {
     Blue = 2,
 }
 
-/// What a tracker can do.
+/// Abilities of a tracker.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

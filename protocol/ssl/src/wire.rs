@@ -46,7 +46,7 @@ pub(crate) struct Fields<'a> {
     rest: &'a [u8],
 }
 
-/// Not a field.
+/// Error of bytes that are no field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NoField;
 

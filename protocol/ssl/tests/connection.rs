@@ -13,7 +13,7 @@ const NOW: Duration = Duration::ZERO;
 #[test]
 fn a_team_registers_and_hears_the_reply() {
     let (mut team, mut controller) = pair();
-    // The controller speaks first, and twice in one packet is two messages.
+    // The controller sends first, and twice in one packet is two messages.
     controller.send(&reply("token 1")).expect("sent");
     controller.send(&reply("token 2")).expect("sent");
     for token in ["token 1", "token 2"] {

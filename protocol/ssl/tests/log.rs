@@ -51,8 +51,8 @@ fn a_long_file_cut_beside_any_message_and_anywhere_gives_all_whole_messages() {
     let records = recordings::records(GRSIM_NOISY);
     let (file, begins) = file_of(&records);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-    // Beside and within each message, in a file of that message and its neighbours: what stands further before plays no
-    // part.
+    // Beside and within each message, in a file of that message and its neighbours: earlier content has no
+    // effect.
     for window in records.windows(3) {
         let (file, begins) = file_of(window);
         let beside = begins[1..].iter().flat_map(|begin| [begin - 1, *begin, begin + 1]);

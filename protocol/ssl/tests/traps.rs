@@ -98,7 +98,7 @@ fn trap_03_a_place_for_the_ball_is_told_where_none_is_to_be_placed() {
         .collect();
     let beside = [Command::Halt, Command::Stop, Command::NormalStart, Command::PrepareKickoffYellow];
     assert!(beside.iter().all(|command| told.contains(command)), "{told:?}");
-    // In mm, where everything else of the referee's is in m.
+    // In mm, where all other values of the referee are in m.
     let place = packets.iter().find(|(_, packet)| packet.command() == Command::BallPlacementBlue);
     let place = place.and_then(|(_, packet)| packet.designated_position).expect("a placement");
     assert_eq!((place.x, place.y), (1200.0, 2800.0));

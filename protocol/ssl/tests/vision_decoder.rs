@@ -87,7 +87,7 @@ fn vision(name: &str) -> Vec<Vec<u8>> {
     records.map(|record| record.payload).collect()
 }
 
-/// How often this thread took memory.
+/// Number of allocations of this thread.
 fn taken() -> u64 {
     TAKEN.get()
 }

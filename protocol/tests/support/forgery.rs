@@ -1,5 +1,5 @@
-//! Tries at making a robot or its host believe something without the key, or with no more than recordings; of earlier boot epochs
-//! too: robots and hosts start again all the while.
+//! Tries at making a robot or its host accept a frame without the key, or with no more than recordings; of
+//! earlier boot epochs too: robots and hosts restart repeatedly.
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Sender, TeamKey};
@@ -15,16 +15,16 @@ use rules::Phase;
 
 const TEAM: TeamId = TeamId(1);
 const KEY: TeamKey = TeamKey([0x5a; 16]);
-/// Of the robot.
+/// First boot epoch of the robot.
 const FIRST_LIFE: u32 = 9;
-/// Of the host.
+/// First epoch of the host.
 const FIRST_HOST: u32 = 70;
 
 fn robot(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-/// The welcome first: without it the robot believes no host.
+/// The welcome first: without it the robot trusts no host.
 fn messages(n: u32, welcome: Welcome) -> [HostMessage; 3] {
     let (phase, directive) = (Phase::Run, Directive::GetBall { face: None });
     let robots = heapless::Vec::new();
@@ -78,7 +78,7 @@ struct Team {
     /// The robot's boot epoch, and the host's.
     life: u32,
     host_life: u32,
-    /// Their clock.
+    /// Clock of the team.
     now: Instant,
 }
 
@@ -102,7 +102,7 @@ impl Team {
         team
     }
 
-    /// Robots believe a host once it has welcomed them, and it believes them once they name it.
+    /// Robots trust a host once it has welcomed them, and it trusts them once they name it.
     fn meet_host(&mut self) {
         self.now.0 += 100_000;
         for (link, id) in [(&mut self.robot, robot(2)), (&mut self.mate, robot(3))] {
@@ -180,7 +180,7 @@ fn host(epoch: u32) -> HostLink {
     host
 }
 
-/// What was tried.
+/// Counters of the tries.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
     /// By kind: as it was sent; flipped bits; a newer counter; a newer epoch; another length; another name;
@@ -188,7 +188,7 @@ pub(crate) struct Tally {
     pub kinds: [u64; 7],
     /// Recordings received by a robot that had just booted, and how often it booted.
     pub after_boots: u64,
-    /// See there.
+    /// Boots of the robot; see there.
     pub boots: u32,
     /// Recordings received by a host that had just started.
     pub to_fresh_hosts: u64,
@@ -221,7 +221,7 @@ pub(crate) fn tries(count: u64, seed: u64) -> Tally {
                 bytes[2] = (bytes[2] + 1 + draw(17) as u8) % 18;
                 bytes[7..11].copy_from_slice(&(1_u32 << 30).to_le_bytes());
             }
-            // A frame made from nothing with a guessed key and a guessed tag.
+            // A frame made with a guessed key and a guessed tag.
             _ => bytes = forged(&mut draw),
         }
         if bytes[..] == recorded[..] && kind != 0 {

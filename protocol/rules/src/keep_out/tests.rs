@@ -107,7 +107,7 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
         // The ball is at x = −1.6, 0.1 m behind its mark, and we attack +x: the body ends at x = −2.6.
         let player = |x| why_with_ball(&field, phase, Duty::Player, (-1.6, 0.0), (x, 2.0));
         assert_eq!((player(-2.68), player(-2.70)), (Some(Why::BehindBall), None));
-        // A ball that was carried elsewhere: the mark, at x = −1.5, counts.
+        // A ball that was carried elsewhere: the mark, at x = −1.5, is used.
         let carried = |x| why(&field, phase, Duty::Player, (x, 2.0));
         assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
         assert_eq!(why(&field, phase, Duty::Keeper, (-4.4, 0.0)), None);

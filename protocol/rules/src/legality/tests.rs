@@ -122,7 +122,7 @@ fn the_faster_robot_of_a_crash_is_to_blame_and_both_if_about_equal() {
     assert_eq!(both.blame, Blame::Both);
     assert!((both.speed - 1.8).abs() < 1e-6 && (both.difference - 0.2).abs() < 1e-6);
     assert_eq!(hit((1.0, 0.0), (-0.6, 0.0)).unwrap().blame, Blame::First);
-    // Fast, but past each other: nothing along the line between them.
+    // Fast, but past each other: no speed along the line between them.
     assert_eq!(hit((0.0, 3.0), (0.0, -3.0)), None);
 }
 

@@ -81,7 +81,7 @@ fn every_phase_is_reached_over_edges_of_the_graph() {
     }
 }
 
-/// How much a phase lets robots do, 0 the least: what "safe" means in the next test.
+/// Freedom of robots in a phase, 0 the least: the measure of "safe" in the next test.
 fn freedom(phase: Phase<Colour>) -> u32 {
     match phase {
         Phase::Halt | Phase::Timeout(_) => 0,
@@ -213,7 +213,7 @@ fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
     assert_eq!(state.tick(109 * S, None, &limits()), Ticked::Same);
     assert_eq!((state.phase(), state.tick(111 * S, None, &limits())), (Phase::Stop, Ticked::Released));
-    // A command that is a minute old leaves nothing to wait for.
+    // A command that is a minute old requires no wait.
     let mut state = GameState::new();
     state.hear(Command::NormalStart, 40 * S, None);
     assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);

@@ -12,7 +12,7 @@ use crate::vision::{DetectionFrame, GeometryData};
 /// An automatic referee's first message.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefRegistration {
-    /// Its name.
+    /// Name of the automatic referee.
     #[prost(string, required, tag = "1")]
     pub identifier: String,
     /// Proof, where the controller has its key.
@@ -20,13 +20,13 @@ pub struct AutoRefRegistration {
     pub signature: Option<Signature>,
 }
 
-/// What it saw.
+/// Report of an automatic referee.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefToController {
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The event.
+    /// The event reported.
     #[prost(message, optional, tag = "2")]
     pub game_event: Option<GameEvent>,
 }
@@ -45,21 +45,21 @@ pub struct AutoRefCiInput {
     /// The referee's message.
     #[prost(message, optional, tag = "1")]
     pub referee_message: Option<Referee>,
-    /// What a tracker believes.
+    /// Frame of a tracker.
     #[prost(message, optional, tag = "2")]
     pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
-    /// What cameras saw.
+    /// Detections of the cameras.
     #[prost(message, repeated, tag = "3")]
     pub detection: Vec<DetectionFrame>,
-    /// The field.
+    /// Field geometry.
     #[prost(message, optional, tag = "4")]
     pub geometry: Option<GeometryData>,
 }
 
-/// What the step brought.
+/// Output of the step.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefCiOutput {
-    /// What its own tracker believes.
+    /// Frame of its own tracker.
     #[prost(message, optional, tag = "1")]
     pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
 }

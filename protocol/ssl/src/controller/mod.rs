@@ -26,10 +26,10 @@ pub struct ControllerReply {
     /// Accepted or not, [`StatusCode`].
     #[prost(enumeration = "StatusCode", optional, tag = "1")]
     pub status_code: Option<i32>,
-    /// Why not.
+    /// Reason of a refusal.
     #[prost(string, optional, tag = "2")]
     pub reason: Option<String>,
-    /// What the next signature must be over.
+    /// Token that the next signature must sign.
     #[prost(string, optional, tag = "3")]
     pub next_token: Option<String>,
     /// Result of the signature check, [`Verification`].
@@ -77,7 +77,7 @@ pub struct TeamRegistration {
     /// Proof, where the controller has the team's key.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
-    /// Which side, where both teams have one name, [`Team`].
+    /// Team colour, where both teams have one name, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "3")]
     pub team: Option<i32>,
 }
@@ -85,7 +85,7 @@ pub struct TeamRegistration {
 /// A team's request; with `msg` absent it does nothing.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamToController {
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
     /// The request.
@@ -93,13 +93,13 @@ pub struct TeamToController {
     pub msg: Option<TeamRequest>,
 }
 
-/// What a team may ask for.
+/// Requests of a team.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum TeamRequest {
     /// Make this robot the keeper.
     #[prost(int32, tag = "2")]
     DesiredKeeper(i32),
-    /// Stop or go on after a foul against us, [`AdvantageChoice`].
+    /// Stop or continue after a foul against us, [`AdvantageChoice`].
     #[prost(enumeration = "AdvantageChoice", tag = "3")]
     AdvantageChoice(i32),
     /// Ask for, or take back, a substitution.
@@ -118,7 +118,7 @@ pub struct ControllerToTeam {
     pub controller_reply: Option<ControllerReply>,
 }
 
-/// Stop or go on after a foul against us.
+/// Stop or continue after a foul against us.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

@@ -1,4 +1,5 @@
-//! What happened to the ball: it left, went in, was kicked wrongly, was held or placed. Units: m, m/s, s; field frame.
+//! Events of the ball: it left, went in, was kicked wrongly, was held or placed. Units: m, m/s, s; field
+//! frame.
 
 use prost::Message;
 
@@ -13,7 +14,7 @@ pub struct BallLeftField {
     /// The robot that touched it last.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -27,10 +28,10 @@ pub struct AimlessKick {
     /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
 }
@@ -44,10 +45,10 @@ pub struct Goal {
     /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub kicking_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
     /// Its greatest height between kick and goal, m.
@@ -56,13 +57,13 @@ pub struct Goal {
     /// The team that kicked: not `by_team` where it is an own goal, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "6")]
     pub kicking_team: Option<i32>,
-    /// Robots `by_team` had on the field.
+    /// Number of robots that `by_team` had on the field.
     #[prost(uint32, optional, tag = "7")]
     pub num_robots_by_team: Option<u32>,
     /// When `by_team` touched it last, µs, Unix time.
     #[prost(uint64, optional, tag = "8")]
     pub last_touch_by_team: Option<u64>,
-    /// Why it counts or does not.
+    /// Reason why it counts or does not.
     #[prost(string, optional, tag = "9")]
     pub message: Option<String>,
 }
@@ -76,10 +77,10 @@ pub struct IndirectGoal {
     /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
 }
@@ -93,10 +94,10 @@ pub struct ChippedGoal {
     /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
     /// Its greatest height, m.
@@ -113,7 +114,7 @@ pub struct BotKickedBallTooFast {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// The ball's speed after the kick, in space, m/s.
@@ -150,10 +151,10 @@ pub struct AttackerTouchedBallInDefenseArea {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How deep it was in, m.
+    /// Depth inside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -167,7 +168,7 @@ pub struct AttackerDoubleTouchedBall {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -181,10 +182,10 @@ pub struct BotHeldBallDeliberately {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "4")]
     pub duration: Option<f32>,
 }
@@ -195,10 +196,10 @@ pub struct KeeperHeldBall {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "3")]
     pub duration: Option<f32>,
 }
@@ -209,10 +210,10 @@ pub struct KickTimeout {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where the ball lay, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// How long was waited, s.
+    /// Waiting time, s.
     #[prost(float, optional, tag = "3")]
     pub time: Option<f32>,
 }
@@ -220,10 +221,10 @@ pub struct KickTimeout {
 /// No team got the ball moving.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct NoProgressInGame {
-    /// Where the ball lay, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "1")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "2")]
     pub time: Option<f32>,
 }
@@ -248,13 +249,13 @@ pub struct PlacementSucceeded {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// How long it took, s.
+    /// Duration of the preparation, s.
     #[prost(float, optional, tag = "2")]
     pub time_taken: Option<f32>,
     /// Ball to its target, m.
     #[prost(float, optional, tag = "3")]
     pub precision: Option<f32>,
-    /// From where it was to the target, m.
+    /// Distance from the ball to the target, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -262,7 +263,7 @@ pub struct PlacementSucceeded {
 /// Both teams were ready (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Prepared {
-    /// How long it took, s.
+    /// Duration of the preparation, s.
     #[prost(float, optional, tag = "1")]
     pub time_taken: Option<f32>,
 }
@@ -284,7 +285,7 @@ pub struct PenaltyKickFailed {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
     /// Reason, as text.

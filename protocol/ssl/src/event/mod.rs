@@ -22,7 +22,7 @@ pub struct GameEvent {
     /// Its sources: names of automatic referees, or `UI`.
     #[prost(string, repeated, tag = "41")]
     pub origin: Vec<String>,
-    /// When it was made, µs, Unix time.
+    /// Time of its creation, µs, Unix time.
     #[prost(uint64, optional, tag = "49")]
     pub created_timestamp: Option<u64>,
     /// Names this event.
@@ -36,7 +36,7 @@ pub struct GameEvent {
     pub event: Option<Event>,
 }
 
-/// What happened; deprecated ones still stand in old log files.
+/// Kind of event; deprecated ones are still in old log files.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum Event {
     /// Both teams were ready for the restart (deprecated).
@@ -57,7 +57,7 @@ pub enum Event {
     /// The ball left over a goal line.
     #[prost(message, tag = "7")]
     BallLeftFieldGoalLine(BallLeftField),
-    /// A goal.
+    /// A goal was scored.
     #[prost(message, tag = "8")]
     Goal(Goal),
     /// A goal straight from an indirect free kick (deprecated).

@@ -13,10 +13,10 @@ pub struct BotTooFastInStop {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Its speed, m/s.
+    /// Speed of the robot, m/s.
     #[prost(float, optional, tag = "4")]
     pub speed: Option<f32>,
 }
@@ -30,7 +30,7 @@ pub struct DefenderTooCloseToKickPoint {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// Robot to ball, without the robot's radius, m.
@@ -47,7 +47,7 @@ pub struct BotCrashDrawn {
     /// The blue one.
     #[prost(uint32, optional, tag = "2")]
     pub bot_blue: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// Relative speed along the line between them, m/s.
@@ -73,7 +73,7 @@ pub struct BotCrashUnique {
     /// The other one, of the other team.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "4")]
     pub location: Option<Vector2>,
     /// Relative speed along the line between them, m/s.
@@ -99,10 +99,10 @@ pub struct BotPushedBot {
     /// The robot that was pushed.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "4")]
     pub location: Option<Vector2>,
-    /// How far, m.
+    /// Distance of the push, m.
     #[prost(float, optional, tag = "5")]
     pub pushed_distance: Option<f32>,
 }
@@ -116,10 +116,10 @@ pub struct BotTippedOver {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }
@@ -133,10 +133,10 @@ pub struct BotDroppedParts {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }
@@ -150,7 +150,7 @@ pub struct DefenderInDefenseArea {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// Robot to the nearest point outside the area, m.
@@ -167,13 +167,13 @@ pub struct DefenderInDefenseAreaPartially {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How deep it was in, m.
+    /// Depth inside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "5")]
     pub ball_location: Option<Vector2>,
 }
@@ -187,7 +187,7 @@ pub struct AttackerTouchedOpponentInDefenseArea {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// The robot that was touched.
@@ -204,13 +204,13 @@ pub struct AttackerTooCloseToDefenseArea {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// Robot to the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "5")]
     pub ball_location: Option<Vector2>,
 }
@@ -224,7 +224,7 @@ pub struct BotInterferedPlacement {
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -235,13 +235,13 @@ pub struct TooManyRobots {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// How many it may have.
+    /// Number of robots it may have.
     #[prost(int32, optional, tag = "2")]
     pub num_robots_allowed: Option<i32>,
-    /// How many it had.
+    /// Number of robots it had.
     #[prost(int32, optional, tag = "3")]
     pub num_robots_on_field: Option<i32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }

@@ -1,4 +1,4 @@
-//! What concerns a whole team: cards, fouls that add up, behaviour, substitutions, challenges.
+//! Events of a whole team: cards, fouls that add up, behaviour, substitutions, challenges.
 
 use prost::Message;
 
@@ -19,7 +19,7 @@ pub struct MultipleFouls {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// The fouls.
+    /// The fouls that were counted.
     #[prost(message, repeated, tag = "2")]
     pub caused_game_events: Vec<GameEvent>,
 }

@@ -9,16 +9,16 @@ use std::path::PathBuf;
 pub enum LogError {
     /// The file cannot be opened.
     Open {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         error: io::Error,
     },
     /// Its first bytes cannot be read (or gunzipped).
     Read(io::Error),
     /// It ends within its header.
     Short {
-        /// How many of the header's 16 bytes there are.
+        /// Number of the header's 16 bytes that the file has.
         bytes: usize,
     },
     /// It does not start like a log file.

@@ -1,9 +1,8 @@
-//! `guess`: type detection of `Unknown` payloads. Whichever message it has the required fields of, and no
-//! others.
+//! `guess`: type detection of `Unknown` payloads: the message whose required fields it has, and no others.
 //!
-//! A protobuf decoder alone accepts nearly anything as nearly anything: unknown fields are passed over and missing ones
-//! read as zero. So the wire is looked at: numbers and wire types of the outermost fields, and where vision's two
-//! generations and the tracker differ, one or two levels deeper.
+//! A protobuf decoder alone accepts nearly any bytes as any message: unknown fields are skipped and missing
+//! ones read as zero. So the wire is examined: numbers and wire types of the outermost fields, and where
+//! vision's two generations and the tracker differ, one or two levels deeper.
 
 use prost::Message;
 

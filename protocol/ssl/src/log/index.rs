@@ -13,7 +13,7 @@ const MARK: &[u8; 7] = b"INDEXED";
 /// Bytes after the offsets: the distance and the mark.
 const TAIL: usize = 8 + MARK.len();
 
-/// What stands at a file's end.
+/// Content of a file's end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Index {
     /// Start of each message, bytes from the file's start, rising.

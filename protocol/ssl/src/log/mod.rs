@@ -42,10 +42,10 @@ const MESSAGE_HEADER: usize = 16;
 /// size is taken for damage, so that damage cannot ask for gigabytes.
 pub const PAYLOAD_MAX: usize = 65_535;
 
-/// What a message of a log file holds.
+/// Kind of a message in a log file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MessageKind {
-    /// 0: nothing; to be passed over.
+    /// 0: no message; to be skipped.
     Blank,
     /// 1: some message; [`guess`] finds out.
     Unknown,
@@ -113,9 +113,9 @@ impl std::fmt::Display for MessageKind {
 pub struct Record {
     /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README, trap 6).
     pub timestamp_ns: i64,
-    /// What it holds.
+    /// Kind of the message.
     pub kind: MessageKind,
-    /// The datagram.
+    /// Bytes of the datagram.
     pub payload: Vec<u8>,
 }
 

@@ -14,7 +14,7 @@ use super::{Index, LogError, LogReader, MESSAGE_HEADER};
 pub enum Source {
     /// As they are.
     Plain(BufReader<File>),
-    /// Gunzipped.
+    /// A gzipped file.
     Gzip(Box<MultiGzDecoder<BufReader<File>>>),
 }
 
@@ -27,7 +27,7 @@ impl Read for Source {
     }
 }
 
-/// How [`open_at`] found its place.
+/// Method by which [`open_at`] found its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// By the index: a few reads.
@@ -66,8 +66,8 @@ pub fn open_at(path: &Path, timestamp_ns: i64) -> Result<(LogReader<Source>, Pla
     Ok((LogReader::from_message(Source::Plain(file), at), place))
 }
 
-/// How many messages before the one found by halving are looked at, because times step back. The league's recorder steps
-/// back by half a millisecond, in which it receives one or two messages.
+/// Number of messages checked before the one found by bisection, because times step back. The league's
+/// recorder steps back by half a millisecond, in which it receives one or two messages.
 pub const BACK_STEP_MESSAGES: usize = 64;
 
 const NOT_ITS_OWN: &str = "its offsets lead to no messages";

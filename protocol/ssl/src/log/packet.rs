@@ -12,9 +12,9 @@ pub enum Packet {
     Vision(vision::WrapperPacket),
     /// Vision until 2014.
     VisionLegacy(vision::legacy::WrapperPacket),
-    /// The referee.
+    /// A referee packet.
     Referee(referee::Referee),
-    /// A tracker.
+    /// A tracker packet.
     Tracker(tracker::TrackerWrapperPacket),
 }
 
@@ -54,14 +54,14 @@ impl Packet {
 pub enum PacketError {
     /// It is not of its declared type.
     Broken {
-        /// Its type.
+        /// Declared type.
         kind: MessageKind,
-        /// Where it breaks.
+        /// Error of the decoder.
         error: prost::DecodeError,
     },
     /// Its type is not one of the league's.
     KindNotKnown(i32),
-    /// Its type is `Unknown`, and it is none of the messages we know.
+    /// Its type is `Unknown`, and it is none of the known messages.
     NothingKnown,
 }
 

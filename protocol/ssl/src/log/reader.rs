@@ -23,7 +23,7 @@ pub struct LogReader<R> {
 /// Counters of the messages read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Messages given.
+    /// Number of messages returned.
     pub messages: u64,
     /// Blank messages passed over.
     pub blank: u64,
@@ -44,7 +44,7 @@ pub enum End {
     Cut {
         /// Start of that message.
         at: u64,
-        /// How many bytes of it there are.
+        /// Number of its bytes that are there.
         bytes: u64,
     },
     /// At a message of an impossible size; the start of the next one is unknown.
@@ -54,11 +54,11 @@ pub enum End {
         /// The size it claims.
         size: i32,
     },
-    /// Where it cannot be read or gunzipped any more.
+    /// The file cannot be read or gunzipped any further.
     Read {
         /// Start of the message that was being read.
         at: u64,
-        /// Why.
+        /// Cause of the failure.
         error: io::Error,
     },
 }
@@ -124,7 +124,7 @@ impl<R: Read> LogReader<R> {
         self.end.as_ref()
     }
 
-    /// What was met so far.
+    /// Counters so far.
     pub fn counts(&self) -> &Counts {
         &self.counts
     }

@@ -12,15 +12,15 @@ pub struct Summary {
     /// By the kind that the file names; a message of kind `Unknown` is counted there, even if its kind was
     /// found.
     pub kinds: BTreeMap<MessageKind, KindSummary>,
-    /// Messages of kind `Unknown` that were found to be something.
+    /// Number of messages of kind `Unknown` whose kind was found.
     pub guessed: u64,
-    /// What the reader met.
+    /// Counters of the reader.
     pub counts: Counts,
     /// First and last time of any message, ns, Unix time.
     pub span_ns: Option<(i64, i64)>,
     /// Camera frames by camera.
     pub cameras: BTreeMap<u32, u64>,
-    /// Trackers by their id, with what they call themselves.
+    /// Names of trackers, by their id.
     pub trackers: BTreeMap<String, String>,
     /// The first message that could not be decoded: its number among all, from 0, and why.
     pub first_undecodable: Option<(u64, PacketError)>,
@@ -31,7 +31,7 @@ pub struct Summary {
 /// Messages of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KindSummary {
-    /// How many.
+    /// Number of messages.
     pub messages: u64,
     /// Their payloads, bytes.
     pub bytes: u64,

@@ -69,7 +69,7 @@ impl<W: Write> LogWriter<W> {
         self.put(timestamp_ns, kind, payload)
     }
 
-    /// Writes what is buffered: what stands in the file then survives a crash.
+    /// Writes the buffered bytes: they survive a crash in the file.
     pub fn flush(&mut self) -> io::Result<()> {
         self.sink.flush()
     }
@@ -101,7 +101,7 @@ impl<W: Write> LogWriter<W> {
 pub enum Sink {
     /// As it is.
     Plain(BufWriter<File>),
-    /// Gzipped.
+    /// A gzipped file.
     Gzip(GzEncoder<BufWriter<File>>),
 }
 

@@ -47,7 +47,8 @@ impl Connection {
         self.stream.write_all(&delimited(message)).map_err(|error| self.broken("send to", error))
     }
 
-    /// The next message, within `wait` (at least a millisecond). `None`: none came whole; what came of it is kept.
+    /// The next message, within `wait` (at least a millisecond). `None`: none arrived completely; the bytes
+    /// received are kept.
     pub fn receive<M: Message + Default>(&mut self, wait: Duration) -> Result<Option<M>, NetError> {
         let from = self.peer;
         let until = Instant::now() + wait.max(SHORTEST_WAIT);

@@ -27,7 +27,7 @@ impl fmt::Display for Interface {
     }
 }
 
-/// Which interfaces to use.
+/// Choice of interfaces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
     /// Every interface that can, loopback included: vision is received from any of them.

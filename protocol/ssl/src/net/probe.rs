@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::error::LOOPBACK_MEND;
 use super::{Interfaces, NetError, Receiver, Sender, interfaces};
 
-/// What a packet sent by loopback met.
+/// Result of a packet sent by loopback.
 #[derive(Debug)]
 pub enum LoopbackProbe {
     /// It came back: programs on this machine receive each other.
@@ -59,7 +59,8 @@ pub fn probe_loopback(group: Ipv4Addr, wait: Duration) -> LoopbackProbe {
     }
 }
 
-/// By which of this machine's addresses the system sends to a group where a program does not choose. Sends nothing.
+/// Address of this machine by which the system sends to a group where a program does not choose. Sends
+/// nothing.
 pub fn route(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {
     let to = SocketAddr::from(group);
     let any = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
@@ -89,5 +90,5 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
 
 const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";
 
-/// Any; nothing is sent to it.
+/// Arbitrary port; nothing is sent to it.
 const PROBE_PORT: u16 = 10006;

@@ -14,7 +14,7 @@ use super::{Interface, Interfaces, NetError, interfaces};
 /// A datagram as it came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Datagram<'a> {
-    /// One message.
+    /// Bytes of one message.
     pub bytes: &'a [u8],
     /// Address of the sender.
     pub from: SocketAddr,
@@ -35,7 +35,7 @@ impl Receiver {
         let bound = SocketAddr::from((Ipv4Addr::UNSPECIFIED, group.port()));
         let socket = udp().map_err(|error| NetError::System { doing: "open", address: bound, error })?;
         share(&socket).map_err(|error| NetError::System { doing: "share", address: bound, error })?;
-        // A hint: some systems allow less, and go on with less.
+        // A hint: systems that allow less use less.
         let _ = socket.set_recv_buffer_size(RECEIVE_BUFFER);
         socket.bind(&bound.into()).map_err(|error| NetError::bind(bound, true, error))?;
         let mut joined = Vec::new();
@@ -64,7 +64,7 @@ impl Receiver {
     }
 }
 
-/// Speaks to one address: a multicast group, or a single machine.
+/// Sends to one address: a multicast group, or a single machine.
 #[derive(Debug)]
 pub struct Sender {
     socket: UdpSocket,
@@ -94,7 +94,7 @@ impl Sender {
         Ok(Self { socket: socket.into(), to, by })
     }
 
-    /// To a single machine's port.
+    /// A sender to a single machine's port.
     pub fn unicast(to: SocketAddr) -> Result<Self, NetError> {
         let any = if to.is_ipv4() { SocketAddr::from(([0; 4], 0)) } else { SocketAddr::from(([0u16; 8], 0)) };
         let socket = UdpSocket::bind(any).map_err(|error| NetError::bind(any, false, error))?;
@@ -107,7 +107,7 @@ impl Sender {
         sent.map(drop).map_err(|error| NetError::send(self.to, self.by, bytes.len(), error))
     }
 
-    /// Where it sends to.
+    /// Destination address.
     pub const fn to(&self) -> SocketAddr {
         self.to
     }
@@ -129,7 +129,7 @@ impl Port {
         Ok(Self { inbox: Inbox::new(socket, address) })
     }
 
-    /// Its address, with the port it got.
+    /// Its address, with the port assigned.
     pub const fn address(&self) -> SocketAddr {
         self.inbox.address
     }
@@ -152,7 +152,7 @@ struct Inbox {
     socket: UdpSocket,
     address: SocketAddr,
     buffer: Box<[u8]>,
-    /// What the socket is set to; the system is asked only when it changes.
+    /// Time-out of the socket; the system is called only when it changes.
     waits: Option<Duration>,
 }
 

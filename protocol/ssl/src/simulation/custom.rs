@@ -6,7 +6,7 @@
 
 use prost::Message;
 
-/// How unlike an ideal camera and radio ER-Force's simulator behaves.
+/// Deviations of ER-Force's simulator from an ideal camera and radio.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RealismConfigErForce {
     /// Noise of the ball's place, m (standard deviation).
@@ -27,7 +27,7 @@ pub struct RealismConfigErForce {
     /// The ball is detected where at least this part of it is visible, 0–1.
     #[prost(float, optional, tag = "6")]
     pub ball_visibility_threshold: Option<f32>,
-    /// How far the cameras' views overlap, m.
+    /// Overlap of the cameras' views, m.
     #[prost(float, optional, tag = "7")]
     pub camera_overlap: Option<f32>,
     /// False balls seen at dribblers, probability.

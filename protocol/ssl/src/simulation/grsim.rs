@@ -1,15 +1,16 @@
-//! `grsim`: grSim's own messages, older than the league's protocol and still spoken by many teams. Commands go to UDP 20011, robots'
-//! states come back to 30011 (blue) and 30012 (yellow). Units: m, m/s, rad/s; **degrees** for a robot's heading.
+//! `grsim`: grSim's own messages, older than the league's protocol and still used by many teams. Commands go
+//! to UDP 20011, robots' states come back to 30011 (blue) and 30012 (yellow). Units: m, m/s, rad/s;
+//! **degrees** for a robot's heading.
 
 use prost::Message;
 
-/// To port 20011: commands for one team, and things to be moved.
+/// To port 20011: commands for one team, and replacements.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimPacket {
-    /// What robots shall do.
+    /// Commands to robots.
     #[prost(message, optional, tag = "1")]
     pub commands: Option<GrsimCommands>,
-    /// What is to be put somewhere else.
+    /// Objects to be moved.
     #[prost(message, optional, tag = "2")]
     pub replacement: Option<GrsimReplacement>,
 }
@@ -28,7 +29,7 @@ pub struct GrsimCommands {
     pub robot_commands: Vec<GrsimRobotCommand>,
 }
 
-/// What one robot shall do until the next command.
+/// Command to one robot, valid until the next.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimRobotCommand {
     /// Shell number, 0–15.
@@ -40,13 +41,13 @@ pub struct GrsimRobotCommand {
     /// Kick upwards, m/s; with the above it makes a chip.
     #[prost(float, required, tag = "3")]
     pub kickspeedz: f32,
-    /// Forward, m/s.
+    /// Velocity forward, m/s.
     #[prost(float, required, tag = "4")]
     pub veltangent: f32,
-    /// To the left, m/s.
+    /// Velocity to the left, m/s.
     #[prost(float, required, tag = "5")]
     pub velnormal: f32,
-    /// Counter-clockwise, rad/s.
+    /// Turning rate, counter-clockwise, rad/s.
     #[prost(float, required, tag = "6")]
     pub velangular: f32,
     /// The dribbler turns.
@@ -69,41 +70,41 @@ pub struct GrsimRobotCommand {
     pub wheel4: Option<f32>,
 }
 
-/// What is to be put somewhere else.
+/// Objects to be moved.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimReplacement {
-    /// The ball.
+    /// The ball's new state.
     #[prost(message, optional, tag = "1")]
     pub ball: Option<GrsimBallReplacement>,
-    /// Robots.
+    /// The robots' new states.
     #[prost(message, repeated, tag = "2")]
     pub robots: Vec<GrsimRobotReplacement>,
 }
 
-/// Where the ball shall be; what is left out stays as it is.
+/// New state of the ball; absent fields stay as they are.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimBallReplacement {
     /// Along the field's length, m.
     #[prost(double, optional, tag = "1")]
     pub x: Option<f64>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(double, optional, tag = "2")]
     pub y: Option<f64>,
-    /// m/s.
+    /// Velocity along +x, m/s.
     #[prost(double, optional, tag = "3")]
     pub vx: Option<f64>,
-    /// m/s.
+    /// Velocity to the left of +x, m/s.
     #[prost(double, optional, tag = "4")]
     pub vy: Option<f64>,
 }
 
-/// Where a robot shall stand.
+/// New state of a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimRobotReplacement {
     /// Along the field's length, m.
     #[prost(double, required, tag = "1")]
     pub x: f64,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(double, required, tag = "2")]
     pub y: f64,
     /// Heading, **degrees**, counter-clockwise from +x.

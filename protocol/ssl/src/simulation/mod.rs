@@ -23,7 +23,7 @@ pub use robot::{
     RobotControlResponse, RobotFeedback, RobotMoveCommand,
 };
 
-/// What a simulator could not do.
+/// Failed request to a simulator.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorError {
     /// For programs, of the simulator's own choice.
@@ -34,21 +34,21 @@ pub struct SimulatorError {
     pub message: Option<String>,
 }
 
-/// To port 10300: move things, or change settings.
+/// To port 10300: teleports, or settings.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorCommand {
-    /// Move things.
+    /// Objects to be moved.
     #[prost(message, optional, tag = "1")]
     pub control: Option<SimulatorControl>,
-    /// Change settings.
+    /// Settings to change.
     #[prost(message, optional, tag = "2")]
     pub config: Option<SimulatorConfig>,
 }
 
-/// What comes back from port 10300.
+/// Answer from port 10300.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorResponse {
-    /// What was not done; empty when all was.
+    /// Failed requests; empty when all succeeded.
     #[prost(message, repeated, tag = "1")]
     pub errors: Vec<SimulatorError>,
 }
@@ -59,7 +59,7 @@ pub struct SimulatorControl {
     /// Move the ball.
     #[prost(message, optional, tag = "1")]
     pub teleport_ball: Option<TeleportBall>,
-    /// Move robots.
+    /// Robots to be moved.
     #[prost(message, repeated, tag = "2")]
     pub teleport_robot: Vec<TeleportRobot>,
     /// Simulated seconds a second: 1 is real time, 0 stands still.
@@ -73,7 +73,7 @@ pub struct TeleportBall {
     /// Along the field's length, m.
     #[prost(float, optional, tag = "1")]
     pub x: Option<f32>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(float, optional, tag = "2")]
     pub y: Option<f32>,
     /// Up, m.
@@ -94,7 +94,7 @@ pub struct TeleportBall {
     /// Start as a rolling ball, without a sliding phase.
     #[prost(bool, optional, tag = "8")]
     pub roll: Option<bool>,
-    /// Move it by forces, through what stands between, instead of at once.
+    /// Move it by forces, through obstacles in between, instead of at once.
     #[prost(bool, optional, tag = "9")]
     pub by_force: Option<bool>,
 }
@@ -102,13 +102,13 @@ pub struct TeleportBall {
 /// Move a robot, or take it away.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TeleportRobot {
-    /// Which.
+    /// Robot to be moved.
     #[prost(message, required, tag = "1")]
     pub id: RobotId,
     /// Along the field's length, m.
     #[prost(float, optional, tag = "2")]
     pub x: Option<f32>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(float, optional, tag = "3")]
     pub y: Option<f32>,
     /// Heading, rad, counter-clockwise from +x.
@@ -123,7 +123,7 @@ pub struct TeleportRobot {
     /// Rate of turn, rad/s, counter-clockwise.
     #[prost(float, optional, default = "0", tag = "7")]
     pub v_angular: Option<f32>,
-    /// False takes the robot away, true puts it there.
+    /// False removes the robot, true adds it.
     #[prost(bool, optional, tag = "8")]
     pub present: Option<bool>,
     /// Move it by forces instead of at once.
@@ -137,13 +137,13 @@ pub struct SimulatorConfig {
     /// The field, in vision's units (mm).
     #[prost(message, optional, tag = "1")]
     pub geometry: Option<GeometryData>,
-    /// What robots are like.
+    /// Properties of robots.
     #[prost(message, repeated, tag = "2")]
     pub robot_specs: Vec<RobotSpecs>,
     /// Noise, delay and losses, in a form of the simulator's own.
     #[prost(message, optional, tag = "3")]
     pub realism_config: Option<RealismConfig>,
-    /// Where vision packets go.
+    /// Port for vision packets.
     #[prost(uint32, optional, tag = "4")]
     pub vision_port: Option<u32>,
 }
@@ -156,10 +156,10 @@ pub struct RealismConfig {
     pub custom: Vec<Any>,
 }
 
-/// What a robot is like.
+/// Properties of a robot.
 #[derive(Clone, PartialEq, Message)]
 pub struct RobotSpecs {
-    /// Which.
+    /// The robot.
     #[prost(message, required, tag = "1")]
     pub id: RobotId,
     /// Radius of its hull, m.
@@ -183,7 +183,7 @@ pub struct RobotSpecs {
     /// Bounds of its motion.
     #[prost(message, optional, tag = "10")]
     pub limits: Option<RobotLimits>,
-    /// Where its wheels are.
+    /// Angles of its wheels.
     #[prost(message, optional, tag = "13")]
     pub wheel_angles: Option<RobotWheelAngles>,
     /// For ER-Force's simulator a [`RobotSpecErForce`].
@@ -214,7 +214,7 @@ pub struct RobotLimits {
     pub vel_angular_max: Option<f32>,
 }
 
-/// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
+/// Directions of the wheels' axles, rad, counter-clockwise from the robot's front.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotWheelAngles {
     /// Front right, rad.
@@ -237,21 +237,21 @@ pub struct SimulationSyncRequest {
     /// Length of the step, s.
     #[prost(float, optional, tag = "1")]
     pub sim_step: Option<f32>,
-    /// What port 10300 would get.
+    /// Message as to port 10300.
     #[prost(message, optional, tag = "2")]
     pub simulator_command: Option<SimulatorCommand>,
-    /// What ports 10301 and 10302 would get.
+    /// Message as to ports 10301 and 10302.
     #[prost(message, optional, tag = "3")]
     pub robot_control: Option<RobotControl>,
 }
 
-/// What the step brought.
+/// Output of the step.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulationSyncResponse {
-    /// What each camera saw.
+    /// Detections of each camera.
     #[prost(message, repeated, tag = "1")]
     pub detection: Vec<DetectionFrame>,
-    /// What ports 10301 and 10302 would send.
+    /// Message as from ports 10301 and 10302.
     #[prost(message, optional, tag = "2")]
     pub robot_control_response: Option<RobotControlResponse>,
 }

@@ -15,7 +15,7 @@ pub struct Decoder {
     /// Room of the packet's parts while they are absent.
     spare_detection: DetectionFrame,
     spare_geometry: GeometryData,
-    /// What the geometry at hand was decoded from; the same bytes are not decoded again.
+    /// The bytes from which the present geometry was decoded; the same bytes are not decoded again.
     geometry_bytes: Vec<u8>,
 }
 

@@ -5,7 +5,7 @@ use prost::Message;
 /// One orange blob.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionBall {
-    /// How sure it is a ball, 0–1.
+    /// Confidence that it is a ball, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
     /// Pixels of the blob.
@@ -14,7 +14,7 @@ pub struct DetectionBall {
     /// Along the field's length, mm.
     #[prost(float, required, tag = "3")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
     /// Height, mm; set by few programs.
@@ -31,7 +31,7 @@ pub struct DetectionBall {
 /// One pattern of markers.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionRobot {
-    /// How sure the pattern is, 0–1.
+    /// Confidence of the pattern, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
     /// Shell number, 0–15; absent where only the centre marker was seen.
@@ -40,7 +40,7 @@ pub struct DetectionRobot {
     /// Along the field's length, mm.
     #[prost(float, required, tag = "3")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
     /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
@@ -69,7 +69,7 @@ pub struct DetectionFrame {
     /// When the packet was sent, s, on the same clock.
     #[prost(double, required, tag = "3")]
     pub t_sent: f64,
-    /// Which camera.
+    /// Number of the camera.
     #[prost(uint32, required, tag = "4")]
     pub camera_id: u32,
     /// Every orange blob: none or two are normal.

@@ -8,7 +8,7 @@ pub struct Vector2f {
     /// Along the field's length, mm.
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "2")]
     pub y: f32,
 }
@@ -16,7 +16,7 @@ pub struct Vector2f {
 /// A straight line painted on the field.
 #[derive(Clone, PartialEq, Message)]
 pub struct FieldLineSegment {
-    /// Which line, as `TopTouchLine` or `LeftPenaltyStretch`.
+    /// Name of the line, as `TopTouchLine` or `LeftPenaltyStretch`.
     #[prost(string, required, tag = "1")]
     pub name: String,
     /// One end, on the middle of the line's width.
@@ -36,10 +36,10 @@ pub struct FieldLineSegment {
 /// A round line painted on the field.
 #[derive(Clone, PartialEq, Message)]
 pub struct FieldCircularArc {
-    /// Which arc, as `CenterCircle`.
+    /// Name of the arc, as `CenterCircle`.
     #[prost(string, required, tag = "1")]
     pub name: String,
-    /// Its centre.
+    /// Centre of the arc, mm.
     #[prost(message, required, tag = "2")]
     pub center: Vector2f,
     /// Its radius, mm, to the middle of the line's width.
@@ -80,7 +80,7 @@ pub struct GeometryFieldSize {
     /// Straight lines, in any order.
     #[prost(message, repeated, tag = "6")]
     pub field_lines: Vec<FieldLineSegment>,
-    /// Round lines.
+    /// Arcs among the lines.
     #[prost(message, repeated, tag = "7")]
     pub field_arcs: Vec<FieldCircularArc>,
     /// Defence area along x, mm.
@@ -115,10 +115,10 @@ pub struct GeometryFieldSize {
     pub goal_substitution_area_width: Option<i32>,
 }
 
-/// Where a camera hangs and how it looks.
+/// Position and orientation of a camera, and its lens.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryCameraCalibration {
-    /// Which camera.
+    /// Number of the camera.
     #[prost(uint32, required, tag = "1")]
     pub camera_id: u32,
     /// Focal length, px.
@@ -136,13 +136,13 @@ pub struct GeometryCameraCalibration {
     /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
     #[prost(float, required, tag = "6")]
     pub q0: f32,
-    /// Quaternion, y.
+    /// y of the orientation quaternion.
     #[prost(float, required, tag = "7")]
     pub q1: f32,
-    /// Quaternion, z.
+    /// z of the orientation quaternion.
     #[prost(float, required, tag = "8")]
     pub q2: f32,
-    /// Quaternion, w.
+    /// w of the orientation quaternion.
     #[prost(float, required, tag = "9")]
     pub q3: f32,
     /// Translation from field to camera, mm, camera frame.
@@ -154,13 +154,13 @@ pub struct GeometryCameraCalibration {
     /// Translation, z, mm.
     #[prost(float, required, tag = "12")]
     pub tz: f32,
-    /// Where the camera hangs, along x, mm, field frame.
+    /// Position of the camera along x, mm, field frame.
     #[prost(float, optional, tag = "13")]
     pub derived_camera_world_tx: Option<f32>,
-    /// Where the camera hangs, along y, mm, field frame.
+    /// Position of the camera along y, mm, field frame.
     #[prost(float, optional, tag = "14")]
     pub derived_camera_world_ty: Option<f32>,
-    /// How high the camera hangs, mm.
+    /// Height of the camera, mm.
     #[prost(float, optional, tag = "15")]
     pub derived_camera_world_tz: Option<f32>,
     /// Columns of the camera frame, px.
@@ -171,7 +171,7 @@ pub struct GeometryCameraCalibration {
     pub pixel_image_height: Option<u32>,
 }
 
-/// Which line or arc.
+/// Kind of line or arc.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -209,24 +209,24 @@ pub struct BallModelStraightTwoPhase {
 /// A chipped ball: each bounce keeps a fixed part of its speed.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BallModelChipFixedLoss {
-    /// What the first bounce keeps of the speed along the ground, 0–1.
+    /// Share of the speed along the ground that the first bounce keeps, 0–1.
     #[prost(double, required, tag = "1")]
     pub damping_xy_first_hop: f64,
-    /// What later bounces keep of it, 0–1.
+    /// Share of it that later bounces keep, 0–1.
     #[prost(double, required, tag = "2")]
     pub damping_xy_other_hops: f64,
-    /// What a bounce keeps of the vertical speed, 0–1.
+    /// Share of the vertical speed that a bounce keeps, 0–1.
     #[prost(double, required, tag = "3")]
     pub damping_z: f64,
 }
 
-/// How the ball moves here. Simulators differ widely: read it, hard-code nothing.
+/// Ball model of this field. Simulators differ widely: it must be read, not hard-coded.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryModels {
     /// On the ground.
     #[prost(message, optional, tag = "1")]
     pub straight_two_phase: Option<BallModelStraightTwoPhase>,
-    /// In the air.
+    /// Model in the air.
     #[prost(message, optional, tag = "2")]
     pub chip_fixed_loss: Option<BallModelChipFixedLoss>,
 }
@@ -240,7 +240,7 @@ pub struct GeometryData {
     /// Cameras: all of them, or one a packet; merge by camera id.
     #[prost(message, repeated, tag = "2")]
     pub calib: Vec<GeometryCameraCalibration>,
-    /// How the ball moves.
+    /// Model of the ball's motion.
     #[prost(message, optional, tag = "3")]
     pub models: Option<GeometryModels>,
 }

@@ -21,18 +21,18 @@ pub use geometry::{
 /// A datagram of vision: a camera's frame, the field, or both.
 #[derive(Clone, PartialEq, Message)]
 pub struct WrapperPacket {
-    /// What one camera saw.
+    /// Detections of one camera.
     #[prost(message, optional, tag = "1")]
     pub detection: Option<DetectionFrame>,
     /// The field and cameras; grSim sends one camera's calibration a packet, so merge by camera id.
     #[prost(message, optional, tag = "2")]
     pub geometry: Option<GeometryData>,
-    /// Which program sent it, [`Source`]; most leave it out.
+    /// Program that sent it, [`Source`]; most leave it out.
     #[prost(enumeration = "Source", optional, tag = "3")]
     pub source: Option<i32>,
 }
 
-/// Which program sends vision.
+/// Program that sends vision.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

@@ -1,5 +1,5 @@
-//! `mutate`: mutation of packets. Seeds are true packets; each round breaks one and reads it as everything
-//! the league sends.
+//! `mutate`: mutation of packets. Seeds are true packets; each round breaks one and reads it as every message
+//! of the league.
 
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -8,12 +8,12 @@ use ssl::stream::FrameReader;
 
 use crate::messages::{Decode, decoder};
 
-/// What a run met.
+/// Counters of a run.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     /// Packets broken and read.
     pub packets: u64,
-    /// Those that still decode as what they were.
+    /// Number of those that still decode as their original message.
     pub decoded: u64,
     /// Those that do not.
     pub refused: u64,
@@ -45,7 +45,7 @@ pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Tally {
     tally
 }
 
-/// What comes from outside as a whole: each packet is read as each of these too.
+/// Outermost messages: each packet is read as each of these too.
 const DATAGRAMS: [(&str, &str); 10] = [
     ("vision", "SSL_WrapperPacket"),
     ("legacy", "SSL_WrapperPacket"),
@@ -152,7 +152,7 @@ fn below(random: &mut impl RngCore, bound: usize) -> usize {
     (random.next_u64() % bound as u64) as usize
 }
 
-/// A true packet, and how it is read.
+/// A true packet, and its decoder.
 pub(crate) type Seed = (Decode, Vec<u8>);
 
 /// True packets: the golden ones, and every hundredth of two recordings.

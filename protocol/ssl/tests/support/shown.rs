@@ -153,7 +153,7 @@ impl Reader<'_> {
         (name.trim_start_matches("r#").to_owned(), self.value())
     }
 
-    /// What stands between the bracket here and `close`, separated by commas.
+    /// The items between the bracket here and `close`, separated by commas.
     fn list<T>(&mut self, close: u8, mut item: impl FnMut(&mut Self) -> T) -> Vec<T> {
         self.at += 1;
         let mut items = Vec::new();
@@ -186,7 +186,7 @@ impl Reader<'_> {
         }
         self.at += 1;
         let quoted = std::str::from_utf8(&self.text[start..self.at]).expect("whole letters");
-        // Rust's escapes of what stands in these texts are JSON's.
+        // Rust's escapes in these texts are JSON's.
         Shown::Text(serde_json::from_str(quoted).expect("a string with simple escapes"))
     }
 
