@@ -20,7 +20,7 @@ use crate::mates::Mates;
 
 /// Own detections older than this are ignored.
 const SIGHT_LEASE: Duration = Duration::millis(400);
-/// A sight this sharp needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
+/// A detection this precise needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
@@ -40,7 +40,7 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// Slow enough to count as lying.
+    /// Whether it is slow enough to count as stationary.
     pub fn is_at_rest(&self) -> bool {
         self.velocity.norm() < REST_SPEED
     }
@@ -50,7 +50,7 @@ impl Ball {
         if self.is_at_rest() { 0.0 } else { 2.0 * self.position.distance(self.rest) / self.velocity.norm() }
     }
 
-    /// Whether it rolls towards `point`: within `reach` of it, sooner or later.
+    /// Whether it rolls towards `point`, so that its path comes within `reach` of it.
     pub fn rolls_towards(&self, point: Point<Field>, reach: f32) -> bool {
         !self.is_at_rest()
             && self.velocity.dot(point - self.position) > 0.0
@@ -112,7 +112,7 @@ pub struct Belief {
     pub ball: Option<Ball>,
     /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
-    /// It holds the ball itself.
+    /// The robot holds the ball.
     pub holds_ball: bool,
     /// Its body is executing a grab or kick.
     pub busy: bool,
@@ -120,7 +120,7 @@ pub struct Belief {
     pub velocity: Vector<Field>,
     /// Own turning rate, rad/s.
     pub angular: f32,
-    /// The kicker is charged.
+    /// Whether the kicker is charged.
     pub kicker_ready: bool,
     /// All other robots whose motion the host sends.
     pub others: heapless::Vec<Other, OTHERS_MAX>,
@@ -130,7 +130,7 @@ pub struct Belief {
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
-    /// Sights in a row of a loose ball slow enough to grab.
+    /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
     spec: &'static BodySpec,
@@ -211,12 +211,12 @@ impl Belief {
         self.slow_sights >= 2
     }
 
-    /// The league played.
+    /// League of the robot.
     pub fn league(&self) -> League {
         self.league
     }
 
-    /// Velocity by an alpha–beta filter; a sharp sight (σ ≤ [`SHARP`]) is taken as it is.
+    /// Velocity by an alpha–beta filter; a precise detection (σ ≤ [`SHARP`]) is used unfiltered.
     fn see(&mut self, at: Instant, position: Point<Field>, sigma: f32) {
         let Some(before) = self.sight else {
             self.sight = Some(Sight { position, velocity: Vector::default(), at });
@@ -260,7 +260,7 @@ impl Belief {
     }
 }
 
-/// The nearest of `points` to `to`; the first one among equals.
+/// The nearest of `points` to `to`; the first of equals.
 pub(crate) fn nearest(
     points: impl Iterator<Item = Point<Field>>,
     to: Point<Field>,

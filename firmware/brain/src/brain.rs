@@ -1,7 +1,7 @@
 //! The brain as a value: inputs, outputs, and the order of its steps (docs/architecture.md §3.1).
 //!
-//! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
-//! `poll_timeout` when to come back.
+//! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`,
+//! then read the next deadline from `poll_timeout`.
 
 mod act;
 mod coordinate;
@@ -32,7 +32,7 @@ use tell::Spoken;
 struct Since {
     /// Number of frames received from teammates and host.
     heard: u8,
-    /// It has retrieved.
+    /// Whether it has retrieved.
     retrieved: bool,
     /// A gameplay has started or ended.
     turned: bool,
@@ -97,7 +97,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A teammate's beacon.
+    /// Handles a teammate's beacon.
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
         // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
@@ -111,7 +111,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// The host's message, sent at most `age` ago; a robot that expects no host does not listen.
+    /// Handles the host's message, sent at most `age` ago; a robot that expects no host ignores it.
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
         self.since.heard = self.since.heard.saturating_add(1);
@@ -167,7 +167,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A deadline has come.
+    /// Handles a deadline.
     pub fn handle_timeout(&mut self, now: Instant) {
         self.timers.advance(now);
         // Its consequences follow in the next step where that is near.
@@ -207,7 +207,7 @@ impl<'a> Brain<'a> {
         self.timers.next()
     }
 
-    /// Whether its body's steps are short, so that not everything need happen in each.
+    /// Whether its body's steps are short, so that work is spread over several.
     pub(crate) fn has_short_steps(&self) -> bool {
         self.limbs.has_short_steps()
     }

@@ -1,4 +1,4 @@
-//! `directive`: execution of the host's directive: each has its skill, with the little memory that some need.
+//! `directive`: execution of the host's directive: each has its skill, some with a small state.
 
 use geometry::{Field, Point, Pose, Segment};
 use protocol::Instant;
@@ -10,7 +10,7 @@ use crate::body::Intent;
 use crate::skills::Step;
 use crate::skills::wheels::{self, Placement};
 
-/// The running directive's memory.
+/// State of the running directive.
 #[derive(Clone, Debug, Default)]
 pub struct Errand {
     placement: Placement,
@@ -50,7 +50,7 @@ fn get_ball(belief: &Belief, face: Option<Point<Field>>) -> Intent {
     }
 }
 
-/// Whether it has to do with touching the ball.
+/// Whether its skill may touch the ball.
 fn touches(directive: &Directive) -> bool {
     matches!(
         directive,

@@ -61,7 +61,7 @@ pub(crate) fn action_with(
         Some(Action::GetBall) => {
             spec.grab
                 + match handed_over(scene, partner()) {
-                    // After a kick: from where it was kicked, or from the place, to where the ball will lie.
+                    // After a kick: from its origin, or from the robot's place, to the ball's stop position.
                     Some((from, leg)) => {
                         let start = if from == part { leg.start() } else { place };
                         walk(start, leg.end(), spec.speed).max(along(scene, &leg))

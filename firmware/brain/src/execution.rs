@@ -17,7 +17,7 @@ use crate::mates::Mates;
 use crate::skills::{Reception, Step};
 use crate::timer::{Timer, TimerTable};
 
-/// Everything an execution looks at in one step.
+/// Inputs of an execution in one step.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
     /// Present time.
@@ -79,7 +79,7 @@ impl Scene<'_> {
 /// Result of one step of execution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// Wanting this of the body.
+    /// It continues with this intent.
     Running(Intent),
     /// All actions are done.
     Finished,
@@ -119,7 +119,7 @@ impl Execution {
         self.done.min(usize::from(u8::MAX)) as u8
     }
 
-    /// One step: runs the current action, going on to the next ones as they start and end.
+    /// One step: runs the current action, and continues with the next ones as they start and end.
     pub fn step(&mut self, scene: &Scene<'_>, timers: &mut TimerTable) -> Outcome {
         for _ in 0..ACTIONS_A_STEP {
             let Some(action) = scene.case.action(self.part, self.done) else { return Outcome::Finished };
@@ -231,7 +231,7 @@ impl Execution {
         let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
         let at_receive = (usize::from(done)..receive).all(waits);
         let Some((place, _)) = scene.leg_of(self.part, index) else { return at_receive };
-        // There before the ball is: it walks while the ball rolls.
+        // It arrives before the ball: it walks while the ball rolls.
         let rolls_for = estimate::roll(scene, scene.belief.pose.position.distance(place));
         let spec = scene.body.spec();
         let near = (rolls_for * spec.speed * spec.receiver_haste).max(spec.receiver_near);

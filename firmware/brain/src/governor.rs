@@ -50,7 +50,7 @@ pub struct Circumstances<'s> {
     pub host: Option<Hearing>,
     /// The phase of the game; `None` if none was received.
     pub phase: Option<Phase<Side>>,
-    /// It knows where it is.
+    /// Whether its own place is known.
     pub placed: bool,
     /// State of the body.
     pub health: &'s Health,
@@ -77,7 +77,7 @@ pub enum Why {
     Silence = 1 << 1,
     /// The host is received, but has no command for this robot.
     NoCommand = 1 << 2,
-    /// It does not know where it is.
+    /// Its own place is unknown.
     Lost = 1 << 3,
     /// The robot lies on its side.
     Tipped = 1 << 4,
@@ -91,7 +91,7 @@ pub enum Why {
     StopSpeed = 1 << 8,
     /// The host has missed a few frames.
     Hesitant = 1 << 9,
-    /// The ball would be too fast.
+    /// The ordered kick would be too fast.
     BallSpeed = 1 << 10,
     /// The ball may not be kicked now.
     NoKick = 1 << 11,
@@ -109,7 +109,7 @@ impl Reasons {
         self.0 & why as u16 != 0
     }
 
-    /// Whether there is none.
+    /// Whether there is no reason.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -331,7 +331,7 @@ fn is_kick(kick: OmniKick) -> bool {
 
 /// From this silence of the host on the remaining speed shrinks (docs/architecture.md §6.2).
 const RAMP_FROM: Duration = Duration::millis(50);
-/// At this one the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
+/// From this silence on the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
 pub const SILENCE: Duration = Duration::millis(100);
 /// The age up to which a frame counts as received on arrival. With [`SILENCE`] it makes the age at which the
 /// robot brakes, and beyond which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60
@@ -349,7 +349,7 @@ const ARM_AFTER: Duration = Duration::millis(500);
 /// Speed limit of a robot in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's
 /// noise.
 pub const STOP_SPEED: f32 = 1.3;
-/// No robot is faster, m/s (an estimate; the fastest teams publish 4).
+/// Speed limit, m/s (an estimate; the fastest teams publish 4).
 const SPEED_MAX: f32 = 4.0;
 /// Largest turning rate, rad/s (an estimate).
 const TURN_MAX: f32 = 20.0;
@@ -370,7 +370,7 @@ const LET_GO_AFTER: Duration = Duration::millis(500);
 /// A slower robot stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
 const STANDS: f32 = 0.05;
 const STANDS_TURN: f32 = 0.2;
-/// No step is longer: after a gap a robot brakes as in one of these.
+/// Longest step: after a gap a robot brakes as in one of these.
 const STEP_MAX: Duration = Duration::millis(50);
 
 #[cfg(test)]

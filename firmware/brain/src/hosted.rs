@@ -36,7 +36,7 @@ enum Restart {
     None,
     /// This robot has touched the ball as the kicker of the restart; the ball lay here.
     Touched(Point<Field>),
-    /// And the ball has left it: not again before another robot.
+    /// The ball has moved away from it: no second touch before another robot's.
     Barred,
 }
 

@@ -1,5 +1,5 @@
-//! `brain`: the robot's logic as a value (docs/architecture.md §3–§5; Ros et al. 2009 §4–§5). Runs on the
-//! MCU, in the simulator and in tests, unchanged.
+//! `brain`: the robot's logic as a sans-IO value (docs/architecture.md §3–§5; Ros et al. 2009 §4–§5). Runs on
+//! the MCU, in the simulator and in tests, unchanged.
 //!
 //! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for inputs; `poll_*` for outputs, to
 //! be drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`]

@@ -24,7 +24,7 @@ pub enum Taken {
     Doubled,
     /// Of an older snapshot: dropped.
     Late,
-    /// A part beyond the last one, or of too many: dropped.
+    /// A part beyond the last one, or of too many parts: dropped.
     Malformed,
 }
 
@@ -97,7 +97,7 @@ impl Picture {
         }
     }
 
-    /// A part has come.
+    /// Handles a received part.
     pub fn handle_part(&mut self, now: Instant, part: &WorldPart) -> Taken {
         if part.parts == 0 || usize::from(part.parts) > PARTS_MAX || part.part >= part.parts {
             return Taken::Malformed;
@@ -133,7 +133,7 @@ impl Picture {
         self.number = None;
     }
 
-    /// The body's own measure of its motion; carries the pose on to `now`.
+    /// Carries the pose forward to `now` by the body's measured motion.
     pub fn handle_odometry(&mut self, now: Instant, odometry: Twist<Body>) {
         let finite = odometry.linear.is_finite() && odometry.angular.is_finite();
         self.odometry = if finite { odometry } else { Twist::default() };
@@ -263,7 +263,7 @@ fn shown_ball(now: Instant, ball: WireBall) -> ShownBall {
 
 /// A robot that the newest parts left out keeps its place for this time: a few snapshots at 60 Hz.
 const ROBOT_LEASE: Duration = Duration::millis(200);
-/// The ball too; longer, as it is hidden often.
+/// The same for the ball; longer, as it is hidden often.
 const BALL_LEASE: Duration = Duration::millis(500);
 /// Maximum time for which odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an
 /// estimate).
@@ -280,7 +280,7 @@ const SHARE: f32 = 0.1;
 const JUMP: f32 = 0.1;
 /// The same for the heading, rad.
 const JUMP_TURN: f32 = 0.2;
-/// A ball higher than this flies, m: more than vision's error of height for a ball on the ground.
+/// A ball higher than this is in the air, m: more than vision's error of height for a ball on the ground.
 pub const IN_THE_AIR: f32 = 0.05;
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `Station`: brain plus radio endpoint; decodes received frames, encodes outgoing messages.
 //!
-//! `runtime`'s tasks on a board and the native simulator drive this very value, so that both send the same bytes.
+//! `runtime`'s tasks on a board and the native simulator drive this same value, so that both send the same
+//! bytes.
 
 use casebase::CaseBase;
 use protocol::frame::{RobotKeys, TeamKey};
@@ -11,7 +12,7 @@ use protocol::{Duration, Instant};
 
 use crate::{Brain, BrainConfig};
 
-/// A brain with its end of the radio.
+/// A brain with its radio endpoint.
 pub struct Station<'a> {
     brain: Brain<'a>,
     link: Link,
@@ -58,13 +59,13 @@ impl<'a> Station<'a> {
         }
     }
 
-    /// The body's senses: one brain step.
+    /// Handles a sensor frame: one brain step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.stirred = true;
         self.brain.handle_sensors(now, sensors);
     }
 
-    /// A deadline that [`Station::poll_timeout`] announced has come.
+    /// Handles the deadline announced by [`Station::poll_timeout`].
     pub fn handle_timeout(&mut self, now: Instant) {
         self.stirred = true;
         self.brain.handle_timeout(now);
@@ -82,7 +83,7 @@ impl<'a> Station<'a> {
 
     fn next_packet(&mut self, now: Instant) -> Option<Packet> {
         let Some(mut message) = self.brain.poll_message(now) else {
-            // One message a step, where steps are short: sealing costs, and the next step is near.
+            // One message a step, where steps are short: sealing costs time, and the next step comes soon.
             let waits =
                 self.spoke == Some(now) && self.greeted.is_some_and(|last| now.since(last) < GREET_WITHIN);
             let greeting = if waits { None } else { self.link.poll_greeting(now) };
@@ -108,12 +109,12 @@ impl<'a> Station<'a> {
         self.brain.poll_timeout()
     }
 
-    /// The brain, to look at.
+    /// The brain, read-only.
     pub fn brain(&self) -> &Brain<'a> {
         &self.brain
     }
 
-    /// The link, to look at.
+    /// The link, read-only.
     pub fn link(&self) -> &Link {
         &self.link
     }

@@ -1,9 +1,8 @@
-//! `timer`: the table of a robot's deadlines. All of them in one table, named by an enum
-//! (docs/architecture.md §3.1, §5).
+//! `timer`: the table of a robot's deadlines, each named by an enum (docs/architecture.md §3.1, §5).
 
 use protocol::{Duration, Instant};
 
-/// A deadline and what it is for.
+/// A deadline, by its purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timer {
     /// A booting robot has listened long enough to be present (one lease).
@@ -22,7 +21,7 @@ pub enum Timer {
     Action,
     /// The passer has waited long enough for its receiver.
     PassPatience,
-    /// An opponent has held the ball for too long to hope for it.
+    /// An opponent has held the ball for too long to win it.
     OpponentHolds,
 }
 
@@ -74,7 +73,7 @@ impl TimerTable {
         self.slots[timer as usize] == Slot::Idle
     }
 
-    /// Fires what is due.
+    /// Fires all timers that are due.
     pub fn advance(&mut self, now: Instant) {
         if self.first.is_none_or(|first| first > now) {
             return;

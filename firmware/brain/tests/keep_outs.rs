@@ -54,7 +54,7 @@ fn stopped() -> [Phase<Side>; 5] {
     ]
 }
 
-/// A robot that drives exactly what its drivetrain wants.
+/// A robot that moves exactly as its drivetrain orders.
 struct Player {
     belief: Belief,
     drivetrain: Drivetrain,
@@ -129,7 +129,7 @@ fn turned(phase: Phase<Side>) -> Phase<Side> {
     phase.map(|side| if side == Side::Ours { Side::Theirs } else { Side::Ours })
 }
 
-/// The ball and where it is to be, in this phase.
+/// The ball and its placement target in this phase.
 fn ball(dice: &mut Dice, league: League, phase: Phase<Side>, own: GoalEnd) -> (Point<Field>, Point<Field>) {
     let field = league.field();
     let at = match phase {
@@ -173,7 +173,7 @@ fn starts(usual: u32) -> u32 {
     usual * times.unwrap_or(1)
 }
 
-/// No more of these drives failed than may.
+/// Fails if more of these drives failed than `may`.
 fn judge(drives: usize, failed: &[String], may: usize) {
     let first = failed.iter().take(8).map(String::as_str).collect::<Vec<_>>().join("\n  ");
     assert!(failed.len() <= may, "{} of {drives} drives failed:\n{first}", failed.len());
@@ -358,7 +358,7 @@ fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
     for phase in [Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Ours)] {
         let (nearest, left) = crossing(phase, Duty::Player);
         assert!(nearest > touches, "{phase:?}: {nearest} m");
-        // Around it, to the other side; at a kick-off the other half is closed.
+        // Around it, to the other side; at a kick-off the other half is forbidden.
         assert!(left < 0.01 || phase == Phase::Kickoff(Side::Ours), "{phase:?}: {left} m left");
     }
     // In play there is no such lane: the test distinguishes the two.

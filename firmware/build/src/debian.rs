@@ -91,7 +91,7 @@ fn matching_version(madison: &str, release: &str) -> Option<String> {
         .map(str::to_string)
 }
 
-/// The mirror the system itself uses, in the new or the old format of apt's sources.
+/// The mirror that the system uses, from the new or the old format of apt's sources.
 fn mirror() -> Option<String> {
     let new = fs::read_to_string(Path::new(APT).join("sources.list.d/debian.sources")).unwrap_or_default();
     let old = fs::read_to_string(Path::new(APT).join("sources.list")).unwrap_or_default();
@@ -123,9 +123,9 @@ fn is_root() -> bool {
 const APT: &str = "/etc/apt";
 /// Keys that sign Debian's archives, as the package `debian-archive-keyring` installs them.
 const KEYRING: &str = "/usr/share/keyrings/debian-archive-keyring.gpg";
-/// Keeps several releases of the compiler's sources side by side.
+/// The suite that keeps several releases of the compiler's sources side by side.
 const SUITE: &str = "trixie-backports";
-/// 45 MB at 200 kB/s, the slowest line we would wait for.
+/// Time limit of the download: 45 MB at 200 kB/s, the slowest connection supported.
 const DOWNLOAD: Duration = Duration::from_mins(4);
 
 #[cfg(test)]

@@ -53,9 +53,9 @@ pub enum Program {
     Robot(Body),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
-    /// A robot on wheels for the chip of a real one, which the emulator does not know.
+    /// A robot on wheels for the chip of a real one, which the emulator does not support.
     Stm32,
-    /// Ends well where `geometry::math` has the bits it has on the PC.
+    /// Succeeds where `geometry::math` has the bits it has on the PC.
     MathHash,
     /// Program that counts the instructions of retrievals.
     RetrievalBench,
@@ -226,7 +226,7 @@ fn cannot_build(root: &Path) -> Option<String> {
     output_of(Command::new(cargo_program()).current_dir(root).arg("--version")).err()
 }
 
-/// The board QEMU emulates.
+/// The board that QEMU emulates.
 const PACKAGE: &str = "board-mps2";
 const MANIFEST: &str = "firmware/boards/mps2/Cargo.toml";
 /// The one profile firmware is built with (Cargo.toml explains why); a debug build would run 30 times slower.

@@ -19,7 +19,7 @@ use crate::MACHINE;
 /// A test in a firmware image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OnTarget {
-    /// Module and function.
+    /// Module and function of the test.
     pub name: String,
     /// Address of its function.
     address: u32,
@@ -32,7 +32,7 @@ pub struct OnTarget {
 /// Result of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// As it should.
+    /// It ended as expected.
     Passed,
     /// Any other result, with its output.
     Failed(String),

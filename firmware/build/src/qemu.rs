@@ -26,12 +26,12 @@ pub fn ensure_qemu(install: Install) -> Result<PathBuf, QemuError> {
 /// Why there is no QEMU to run the firmware with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum QemuError {
-    /// It is not installed, and this is why we could not install it (where that was tried).
+    /// It is not installed, and its installation failed (where that was tried).
     Missing {
         /// What prevented its installation.
         why: Option<String>,
     },
-    /// It is there but does not run.
+    /// It is installed but does not run.
     Broken {
         /// Its output.
         why: String,

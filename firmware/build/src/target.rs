@@ -30,13 +30,13 @@ pub fn ensure_target(root: &Path, install: Install) -> Result<ThumbToolchain, Ta
 /// Toolchain that compiles for the robot's processor on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ThumbToolchain {
-    /// The toolchain has `core` ready made for the target.
+    /// The toolchain has `core` prebuilt for the target.
     Prebuilt,
     /// The toolchain compiles `core` from its sources first.
     FromSources,
     /// The distribution's compiler and sources, with a linker found elsewhere.
     Distribution {
-        /// An LLVM linker.
+        /// Path of an LLVM linker.
         linker: PathBuf,
     },
 }
@@ -157,7 +157,8 @@ fn rustc() -> Command {
 
 type Way = fn(&Compiler, Install) -> Result<ThumbToolchain, String>;
 
-/// Cheapest and most usual first. Sources we linked ourselves come before rustup's server: it was silent the last time.
+/// Cheapest and most usual first. Sources that an earlier run linked come before rustup's server, which did
+/// not answer then.
 const WAYS: [(&str, Way); 6] = [
     ("the installed target", prebuilt),
     ("sources linked by an earlier run", linked_sources),

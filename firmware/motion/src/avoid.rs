@@ -95,12 +95,12 @@ pub enum Verdict<F> {
     Direct,
     /// Around at least one obstacle.
     Around {
-        /// The first corner.
+        /// The first corner, m.
         via: Point<F>,
     },
     /// Out of the obstacle it is in.
     Escape {
-        /// The point outside.
+        /// The point outside, m.
         to: Point<F>,
     },
     /// No path was found; goes as near as possible.
@@ -113,7 +113,7 @@ pub enum Verdict<F> {
 /// Restraint of the route's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restraint {
-    /// It is driven.
+    /// No restraint: it is driven.
     None,
     /// It would not be safe; sideways speed is lost first.
     Straightened,
@@ -130,7 +130,7 @@ pub struct Way<F> {
     pub verdict: Verdict<F>,
     /// Stop position: the target, or the free point that replaces it.
     pub goal: Point<F>,
-    /// Length of the route to the goal, m; of what is known of it where blocked.
+    /// Length of the route to the goal, m; of its known part where blocked.
     pub length: f32,
     /// Whether the route's motion is driven.
     pub restraint: Restraint,
@@ -263,16 +263,16 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
     }
 }
 
-/// Most obstacles that are regarded: 21 other robots, the rules' 12 shapes, and some to spare.
+/// Most obstacles that are used: 21 other robots, the rules' 12 shapes, and a reserve.
 pub const OBSTACLES_MAX: usize = 38;
-/// Most straight pieces that a search looks at.
+/// Most straight pieces that a search tests.
 pub const CHECKS_MAX: u32 = 12;
-/// More is never worth it: twelve pieces among forty obstacles.
+/// The largest useful effort: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
 /// The same of a long search, for a route out or while there is time: around a goal and into its opening it
 /// takes more.
 pub const CHECKS_LONG: u32 = 24;
-/// A control step is no longer, s.
+/// Longest control step, s.
 const STEP_MAX: f32 = 1.0;
 /// Time for which other robots are assumed to keep their velocity, s: about what a robot needs to change it.
 pub const FORESIGHT: f32 = 0.5;

@@ -78,7 +78,7 @@ impl BallModel {
         }
     }
 
-    /// The kick that lets the ball arrive with `arrival` m/s after `distance` m, m/s.
+    /// Speed of the kick with which the ball arrives with `arrival` m/s after `distance` m, m/s.
     pub fn kick_speed(&self, distance: f32, arrival: f32) -> f32 {
         let (d, a) = (distance.max(0.0), arrival.max(0.0));
         let c = self.switch * self.switch;
@@ -86,7 +86,7 @@ impl BallModel {
         if (1.0 - c) * rolls * rolls <= 2.0 * self.slide * d {
             return rolls;
         }
-        // It is there before it rolls.
+        // It arrives before it rolls.
         math::sqrt(a * a + 2.0 * self.slide * d)
     }
 }

@@ -41,11 +41,11 @@ pub enum Wish {
 /// Result of an interception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
-    /// The robot can be there in time.
+    /// The robot can intercept in time.
     Meets(Meeting<F>),
     /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
     Chase {
-        /// The ball, then.
+        /// Position of the ball then, m.
         ball: Point<F>,
         /// Position of the robot behind it.
         place: Point<F>,
@@ -57,7 +57,7 @@ pub enum Verdict<F> {
 /// An interception of the ball by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting<F> {
-    /// The ball, then.
+    /// Position of the ball then, m.
     pub ball: Point<F>,
     /// Position of the robot behind it.
     pub place: Point<F>,
@@ -79,14 +79,14 @@ pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
     robot_radius + ball_radius - MOUTH_DEPTH
 }
 
-/// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. Where ball and target are one, the robot
-/// comes from −x.
+/// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. If ball and target
+/// coincide, the robot is on the −x side.
 pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Point<F> {
     ball - (target - ball).unit().unwrap_or(Vector::new(1.0, 0.0)) * reach
 }
 
 impl<F: Copy> Interception<'_, F> {
-    /// Finds the place.
+    /// Finds the interception.
     pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
         let best = match wish {
             Wish::Soonest => self.soonest(limits, u32::MAX),
@@ -107,7 +107,7 @@ impl<F: Copy> Interception<'_, F> {
         self.until.min(self.ball.duration()).clamp(0.0, HORIZON)
     }
 
-    /// Number of the last step; the horizon itself comes after it, wherever the steps end.
+    /// Number of the last step; the horizon itself comes after it.
     fn steps(&self) -> u32 {
         (self.horizon() * (1.0 / STEP)) as u32
     }
@@ -145,7 +145,8 @@ impl<F: Copy> Interception<'_, F> {
         None
     }
 
-    /// The soonest of the places between one in vain and one in time, halving: once in time, the robot mostly stays so.
+    /// The soonest of the points between a late one and one in time, by bisection: once in time, the robot
+    /// mostly stays so.
     fn sooner<L: CalcMotion>(&self, limits: &L, late: u32, in_time: u32, found: Meeting<F>) -> Meeting<F> {
         let (mut late, mut in_time, mut best) = (late, in_time, found);
         while in_time - late > 1 {
@@ -227,7 +228,7 @@ enum Look<F> {
     Meets(Meeting<F>),
     /// It does not, by a planned motion.
     TooLate,
-    /// It cannot; no motion was planned.
+    /// It cannot intercept; no motion was planned.
     OutOfReach,
 }
 
@@ -240,19 +241,19 @@ impl<F> Look<F> {
     }
 }
 
-/// Between two future places of the ball, s.
+/// Time between two points of the ball's path, s.
 pub const STEP: f32 = 0.02;
-/// Places that are ruled out together.
+/// Number of points that are ruled out together.
 const BLOCK: u32 = 8;
 /// In bounded time, factor by which the stride grows after each run of points without an interception.
 const COARSER: u32 = 4;
 /// Tolerance for rounding, s.
 const ROUNDING: f32 = 1e-5;
-/// Shares of the horizon that are tried first for how much slack there is.
+/// Number of shares of the horizon that are probed first for the slack.
 const PROBES: u32 = 6;
 /// Longest prediction, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
-/// m (paper 2's robots; docs/papers.md D2).
+/// Depth of the dribbler opening, m (paper 2's robots; docs/papers.md D2).
 const MOUTH_DEPTH: f32 = 0.01;
 
 #[cfg(test)]

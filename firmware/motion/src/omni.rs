@@ -1,8 +1,9 @@
 //! `omni`: kinematics of four omnidirectional wheels; body frame, m/s at the rim, rad/s.
 //!
-//! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle α from where
-//! the robot faces, counter-clockwise, at the distance R from its centre, and drives along its tangent: its rim runs at
-//! −sin α · v_x + cos α · v_y + R · ω. Positive rims turn the robot counter-clockwise.
+//! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle
+//! α from the robot's heading, counter-clockwise, at the distance R from its centre, and drives along its
+//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Positive rims turn the robot
+//! counter-clockwise.
 
 use geometry::{Angle, Body, Twist, Vector};
 
@@ -12,7 +13,7 @@ pub type Rims = [f32; 4];
 /// Arrangement of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheels {
-    /// Angles from where the robot faces, counter-clockwise, in the order of the wire.
+    /// Angles from the robot's heading, counter-clockwise, in the order of the wire.
     pub angles: [Angle; 4],
     /// Distance from the robot's centre to a wheel, m.
     pub distance: f32,
@@ -142,7 +143,7 @@ impl Omni {
     }
 }
 
-/// Share of the diagonal's product below which the determinant is rounding.
+/// Share of the diagonal's product below which the determinant is only rounding.
 const SINGULAR: f32 = 1e-4;
 /// A wheel across the direction does not limit it.
 const ALONG_MIN: f32 = 1e-4;
@@ -233,7 +234,7 @@ mod tests {
                 assert!((fastest - 3.0).abs() < 1e-3, "{degrees}°, {angular}: {fastest}");
             }
         }
-        // Straight ahead the front wheels, at sin 60°, give out first.
+        // Straight ahead the front wheels, at sin 60°, reach their limit first.
         assert!((omni.speed_limit(Angle::ZERO, 0.0, 3.0) - 3.0 / 0.866_025).abs() < 1e-4);
         assert_eq!(omni.speed_limit(Angle::ZERO, 40.0, 3.0), 0.0);
     }

@@ -5,7 +5,7 @@ use geometry::math;
 /// A ball that slows down evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollingBall {
-    /// m/s², > 0.
+    /// Deceleration, m/s², > 0.
     pub deceleration: f32,
 }
 

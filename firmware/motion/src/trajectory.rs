@@ -40,7 +40,7 @@ pub struct State<F> {
     pub position: Point<F>,
     /// Velocity, m/s.
     pub velocity: Vector<F>,
-    /// m/s²; where it jumps, the value after the jump.
+    /// Acceleration, m/s²; at a jump, the value after it.
     pub acceleration: Vector<F>,
 }
 
@@ -63,7 +63,7 @@ pub trait Motion<F> {
 
 /// Motion model of a robot from place to place.
 pub trait CalcMotion {
-    /// The motion it plans.
+    /// Type of the planned motion.
     type Motion<F: Copy>: Motion<F>;
 
     /// From `from`, moving with `velocity`, to standstill at `to`.

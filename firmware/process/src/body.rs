@@ -36,7 +36,7 @@ const SPEED_MAX: f32 = 10.0;
 /// Largest turning rate, rad/s.
 const TURN_MAX: f32 = 30.0;
 
-/// A robot's body as the simulation protocol knows it.
+/// A robot's body in the simulation protocol.
 #[derive(Clone, Debug)]
 pub struct SimulatedBody {
     id: RobotId,
@@ -93,7 +93,7 @@ impl SimulatedBody {
         let (kick_speed, kick_angle) = match self.kick {
             OmniKick::Flat(speed) if speed > 0.0 => (Some(speed.min(SPEED_MAX)), Some(0.0)),
             OmniKick::Chip(speed) if speed > 0.0 => (Some(speed.min(SPEED_MAX)), Some(CHIP_ANGLE)),
-            // A simulated kicker holds no charge that could hurt.
+            // A simulated kicker has no dangerous charge.
             OmniKick::None | OmniKick::Discharge | OmniKick::Flat(_) | OmniKick::Chip(_) => (None, None),
         };
         let command = RobotCommand {
@@ -106,7 +106,7 @@ impl SimulatedBody {
         RobotControl { robot_commands: vec![command] }
     }
 
-    /// The simulator answered.
+    /// Handles the simulator's answer.
     pub fn handle_response(&mut self, now: Instant, response: &RobotControlResponse) {
         // A late answer may hold several of one robot: the last is the newest.
         let ours = response.feedback.iter().rfind(|robot| robot.id == u32::from(self.id.number()));

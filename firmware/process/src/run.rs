@@ -27,7 +27,7 @@ pub struct Options {
     pub simulator: SocketAddr,
 }
 
-/// Why a robot ended, where that is no mistake.
+/// Regular end of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The parent process requested it.
@@ -70,7 +70,7 @@ pub fn parent_gone() -> Arc<AtomicBool> {
     gone
 }
 
-/// Plays until `end` is raised.
+/// Runs the robot until `end` is raised.
 pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<End, RunError> {
     let local = |address: &SocketAddr| address.ip().is_loopback();
     let any: SocketAddr = match options.simulator {
@@ -108,7 +108,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
     Ok(End::Asked)
 }
 
-/// The longest datagram that is read: the league's programs send none beyond.
+/// The longest datagram that is read: the league's programs send no longer ones.
 const LEN_MAX: usize = 8192;
 /// The shortest time-out that a socket accepts.
 const WAIT_MIN: Duration = Duration::from_micros(1);

@@ -11,12 +11,12 @@ use core::panic::Location;
 pub enum Ending<'a> {
     /// A panic, with its place as far as known.
     Panic(Option<&'a Location<'a>>),
-    /// A hard fault, and where the program counter stood.
+    /// A hard fault, with the program counter.
     Fault(u32),
 }
 
 impl Ending<'_> {
-    /// Writes the place into `text`, as much of it as there is room for; how many bytes that is.
+    /// Writes the place into `text`, as far as it fits; returns the number of bytes.
     pub fn write(&self, text: &mut [u8]) -> usize {
         match self {
             Self::Panic(Some(place)) => fill(text, &[place.file().as_bytes(), b":", &digits(place.line())]),

@@ -30,7 +30,7 @@ use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
 
 /// Signals between the tasks of this module.
 pub struct Wires {
-    /// Rim speeds as measured, m/s.
+    /// Measured rim speeds, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
     /// Kicker request.
     wish: Signal<CriticalSectionRawMutex, OmniKick>,
@@ -103,7 +103,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
         }
         let seen = probes.look();
         let Twist { linear, angular } = kinematics.twist(rims);
-        // A gyroscope knows better than four wheels how the body turns, where there is one.
+        // A gyroscope measures the turning rate better than four wheels, where there is one.
         let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
         let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
         let picture = SensorFrame {
@@ -139,7 +139,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// Feeds the dog as long as control, radio and brain all run. It is as patient as [`Dog::PATIENCE`].
+/// Feeds the watchdog as long as control, radio and brain all run. Its time-out is [`Dog::PATIENCE`].
 pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(D::PATIENCE.0 / LOOKS_A_PATIENCE));
     loop {
@@ -150,13 +150,13 @@ pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// The brain's pace on wheels (docs/architecture.md §2.3).
+/// Period of the brain on wheels (docs/architecture.md §2.3).
 const BRAIN_PERIOD: Duration = Duration::from_millis(10);
 /// Silence of the control loop for ten of its steps.
 const SILENT: Duration = Duration::from_millis(10);
 /// Period in which a radio that receives nothing reports that it listens.
 const LISTENS: Duration = Duration::from_millis(10);
-/// The watchdog's task looks so often while the dog waits.
+/// Number of checks by the watchdog's task within its time-out.
 const LOOKS_A_PATIENCE: u64 = 5;
 
 #[cfg(test)]

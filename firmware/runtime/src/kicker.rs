@@ -18,9 +18,9 @@ pub enum KickerAct {
     Rest,
     /// Charge the capacitor.
     Charge,
-    /// Let it run empty without a kick.
+    /// Discharge it without a kick.
     Bleed,
-    /// A pulse through the flat kicker's coil, of this length.
+    /// A pulse through the flat kicker's coil, of this duration.
     Flat(Duration),
     /// The same through the chip kicker's.
     Chip(Duration),
@@ -49,7 +49,7 @@ impl Interlock {
 
     /// Output for the next step.
     pub fn step(&mut self, now: Instant, wish: OmniKick, state: KickerState) -> KickerAct {
-        // A voltage that cannot be read is taken for a full capacitor: it is not charged, and not fired.
+        // An unreadable voltage counts as a full capacitor: it is not charged, and not fired.
         let (full, readable) = (state.volts.is_nan() || state.volts >= FULL_VOLTS, !state.volts.is_nan());
         if wish == OmniKick::Discharge {
             return if readable && state.volts < EMPTY_VOLTS { KickerAct::Rest } else { KickerAct::Bleed };
@@ -97,13 +97,13 @@ fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
 
 /// Ball speed, m/s, and the pulse for it, µs: estimates that stand in for a robot's own calibration.
 const FLAT_PULSE: &[(f32, u64)] = &[(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)];
-/// The same of the chip kicker.
+/// The same for the chip kicker.
 const CHIP_PULSE: &[(f32, u64)] = &[(2.0, 2_000), (4.0, 3_800), (6.0, 6_000)];
-/// The capacitor is full, V (teams use 180 to 240).
+/// Voltage of a full capacitor, V (teams use 180 to 240).
 pub const FULL_VOLTS: f32 = 200.0;
-/// It is safe to touch below this, V (extra-low voltage is 60 V of direct current; half of it).
+/// Voltage below which it is safe to touch, V (extra-low voltage is 60 V of direct current; half of it).
 const EMPTY_VOLTS: f32 = 30.0;
-/// No second kick before this: the plunger must come back.
+/// Pause before the next kick: the plunger must return.
 const PAUSE: Duration = Duration::millis(500);
 
 #[cfg(test)]

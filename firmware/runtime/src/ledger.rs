@@ -70,7 +70,7 @@ pub struct Plan {
 /// Reads all cells, `cells` in each half; `None` after 2³² starts.
 pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
     let (mut newest, mut active) = (0, 0);
-    // The first cell of each half behind all that was written.
+    // The first cell of each half behind all written ones.
     let mut free = [0; 2];
     for (half, free) in free.iter_mut().enumerate() {
         for index in 0..cells {
@@ -103,7 +103,7 @@ mod tests {
 
     const CELLS: usize = 4;
 
-    /// A flash of two halves that knows when the power goes.
+    /// A flash of two halves with a simulated loss of power.
     struct Flash(Vec<[u8; CELL_LEN]>);
 
     impl Flash {

@@ -20,7 +20,7 @@
 //!
 //! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped and counted.
 #![no_std]
-// The run-time ABI of the processor is assembly.
+// The functions of the processor's run-time ABI are assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `mailboxes`: mailboxes between a robot's tasks. One inbox to the brain, one outbox and one slip of orders
-//! from it.
+//! `mailboxes`: mailboxes between a robot's tasks: one inbox to the brain, one outbox of packets and one
+//! signal of orders from it.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -12,8 +12,8 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
 use crate::progress::Progress;
 
-/// Arrivals that may wait for the brain. When full, radio and senses wait with the next one: what is lost then, their
-/// drivers count.
+/// Inputs that may wait for the brain. When full, radio and sensors wait with the next one: their drivers
+/// count what is lost then.
 pub const INBOX_LEN: usize = 8;
 /// Packets that may wait for the radio: more than the brain sends in one step. When full, the newest is
 /// dropped and counted.
@@ -26,7 +26,7 @@ pub const OUTBOX_LEN: usize = 8;
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// A packet of the air.
+    /// A received packet.
     Packet(Packet),
     /// A sensor frame: the brain makes a step.
     Sensors(SensorFrame),
@@ -68,7 +68,7 @@ impl Mailboxes {
         self.undelivered.load(Ordering::Relaxed)
     }
 
-    /// A packet of the air, for a board that is handed them without a radio; whether there was room for it.
+    /// Delivers a received packet on a board without a radio; returns whether there was room for it.
     pub fn hear(&self, packet: Packet) -> bool {
         self.inbox.try_send(Arrival::Packet(packet)).is_ok()
     }

@@ -39,13 +39,14 @@ pub trait Body {
 
 /// Four wheels with their motors, and the dribbler.
 pub trait Wheels {
-    /// Rim speeds since the last call, m/s; a number that is none where an encoder is known to be broken.
+    /// Rim speeds since the last call, m/s; NaN where an encoder is known to be broken.
     fn measured(&mut self) -> [f32; WHEELS];
 
-    /// These shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed, until the next call.
+    /// Applies these shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed,
+    /// until the next call.
     fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
 
-    /// No current in any of them.
+    /// Takes the current off all of them.
     fn release(&mut self);
 }
 
@@ -61,7 +62,7 @@ pub trait Kicker {
 
 /// Sensors of a wheeled robot, besides its encoders.
 pub trait Probes {
-    /// Everything at this moment.
+    /// All readings at this moment.
     fn look(&mut self) -> Seen;
 }
 
@@ -74,9 +75,9 @@ pub struct Seen {
     pub ball: bool,
     /// The robot lies on its side.
     pub tipped: bool,
-    /// Battery, V; `None` where it is not measured.
+    /// Battery voltage, V; `None` where it is not measured.
     pub battery: Option<f32>,
-    /// The kicker is charged.
+    /// Whether the kicker is charged.
     pub kicker_ready: bool,
 }
 

@@ -24,7 +24,7 @@ impl Progress {
         Self(AtomicU32::new(0))
     }
 
-    /// This one runs.
+    /// Records that this part runs.
     pub fn mark(&self, part: Part) {
         // Load and store, not a swap: all tasks of a robot run on one executor.
         self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);

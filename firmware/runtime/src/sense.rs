@@ -10,7 +10,7 @@ pub struct Encoder {
     per_count: f32,
     last: Option<(Instant, u16)>,
     speed: f32,
-    /// Since when, and from which count, the wheel has been driven hard without moving.
+    /// Time and count at which the wheel started to be driven hard without moving.
     stuck: Option<(Instant, u16)>,
 }
 
@@ -47,7 +47,7 @@ impl Encoder {
     }
 }
 
-/// A gyroscope's zero, found while the robot stands after its start.
+/// A gyroscope's offset, determined while the robot stands after its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     zero: Option<f32>,
@@ -58,12 +58,13 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Zero not known yet.
+    /// Offset not known yet.
     pub const fn new() -> Self {
         Self { zero: None, sum: 0.0, seen: 0, least: f32::INFINITY, most: f32::NEG_INFINITY }
     }
 
-    /// The rate without the sensor's zero, rad/s; `None` until it stood still for half a second, and for a reading that is none.
+    /// The rate without the sensor's offset, rad/s; `None` until it stood still for half a second, and for a
+    /// reading of NaN.
     pub fn step(&mut self, rate: f32) -> Option<f32> {
         if !rate.is_finite() {
             return None;

@@ -186,9 +186,9 @@ pub(crate) struct Tally {
     /// By kind: as it was sent; flipped bits; a newer counter; a newer epoch; another length; another name;
     /// made from nothing.
     pub kinds: [u64; 7],
-    /// Recordings received by a robot that had just booted, and how often it booted.
+    /// Recordings received by a robot that had just booted.
     pub after_boots: u64,
-    /// Boots of the robot; see there.
+    /// Number of its boots.
     pub boots: u32,
     /// Recordings received by a host that had just started.
     pub to_fresh_hosts: u64,

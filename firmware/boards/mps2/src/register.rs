@@ -1,7 +1,6 @@
-//! `register`: access to a memory-mapped device register. At its address, 32 bits wide, never merged or left
-//! out.
+//! `register`: access to a memory-mapped device register, 32 bits wide, never merged or omitted.
 
-/// A register of the board's.
+/// A register of the board.
 #[derive(Clone, Copy)]
 pub(crate) struct Register(usize);
 

@@ -18,7 +18,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     use runtime::kicker::KickerAct;
     use runtime::ports::Kicker as _;
 
-    /// Below extra-low voltage's 60 V.
+    /// Voltage to charge to, V: below extra-low voltage's 60 V.
     const ENOUGH: f32 = 50.0;
     const EMPTY: f32 = 30.0;
 

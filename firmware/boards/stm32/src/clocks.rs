@@ -39,6 +39,6 @@ pub fn config() -> Config {
     config
 }
 
-/// On a NUCLEO-H743ZI2 as on most robots' boards.
+/// Frequency of the quartz on a NUCLEO-H743ZI2, as on most robots' boards.
 const QUARTZ: Hertz = Hertz(8_000_000);
 const QUARTZ_MODE: HseMode = if cfg!(feature = "crystal") { HseMode::Oscillator } else { HseMode::Bypass };

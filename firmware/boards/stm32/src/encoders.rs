@@ -18,7 +18,7 @@ pub struct Encoders {
 }
 
 impl Encoders {
-    /// Counting from now on.
+    /// Starts counting.
     pub fn new(parts: pins::Encoders) -> Self {
         let config = Config::default();
         Self {
@@ -30,7 +30,7 @@ impl Encoders {
         }
     }
 
-    /// The counters, in the order of the wire; they wrap.
+    /// Counts of the encoders, in the order of the wheels on the wire; they wrap.
     pub fn counts(&self) -> [u16; WHEELS] {
         [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]
     }

@@ -16,7 +16,7 @@ use crate::off;
 /// Record of the boot epochs before this one, since power-on.
 #[derive(Clone, Copy, Debug)]
 pub struct Life {
-    /// Starts since power came, this one included.
+    /// Starts since power-on, this one included.
     pub boots: u32,
     /// Panics and faults since then.
     pub panics: u32,
@@ -90,7 +90,7 @@ fn ended(how: Ending<'_>) -> ! {
     SCB::sys_reset()
 }
 
-/// Lets the registers be written.
+/// Enables writing of the registers.
 fn open() {
     pac::PWR.cr1().modify(|power| power.set_dbp(true));
 }

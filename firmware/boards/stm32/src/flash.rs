@@ -19,12 +19,12 @@ pub fn page() -> &'static [u8] {
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }
 }
 
-/// Why there is no epoch to start with.
+/// Why no epoch is available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum LedgerError {
-    /// There were 2³² starts.
+    /// All 2³² epochs are used.
     Full,
-    /// The flash does not keep what is written, three times over.
+    /// The flash did not keep the written value in three attempts.
     Worn,
 }
 
@@ -70,7 +70,8 @@ fn read(at: Place) -> Cell {
     Cell::of(&bytes)
 }
 
-/// Runs `work` with faults of data accesses let pass (Armv7-M, B3.2.8: BFHFNMIGN at the priority that FAULTMASK gives).
+/// Runs `work` with faults of data accesses ignored (Armv7-M, B3.2.8: BFHFNMIGN at the priority that
+/// FAULTMASK gives).
 fn unfaulted(work: impl FnOnce()) {
     const BFHFNMIGN: u32 = 1 << 8;
     // SAFETY: one bit of the core's own register, which no other code changes, and no interrupt comes
@@ -102,5 +103,5 @@ const PAGE: u32 = 0x001e_0000;
 const SECTOR: u32 = 0x0002_0000;
 /// Number of cells in a half.
 const CELLS: usize = SECTOR as usize / CELL_LEN;
-/// A cell that does not keep what is written is skipped.
+/// Number of attempts: a cell that does not keep its value is skipped.
 const TRIES: usize = 3;

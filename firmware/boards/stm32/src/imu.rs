@@ -15,14 +15,14 @@ pub struct Imu {
     select: Output<'static>,
 }
 
-/// Why there is no reading.
+/// Why a reading is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum ImuError {
     /// The bus failed.
     Bus,
     /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
     Stranger(u8),
-    /// A line that never moves: the sensor is pulled out, or without supply.
+    /// The data line never changes: the sensor is unplugged, or without supply.
     Silent,
 }
 
@@ -71,7 +71,7 @@ impl Imu {
     /// The newest reading: 13 bytes at 6 MHz, some 20 µs.
     pub fn reading(&mut self) -> Result<Reading, ImuError> {
         let raw: [u8; 12] = self.read(ACCEL_DATA)?;
-        // Six numbers of a sensor that works are never all alike: it weighs itself.
+        // Six numbers of a working sensor are never all equal: it measures gravity.
         if raw.iter().all(|byte| *byte == raw[0]) {
             return Err(ImuError::Silent);
         }
@@ -102,7 +102,7 @@ impl Imu {
     }
 }
 
-/// High byte first.
+/// Decodes 16-bit values, high byte first.
 fn words(raw: [u8; 12]) -> [i16; 6] {
     let mut words = [0; 6];
     for (word, pair) in words.iter_mut().zip(raw.as_chunks().0) {
@@ -111,7 +111,7 @@ fn words(raw: [u8; 12]) -> [i16; 6] {
     words
 }
 
-/// The sensor takes 24 MHz.
+/// SPI clock; the sensor allows 24 MHz.
 const CLOCK: Hertz = Hertz(8_000_000);
 const READ: u8 = 0x80;
 const DEVICE_CONFIG: u8 = 0x11;

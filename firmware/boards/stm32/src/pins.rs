@@ -23,7 +23,7 @@ macro_rules! parts {
         }
 
         impl Parts {
-            /// Deals out the chip's peripherals.
+            /// Distributes the chip's peripherals.
             pub fn of(all: Peripherals) -> Self {
                 Self { $($field: $part { $($name: all.$pin,)* },)* }
             }

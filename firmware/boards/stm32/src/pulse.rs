@@ -1,8 +1,8 @@
 //! `pulse`: one-shot hardware pulses of exact length, even if the program stops. A timer that counts once to
 //! its end and stops (RM0433, 39.3.15: one-pulse mode).
 //!
-//! The driver of embassy-stm32 starts such a pulse from a pin only, and knows no timers of one or two channels; these start by the
-//! program and end by themselves. A microsecond is a tick.
+//! The driver of embassy-stm32 starts such a pulse from a pin only, and supports no timers of one or two
+//! channels; these are started by the program and end by themselves. A microsecond is a tick.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Pin, Speed};
@@ -39,7 +39,8 @@ impl Coils {
             control.set_opm(true);
             control.set_arpe(false);
         });
-        // Low until the count reaches the compare value, then high to the end. A compare value that is never reached is silence.
+        // Low until the count reaches the compare value, then high to the end. With a compare value that is
+        // never reached there is no pulse.
         registers.ccmr_output().modify(|mode| {
             mode.set_ocm(0, Ocm::PWM_MODE2);
             mode.set_ocm(1, Ocm::PWM_MODE2);
@@ -48,7 +49,7 @@ impl Coils {
             registers.ccr(channel).write(|compare| compare.set_ccr(NEVER));
             registers.ccer().modify(|enable| enable.set_cce(channel, true));
         }
-        // Takes the new speed over.
+        // Applies the new prescaler.
         timer.generate_update_event();
         registers.bdtr().modify(|outputs| outputs.set_moe(true));
         Self { timer, _pins: [flat, chip] }

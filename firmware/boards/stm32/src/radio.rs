@@ -50,7 +50,7 @@ impl Ear {
         Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
     }
 
-    /// Some bytes, as they come.
+    /// Received bytes, as they arrive.
     pub async fn bytes(&mut self) -> &[u8] {
         let len = loop {
             if let Ok(len) = self.rx.read(&mut self.came).await {
@@ -89,7 +89,7 @@ pub struct Mouth {
 }
 
 impl Mouth {
-    /// Bytes as they are, as many as a line has.
+    /// Sends bytes unchanged, at most a line's capacity.
     pub async fn say(&mut self, bytes: &[u8]) {
         let len = bytes.len().min(LINE_LEN_MAX);
         self.line.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
@@ -121,5 +121,5 @@ const BAUD: u32 = 1_000_000;
 const RING_LEN: usize = 512;
 /// After an error, before it listens again: shorter than the pause between two of the host's snapshots.
 const REST: Duration = Duration::from_millis(1);
-/// Looked at in one go.
+/// Bytes read in one call.
 const CHUNK: usize = 64;

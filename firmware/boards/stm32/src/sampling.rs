@@ -94,7 +94,7 @@ impl ports::Probes for Probes {
 
 static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =
     CriticalSectionMutex::new(Cell::new((Instant::MIN, Sample::NONE)));
-/// As the control loop.
+/// Sampling period, that of the control loop.
 const STEP: Duration = Duration::from_millis(1);
 /// Maximum age of a sample: ten steps.
 const STALE: Duration = Duration::from_millis(10);

@@ -130,7 +130,7 @@ impl ports::Wheels for Wheels {
 
 /// A share of full duty cycle; none for NaN.
 fn share(duty: f32, full: u32) -> u32 {
-    // The cast takes what is out of range to the range's end, and NaN to 0.
+    // The cast saturates, and turns NaN into 0.
     ((duty * full as f32) as u32).min(full)
 }
 

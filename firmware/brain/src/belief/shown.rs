@@ -16,7 +16,7 @@ use crate::belief::{Ball, Belief, Other};
 use crate::body::omni::{BALL_AT, FRONT};
 use crate::picture::{IN_THE_AIR, Picture};
 
-/// The ball's time at this robot.
+/// Contact of this robot with the ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Handling {
     /// Last time the break-beam sensor saw the ball.
@@ -74,7 +74,7 @@ impl Belief {
         self.handling.contact
     }
 
-    /// The ball flies.
+    /// Whether the ball flies.
     pub fn ball_flies(&self) -> bool {
         self.handling.height > IN_THE_AIR
     }
@@ -92,12 +92,13 @@ impl Belief {
         self.handling.held
     }
 
-    /// The ball is being placed by us: there is time to do it carefully.
+    /// Whether our team places the ball: there is time to do it carefully.
     pub fn is_placing(&self) -> bool {
         self.game.phase == Phase::BallPlacement(Side::Ours)
     }
 
-    /// For how long this robot and an opponent have both been at a slow ball, s: however often it changes hands meanwhile.
+    /// Time for which this robot and an opponent have both been at a slow ball, s, regardless of changes of
+    /// possession.
     pub fn disputed(&self) -> f32 {
         self.handling.dispute
     }

@@ -46,7 +46,7 @@ impl Kind {
         }
     }
 
-    /// Whether this build can lead that league's robots.
+    /// Whether this build supports that league's robots.
     pub fn is_built(league: League) -> bool {
         match league {
             League::FourLegged => cfg!(feature = "legged"),

@@ -58,8 +58,7 @@ impl Limbs {
         }
     }
 
-    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that not everything need happen in
-    /// each.
+    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that work is spread over several.
     pub fn has_short_steps(&self) -> bool {
         matches!(self, Self::Wheels(..))
     }
@@ -96,7 +95,7 @@ impl Limbs {
         }
     }
 
-    /// Whether the battery keeps it from playing.
+    /// Whether the battery is too low to play.
     pub fn is_battery_low(&self) -> bool {
         self.reasons().has(Why::Battery)
     }

@@ -56,7 +56,7 @@ pub enum Intent {
 }
 
 impl Intent {
-    /// Whether the ball leaves by this.
+    /// Whether the ball is released by this intent.
     pub fn lets_go(&self) -> bool {
         match self {
             Self::Kick(_) => true,
@@ -77,11 +77,11 @@ pub struct BodySpec {
     pub speed: f32,
     /// Average speed with the ball, m/s.
     pub carry_speed: f32,
-    /// A quarter turn with the ball, s.
+    /// Duration of a quarter turn with the ball, s.
     pub turn: f32,
-    /// The last steps to a ball and taking it, s.
+    /// Duration of the last steps to a ball and of taking it, s.
     pub grab: f32,
-    /// A kick, s.
+    /// Duration of a kick, s.
     pub kick: f32,
     /// No fetch is expected to take longer, s.
     pub longest_fetch: f32,
@@ -91,15 +91,15 @@ pub struct BodySpec {
     pub next_to_ball: f32,
     /// Share of the distance a receiver could cover while the ball rolls that plans count on.
     pub receiver_haste: f32,
-    /// A receiver this near its place is there for the passer, m.
+    /// A receiver this near its place counts as arrived for the passer, m.
     pub receiver_near: f32,
     /// How long a robot looks for a gap before it shoots at the goal even without one.
     pub shot_patience: Duration,
     /// An opponent whose centre is this near the ball touches it, m.
     pub opponent_holds_within: f32,
-    /// One of us this near the ball disputes it, m.
+    /// A teammate or this robot this near the ball disputes it, m.
     pub disputed_within: f32,
-    /// Steps a doubt about the case must last to abort it: a fifth of a second.
+    /// Steps for which a doubt about the case must last to abort it: a fifth of a second.
     pub doubt_steps: u8,
 }
 

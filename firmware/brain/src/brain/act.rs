@@ -36,14 +36,14 @@ impl Brain<'_> {
                 return intent;
             }
             if !self.was_available {
-                // Between gameplays it stays where it is, out of where it must not be.
+                // Between gameplays it stays in place, outside of forbidden regions.
                 return wheels::go_to(self.belief.pose);
             }
         }
         self.play(now)
     }
 
-    /// Cases, or what it does by itself.
+    /// The intent of the case, or of the reactive behaviour.
     fn play(&mut self, now: Instant) -> Intent {
         if !self.awake {
             return Intent::Stand { face: None };
@@ -61,7 +61,7 @@ impl Brain<'_> {
                     self.adopt(now, &state);
                 }
                 if self.has_short_steps() {
-                    // As in every step in which a gameplay ends: it brakes, and this was that step.
+                    // This step ends a gameplay, so the robot brakes as in every such step.
                     self.since.turned = false;
                     return Intent::Stand { face: None };
                 }

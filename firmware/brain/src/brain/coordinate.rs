@@ -17,7 +17,7 @@ use protocol::host::{Directive, Hint};
 use rules::Phase;
 
 impl Brain<'_> {
-    /// Takes over what is newer, and sets this robot's own part accordingly.
+    /// Adopts a newer state, and sets this robot's own part accordingly.
     pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
         let news = self.cycle.adopt(state, self.awake);
         if news == News::Known {
@@ -58,7 +58,7 @@ impl Brain<'_> {
         self.timers.set(Timer::Reuse, now + estimate::limit(expected));
     }
 
-    /// Everything that concerns the team: being present, proposing, deciding, closing, aborting.
+    /// Coordination of the team: being present, proposing, deciding, closing, aborting.
     pub(super) fn coordinate(&mut self, now: Instant) {
         if !self.awake {
             if !self.timers.has_fired(Timer::Boot) {
@@ -89,7 +89,7 @@ impl Brain<'_> {
         }
         if let Some(state) = self.next_state(now) {
             self.adopt(now, &state);
-            // A cycle of one's own is decided at once.
+            // A cycle of its own is decided at once.
             if let Some(state) = self.next_state(now) {
                 self.adopt(now, &state);
             }
@@ -154,7 +154,8 @@ impl Brain<'_> {
         }
     }
 
-    /// Led by both, and the reactive behaviour is expected to shoot sooner than this gameplay.
+    /// Whether both approaches are active, and the reactive behaviour is expected to shoot sooner than this
+    /// gameplay.
     fn shoots_sooner_without(&self, now: Instant, play: &Play) -> bool {
         if self.config.approach != Approach::Hybrid {
             return false;

@@ -42,7 +42,7 @@ impl Spoken {
         usize::from(self.steps) == robot.index() % usize::from(every)
     }
 
-    /// A host has welcomed this robot: it waits for telemetry that names it.
+    /// Requests telemetry that names the host which has welcomed this robot.
     pub(super) fn owes_telemetry(&mut self) {
         self.new_host = true;
     }
@@ -93,7 +93,7 @@ impl Brain<'_> {
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);
-        // One message a step: sealing costs, and the next step is near.
+        // One message a step: sealing costs time, and the next step comes soon.
         let spoke_now = spoken.beacon == Some(now);
         let due = !spoke_now
             && spoken.telemetry.is_none_or(|(last, said)| {
@@ -118,7 +118,7 @@ impl Brain<'_> {
     }
 }
 
-/// Ten times a second.
+/// Period of the telemetry: ten times a second.
 const TELEMETRY_PERIOD: Duration = Duration::millis(100);
 /// But not in every step while something toggles, as a break-beam sensor does.
 const TELEMETRY_LEAST: Duration = Duration::millis(20);

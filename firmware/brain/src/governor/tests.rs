@@ -109,7 +109,7 @@ fn braking_from_3_m_per_s_at_the_limit_takes_0_6_s_and_then_it_stands() {
     let mut steps = 0;
     loop {
         let t = 610 + steps * 10;
-        // Wheels that obey at once.
+        // Wheels that follow their orders at once.
         let odometry = governor.last();
         let (given, _) = governor.rule(&Circumstances { odometry, ..at(t, Phase::Halt) }, &go(3.0));
         steps += 1;

@@ -24,7 +24,7 @@ use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::legged as skills;
 
-/// The behaviour's small memory.
+/// State of the behaviour.
 #[derive(Clone, Debug, Default)]
 pub struct Reactive {
     role: Role,
@@ -38,7 +38,7 @@ impl Reactive {
         self.role
     }
 
-    /// Bound by a case: forget roles and dodges.
+    /// While a case is played: resets roles and dodges.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
@@ -78,7 +78,7 @@ impl Reactive {
         }
         let onwards = ball.position.direction_to(goal);
         match skills::get_ball(belief, Some(onwards)) {
-            // Between two gameplays a ball is taken only from under an opponent's nose.
+            // Between two gameplays a ball is taken only if an opponent is about to take it.
             Step::Running(Intent::Grab) if freedom != Freedom::Full && !disputed(belief, &ball) => {
                 Intent::Stand { face: None }
             }
@@ -205,7 +205,8 @@ fn beside(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
     field.clamp(place(side), KEEP_INSIDE)
 }
 
-/// Beside a gameplay of others: across the field from where the ball will lie and ahead of it, for the next one's pass.
+/// Beside a gameplay of others: across the field from the ball's stop position and ahead of it, for the next
+/// one's pass.
 fn across(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
     let goal = belief.league().field().goal_center(attacked);
     let me = belief.pose.position;
@@ -276,7 +277,7 @@ const DODGE_ANGLE: Angle = Angle::const_new(core::f32::consts::FRAC_PI_4);
 const DODGE_STEP: f32 = 0.5;
 /// A ball may be held for 3 s by the league's rule; dodge for half of it.
 const DODGE_FOR: Duration = Duration::millis(1500);
-/// Then it is kicked, wherever it will go.
+/// After this time the ball is kicked in any direction.
 const HOLD_FOR: Duration = Duration::millis(3000);
 /// A kick is free if it passes every opponent's centre at this distance, m: body and ball (0.1625) and its scatter of 10° over 0.4 m.
 const LANE: f32 = 0.24;
@@ -343,7 +344,7 @@ mod tests {
         let mut b = belief((0.0, 0.0), (0.13, 0.0));
         b.holds_ball = true;
         let _ = b.opponents.push(Point::new(0.6, 0.0));
-        // Turned to where shots come from best: 0.5 m before the penalty area, opposite its corner.
+        // Turned to the best place for shots: 0.5 m before the penalty area, opposite its corner.
         b.pose.heading = Angle::new(math::atan2(0.65, 1.55));
         assert_eq!(step(&mut Reactive::default(), &b, 0), Intent::Kick(LeggedKick::ForwardSoft));
     }

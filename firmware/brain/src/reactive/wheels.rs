@@ -17,7 +17,7 @@ use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::wheels as skills;
 
-/// The behaviour's small memory.
+/// State of the behaviour.
 #[derive(Clone, Debug, Default)]
 pub struct Reactive {
     role: Role,
@@ -29,7 +29,7 @@ impl Reactive {
         self.role
     }
 
-    /// Bound by a case or a directive: forget the role.
+    /// While a case or a directive is executed: resets the role.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
@@ -117,7 +117,7 @@ fn place(
     let field = belief.league().field();
     let sign = attacked.sign() as f32;
     let side = if ball.rest.y() > 0.0 { -1.0 } else { 1.0 };
-    // Attackers and those bound by a case are no supporters: places go by rank among the others.
+    // Attackers and robots that play a case are no supporters: places go by rank among the others.
     let before =
         mates.present(now).filter(|(id, mate)| *id < me && mate.beacon.role == Role::Supporter).count();
     let offsets =
@@ -135,7 +135,7 @@ fn contested(belief: &Belief, ball: &Ball) -> bool {
 
 /// Between gameplays a robot waits this far behind the ball, m.
 const APPROACH: f32 = 0.3;
-/// An opponent this near the ball is about to have it, m.
+/// An opponent this near the ball is about to take it, m.
 const CONTESTED: f32 = 0.6;
 /// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.5;

@@ -11,7 +11,7 @@ pub struct Cycle {
     /// Learned of while still listening after a boot: what an earlier boot epoch of this robot did in it is
     /// unknown.
     learned_asleep: bool,
-    /// Own progress in it.
+    /// Own progress in the cycle.
     pub progress: Progress,
     /// Some robot of the case has touched the ball.
     pub touched: bool,
@@ -22,14 +22,14 @@ pub struct Cycle {
 pub enum News {
     /// The state was known.
     Known,
-    /// More about the cycle, but no other gameplay.
+    /// More about the same cycle, without another gameplay.
     More,
     /// A gameplay starts, or is replaced or ended.
     Gameplay,
 }
 
 impl Cycle {
-    /// Knows of none.
+    /// A robot that knows no cycle.
     pub fn new(me: RobotId) -> Self {
         Self { me, state: None, learned_asleep: false, progress: Progress::Idle, touched: false }
     }
@@ -68,7 +68,7 @@ impl Cycle {
         self.learned_asleep
     }
 
-    /// Takes over `state` if it is newer than what is known.
+    /// Adopts `state` if it is newer than the known one.
     pub fn adopt(&mut self, state: &CycleState, awake: bool) -> News {
         if !state.is_newer_than(self.state.as_ref()) {
             return News::Known;

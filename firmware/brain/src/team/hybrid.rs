@@ -35,7 +35,8 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
     alone + MARGIN < gameplay_until_shot(scene)
 }
 
-/// Expected seconds until the gameplay's shot, or until the one that could follow where it leaves the ball.
+/// Expected seconds until the gameplay's shot, or until the shot that could follow from its final ball
+/// position.
 fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
     let shoots = scene.case.robots().flat_map(|part| scene.case.gameplay(part)).any(|action| match action {
         Action::Kick(kind) => {
@@ -67,7 +68,7 @@ fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
 
 /// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach, m.
 const IN_REACH: f32 = 2.15;
-/// The reactive behaviour must win by this much, s: estimates of a gameplay's seconds are no better.
+/// Least lead of the reactive behaviour, s: the accuracy of a gameplay's estimate.
 const MARGIN: f32 = 1.0;
 /// An opponent this far ahead of the ball, and this far beside its path to the goal, will dispute it, m: what
 /// it walks in 3 s.

@@ -1,4 +1,4 @@
-//! `team`: cooperative execution of cases. The cycle of Ros et al. 2009 §4 on one page.
+//! `team`: cooperative execution of cases: the cycle of Ros et al. 2009 §4.
 //!
 //! ```text
 //! elect      the lowest id present proposes a cycle and names its coordinator: the retriever nearest the ball

@@ -11,7 +11,7 @@ use protocol::team::AbortReason;
 
 use crate::execution::Scene;
 
-/// A doubt and how long it has lasted.
+/// A doubt about the case, and its duration.
 #[derive(Clone, Debug, Default)]
 pub struct Monitor {
     doubt: Option<AbortReason>,
@@ -19,7 +19,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A new gameplay.
+    /// Resets it for a new gameplay.
     pub fn reset(&mut self) {
         *self = Self::default();
     }

@@ -11,11 +11,11 @@ use crate::timer::TimerTable;
 /// Result of a step of reuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wish {
-    /// This of the body.
+    /// This intent for the body.
     Body(Intent),
     /// This robot's part is over: default behaviour.
     Nothing,
-    /// The cycle's end.
+    /// Abort of the cycle.
     Abort(AbortReason),
 }
 
@@ -61,7 +61,8 @@ fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
     Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
 }
 
-/// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" will do (paper §4.2).
+/// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" is enough
+/// (paper §4.2).
 fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     let pose = scene.belief.pose;
     if scene.belief.holds_ball {

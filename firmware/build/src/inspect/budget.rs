@@ -92,7 +92,7 @@ pub const STACK_BUDGET: u32 = 16 * 1024;
 /// brain included.
 pub const STEP_BUDGET: u32 = 40_000;
 
-/// Symbols named where a budget breaks.
+/// Number of symbols named where a budget is exceeded.
 const LARGEST: usize = 12;
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ pub struct Image<'a> {
 
 type Reader<'a> = EndianSlice<'a, RunTimeEndian>;
 
-/// A piece of memory.
+/// A section of memory.
 #[derive(Clone, Debug)]
 struct Section {
     address: u64,
@@ -109,7 +109,8 @@ impl<'a> Image<'a> {
             })
             .collect();
         symbols.sort_by(|a, b| (a.address, &a.name).cmp(&(b.address, &b.name)));
-        // Before aliases go: the run-time ABI's names stand beside the compiler's own for the same code.
+        // Before aliases are removed: the run-time ABI's names stand beside the compiler's own for the same
+        // code.
         let mut names = symbols.iter().map(|symbol| &symbol.name);
         let soft_double = names.find(|name| SOFT_DOUBLE.contains(&name.as_str())).cloned();
         symbols.dedup_by_key(|symbol| symbol.address);

@@ -50,7 +50,7 @@ pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
 /// Comparison of a firmware image with the list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PanicVerdict {
-    /// Sites that are not allowed, with where they stand.
+    /// Sites that are not allowed, with their source lines.
     pub unknown: Vec<(PanicSite, Vec<String>)>,
     /// Entries that no firmware image has any more.
     pub gone: Vec<PanicSite>,
@@ -178,10 +178,10 @@ fn holds(section: &Section, address: u64) -> bool {
     (section.address..section.address + section.bytes.len() as u64).contains(&address)
 }
 
-/// Calls and jumps of 32 bits in a function (Armv7-M ARM, A7.7.18 BL and A7.7.12 B, T4): from where, and to where.
+/// Calls and jumps of 32 bits in a function (Armv7-M ARM, A7.7.18 BL and A7.7.12 B, T4): source and target.
 ///
-/// Tables of literals between instructions are read as instructions too; one that happens to look like a call of a panic
-/// function would be a finding too many, never one too few.
+/// Tables of literals between instructions are read as instructions too; a literal that equals a call of a
+/// panic function would be a false positive, never a missed one.
 fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     let half = |at: u64| {
         let index = usize::try_from(at - section.address).ok()?;

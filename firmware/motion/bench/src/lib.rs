@@ -19,21 +19,21 @@ use rand_xoshiro::Xoshiro128PlusPlus;
 /// Functions that are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// `t*` without drag.
+    /// `t*` without drag: duration alone.
     FreeTime,
     /// The whole motion without drag.
     FreePlan,
     /// State of a motion without drag at one time.
     FreeState,
-    /// `t*` with drag.
+    /// `t*` with drag: duration alone.
     DragTime,
     /// The whole motion with drag.
     DragPlan,
     /// The earliest interception of a ball.
     Soonest,
-    /// The one with most slack.
+    /// The interception with most slack.
     Safest,
-    /// A step among 12 discs and 4 shapes that stand.
+    /// A planner step among 12 discs and 4 shapes that stand.
     Avoid,
     /// The same with moving discs.
     AvoidMoving,
@@ -146,7 +146,7 @@ fn folded(state: &State<Field>) -> u32 {
 /// The worst case planned for (docs/architecture.md §9): 12 robots and 4 forbidden regions.
 const OBSTACLES: usize = 16;
 
-/// The tasks of a seed, for ever.
+/// The endless sequence of a seed's tasks.
 #[derive(Clone, Debug)]
 pub struct Tasks(Xoshiro128PlusPlus);
 
@@ -256,7 +256,7 @@ impl fmt::Display for Counted {
     }
 }
 
-/// Tasks that the board is given, from this seed on.
+/// Number of tasks for the board, from this seed on.
 pub const TASKS: usize = 500;
 /// Seed of the tasks.
 pub const SEED: u64 = 2013;

@@ -143,8 +143,8 @@ struct Exit<F> {
 }
 
 impl<F: Copy> Exits<F> {
-    /// Notes a candidate that is farther than `least` from all others along an axis; where there is no room for more, those there
-    /// are must do.
+    /// Adds a candidate that is farther than `least` from all others along an axis; without capacity the
+    /// search continues with those there are.
     // Called from many places; a copy in each takes 2 kB of flash.
     #[inline(never)]
     fn add(&mut self, at: Point<F>, least: f32) {
@@ -187,9 +187,9 @@ fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
     }
 }
 
-/// A free point is this far outside, m.
+/// Distance of a free point from a shape, m.
 const FREE: f32 = 0.002;
-/// Candidates are this far outside, m.
+/// Distance of candidates from a shape, m.
 const OFF: f32 = 2.0 * FREE;
 /// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may leave narrow gaps.
 const SAME: f32 = 0.001;
@@ -202,7 +202,7 @@ const TRIES_MAX: u32 = 32;
 const EFFORT_A_TRY: u32 = 12;
 /// Most candidates for a target that is covered: a robot that gets near it searches again.
 const TRIES_TO_GOAL_MAX: usize = 2;
-/// Most candidates that are noted.
+/// Most candidates that are stored.
 const EXITS_MAX: usize = 64;
 /// Points of the lattice along the region's x and y.
 const COLUMNS: u8 = 6;

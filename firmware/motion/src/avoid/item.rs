@@ -32,7 +32,8 @@ pub(super) struct Scene<'o, F> {
 }
 
 impl<'o, F: Copy> Scene<'o, F> {
-    /// Without its obstacles: [`Scene::look`] comes next, where it stands, for it is large to be handed around.
+    /// Without its obstacles: [`Scene::look`] fills them in place, because the value is too large to be moved
+    /// around.
     pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>, effort: u32) -> Self {
         let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
         Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
@@ -52,7 +53,7 @@ impl<'o, F: Copy> Scene<'o, F> {
             };
             self.moves |= item.moves;
             item.enclose(&obstacle.shape);
-            // There is room: the obstacles were counted above.
+            // The capacity suffices: the obstacles were counted above.
             let _ = self.items.push(item);
         }
     }
@@ -88,7 +89,7 @@ impl<'o, F: Copy> Scene<'o, F> {
                 item.leave_out();
                 continue;
             }
-            // Nearly all are far from both.
+            // Most obstacles are far from both.
             if item.may_hold(from) || item.may_hold(goal) {
                 let here = gap(&obstacle.shape, from);
                 let nearest = math::min(here, gap(&obstacle.shape, goal)) - TOUCH;
@@ -201,7 +202,7 @@ impl<'o, F: Copy> Scene<'o, F> {
 }
 
 impl<F: Copy> Item<F> {
-    /// Draws the circle around the shape, grown by the margins.
+    /// Computes the circle around the shape, grown by the margins.
     fn enclose(&mut self, shape: &Shape<F>) {
         let (center, radius, corner) = match *shape {
             Shape::Disc { center, radius } => (center, radius, 1.0),
@@ -248,7 +249,7 @@ impl<F: Copy> Item<F> {
     }
 }
 
-/// The obstacle's shape where it will be at a time.
+/// The obstacle's shape at a time.
 pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
     let by = obstacle.velocity * time.clamp(0.0, FORESIGHT);
     match obstacle.shape {
@@ -269,7 +270,7 @@ struct Seen<F> {
 }
 
 impl<F: Copy> Seen<F> {
-    /// As an obstacle sees it that moves with `velocity`.
+    /// The piece of path relative to an obstacle that moves with `velocity`.
     #[inline]
     fn by(&self, velocity: Vector<F>) -> (Point<F>, Vector<F>) {
         (self.from - velocity * self.before, self.way + velocity * (self.before - self.later))
@@ -357,7 +358,7 @@ fn hits_box<F: Copy>(
 }
 
 impl<F: Copy> Obstacle<F> {
-    /// A body with straight sides.
+    /// Whether it is a body with straight sides.
     fn is_wall(&self) -> bool {
         self.is_body && matches!(self.shape, Shape::Box { .. })
     }
@@ -373,7 +374,7 @@ const A_LITTLE: f32 = 0.1;
 const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.
 const TOUCH: f32 = 0.000_5;
-/// Slower is standing, m/s.
+/// A slower obstacle counts as standing, m/s.
 const SPEED_MIN: f32 = 0.02;
 /// Effort for a piece of path besides testing obstacles: its corner and its place in the search.
 const PIECE: u32 = 12;

@@ -11,7 +11,7 @@ use crate::trajectory::FreeLimits;
 pub(super) struct Route<F> {
     /// Whether it leads to the goal.
     pub(super) arrives: bool,
-    /// The first corner; none where it is straight.
+    /// The first corner; `None` where it is straight.
     pub(super) via: Option<Point<F>>,
     /// Point after the first corner.
     pub(super) behind: Point<F>,
@@ -41,7 +41,7 @@ struct Search<'s, F> {
     nodes: heapless::Vec<Node<F>, NODES_MAX>,
     /// Number of path pieces that may still be tested.
     checks: u32,
-    /// Towards the goal, m/s.
+    /// Speed towards the goal, m/s.
     speed: f32,
 }
 
@@ -335,7 +335,7 @@ const CORNER_SKIN: f32 = 0.002;
 const LATENESS: f32 = 0.5;
 /// Room for a moving obstacle around corners, by its speed, s.
 const EARLY_OR_LATE: f32 = 0.15;
-/// A nearer corner is no corner, m.
+/// Least length of a piece, m.
 const PIECE_MIN: f32 = 0.001;
-/// 1 + cos 120°.
+/// Limit of the opening, 1 + cos 120°.
 const OPENING_MIN: f32 = 0.5;

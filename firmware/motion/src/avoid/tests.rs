@@ -146,7 +146,7 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
         let scene = scene(&mut dice);
         let (from, to) = (dice.free(&scene), dice.free(&scene));
         let mut course = Course { within: Some(CARPET), ..course(from, to, &scene) };
-        // Moving already, where it could still brake.
+        // Already moving, with room to brake.
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
         let (mut free, way) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));

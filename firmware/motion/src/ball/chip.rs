@@ -12,7 +12,7 @@ use crate::trajectory::State;
 pub struct ChipModel {
     /// Share of the speed along the ground that the first touch leaves, 0 to 1.
     pub first: f32,
-    /// ... that every other touch leaves.
+    /// Share that every other touch leaves.
     pub other: f32,
     /// Share of the speed downwards that a touch turns upwards, 0 to below 1.
     pub rise: f32,
@@ -122,7 +122,7 @@ impl Hop {
 /// A chipped ball at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipState<F> {
-    /// Along the ground.
+    /// State along the ground.
     pub ground: State<F>,
     /// Height of the ball above its position on the field surface, m.
     pub height: f32,
@@ -192,8 +192,8 @@ impl<F: Copy> ChipPath<F> {
         Some(hop.time + (distance - hop.distance) / hop.speed)
     }
 
-    /// Between which distances from the kick it flies higher than `height` m in its first hop: a robot of that height in
-    /// between does not touch it. `None` where it never does.
+    /// Range of distances from the kick in which it flies higher than `height` m in its first hop: a robot of
+    /// that height in between does not touch it. `None` where it never does.
     pub fn over(&self, height: f32) -> Option<(f32, f32)> {
         let hop = self.hops().first()?;
         let squared = hop.rise * hop.rise - 2.0 * GRAVITY * height;
@@ -206,7 +206,7 @@ impl<F: Copy> ChipPath<F> {
 const GRAVITY: f32 = 9.81;
 /// A hop lower than this is rolling, m (TIGERs).
 const HOP_MIN: f32 = 0.01;
-/// Most hops of a path: a chip of 8 m/s at 45° has 5 on the liveliest published ball.
+/// Most hops of a path: a chip of 8 m/s at 45° has 5 on the published ball that bounces most.
 const HOPS_MAX: usize = 8;
 
 #[cfg(test)]

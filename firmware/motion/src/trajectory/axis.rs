@@ -13,7 +13,7 @@ pub(super) struct AxisLimits {
     speed: f32,
     acceleration: f32,
     braking: f32,
-    /// 1 / acceleration, 1 / braking, 1 / speed.
+    /// Reciprocals: 1 / acceleration, 1 / braking, 1 / speed.
     per_acceleration: f32,
     per_braking: f32,
     per_speed: f32,
@@ -137,14 +137,14 @@ impl AxisLimits {
 /// One axis's motion from 0 to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Phases {
-    /// Speed at the start.
+    /// Speed at the start, m/s or rad/s.
     start: f32,
     /// Distance of its end from the start, m or rad.
     pub(super) end: f32,
     /// Size and direction of both brakings; of the speeding up, or of the slowing down to the limit.
     brake: f32,
     rate: f32,
-    /// Speed before the last braking.
+    /// Speed before the last braking, m/s or rad/s.
     peak: f32,
     /// Ends of braking from the wrong direction, of speeding up, of cruising, of it all, s.
     turned: f32,

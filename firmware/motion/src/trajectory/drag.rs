@@ -163,7 +163,7 @@ impl Axis {
     }
 }
 
-/// u and how long it lasts, then −u and how long.
+/// u and its duration, then −u and its duration.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 struct Pushes {
     push: f32,
@@ -178,7 +178,7 @@ impl Pushes {
         if distance == 0.0 && speed == 0.0 {
             return Self::default();
         }
-        // z + z′ seen from the end; coasting would stop this far beyond it.
+        // z + z′ relative to the end; coasting would stop this far beyond it.
         let beyond = speed - distance;
         let per_size = 1.0 / size;
         let sign = if beyond < 0.0 { -1.0 } else { 1.0 };
@@ -203,6 +203,6 @@ impl Pushes {
 
 const LIMIT_MIN: f32 = 1e-3;
 const LIMIT_MAX: f32 = 1e3;
-/// Times of the axes are evaluated at most so often, as without drag or a little oftener.
+/// Most evaluations of the axes' times, as without drag or slightly more.
 const ROUNDS: u32 = 8;
 const TOLERANCE: f32 = 0.005;

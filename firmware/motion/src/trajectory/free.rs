@@ -12,11 +12,11 @@ use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 /// never exceeds √(`speed`² + |v₀|²), and `speed` itself where it starts at standstill or along its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeLimits {
-    /// m/s, > 0.
+    /// Speed, m/s, > 0.
     pub speed: f32,
-    /// m/s², > 0.
+    /// Acceleration, m/s², > 0.
     pub acceleration: f32,
-    /// m/s², > 0.
+    /// Braking, m/s², > 0.
     pub braking: f32,
 }
 
@@ -149,5 +149,5 @@ impl<F: Copy> Motion<F> for FreeMotion<F> {
 const LIMIT_MIN: f32 = 1e-6;
 /// Most evaluations of the axes' times; firmware/motion/README.md has the gain of more.
 const ROUNDS: u32 = 5;
-/// Times that differ by less than 2 × this share are together.
+/// Relative tolerance: times that differ by less than 2 × this share are equal.
 const TOLERANCE: f32 = 0.005;

@@ -8,9 +8,9 @@ use super::axis::{AxisLimits, Phases};
 /// Limits of turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnLimits {
-    /// rad/s, > 0.
+    /// Turning rate, rad/s, > 0.
     pub rate: f32,
-    /// Speeding up and braking, rad/s², > 0.
+    /// Acceleration and braking, rad/s², > 0.
     pub acceleration: f32,
 }
 
@@ -59,5 +59,5 @@ impl Turn {
     }
 }
 
-/// Beyond this a gyroscope is broken, rad/s.
+/// Above this rate a gyroscope is broken, rad/s.
 const RATE_MAX: f32 = 1_000.0;

@@ -1,5 +1,5 @@
-//! `cycle`: tests: a robot goes through its cycle as the paper's Fig. 10 has it. A walking robot alone with
-//! the ball, its senses made up here.
+//! `cycle`: tests: a robot goes through its cycle as in the paper's Fig. 10. A walking robot alone with the
+//! ball, with synthetic sensor frames.
 
 #[embedded_test::tests]
 mod tests {

@@ -23,7 +23,7 @@ mod timers;
 // A panic prints its place and ends the emulator with exit code 1.
 #[cfg(target_os = "none")]
 use panic_semihosting as _;
-// For its functions of the run-time ABI.
+// Links its functions of the run-time ABI.
 #[cfg(target_os = "none")]
 use runtime as _;
 

@@ -5,7 +5,7 @@ use embassy_executor::Spawner;
 
 use crate::clock;
 
-/// The board's executor, as tests want it.
+/// The board's executor for tests.
 struct Executor;
 
 impl Executor {

@@ -1,4 +1,4 @@
-//! Tests: orders become the commands that every simulator understands, and answers become senses.
+//! Tests: orders become the commands that every simulator understands, and answers become sensor frames.
 
 use super::*;
 use prost::Message as _;

@@ -15,7 +15,7 @@ mod measure {
     use cortex_m_semihosting::{debug, hprintln};
     use motion_bench::{Counted, SEED, TASKS, Tasks};
     use panic_semihosting as _;
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     use crate::instructions::{self, counted};

@@ -2,7 +2,8 @@
 //! table beside them, by three methods: `retrieve_best`, `retrieve`, the plain scan; one line per answer,
 //! instructions included.
 //!
-//! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems there and reads the lines.
+//! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems into memory and reads the
+//! lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -17,7 +18,7 @@ mod measure {
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
     use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, problems, scan};
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     use crate::instructions::{self, counted};

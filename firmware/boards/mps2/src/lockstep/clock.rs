@@ -21,7 +21,7 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// A clock that stands at zero, without tasks; call once.
+    /// A clock at zero, without tasks; call once.
     pub(crate) fn new() -> Self {
         static EXECUTOR: StaticCell<Executor> = StaticCell::new();
         Self { executor: EXECUTOR.init(Executor::new(ptr::null_mut())) }
@@ -32,7 +32,7 @@ impl Clock {
         self.executor.spawner()
     }
 
-    /// Moves time to `to`; every alarm up to then rings at its own time.
+    /// Moves time to `to`; every alarm up to then fires at its own time.
     pub(crate) fn advance(&self, to: Instant) {
         loop {
             self.settle();
@@ -48,7 +48,7 @@ impl Clock {
         TIME.set(to.0);
     }
 
-    /// Runs the tasks until all of them wait. Alarms that are due ring with the next [`Clock::advance`].
+    /// Runs the tasks until all of them wait. Alarms that are due fire with the next [`Clock::advance`].
     pub(crate) fn settle(&self) {
         while WORK.swap(false, Ordering::Acquire) {
             // SAFETY: this is the only place that polls this executor, and no task calls this function.
@@ -57,14 +57,14 @@ impl Clock {
     }
 }
 
-/// Embassy's clock: a number and a queue of alarms.
+/// Embassy's time driver: a number and a queue of alarms.
 struct Time {
     now: Mutex<Cell<u64>>,
     alarms: Mutex<RefCell<Queue>>,
 }
 
 impl Time {
-    /// Moves forward; never back.
+    /// Moves forward; never backwards.
     fn set(&self, to: u64) {
         critical_section::with(|cs| {
             let now = self.now.borrow(cs);
@@ -94,7 +94,7 @@ embassy_time_driver::time_driver_impl!(static TIME: Time = Time {
     alarms: Mutex::new(RefCell::new(Queue::new())),
 });
 
-/// Some task wants to run.
+/// Whether some task is ready.
 static WORK: AtomicBool = AtomicBool::new(false);
 
 /// Embassy's executor calls this, by this name, when a task was woken.

@@ -60,7 +60,8 @@ impl Inlet {
         self.frame.as_bytes().get(message).unwrap_or_default()
     }
 
-    /// Fetches the next frame into the buffer; its length, which is more than the buffer's where it did not fit.
+    /// Fetches the next frame into the buffer; returns its length, which is more than the buffer's where it
+    /// did not fit.
     fn next_frame(&mut self) -> usize {
         sleep_until(|| RX_FIFO_INF.read() >> 16 & 0xff != 0);
         let len = (RX_STATUS_FIFO.read() >> 16 & 0x3fff) as usize;
@@ -83,7 +84,7 @@ fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
     ours.then_some(MESSAGE_AT..MESSAGE_AT + len)
 }
 
-/// Hands frames to the controller.
+/// Passes frames to the controller.
 pub(crate) struct Outlet {
     frame: [u32; FRAME_WORDS],
 }
@@ -111,8 +112,8 @@ impl Outlet {
     }
 }
 
-/// Sleeps until `ready`. Interrupts are held back around the question, so that none comes between a "no" and the sleep;
-/// one that is held back still ends it.
+/// Sleeps until `ready`. Interrupts are masked around the check, so that none comes between a negative result
+/// and the sleep; a masked one still ends it.
 fn sleep_until(mut ready: impl FnMut() -> bool) {
     loop {
         let done = critical_section::with(|_| {
@@ -135,7 +136,7 @@ const HEADER: [u8; HEADER_LEN] = {
     [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 0x01, high, low]
 };
 const HEADER_LEN: usize = 14;
-/// Behind header and length.
+/// Offset of the message, behind header and length.
 const MESSAGE_AT: usize = HEADER_LEN + 2;
 /// Ethernet's shortest frame, without the checksum.
 const FRAME_LEN_MIN: usize = 60;
@@ -180,7 +181,7 @@ const IRQ_CFG_PUSH_PULL: u32 = 1;
 const TX_FIRST: u32 = 1 << 13;
 const TX_LAST: u32 = 1 << 12;
 
-/// The controller's line to the processor.
+/// The controller's interrupt number.
 #[derive(Clone, Copy)]
 struct EthernetIrq;
 

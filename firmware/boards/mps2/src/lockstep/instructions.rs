@@ -14,7 +14,7 @@ pub(crate) fn start(mut timer: SYST) {
     timer.enable_counter();
 }
 
-/// Does the work; gives what it gave, and how many instructions it took.
+/// Runs the work; returns its result, and the number of instructions.
 pub(crate) fn counted<T>(work: impl FnOnce() -> T) -> (T, u32) {
     let before = SYST::get_current();
     let result = work();

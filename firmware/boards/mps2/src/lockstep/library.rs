@@ -4,7 +4,7 @@ use casebase::{CaseBase, TableError};
 
 use protocol::slot;
 
-/// The case base to play with; a table in the slot is checked first.
+/// The case base to use; a table in the slot is checked first.
 pub(crate) fn case_base() -> Result<CaseBase<'static>, TableError> {
     table_in_slot().map_or_else(|| Ok(built_in()), CaseBase::from_bytes)
 }

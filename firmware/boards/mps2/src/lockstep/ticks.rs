@@ -100,10 +100,11 @@ fn tell(outlet: &mut Outlet, message: &FromRobot<'_>) {
     outlet.send(|buffer| postcard::to_slice(message, buffer).map_or(0, |bytes| bytes.len()));
 }
 
-/// Ticks between two looks at the stack: a look takes some 80,000 instructions, and its deepest use stays to be seen.
+/// Ticks between two measurements of the stack: one takes some 80,000 instructions, and the deepest use
+/// remains visible.
 const STACK_EVERY: u32 = 64;
 
-/// Messages and packets that made no sense, for a debugger to read.
+/// Number of invalid messages and packets, for a debugger to read.
 static STRANGE: AtomicU32 = AtomicU32::new(0);
 /// Packets sent beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
 static UNHEARD: AtomicU32 = AtomicU32::new(0);

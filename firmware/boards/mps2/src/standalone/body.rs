@@ -10,7 +10,7 @@ use runtime::wheel::WHEELS;
 
 /// Rim speeds, m/s, as bits.
 static SPEEDS: [AtomicU32; WHEELS] = [const { AtomicU32::new(0) }; WHEELS];
-/// The motors have current.
+/// Whether the motors have current.
 static DRIVEN: AtomicBool = AtomicBool::new(false);
 /// The capacitor's voltage, V, as bits.
 static VOLTS: AtomicU32 = AtomicU32::new(0);
@@ -45,7 +45,7 @@ impl Wheels for Motors {
     }
 }
 
-/// A kicker without ball.
+/// A kicker without a ball.
 pub(crate) struct Coil;
 
 impl Coil {
@@ -92,5 +92,5 @@ const FREE_SPEED: f32 = 6.0;
 const FOLLOWS: f32 = 1.0 / 30.0;
 /// Change of the capacitor's voltage in a step of the kicker, V: full in 0.4 s.
 const CHARGES: f32 = 0.5;
-/// A step of the kicker.
+/// Period of the kicker.
 const STEP: Duration = Duration::millis(1);

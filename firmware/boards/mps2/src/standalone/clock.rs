@@ -32,7 +32,7 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
     let executor = EXECUTOR.init(Executor::new(ptr::null_mut()));
     init(executor.spawner());
     loop {
-        // Interrupts are held back between the question and the sleep; one that is held back still ends it.
+        // Interrupts are masked between the check and the sleep; a masked one still ends it.
         cortex_m::interrupt::disable();
         let work = WORK.swap(false, Ordering::Acquire);
         if !work {
@@ -70,7 +70,7 @@ impl Driver for Time {
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {
-        // Whether the alarm is the first is seen with the next millisecond.
+        // Whether the alarm is the first is checked with the next millisecond.
         critical_section::with(|cs| self.alarms.borrow_ref_mut(cs).schedule_wake(at, waker));
     }
 }
@@ -88,7 +88,7 @@ fn SysTick() {
     critical_section::with(|cs| TIME.alarms.borrow_ref_mut(cs).next_expiration(now));
 }
 
-/// Some task wants to run.
+/// Whether some task is ready.
 static WORK: AtomicBool = AtomicBool::new(true);
 
 /// Embassy's executor calls this, by this name, when a task was woken.

@@ -17,7 +17,7 @@ use super::console::say;
 /// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
 pub(crate) struct Life {
-    /// Starts since power came, this one included.
+    /// Starts since power-on, this one included.
     pub(crate) boots: u32,
     /// Panics since then.
     pub(crate) panics: u32,
@@ -64,7 +64,7 @@ pub(crate) fn was_bitten() -> bool {
     BITTEN.load(Ordering::Relaxed)
 }
 
-/// The watchdog has bitten.
+/// Records that the watchdog's time-out has passed.
 pub(crate) fn remember_bite() {
     with(|life| life.bitten = 1);
 }

@@ -173,5 +173,5 @@ fn refuse(error: ProvisionError) {
     defmt::error!("{=str}: nobody commands this robot; run `onetwo firmware provision`", why);
 }
 
-/// Half of the lamp's second.
+/// Half of the lamp's period of a second.
 const BLINK: Duration = Duration::from_millis(500);

@@ -210,7 +210,7 @@ fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
     !matches!(phase, Phase::Run | Phase::Halt | Phase::Timeout(_))
 }
 
-/// Standing with the ball keeps it.
+/// A standing robot with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {
     let drive = if belief.holds_ball { Drive::holding } else { Drive::shy };
     Drive { kick: OmniKick::None, ..drive(belief.pose.position, belief.pose.heading) }
@@ -234,13 +234,14 @@ pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braki
 /// harder than the roller follows.
 const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
-/// ω² · 95 mm stays below 1.2 m/s².
+/// Turning limits with the ball: ω² · 95 mm stays below 1.2 m/s².
 const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
-/// The last bit of a turn while a ball is placed, 1/s: orders that arrive 0.1 s late make a faster one swing about its goal.
+/// Gain of the final turn while a ball is placed, 1/s: with orders that arrive 0.1 s late a larger gain
+/// oscillates.
 const SETTLES: f32 = 5.0;
 /// Below the governor's limit in STOP, m/s: the governor need not intervene.
 const SLACK: f32 = 0.1;
-/// A robot this near its place, and this slow, stands, m and m/s: the vision's noise.
+/// Position error, m, and speed, m/s, below which a robot stands at its place: the vision's noise.
 const THERE: f32 = 0.004;
 const THERE_SPEED: f32 = 0.05;
 /// Heading error, rad, and turning rate, rad/s, below which the robot faces its target.

@@ -34,7 +34,7 @@ pub struct Drive {
     pub to: Point<Field>,
     /// Heading to turn to.
     pub face: Angle,
-    /// No faster than this, m/s.
+    /// Speed limit, m/s.
     pub speed: f32,
     /// How the ball is treated on the path.
     pub manner: Manner,
@@ -42,7 +42,7 @@ pub struct Drive {
     pub dribbler: f32,
     /// Kick to fire as soon as the ball touches the kicker, once it is armed.
     pub kick: OmniKick,
-    /// It is armed: the robot looks where the kick shall go.
+    /// Whether it is armed: the robot faces the direction of the kick.
     pub armed: bool,
     /// Share of the acceleration that a held ball is moved with.
     pub gentle: f32,
@@ -152,7 +152,7 @@ const SPEC: BodySpec = BodySpec {
     // Two metres from standstill to standstill take 1.5 s with 3.5 m/s².
     speed: 1.3,
     carry_speed: 0.7,
-    // A quarter turn at 3 rad/s and getting there.
+    // A quarter turn at 3 rad/s, including acceleration.
     turn: 0.8,
     grab: 0.7,
     kick: 0.2,

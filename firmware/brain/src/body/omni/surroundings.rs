@@ -45,7 +45,7 @@ impl Surroundings {
         let grown = |region: &Forbidden| {
             let law = match region.why {
                 Why::OpponentArea | Why::OwnArea if at_ball => LAW_AT_BALL,
-                // It comes along with the ball.
+                // The stadium moves with the ball.
                 Why::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
                 _ => LAW,
             };
@@ -139,7 +139,7 @@ fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
     Some(Shape::Capsule { spine, radius: BODY + BALL_RADIUS + LANE_MARGIN })
 }
 
-/// The rules' question, as this robot sees it.
+/// Input of `rules::keep_out` from this robot's belief.
 pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     let game = &belief.game;
     Situation {
@@ -155,7 +155,7 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
 
 /// Share of the path's length.
 const SIXTH: f32 = 1.0 / 6.0;
-/// The robot's own radius, m.
+/// The robot's radius, m.
 const BODY: f32 = ROBOT_RADIUS;
 /// Added to the rules' distances, m: vision's noise, its delay at walking pace, and overshoot of the wheels.
 const LAW: f32 = 0.04;
@@ -182,7 +182,7 @@ const ROBOTS: f32 = 0.03;
 const ROBOTS_AT_BALL: f32 = 0.0;
 /// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room for a swing.
 const KICKS_WITHIN: f32 = 0.35;
-/// It looks at the ball within this, rad.
+/// Heading tolerance within which it faces the ball, rad.
 const LOOKS_AT: f32 = 0.35;
 /// The lane ends this far from the ball, m: short of a robot that waits for a pass of a metre.
 const LANE: f32 = 0.9;

@@ -1,4 +1,4 @@
-//! `get_ball`: go where the ball can be met and take it. Field frame, SI.
+//! `get_ball`: intercept the ball and take it. Field frame, SI.
 
 use geometry::{Angle, Field, Point, Vector, math};
 use motion::legged::{CARRY_TURN_RATE, GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
@@ -81,7 +81,7 @@ const STAND_OFF: f32 = 0.14;
 const WALK_UP_TO: f32 = 0.08;
 /// Within this distance only the time to the ball counts, m.
 const NEAR: f32 = 0.5;
-/// Standing behind the ball must gain this much, s: the steps that a robot needs to stand still there.
+/// Least gain of standing behind the ball, s: the steps that a robot needs to stand still there.
 const WORTH_TURNING: f32 = 0.3;
 /// Distance from the ball at which a robot walks around it, m.
 const BALL_CLEARANCE: f32 = 0.2;

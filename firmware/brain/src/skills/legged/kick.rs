@@ -17,7 +17,7 @@ pub fn shoot(belief: &Belief, direction: Angle, kick: LeggedKick) -> Intent {
     }
 }
 
-/// Passes to `place`: straight ahead, or with a head kick where its one length suits and it saves turning.
+/// Passes to `place`: straight ahead, or with a head kick where its fixed length fits and it saves turning.
 pub fn pass(belief: &Belief, place: Point<Field>) -> Intent {
     let (direction, distance) = (aim(belief, place), belief.pose.position.distance(place));
     let turn = |off: Angle| (direction - off - belief.pose.heading).abs();

@@ -21,7 +21,7 @@ struct Shot {
     direction: Angle,
     /// Kick to use.
     kick: LeggedKick,
-    /// The chance of a goal, 0 to 1.
+    /// Probability of a goal, 0 to 1.
     chance: f32,
 }
 
@@ -53,7 +53,7 @@ fn is_pressed(belief: &Belief) -> bool {
     belief.nearest_opponent(belief.pose.position).is_some_and(|(_, distance)| distance < PRESSED_WITHIN)
 }
 
-/// A short kick on towards where shots come from best.
+/// A short kick towards the best place for shots.
 pub fn push_on(belief: &Belief, attacked: GoalEnd) -> Intent {
     let place = shooting_place(belief, attacked);
     skills::shoot(belief, belief.pose.position.direction_to(place), LeggedKick::ForwardSoft)
@@ -90,7 +90,7 @@ fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     best.map(|(_, shot)| shot)
 }
 
-/// The chance that a kick nominally `length` long rolls beyond `distance`.
+/// Probability that a kick nominally `length` long rolls beyond `distance`.
 fn reaches(length: f32, distance: f32) -> f32 {
     // The logistic curve of slope 1.7 is the normal distribution within 0.01.
     let margin = (length - distance) / (KICK_LENGTH_SPREAD * length);
@@ -101,7 +101,7 @@ fn reaches(length: f32, distance: f32) -> f32 {
 struct Fan {
     from: Point<Field>,
     right: Angle,
-    /// Between neighbouring rays, rad.
+    /// Angle between neighbouring rays, rad.
     step: f32,
     /// The rays' directions, of length 1.
     along: [Vector<Field>; RAYS],
@@ -146,7 +146,7 @@ impl Fan {
         let body = belief.league().robot().radius + belief.league().ball().radius;
         for &opponent in &belief.opponents {
             let to = opponent - self.from;
-            // A ball that stops before it is covered for certain.
+            // A ball that stops before the opponent is certainly covered.
             let Some(time) = rolling.travel_time(speed, to.norm()) else { continue };
             let covered = body + sidestep(time);
             for (along, free) in self.along.iter().zip(&mut free) {
@@ -179,25 +179,26 @@ fn sidestep(time: f32) -> f32 {
 
 /// Kicks to shoot with: the hard one, and from near the goal the head kicks, which save turning.
 const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, LeggedKick::Right];
-/// A shot with this chance is taken at once: about the best there is against a goalie in his place.
+/// A shot with this probability is taken at once: about the best there is against a well-placed goalkeeper.
 const GOOD_SHOT: f32 = 0.3;
-/// And with this one if an opponent is about to take the ball.
+/// A shot with this probability is taken if an opponent is about to take the ball.
 const FAIR_SHOT: f32 = 0.12;
 /// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's walk.
 const PRESSED_WITHIN: f32 = 0.6;
-/// Shots come from this far before the penalty area, m: out of its goalie's reach.
+/// Shots are made from this far before the penalty area, m: out of its goalkeeper's reach.
 const SHOT_BEFORE_AREA: f32 = 0.5;
 /// The ball is carried no farther for a shot, m: 5 s of walking with it.
 const CARRIED_AT_MOST: f32 = 0.8;
-/// This far off the goal's middle axis the far post is worth waiting for, m.
+/// This far off the goal's middle axis waiting for the far post is useful, m.
 const ASIDE: f32 = 0.35;
 /// Aim while waiting, beside the goal's middle, as a share of the own distance from the axis.
 const FAR_POST: f32 = 0.4;
 /// Rays in a fan: at 1 m from the goal they stand 3° apart, a third of a kick's spread.
 const RAYS: usize = 15;
-/// Chance that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a goalie walks half a goal's width.
+/// Probability of a goal that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a
+/// goalkeeper walks half a goal's width.
 const TURN_PRICE: f32 = 0.1;
-/// A robot that stands needs this long to see a kick and to lift a leg, s.
+/// Time that a standing robot needs to perceive a kick and to lift a leg, s.
 const REACTION: f32 = 0.3;
 /// √(2π).
 const ROOT_TWO_PI: f32 = 2.506_628_3;
@@ -234,7 +235,7 @@ mod tests {
     fn a_shot_goes_where_the_goalie_is_not() {
         let shot = best_shot(&belief(1.5, 0.0, &[(2.5, 0.15)]), GoalEnd::Positive).unwrap();
         assert!(shot.direction.radians() < 0.0, "{shot:?}");
-        // Right before the goalie there is no gap at all.
+        // Directly before the goalkeeper there is no gap at all.
         assert_eq!(chance(&belief(1.5, 0.0, &[(2.05, 0.0)])), 0.0);
     }
 

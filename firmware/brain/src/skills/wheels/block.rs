@@ -1,4 +1,4 @@
-//! Block: stand on a stretch where the ball would cross it, and stop a ball that comes.
+//! Block: stand on a stretch where the ball would cross it, and stop an approaching ball.
 //!
 //! A ball that approaches: at the point of most slack on its path, by `motion::intercept`, but never behind
 //! the stretch. Otherwise: on the line from the ball to the own goal, or along the heading of its holder. The
@@ -14,7 +14,7 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::wheels::get_ball::LOOKS_AHEAD;
 
-/// Blocks on `stretch`.
+/// Blocks a ball on `stretch`.
 pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     let me = belief.pose.position;
     let Some(ball) = belief.ball else {
@@ -92,7 +92,7 @@ fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option
     crosses.then(|| stretch.from + w * share.clamp(0.0, 1.0))
 }
 
-/// A faster ball comes, m/s.
+/// A faster ball approaches, m/s.
 const COMING: f32 = 0.3;
 /// A ball that passes the stretch's ends within this is blocked there, m: a robot's width.
 const BESIDE: f32 = 0.18;
@@ -133,7 +133,7 @@ mod tests {
     fn a_shot_is_met_where_there_is_most_time_and_not_behind_the_stretch() {
         let b = rolling(belief((-4.3, 0.0, 0.0), (-1.3, 0.4)), (-3.0, 0.0));
         let to = goes_to(block(&b, line()));
-        // On its line, but no nearer the ball than helps.
+        // On its line, but no nearer the ball than useful.
         assert!((to.y() - 0.4).abs() < 1e-3 && to.x() >= -4.3 - BALL_AT - 1e-3, "{to:?}");
         // A ball too fast to be intercepted is still approached, on the stretch.
         let b = rolling(belief((-4.3, -0.5, 0.0), (-3.6, 0.45)), (-6.0, 0.0));
@@ -145,7 +145,7 @@ mod tests {
         let mut b = belief((-4.5, 0.0, 0.0), (1.5, 0.0));
         b.game.defending = GoalEnd::Negative;
         let goal_line = Segment::new(Point::new(-4.5, -0.5), Point::new(-4.5, 0.5));
-        // 0.4 m behind the ball, looking over it at the goal line's y = −0.3: 6 m on, 0.3 m aside.
+        // 0.4 m behind the ball, facing across it to the goal line's y = −0.3: 6 m on, 0.3 m aside.
         let along = Point::<Field>::new(1.5, 0.0).direction_to(Point::new(-4.5, -0.3));
         let pose =
             Pose { position: Point::new(1.5, 0.0) - geometry::Vector::polar(0.4, along), heading: along };

@@ -80,7 +80,7 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     }
     let left = limit(belief.league()) - SPARE - belief.carried();
     if left > 0.0 && held < LASTS {
-        // Slow by then: what is let go while it moves rolls on.
+        // It must be slow by then: a ball that is released while it moves rolls on.
         let slow = math::sqrt(2.0 * SLOWS * left) + CRAWL;
         return Drive { speed: drive.speed.min(slow), ..drive }.into();
     }
@@ -88,7 +88,8 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     Drive { speed: AWAY, ..Drive::bold(back, belief.pose.heading) }.into()
 }
 
-/// Two robots that press the ball against each other get nowhere: the first touch is a kick, unless it looks at its own goal.
+/// Two robots that press the ball against each other block each other: the first touch is a kick, unless the
+/// robot faces its own goal.
 fn break_free(belief: &Belief, drive: Drive) -> Drive {
     let own = belief.league().field().goal_center(belief.game.defending);
     let off = (belief.pose.position.direction_to(own) - belief.pose.heading).abs();
@@ -96,7 +97,7 @@ fn break_free(belief: &Belief, drive: Drive) -> Drive {
     Drive { kick, armed: true, ..drive }
 }
 
-/// It turns to where the ball shall go.
+/// Whether the robot turns towards the ball's target.
 fn aims(intent: &Intent) -> bool {
     matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
 }

@@ -20,7 +20,7 @@ pub fn kick(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     pass(belief, at, kick, true)
 }
 
-/// The same, but waits behind the ball, or turned with it, until it is `ready`.
+/// The same, but the robot waits behind the ball, or turned with it, until it is `ready`.
 pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> Intent {
     let ready = ready && may_kick(belief.game.phase);
     let once = belief.game.phase != Phase::Run;
@@ -46,7 +46,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
             if aimed || ball.position.distance(belief.pose.position) > BALL_AT + CLOSE {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
-                // Too near to touch it while it looks elsewhere: turn on the spot.
+                // Too near to touch the ball while it faces elsewhere: turn on the spot.
                 Drive::bold(belief.pose.position, face).into()
             }
         }
@@ -84,7 +84,7 @@ fn tolerance(distance: f32) -> f32 {
     (AIM_WIDTH / distance.max(0.1)).clamp(AIM_BEST, AIM_WORST)
 }
 
-/// The ball takes the robot's sideways speed with it.
+/// The ball keeps the robot's sideways speed.
 fn sideways(belief: &Belief) -> f32 {
     Vector::polar(1.0, belief.pose.heading).cross(belief.velocity).abs()
 }
@@ -103,13 +103,13 @@ const WAIT_OFF: f32 = 0.04;
 /// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that is missed rolls 2.4 m
 /// farther (v²/0.7), one of 2 nearly 6 m and off the field.
 const ARRIVES: f32 = 1.3;
-/// No pass is slower, m/s.
+/// Slowest pass, m/s.
 const SLOWEST: f32 = 1.5;
 /// A kick should pass its target within this, m: less than half a robot.
 const AIM_WIDTH: f32 = 0.06;
-/// No better than the heading is known, rad.
+/// Best aiming tolerance, rad: the accuracy of the heading.
 const AIM_BEST: f32 = 0.015;
-/// No worse than 3°, rad.
+/// Worst aiming tolerance, rad: 3°.
 const AIM_WORST: f32 = 0.05;
 /// Time for which a robot with the ball aims with full precision, s: half a turn with the ball takes 1.2 s.
 const AIMS_FOR: f32 = 1.4;
@@ -118,7 +118,7 @@ const AIMS_FOR: f32 = 1.4;
 const LOOSENS: f32 = 7.0;
 /// With the kicker armed it goes on by this distance, m: the reach of the break beam beyond the kicker's.
 const GOES_ON: f32 = 0.03;
-/// A robot that turns no faster than this kicks where it looks, rad/s.
+/// A robot that turns no faster than this kicks along its heading, rad/s.
 const STILL_TURNING: f32 = 0.6;
 /// Sideways speed below which it kicks, m/s.
 const STILL_SIDEWAYS: f32 = 0.15;

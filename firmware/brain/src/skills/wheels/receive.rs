@@ -14,7 +14,7 @@ use crate::skills::wheels::get_ball::{get_ball, receive_at};
 use crate::skills::wheels::kick::{kick_held, pass_speed};
 use crate::skills::{Reception, Step};
 
-/// Has a passed ball at `at`, and sends it on to `then`.
+/// Receives a passed ball at `at`, and redirects it to `then`.
 pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) -> Intent {
     if belief.holds_ball {
         return match then {
@@ -49,7 +49,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     receive_at(belief, &ball, meets + way * BALL_AT).into()
 }
 
-/// The case language's `receive_ball`: takes a ball that was passed to this robot, wherever it comes.
+/// The case language's `receive_ball`: takes a ball that was passed to this robot, anywhere near.
 pub fn take_pass(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
@@ -72,7 +72,7 @@ fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
     ball.velocity.norm() > COMING && towards && line.distance_to(at).min(line.distance_to(me)) < REACH
 }
 
-/// The kick that sends it on, and its speed, m/s.
+/// The kick that redirects it, and its speed, m/s.
 fn onwards(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let field = belief.league().field();
     let goal = field.goal_center(belief.game.defending.opposite());
@@ -101,13 +101,13 @@ fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> 
 
 /// A slower ball is stationary, m/s.
 const RESTS: f32 = 0.15;
-/// A faster one comes, m/s.
+/// A faster ball approaches, m/s.
 const COMING: f32 = 0.4;
 /// A pass that ends within this distance is fetched, m.
 const FETCHED: f32 = 1.0;
 /// A ball that passes within this distance can be taken, m.
 const REACH: f32 = 1.0;
-/// The largest angle between where the ball comes from and where it goes at first touch, rad: 60° (docs/papers.md D11).
+/// The largest angle between the ball's origin and its target at first touch, rad: 60° (docs/papers.md D11).
 const DEFLECTS: f32 = core::f32::consts::FRAC_PI_3;
 /// Share of its speed across the heading that a ball keeps in a kick (the simulator's friction, an estimate).
 const KEEPS_ACROSS: f32 = 0.7;

@@ -70,17 +70,17 @@ fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
     room
 }
 
-/// Places between the posts that are looked at.
+/// Number of aims tried between the posts.
 const AIMS: usize = 9;
 /// A shot keeps this far from a post, m: ball, half a line, and 1° from 3 m.
 const INSIDE_POST: f32 = 0.08;
-/// A gap this wide is shot through, m beside bodies' reach.
+/// A gap this wide is used for a shot, m beyond the reach of bodies.
 const GAP: f32 = 0.02;
 /// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.0;
-/// A clearance goes so far ahead, m: no aimless kick over the half (division B).
+/// Distance of a clearance, m: no aimless kick over the half (division B).
 const CLEARS_AHEAD: f32 = 2.5;
-/// And with no more than this, m/s: it stays in the field.
+/// Largest speed of a clearance, m/s: it stays in the field.
 const CLEARS_WITH: f32 = 4.0;
 /// As good as stationary, m/s.
 const RESTS: f32 = 0.2;
@@ -88,7 +88,7 @@ const RESTS: f32 = 0.2;
 const INSIDE: f32 = 1.2;
 /// Distance of a clearing target from the side line, m.
 const WING_INSIDE: f32 = 1.1;
-/// More room than this is no better, m.
+/// More room than this has no benefit, m.
 const ROOM_ENOUGH: f32 = 0.5;
 /// Radii of a robot and a ball, m.
 const BODY: f32 = 0.1115;
