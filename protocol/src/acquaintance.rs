@@ -81,7 +81,7 @@ impl Acquaintances {
                 (true, false) => Bond::Believed,
                 (true, true) => Bond::Mutual,
             };
-            // There is room: looked at above.
+            // The capacity suffices: checked above.
             let _ = mates.push(Greeted { who, life: mate.life, bond });
             self.next = (number + 1) % RobotId::COUNT as u8;
         }

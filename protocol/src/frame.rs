@@ -28,7 +28,7 @@ pub const SHORT_TAG_LEN: usize = 3;
 pub const AUDIENCE_LEN: usize = 2;
 /// Bytes of a frame with one tag that are not payload.
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
-/// The longest frame on the air (a part of the world; docs/architecture.md §6.1).
+/// The longest frame on the radio (a part of the world; docs/architecture.md §6.1).
 pub const FRAME_LEN_MAX: usize = 120;
 /// A frame's bytes.
 pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;
@@ -73,7 +73,7 @@ impl Sender {
         }
     }
 
-    /// For arrays with one place per sender.
+    /// Index for arrays with one entry per sender.
     pub const fn index(self) -> usize {
         match self {
             Self::Robot(robot) => robot.index(),
@@ -82,7 +82,7 @@ impl Sender {
     }
 }
 
-/// The host's number on the wire: the first that no robot has.
+/// The host's number on the wire: the first after the robots'.
 const HOST: u8 = RobotId::COUNT as u8;
 /// The host's number in a frame with an audience.
 const HOST_TO_SEVERAL: u8 = HOST + 1;
@@ -166,9 +166,9 @@ pub enum Refusal {
         /// The last one accepted.
         last: u32,
     },
-    /// The tag is not the key's.
+    /// The tag does not fit the key.
     Tag,
-    /// The payload is no message.
+    /// The payload does not decode.
     Payload,
     /// A sender that has not named our present boot epoch: a new one, or a recording.
     Stranger {
@@ -183,7 +183,7 @@ impl Refusal {
     /// Number of kinds.
     pub const KINDS: usize = 10;
 
-    /// The kind's place in a table of counters.
+    /// The kind's index in a table of counters.
     pub fn kind(self) -> usize {
         match self {
             Self::Length(_) => 0,
@@ -233,7 +233,7 @@ pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
 const SENDER_AT: usize = 2;
 
 impl<'a> Frame<'a> {
-    /// Reads the envelope; the tag is not looked at yet, see [`Frame::is_genuine`].
+    /// Reads the envelope; the tag is not checked yet, see [`Frame::is_genuine`].
     pub fn parse(bytes: &'a [u8], team: TeamId) -> Result<Self, Refusal> {
         let short = Refusal::Length(bytes.len());
         if bytes.len() > FRAME_LEN_MAX {

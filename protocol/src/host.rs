@@ -20,9 +20,9 @@ use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
 
-/// Robots in one part of the world, at most; more are addressed than six, and fewer fit ([`WorldPart::robots_max`]).
+/// Most robots in one part of the world; with more than six addressees fewer fit ([`WorldPart::robots_max`]).
 pub const PART_ROBOTS_MAX: usize = 6;
-/// Robots in a snapshot, at most; 11 + 11 play.
+/// Most robots in a snapshot; 11 + 11 play.
 pub const WORLD_ROBOTS_MAX: usize = 24;
 /// Parts that they need when 16 robots are addressed.
 pub const PARTS_MAX: usize = 8;
@@ -90,7 +90,7 @@ pub struct WorldPart {
     pub phase: Phase<Side>,
     /// Target of a ball placement, while one is running.
     pub placement: Option<WirePoint>,
-    /// The ball; in every part, the same.
+    /// The ball; the same in every part.
     pub ball: Option<WireBall>,
     /// Robots of both teams.
     pub robots: heapless::Vec<WireRobot, PART_ROBOTS_MAX>,
@@ -120,10 +120,10 @@ pub struct WireBall {
     /// Height, mm; 0 on the ground.
     #[serde(with = "postcard::fixint::le")]
     pub height: u16,
-    /// Along +x, mm/s.
+    /// Velocity along +x, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vx: i16,
-    /// Along +y, mm/s.
+    /// Velocity along +y, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vy: i16,
 }
@@ -135,10 +135,10 @@ pub struct WireRobot {
     pub who: WireWho,
     /// Position, mm, and heading, mrad.
     pub pose: WirePose,
-    /// Along +x, mm/s.
+    /// Velocity along +x, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vx: i16,
-    /// Along +y, mm/s.
+    /// Velocity along +y, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vy: i16,
 }
@@ -195,14 +195,14 @@ pub enum Directive {
         /// Target pose.
         pose: WirePose,
     },
-    /// Have the ball at the dribbler, then face this point.
+    /// Get the ball to the dribbler, then face this point.
     GetBall {
         /// Point to face with it; `None`: the attacked goal.
         face: Option<WirePoint>,
     },
     /// Kick the ball at a point; a shot at the goal and a clearance too.
     Kick {
-        /// At this point.
+        /// The target.
         at: WirePoint,
         /// Kick of the pass.
         kick: KickOrder,
@@ -218,7 +218,7 @@ pub enum Directive {
         /// Whether the ball may leave now.
         ready: bool,
     },
-    /// Have a passed ball at this place.
+    /// Receive a passed ball at this place.
     Receive {
         /// The interception point.
         at: WirePoint,
@@ -244,7 +244,7 @@ pub enum Directive {
     },
     /// Choose a case with the teammates under this directive, and play it.
     Gameplay {
-        /// The host's proposal.
+        /// The host's proposal of a case.
         hint: Option<Hint>,
     },
 }
@@ -252,9 +252,9 @@ pub enum Directive {
 /// Kick order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum KickOrder {
-    /// Along the ground, with this speed, cm/s.
+    /// Along the ground; speed in cm/s.
     Flat(u16),
-    /// Through the air, with this speed, cm/s.
+    /// Through the air; speed in cm/s.
     Chip(u16),
 }
 
@@ -272,7 +272,7 @@ pub struct Hint {
 /// A robot's report about itself to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Telemetry {
-    /// Bits, see [`Condition`].
+    /// Condition bits, see [`Condition`].
     pub condition: Condition,
     /// Battery, cV (1/100 V); 0 where it is not measured.
     #[serde(with = "postcard::fixint::le")]
@@ -283,7 +283,8 @@ pub struct Telemetry {
     /// Number of parts never received, by the snapshots' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
-    /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; the robot's own frames, given back, are not counted.
+    /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; echoes of the robot's own frames
+    /// are not counted.
     #[serde(with = "counts")]
     pub refused: [u16; Refusal::KINDS],
     /// The newest snapshot of which a part was received; meaningless before the first.
@@ -315,7 +316,7 @@ impl Condition {
     pub const BATTERY_LOW: Self = Self(1 << 3);
     /// The governor has limited the brain's orders.
     pub const GOVERNED: Self = Self(1 << 4);
-    /// The host has been silent for too long: brakes.
+    /// The host has been silent for too long: the robot brakes.
     pub const LINK_LOST: Self = Self(1 << 5);
 
     /// Union of both sets.
@@ -331,7 +332,7 @@ impl Condition {
 }
 
 mod counts {
-    //! Counters as two fixed bytes each.
+    //! Encodes counters as two fixed bytes each.
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use crate::frame::Refusal;

@@ -1,4 +1,4 @@
-//! `host_clock`: how old a frame of the host is, at most, on a robot's clock. Ticks of 64 µs, wrapping after 76 h.
+//! `host_clock`: maximum age of a frame of the host, on a robot's clock. Ticks of 64 µs, wrapping after 76 h.
 //!
 //! The counter of the host's frames is its clock ([`crate::host_link::HostLink::seal`]). A robot's telemetry carries the robot's
 //! clock, and a welcome the host's clock at that telemetry's arrival less this reading: the `offset`. Since no frame arrives before
@@ -14,7 +14,7 @@
 
 use crate::{Duration, Instant};
 
-/// The host's frames are refused beyond this age: then the host is silent.
+/// Maximum accepted age of the host's frames: beyond it the host is silent.
 pub const AGE_MAX: Duration = Duration::millis(200);
 /// The host's counters may run ahead of its clock by this many ticks (20 ms): it sends at most 40 frames at
 /// once. A frame that is further ahead proves that the robot's clock stood still.
@@ -25,13 +25,13 @@ pub const fn ticks(at: Instant) -> u32 {
     (at.0 >> TICK_BITS) as u32
 }
 
-/// A tick is 2⁶ µs, so that a shift does what a division would.
+/// A tick is 2⁶ µs, so that a shift replaces a division.
 pub(crate) const TICK_BITS: u32 = 6;
 
 /// A robot's estimate of its host's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostClock {
-    /// The host's clock less the robot's, at most, when it was learned.
+    /// Upper bound of the host's clock less the robot's, when it was learned.
     offset: u32,
     /// Time of that reading, on the robot's clock.
     learned: u32,
@@ -40,7 +40,7 @@ pub struct HostClock {
 /// Age of a frame by its counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
-    /// At most so old.
+    /// Maximum age.
     Within(Duration),
     /// Older than [`AGE_MAX`].
     Stale,

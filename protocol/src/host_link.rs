@@ -1,5 +1,5 @@
-//! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and knows which robots are present;
-//! [`crate::link`] is the robots'.
+//! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and tracks
+//! which robots are present; [`crate::link`] is the robots'.
 //!
 //! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more than the last where several
 //! frames go out in a tick; a robot takes a frame's age from it.

@@ -1,4 +1,4 @@
-//! `ids`: identifiers of robots, teams, cycles and cases. Ids that cannot be taken for each other.
+//! `ids`: identifiers of robots, teams, cycles and cases, as distinct types.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ pub struct RobotId(u8);
 impl RobotId {
     /// The lowest number.
     pub const ZERO: Self = Self(0);
-    /// Number of ids there are.
+    /// Number of valid ids.
     pub const COUNT: usize = 16;
 
     /// `None` above 15.
@@ -26,7 +26,7 @@ impl RobotId {
         self.0
     }
 
-    /// For arrays with one place per id.
+    /// Index for arrays with one entry per id.
     pub const fn index(self) -> usize {
         (self.0 & 0x0f) as usize
     }
@@ -37,7 +37,7 @@ impl RobotId {
     }
 }
 
-/// An id above 15.
+/// Error of an id above 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchRobot(pub u8);
 
@@ -68,7 +68,7 @@ impl fmt::Display for RobotId {
     }
 }
 
-/// A team on the air; two teams share no cycle and no key.
+/// A team in the radio network; two teams share no cycle and no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct TeamId(pub u8);
@@ -103,7 +103,7 @@ impl Who {
         Self { colour: Colour::Blue, id }
     }
 
-    /// One number for both: 0–15 yellow, 16–31 blue.
+    /// Index for both teams: 0–15 yellow, 16–31 blue.
     pub const fn slot(self) -> usize {
         let team = match self.colour {
             Colour::Yellow => 0,

@@ -29,9 +29,9 @@ pub struct Key(pub [u8; 16]);
 /// Keys of one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotKeys {
-    /// Between this robot and the host.
+    /// Key between this robot and the host.
     pub host: Key,
-    /// Among all robots of the team; the host holds it too.
+    /// Key among all robots of the team; the host holds it too.
     pub team: Key,
 }
 

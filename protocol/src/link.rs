@@ -16,7 +16,7 @@ use crate::key::Key;
 use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{Duration, Instant, RobotId, TeamId};
 
-/// A packet of the air: one whole frame.
+/// A radio packet: one whole frame.
 pub type Packet = FrameBytes;
 
 /// An accepted frame.
@@ -133,7 +133,7 @@ impl Link {
         *sender = sender.saturating_sub(self.echoes.min(u32::from(u16::MAX)) as u16);
     }
 
-    /// The first checks: length, id, epoch and counter.
+    /// The first checks: length, team, sender, epoch and counter.
     fn envelope<'a>(&mut self, packet: &'a [u8]) -> Result<Frame<'a>, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         if frame.sender == Sender::Robot(self.me) {
@@ -156,7 +156,7 @@ impl Link {
 
     fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = self.envelope(packet)?;
-        // A tag costs: what is for another receiver is not opened.
+        // Tags are expensive: a frame for another receiver is not opened.
         if !self.is_for_me(&frame) {
             return Ok(Heard::Elsewhere);
         }
@@ -229,7 +229,7 @@ pub struct Pictures {
 struct Now {
     number: u8,
     parts: u8,
-    /// A bit for each part that came.
+    /// Bits of the parts received.
     came: u8,
 }
 
@@ -277,7 +277,7 @@ pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId
     decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
 }
 
-/// As [`overhear`], for the host's packets, read in the place of `reader`.
+/// As [`overhear`], for the host's packets, read in `reader`'s place.
 pub fn overhear_host(
     packet: &[u8],
     team: TeamId,
@@ -313,13 +313,13 @@ pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> Packet {
 }
 
 pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {
-    // There is one for each kind.
+    // There is one counter for each kind.
     if let Some(count) = refused.get_mut(refusal.kind()) {
         *count = count.saturating_add(1);
     }
 }
 
-/// The message, if the payload is one to its last byte and its ids exist.
+/// Decodes a message that ends with the payload's last byte and whose ids exist.
 pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option<T> {
     let (message, rest) = postcard::take_from_bytes::<T>(payload).ok()?;
     rest.is_empty().then_some(message)

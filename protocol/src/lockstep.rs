@@ -1,4 +1,4 @@
-//! `lockstep`: lockstep between simulator and robot computer. One question, one answer, a tick at a time
+//! `lockstep`: lockstep between simulator and robot computer: one request, one answer, a tick at a time
 //! (docs/architecture.md §7.2).
 //!
 //! The simulator sends [`ToRobot::Setup`] once per boot epoch and then a [`ToRobot::Tick`] per brain step;
@@ -14,8 +14,8 @@ use crate::robot_io::{ActuatorFrame, SensorFrame};
 /// Radio packets handed to a robot in one tick; the simulator keeps further ones for the next. Eleven robots'
 /// world in four parts, a command, a welcome and a beacon of each of ten teammates.
 pub const AIR_IN_MAX: usize = 16;
-/// Bytes of packets handed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it stays within
-/// [`MESSAGE_LEN_MAX`].
+/// Bytes of packets passed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it
+/// stays within [`MESSAGE_LEN_MAX`].
 pub const AIR_IN_BYTES_MAX: usize = 1_280;
 /// Packets a robot may send in one tick.
 pub const AIR_OUT_MAX: usize = 6;
@@ -42,9 +42,9 @@ pub enum ToRobot<'a> {
 /// Input of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickIn<'a> {
-    /// Number of the tick; the answer carries it back.
+    /// Number of the tick; the answer returns it.
     pub seq: u32,
-    /// The time now.
+    /// Time of the tick.
     pub now: Instant,
     /// Packets that arrived, in order.
     #[serde(borrow)]
@@ -60,7 +60,7 @@ pub enum FromRobot<'a> {
     Hello,
     /// The set-up was accepted.
     Ready,
-    /// The set-up could not be read, or the library in flash is not one.
+    /// The set-up, or the library in flash, could not be read.
     Unusable,
     /// A tick's answer.
     #[serde(borrow)]
@@ -70,7 +70,7 @@ pub enum FromRobot<'a> {
 /// Output of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickOut<'a> {
-    /// The tick answered.
+    /// Number of the tick that is answered.
     pub seq: u32,
     /// The actuator orders; `None` without new ones.
     pub actuators: Option<ActuatorFrame>,

@@ -20,7 +20,7 @@ pub const PAGE_LEN: usize = 64;
 const USED: usize = CHECKED + 8;
 const CHECKED: usize = 40;
 const MAGIC: [u8; 4] = *b"1-2K";
-/// 1 held the team's key.
+/// Version of the page; version 1 held the team's key.
 const VERSION: u8 = 2;
 
 /// Content of a robot's page.
@@ -43,7 +43,7 @@ pub enum ProvisionError {
     Empty,
     /// Written for another version of the firmware.
     Version(u8),
-    /// Written halfway, or damaged.
+    /// Written partly, or damaged.
     Damaged,
     /// The keys are derived from the team key of zeros, which is public.
     OpenKey,

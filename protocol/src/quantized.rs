@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 /// A place on the field, whole millimetres, ±32.767 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub struct WirePoint {
-    /// Along +x, mm.
+    /// Coordinate along +x, mm.
     #[serde(with = "postcard::fixint::le")]
     pub x: i16,
-    /// Along +y, mm.
+    /// Coordinate along +y, mm.
     #[serde(with = "postcard::fixint::le")]
     pub y: i16,
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Duration;
 
-/// Opponents a robot can see at once: a whole team of the largest league.
+/// Most opponents a robot can detect at once: a whole team of the largest league.
 pub const OPPONENTS_MAX: usize = 11;
 
 /// Measurements of a robot at one moment.
@@ -18,9 +18,9 @@ pub struct SensorFrame {
     /// Own pose as the robot's camera measures it; a robot on wheels has no camera and knows its pose from
     /// its host alone.
     pub pose: Option<Pose<Field>>,
-    /// The ball, if it is seen.
+    /// The ball, if it is detected.
     pub ball: Option<BallSight>,
-    /// Opponents seen, in no meaningful order.
+    /// Opponents detected, in no particular order.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
     /// The robot holds the ball: between the legs, or on the dribbler.
     pub ball_contact: bool,
@@ -35,7 +35,7 @@ pub struct SensorFrame {
 /// State of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Health {
-    /// Battery, V; `None` where it is not measured.
+    /// Battery voltage, V; `None` where it is not measured.
     pub battery: Option<f32>,
     /// The robot lies on its side.
     pub tipped: bool,
@@ -43,12 +43,12 @@ pub struct Health {
     pub kicker_ready: bool,
 }
 
-/// The ball as perceived.
+/// A detection of the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallSight {
     /// Measured position.
     pub position: Point<Field>,
-    /// Standard deviation of that, m.
+    /// Standard deviation of the position, m.
     pub sigma: f32,
     /// Age of the sensor frame.
     pub age: Duration,
@@ -89,18 +89,18 @@ pub enum LeggedPrimitive {
     Kick(LeggedKick),
 }
 
-/// The kicks a walking robot has; directions relative to where it faces.
+/// Kicks of a walking robot; directions relative to its heading.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum LeggedKick {
-    /// Short, straight ahead.
+    /// Short kick straight ahead.
     ForwardSoft,
-    /// Long, straight ahead.
+    /// Long kick straight ahead.
     ForwardHard,
     /// Head kick to the left.
     Left,
     /// Head kick to the right.
     Right,
-    /// Straight ahead, meant to roll this far, m.
+    /// Pass straight ahead, nominally this far, m.
     Pass(f32),
 }
 

@@ -92,7 +92,7 @@ pub struct Beacon {
     pub role: Role,
 }
 
-/// Ball as seen by the sender.
+/// Ball as detected by the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BallReport {
     /// Position of the ball.
@@ -145,7 +145,7 @@ impl CycleState {
         known.is_none_or(|known| self > known)
     }
 
-    /// The gameplay that runs, if one does.
+    /// The running gameplay, if there is one.
     pub fn play(&self) -> Option<&Play> {
         match &self.decision {
             Decision::Play(play) => Some(play),
@@ -191,7 +191,7 @@ impl Play {
 pub enum Closure {
     /// Every robot involved reported the end of its actions.
     Finished,
-    /// There was no case; time to try again.
+    /// There was no case; the waiting time before the next try is over.
     NoCase,
     /// A robot involved stopped it.
     Aborted {
@@ -233,7 +233,7 @@ pub enum Progress {
     Idle,
     /// Walking to its adapted position.
     Adapt {
-        /// It is there.
+        /// Whether it has arrived.
         arrived: bool,
     },
     /// At its actions.
@@ -243,7 +243,7 @@ pub enum Progress {
     },
     /// Waiting for the end of the cycle.
     WaitEnd {
-        /// It was involved and has finished its actions.
+        /// Whether it was involved and has finished its actions.
         finished: bool,
     },
 }
@@ -251,7 +251,7 @@ pub enum Progress {
 /// Role of a robot while it plays no case (paper §5: possessor and backers-up).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Role {
-    /// Bound by a case, or standing still.
+    /// Plays a case, or stands still.
     #[default]
     None,
     /// Gets the ball.

@@ -160,19 +160,19 @@ const STUCK_FOR: Duration = Duration::millis(200);
 const SHAKES: u16 = 8;
 /// Turning rate of a standing gyroscope, rad/s: noise of 0.3° a second, and a margin.
 const UNREST: f32 = 0.1;
-/// A zero further off is none, rad/s: data sheets allow 1° a second.
+/// A larger offset is invalid, rad/s: data sheets allow 1° a second.
 const ZERO_MAX: f32 = 0.05;
-/// Readings that make a zero: half a second of a millisecond each.
+/// Number of readings for an offset: half a second of a millisecond each.
 const STILL_SAMPLES: u16 = 500;
-/// Less of the acceleration upwards is lying, g: 60° from upright.
+/// Upward part of the acceleration below which the robot lies, g: 60° from upright.
 const UPRIGHT: f32 = 0.5;
-/// A kick or a bump is over by then.
+/// Duration after which a kick or a bump is over.
 const TILT_FOR: Duration = Duration::millis(300);
 /// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without (to be
 /// measured on a robot).
 const LAMP_HIDDEN: f32 = 0.08;
 const LAMP_SEEN: f32 = 0.16;
-/// Daylight that leaves no room for the lamp.
+/// Daylight above which the lamp cannot be distinguished.
 const BLIND: f32 = 0.8;
 
 #[cfg(test)]
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn a_wheel_that_is_driven_hard_and_does_not_move_is_told_and_heals_when_it_moves() {
         let mut encoder = Encoder::new(0.0001);
-        // One channel is broken: the count shakes.
+        // One channel is broken: the count fluctuates.
         for t in 0..200 {
             assert!(encoder.step(ms(t), (t % 2) as u16, 1.0).is_finite(), "{t} ms");
         }

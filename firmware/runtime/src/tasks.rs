@@ -75,7 +75,7 @@ pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     loop {
         let time = now();
         let due = mind.poll_timeout().map(|due| due.max(last));
-        // However much arrives, a missed deadline waits for one arrival at most.
+        // With any number of arrivals, a missed deadline waits for one of them at most.
         last = if let Some(due) = due.filter(|due| *due < time) {
             mind.handle_timeout(due);
             due
@@ -94,7 +94,7 @@ pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
 
 /// Gives `mind` the input that has waited longest; returns whether there was any.
 fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
-    // An arrival is not handed around: it is large, and every hand would copy it.
+    // An arrival is not passed by value: it is large, and every move would copy it.
     match &boxes.inbox.try_receive() {
         Ok(Arrival::Packet(packet)) => mind.handle_packet(now, packet),
         Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, picture),
@@ -129,7 +129,7 @@ pub(crate) fn now() -> Instant {
     Instant(embassy_time::Instant::now().as_ticks())
 }
 
-/// The least by which a clock moves.
+/// Smallest step of the clock.
 const CLOCK_STEP: Duration = Duration(1);
 
 // Both clocks count microseconds, so an instant is copied, not converted.

@@ -1,4 +1,4 @@
-//! `testing`: test executor and test clock. A little executor, and embassy's clock in their hands.
+//! `testing`: test executor and test clock: a small executor, and embassy's clock under its control.
 
 use std::boxed::Box;
 use std::future::Future;
@@ -70,7 +70,7 @@ impl Clock {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Moves to the first alarm not after `to`, and takes it.
+    /// Moves to the first alarm not after `to`, and removes it.
     fn next_alarm(&self, to: u64) -> Option<Waker> {
         let mut time = self.lock();
         let first = time.alarms.iter().enumerate().min_by_key(|(_, (at, _))| *at)?.0;
@@ -98,7 +98,7 @@ impl embassy_time_driver::Driver for Clock {
     }
 }
 
-/// The clock of all tests, held.
+/// The clock of all tests, locked.
 pub(crate) fn clock() -> MutexGuard<'static, Time> {
     CLOCK.lock()
 }

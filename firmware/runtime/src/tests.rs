@@ -319,7 +319,7 @@ fn picture(x: f32) -> SensorFrame {
     }
 }
 
-/// A small generator of whole numbers, for scripts.
+/// A small random generator of integers, for scripts.
 struct Random(u64);
 impl Random {
     fn below(&mut self, n: u32) -> u32 {

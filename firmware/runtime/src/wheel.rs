@@ -5,7 +5,7 @@
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
 
-/// Wheels of a robot.
+/// Number of wheels of a robot.
 pub const WHEELS: usize = 4;
 /// Period of the control loop (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
@@ -45,7 +45,7 @@ impl Control {
         Self { order: None, wanted: [0.0; WHEELS], integral: [0.0; WHEELS] }
     }
 
-    /// The brain wants this from now on.
+    /// Takes the brain's new orders.
     pub fn order(&mut self, now: Instant, order: ActuatorFrame) {
         self.order = Some((now, order));
     }
@@ -76,7 +76,7 @@ impl Control {
         for (((duty, wanted), measured), integral) in
             duty.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
         {
-            // A sensor that is broken is not followed: the wheel runs open, by the motor's own constant.
+            // A broken sensor is ignored: the wheel runs open-loop, by the motor's own constant.
             let error = if measured.is_finite() { wanted - measured } else { 0.0 };
             let open = wanted * FEED_FORWARD + error * PROPORTIONAL;
             let trial = *integral + error * INTEGRAL_A_STEP;
@@ -101,8 +101,8 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
     wheels.iter().all(|speed| speed.is_finite()) && dribbler.is_finite()
 }
 
-/// An order older than this is none: five steps of the brain. The governor brakes for a silent host, this loop for a
-/// silent brain.
+/// An order older than this is invalid: five steps of the brain. The governor brakes for a silent host, this
+/// loop for a silent brain.
 pub const ORDER_STALE: Duration = Duration::millis(50);
 /// Decrease of a rim's speed in a step, m/s: the governor's 5 m/s².
 const BRAKE_A_STEP: f32 = 0.005;

@@ -20,7 +20,7 @@ use rules::{Phase, Side};
 /// Number of repetitions of each work.
 pub const ROUNDS: usize = 20;
 
-/// One thing a robot's radio does.
+/// One operation of a robot's radio.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// Seals the first message after a boot.
@@ -37,13 +37,13 @@ pub enum Work {
     OpenShort,
     /// Opens a teammate's longest beacon.
     OpenLong,
-    /// A part of the world with one robot in it.
+    /// Opens a part of the world with one robot in it.
     OpenSmallWorld,
-    /// A full part of the world.
+    /// Opens a full part of the world.
     OpenWorld,
-    /// A command to another robot.
+    /// Skips a command to another robot.
     Skip,
-    /// A frame that came before.
+    /// Refuses a frame that was received before.
     RefuseReplay,
     /// Refuses a forged frame of a teammate, as long as its longest.
     RefuseForged,
@@ -97,7 +97,7 @@ pub struct Bench {
     host: HostLink,
 }
 
-/// A work with all it needs.
+/// A work with its inputs.
 pub struct Task<'b> {
     link: &'b mut Link,
     /// Frame to open; empty for works that seal.
@@ -128,7 +128,7 @@ impl Bench {
         bench
     }
 
-    /// Everything ready: only [`Task::run`] is to be counted.
+    /// Prepares a task: only [`Task::run`] is measured.
     pub fn task(&mut self, work: Work) -> Task<'_> {
         let Self { robot, mate, host } = self;
         let mut message = None;

@@ -1,4 +1,4 @@
-//! `file`: files that others wrote, read up to a limit. Sizes in bytes.
+//! `file`: files of untrusted sources, read up to a limit. Sizes in bytes.
 
 use std::fs::{self, File, FileType};
 use std::io::{self, ErrorKind, Read};
@@ -20,7 +20,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_from(&open(path)?, limit)
 }
 
-/// The same of a file that is open already, from where it stands.
+/// The same for a file that is open already, from its present position.
 pub fn read_from(file: &File, limit: u64) -> io::Result<Vec<u8>> {
     regular(file.metadata()?.file_type())?;
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! `text`: text that others chose, made fit for a terminal, a report or a log line.
+//! `text`: text of untrusted sources, escaped for a terminal, a report or a log line.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -17,7 +17,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// The text's first `most` characters, made [`printable`]; where it is longer, `…` and how many bytes there are.
+/// The text's first `most` characters, made [`printable`]; where it is longer, `…` and the number of its
+/// bytes.
 pub fn excerpt(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         None => printable(text).into_owned(),

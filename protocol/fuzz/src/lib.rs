@@ -1,5 +1,4 @@
-//! `fuzz`: fuzz targets of every reader of external bytes. The targets of `cargo fuzz`, and of the seeded
-//! loop that CI runs.
+//! `fuzz`: fuzz targets of every reader of external bytes, for `cargo fuzz` and for the seeded loop of CI.
 //!
 //! A target panics where a reader does, where something without the key is accepted, or where a message
 //! changes in an encoding round trip.
@@ -33,7 +32,7 @@ pub const TARGETS: [Target; 6] = [
     ("ssl", league),
 ];
 
-/// A frame of the air.
+/// Target: a radio frame.
 pub fn frame(bytes: &[u8]) {
     let (team, key) = (TeamId(1), TeamKey([0x5a; 16]));
     if let Ok(frame) = Frame::parse(bytes, team) {
@@ -57,7 +56,7 @@ pub fn frame(bytes: &[u8]) {
     let _message = overhear_host(bytes, team, &TeamKey::ZERO.of_robot(RobotId::ZERO), RobotId::ZERO);
 }
 
-/// Bytes of a serial line.
+/// Target: bytes of a serial line.
 pub fn line(bytes: &[u8]) {
     let mut lines = Lines::new();
     for packet in bytes.iter().filter_map(|byte| lines.push(*byte)) {
@@ -82,14 +81,14 @@ pub fn host(bytes: &[u8]) {
     }
 }
 
-/// A message between simulator and computer.
+/// Target: a message between simulator and computer.
 pub fn lockstep(bytes: &[u8]) {
     let question = postcard::take_from_bytes::<ToRobot<'_>>(bytes);
     let answer = postcard::take_from_bytes::<FromRobot<'_>>(bytes);
     assert!(format!("{question:?} {answer:?}").len() > 2);
 }
 
-/// A packet of the league: a datagram, and a stream.
+/// Target: a packet of the league, as a datagram and as a stream.
 pub fn league(bytes: &[u8]) {
     let guessed = guess(bytes);
     for kind in [

@@ -52,7 +52,7 @@ impl Angle {
         self.0 * (180.0 / math::PI)
     }
 
-    /// The size of the turn, 0 to π.
+    /// Absolute value, 0 to π.
     #[inline]
     pub fn abs(self) -> f32 {
         self.0.abs()

@@ -20,14 +20,14 @@ pub fn sqrt(x: f32) -> f32 {
     }
 }
 
-/// √(x² + y²), without care for overflow (lengths of a field, not of a galaxy).
+/// √(x² + y²), without protection against overflow (unlikely for lengths of a field).
 #[inline]
 pub fn hypot(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
 
-/// The larger of two numbers, as `f32::max`: a NaN gives way to the other. On an M4F that one is a call; this is two
-/// comparisons, and one where the second is a known number.
+/// The larger of two numbers, as `f32::max`: of a NaN and a number it is the number. On an M4F that one is a
+/// call; this is two comparisons, and one where the second is a known number.
 #[inline]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b || b.is_nan() { a } else { b }
@@ -39,7 +39,7 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b || b.is_nan() { a } else { b }
 }
 
-/// `(sin x, cos x)`; absolute error below 2e-7 for |x| < 1,000 rad (tested), rubbish beyond 10,000.
+/// `(sin x, cos x)`; absolute error below 2e-7 for |x| < 1,000 rad (tested), invalid beyond 10,000.
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let (r, quadrant) = reduce(x);
     let (s, c) = (sin_core(r), cos_core(r));

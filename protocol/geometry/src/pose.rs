@@ -14,7 +14,7 @@ pub struct Pose<F> {
     pub heading: Angle,
 }
 
-/// Velocity and turning rate, as seen in frame `F`.
+/// Velocity and turning rate in frame `F`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Twist<F> {
@@ -42,23 +42,23 @@ impl Pose<Field> {
         Self { position: Point::new(x * 0.001, y * 0.001), heading: Angle::degrees(heading) }
     }
 
-    /// A point of the field as this robot sees it.
+    /// A point of the field in this robot's frame.
     pub fn to_body(self, point: Point<Field>) -> Point<Body> {
         let v = self.vector_to_body(point - self.position);
         Point::new(v.x(), v.y())
     }
 
-    /// A point of the body, on the field.
+    /// A point of the body, in the field frame.
     pub fn to_field(self, point: Point<Body>) -> Point<Field> {
         self.position + self.vector_to_field(Vector::new(point.x(), point.y()))
     }
 
-    /// A displacement or velocity of the field as this robot sees it.
+    /// A displacement or velocity of the field in this robot's frame.
     pub fn vector_to_body(self, v: Vector<Field>) -> Vector<Body> {
         v.rotated(-self.heading).reframed()
     }
 
-    /// A displacement or velocity of the body, on the field.
+    /// A displacement or velocity of the body, in the field frame.
     pub fn vector_to_field(self, v: Vector<Body>) -> Vector<Field> {
         v.reframed::<Field>().rotated(self.heading)
     }

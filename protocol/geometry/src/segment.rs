@@ -1,4 +1,4 @@
-//! `segment`: distance between a point and a segment. Obstacles, goal lines and ball legs ask this.
+//! `segment`: distance between a point and a segment, for obstacles, goal lines and ball legs.
 
 use crate::{Point, Vector};
 

@@ -9,7 +9,7 @@ pub enum Shape<F> {
     Disc {
         /// Centre of the disc.
         center: Point<F>,
-        /// m, ≥ 0.
+        /// Radius, m, ≥ 0.
         radius: f32,
     },
     /// All points between two corners, sides along the axes.
@@ -23,7 +23,7 @@ pub enum Shape<F> {
     Capsule {
         /// Centre line.
         spine: Segment<F>,
-        /// m, ≥ 0.
+        /// Radius, m, ≥ 0.
         radius: f32,
     },
 }

@@ -8,10 +8,10 @@ use heapless::Vec;
 
 use crate::limits::ROBOT_RADIUS;
 
-/// Shapes that one defence area is made of, at most.
+/// Most shapes of one defence area.
 pub const AREA_SHAPES_MAX: usize = 3;
 
-/// The lines of a field.
+/// Dimensions of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSpec {
     /// Distance from goal line to goal line.
@@ -36,7 +36,7 @@ pub struct FieldSpec {
     pub penalty_depth: f32,
     /// Penalty (defence) area: along the goal line.
     pub penalty_width: f32,
-    /// Penalty (defence) area: what its border looks like.
+    /// Penalty (defence) area: form of its border.
     pub penalty_form: AreaForm,
     /// Distance from the attacked goal's centre to the penalty mark.
     pub penalty_mark: f32,
@@ -55,7 +55,7 @@ pub enum AreaForm {
     QuarterCircles,
 }
 
-/// A number that no field can have.
+/// An invalid dimension of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldFault {
     /// Name of the number's field in [`FieldSpec`].
@@ -86,7 +86,7 @@ const GOAL_DEPTH_MAX: f32 = 1.0;
 const LINE_WIDTH_MAX: f32 = 0.1;
 
 impl FieldSpec {
-    /// The same field, if its numbers can be those of a field; for numbers from outside.
+    /// The same field, if its numbers are valid; for numbers from outside.
     pub fn checked(self) -> Result<Self, FieldFault> {
         let half = self.length * 0.5;
         let checks = [

@@ -1,9 +1,9 @@
-//! `game`: phases of the game. The phase of the game, as robots, host, referee and simulator name it (rules
-//! 2026, chapter on referee commands).
+//! `game`: phases of the game, common to robots, host, referee and simulator (rules 2026, chapter on referee
+//! commands).
 
 use serde::{Deserialize, Serialize};
 
-/// A team by its colour; not to be taken for the goals that case files call "yellow" and "cyan".
+/// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Colour {
     /// Yellow centre dots.
@@ -21,7 +21,7 @@ impl Colour {
         }
     }
 
-    /// The colour's name, as options and files have it.
+    /// The colour's name in options and files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Yellow => "yellow",
@@ -30,7 +30,7 @@ impl Colour {
     }
 }
 
-/// A team as seen from one of them.
+/// A team from the side of one of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Side {
     /// The own team's.
@@ -47,7 +47,7 @@ pub enum Duty {
     Player,
     /// The robot that may be in the own defence area.
     Keeper,
-    /// The one that takes our restart: it may come near the ball before it is in play.
+    /// The robot that kicks our restart: it may come near the ball before it is in play.
     Taker,
 }
 
@@ -62,11 +62,11 @@ pub enum Phase<Who> {
     Timeout(Who),
     /// This team brings the ball to the designated position.
     BallPlacement(Who),
-    /// Taking places for this team's kick-off.
+    /// Preparation of this team's kick-off.
     PrepareKickoff(Who),
     /// This team may kick off.
     Kickoff(Who),
-    /// Taking places for this team's penalty.
+    /// Preparation of this team's penalty.
     PreparePenalty(Who),
     /// This team may shoot its penalty.
     Penalty(Who),

@@ -14,7 +14,7 @@ use crate::limits::{
 };
 use crate::{Duty, FieldSpec, Phase, Side};
 
-/// The longest list of shapes: a keeper at a penalty, with room to spare.
+/// Most shapes in a list: a keeper at a penalty, with a reserve.
 pub const FORBIDDEN_MAX: usize = 12;
 
 /// Inputs that decide where a robot may be. `Side` is from its own team's side.
@@ -81,7 +81,7 @@ impl Why {
 /// A region and the reason to keep out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forbidden {
-    /// No part of the body in here.
+    /// No part of the body may be in here.
     pub shape: Shape<Field>,
     /// Reason for the region.
     pub why: Why,
@@ -90,7 +90,7 @@ pub struct Forbidden {
 /// Regions where a robot must not be, and the one it must stay in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeepOut {
-    /// No part of the body in any of these.
+    /// No part of the body may be in any of these.
     pub forbidden: Vec<Forbidden, FORBIDDEN_MAX>,
     /// The whole body must be in here: the field surface within the walls.
     pub within: Shape<Field>,

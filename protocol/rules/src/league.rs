@@ -4,9 +4,9 @@
 //! surface 6 × 4 m as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their
 //! fields; goals 0.3 m high and the penalty mark are estimates that nothing depends on.
 //!
-//! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those that the league's programs carried for the single-size
-//! field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75 m, 0.25 m of margin within
-//! the referee's walk.
+//! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those of the league's programs for the
+//! single-size field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75
+//! m, 0.25 m of margin within the referee's walk.
 //!
 //! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026, of which
 //! the 0.3 m at the wall are the goal substitution area; division B has none (chapter on substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{AreaForm, FieldSpec};
 
-/// A league's world.
+/// A league.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum League {
     /// RoboCup Four-Legged League, 2007: AIBO ERS-7 on 5.4 × 3.6 m.
@@ -31,7 +31,7 @@ pub enum League {
 /// A robot's footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// Radius of the disc that stands for it, m.
+    /// Radius of the disc that models it, m.
     pub radius: f32,
 }
 

@@ -30,7 +30,7 @@ pub enum Line {
 pub struct Crossing {
     /// Line that was crossed.
     pub line: Line,
-    /// The point of that line where the ball's centre went over it.
+    /// The point of that line where the ball's centre crossed it.
     pub at: Point<Field>,
 }
 
@@ -45,7 +45,8 @@ pub fn ball_is_out(field: &FieldSpec, ball: Point<Field>) -> bool {
     ball.x().abs() > field.length * 0.5 + over || ball.y().abs() > field.width * 0.5 + over
 }
 
-/// The line that the ball crossed between two sightings, the second of which is out; `None` while it is in.
+/// The line that the ball crossed between two observations, the second of which is out; `None` while it is
+/// in.
 ///
 /// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line, straight: at most a
 /// ball's radius off.
@@ -118,7 +119,7 @@ pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option
 pub enum InArea {
     /// No part of it.
     Out,
-    /// Some of it.
+    /// A part of the robot.
     Partly,
     /// The whole robot.
     Entirely,
@@ -135,7 +136,8 @@ pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea 
     } else if behind <= -ROBOT_RADIUS + edge && distance <= -ROBOT_RADIUS {
         InArea::Entirely
     } else {
-        // Within a robot's width of the goal line a robot hangs over it, but the part on the field may all be inside.
+        // Within a robot's width of the goal line a robot may extend beyond it, but the part on the field may
+        // all be inside.
         let on_field = Point::new(
             math::clamp(robot.x(), -field.length * 0.5 + ROBOT_RADIUS, field.length * 0.5 - ROBOT_RADIUS),
             robot.y(),
@@ -198,7 +200,7 @@ pub enum Blame {
     Both,
 }
 
-/// A collision that was too hard.
+/// A collision that was too fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crash {
     /// Team that commits the foul.

@@ -35,7 +35,7 @@ pub const PLACEMENT_TOLERANCE: f32 = 0.15;
 pub const PLACEMENT_CLEARANCE: f32 = 0.05;
 /// Play continues no earlier than this after the command to place, s (same).
 pub const PLACEMENT_TIME_MIN: f32 = 2.0;
-/// A team that failed so often places no more in this half (same).
+/// Failures after which a team places no more in this half (same).
 pub const PLACEMENT_FAILURES_MAX: u32 = 5;
 /// No placement is needed nearer than this to the target, m (same).
 pub const PLACEMENT_SKIP_DISTANCE: f32 = 1.0;
@@ -50,7 +50,7 @@ pub const GOAL_BALL_HEIGHT: f32 = 0.15;
 pub const GOAL_AFTER_FOUL: f32 = 2.0;
 /// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses, crashing).
 pub const CRASH_SPEED: f32 = 1.5;
-/// … of both where their speeds differ by less than this, m/s (same).
+/// … both teams' foul where their speeds differ by less than this, m/s (same).
 pub const CRASH_DRAWN: f32 = 0.3;
 /// The same foul that does not stop the game counts again after this, s (non stopping fouls).
 pub const FOUL_REPEAT: f32 = 2.0;
@@ -70,11 +70,11 @@ pub const HALF_TIME: f32 = 300.0;
 pub const OVERTIME_HALF_TIME: f32 = 150.0;
 /// Goals that end a game with a lead of two or more (game structure).
 pub const GOALS_MAX: u32 = 10;
-/// … and the lead that it takes (game structure).
+/// … and the lead required (game structure).
 pub const GOALS_LEAD: u32 = 2;
 /// Time-outs of a team (game structure).
 pub const TIMEOUTS: u32 = 4;
-/// Their time in all, s (game structure).
+/// Total time of a team's time-outs, s (game structure).
 pub const TIMEOUT_TIME: f32 = 300.0;
 /// Substitutions a half that are free (substitution).
 pub const SUBSTITUTIONS: u32 = 5;
@@ -82,11 +82,11 @@ pub const SUBSTITUTIONS: u32 = 5;
 pub const SUBSTITUTION_TIME: f32 = 20.0;
 /// The centre substitution area reaches this far from the halfway line, in the margin, m (substitution).
 pub const SUBSTITUTION_REACH: f32 = 1.0;
-/// A robot changes only this far from the ball, m (substitution).
+/// Least distance from the ball of a robot that is substituted, m (substitution).
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
 /// Division A's goal substitution area starts this far behind the own goal line, m (substitution).
 pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
-/// The radius that the rules take every robot to have, m (playing environment).
+/// The radius that the rules assume for every robot, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
 /// The greatest height of a robot, m (robots).
 pub const ROBOT_HEIGHT: f32 = 0.15;
@@ -98,15 +98,15 @@ pub const BALL_MASS: f32 = 0.046;
 pub const BALL_COVERED: f32 = 0.2;
 /// Teams have this long to take their places for a kick-off or penalty, s (the game controller's setting).
 pub const PREPARE_TIME: f32 = 10.0;
-/// Numbers that a robot can have: 0 to 15 (robots).
+/// Number of valid robot numbers: 0 to 15 (robots).
 pub const ROBOT_IDS: u32 = 16;
-/// Robots of a team on any field of these leagues, at most.
+/// Most robots of a team on any field of these leagues.
 pub const ROBOTS_MAX: usize = 11;
 
 /// Limits that differ between the leagues with a referee of the Small Size League.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Robots of a team, keeper included (robots).
+    /// Number of robots of a team, keeper included (robots).
     pub robots: u32,
     /// No robot may kick faster than this, m/s, in three dimensions (offenses, ball speed).
     pub ball_speed: f32,
@@ -117,7 +117,7 @@ pub struct Limits {
     pub free_kick_time: f32,
     /// The keeper's team holds the ball in its area for at most this, s (offenses).
     pub keeper_hold: f32,
-    /// Play that gets nowhere for this long is stopped, s (offenses, no progress).
+    /// Play without progress for this time is stopped, s (offenses, no progress).
     pub no_progress: f32,
     /// Whether a kick from the own half over their goal line is "aimless" (ball leaves the field).
     pub aimless_kick: bool,

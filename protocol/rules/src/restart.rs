@@ -1,5 +1,5 @@
-//! `restart`: restart positions of ball and robots. Rules of 2026, chapters "referee commands" and "ball
-//! leaves the field". Field frame, m.
+//! `restart`: restart positions of ball and robots, by the rules of 2026, chapters "referee commands" and
+//! "ball leaves the field". Field frame, m.
 
 use geometry::{Field, GoalEnd, Point, math};
 use heapless::Vec;
@@ -17,10 +17,10 @@ const FROM_LINE: f32 = 0.2;
 const SPOT_TOLERANCE: f32 = 1e-3;
 /// Steps along the border of the valid places, m, before the search halves them.
 const SPOT_STEP: f32 = 0.01;
-/// Halvings of the last step: 10 mm / 2¹⁰ is a hundredth of a millimetre.
+/// Number of halvings of the last step: 10 mm / 2¹⁰ is a hundredth of a millimetre.
 const SPOT_HALVINGS: usize = 10;
 
-/// Why no free kick is taken here.
+/// Why a spot is invalid for a free kick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpotFault {
     /// Too near to a touch line or goal line, or beyond it.
@@ -50,8 +50,8 @@ pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -
     })
 }
 
-/// The valid place for a free kick nearest to where it should be. On a field with no valid place at all: the nearest one
-/// inside the lines.
+/// The valid place for a free kick nearest to its intended spot. On a field with no valid place at all: the
+/// nearest one inside the lines.
 pub fn nearest_free_kick_spot(field: &FieldSpec, limits: &Limits, wanted: Point<Field>) -> Point<Field> {
     let inside = field.clamp(wanted, limits.spot_line_distance);
     let valid = |spot: &Point<Field>| free_kick_fault(field, limits, *spot).is_none();

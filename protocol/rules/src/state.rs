@@ -30,9 +30,9 @@ pub enum Command {
     Halt,
     /// Slow, away from the ball.
     Stop,
-    /// Take the kick-off or penalty that was prepared.
+    /// Kick the prepared kick-off or penalty.
     NormalStart,
-    /// Play on, both.
+    /// Play continues for both teams.
     ForceStart,
     /// Take places for this team's kick-off.
     PrepareKickoff(Colour),
@@ -67,7 +67,7 @@ impl Command {
     }
 }
 
-/// The part of a match.
+/// The stage of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Before the first half.
@@ -101,7 +101,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All, in the order of a match.
+    /// All stages, in the order of a match.
     pub const ALL: [Self; 14] = [
         Self::FirstHalfPre,
         Self::FirstHalf,
@@ -119,7 +119,7 @@ impl Stage {
         Self::PostGame,
     ];
 
-    /// Whether the clock of the match can run in it.
+    /// Whether the clock of the match can run in this stage.
     pub const fn is_played(self) -> bool {
         matches!(
             self,
@@ -209,7 +209,7 @@ impl GameState {
         Self { phase, command: None, since: 0, ball_at, penalty_in_play: false, later, still_until: 0 }
     }
 
-    /// The phase now.
+    /// The present phase.
     pub const fn phase(&self) -> Phase<Colour> {
         self.phase
     }
@@ -259,7 +259,7 @@ impl GameState {
         if first || follows(from, to) { Heard::Followed } else { Heard::OffGraph { from } }
     }
 
-    /// The time is `now`, µs, and the ball is seen here.
+    /// Handles the time `now`, µs, and the observed position of the ball.
     pub fn tick(&mut self, now: u64, ball: Option<Point<Field>>, limits: &Limits) -> Ticked {
         if let Some((phase, at)) = self.later
             && now >= at
@@ -336,7 +336,7 @@ pub fn follows(from: Phase<Colour>, to: Phase<Colour>) -> bool {
     }
 }
 
-/// s → µs.
+/// Converts s to µs.
 const fn micros(seconds: f32) -> u64 {
     (seconds * 1e6) as u64
 }

@@ -13,7 +13,7 @@ use crate::link::decode;
 use crate::quantized::{WirePoint, WirePose};
 
 impl HostMessage {
-    /// The message, if the payload is one to its last byte.
+    /// Decodes a message that ends with the payload's last byte.
     pub(crate) fn read(payload: &[u8]) -> Option<Self> {
         match payload.split_first() {
             Some((0, part)) => WorldPart::read(part).map(Self::World),
@@ -33,7 +33,7 @@ impl WorldPart {
         }
         let mut world = Self { picture, part, parts, phase, placement, ball, robots: heapless::Vec::new() };
         for robot in robots {
-            // There is room: counted above.
+            // The capacity suffices: counted above.
             let _ = world.robots.push(WireRobot::read(robot)?);
         }
         Some(world)

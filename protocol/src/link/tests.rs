@@ -66,7 +66,7 @@ fn tell(link: &mut Link) -> Packet {
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// A robot and its host that know each other.
+/// A robot and its host after their handshake.
 fn acquainted() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
     assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Stranger(..))));
@@ -241,7 +241,8 @@ fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
             expected[kind] += 1;
         }
     }
-    // No such sender; and our own messages, which a base station that sends to all gives us back: no sign of trouble.
+    // An invalid sender; and our own messages, echoed by a base station that sends to all: no sign of an
+    // attack.
     let mut nobody = good.clone();
     nobody[2] = 18;
     assert_eq!(a.open(NOW, &nobody), Err(Refusal::Sender(18)));

@@ -16,7 +16,7 @@
 //! | [`controller`] | [`controller::TeamToController`] and related ones | TCP 10007–10011, length-delimited |
 //! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
 //!
-//! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the files matches are kept in.
+//! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the log files of matches.
 //!
 //! Receiving vision, for example:
 //!

@@ -63,7 +63,7 @@ pub struct Referee {
     pub status_message: Option<String>,
 }
 
-/// One team's account.
+/// State of one team.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamInfo {
     /// The team's name; empty while unknown.
@@ -90,25 +90,25 @@ pub struct TeamInfo {
     /// Shell number of the keeper.
     #[prost(uint32, required, tag = "8")]
     pub goalkeeper: u32,
-    /// Fouls that count towards a yellow card.
+    /// Number of fouls that count towards a yellow card.
     #[prost(uint32, optional, tag = "9")]
     pub foul_counter: Option<u32>,
-    /// Failed placements in a row.
+    /// Number of failed placements in a row.
     #[prost(uint32, optional, tag = "10")]
     pub ball_placement_failures: Option<u32>,
     /// Whether the team can place the ball.
     #[prost(bool, optional, tag = "12")]
     pub can_place_ball: Option<bool>,
-    /// Robots it may have on the field now.
+    /// Number of robots it may have on the field now.
     #[prost(uint32, optional, tag = "13")]
     pub max_allowed_bots: Option<u32>,
     /// It requested to substitute a robot at the next opportunity.
     #[prost(bool, optional, tag = "14")]
     pub bot_substitution_intent: Option<bool>,
-    /// It failed so often that it no longer may place the ball.
+    /// Whether it failed so often that it may no longer place the ball.
     #[prost(bool, optional, tag = "15")]
     pub ball_placement_failures_reached: Option<bool>,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     #[prost(bool, optional, tag = "16")]
     pub bot_substitution_allowed: Option<bool>,
     /// Substitutions left in this half.
@@ -133,7 +133,7 @@ pub struct Point {
     pub y: f32,
 }
 
-/// The same event as several automatic referees saw it.
+/// The same event as reported by several automatic referees.
 #[derive(Clone, PartialEq, Message)]
 pub struct GameEventProposalGroup {
     /// Events as reported by each referee.

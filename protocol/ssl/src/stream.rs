@@ -7,8 +7,9 @@ use prost::Message;
 
 use crate::wire::VARINT_MAX;
 
-/// Most bytes of a message on TCP that are accepted, length excluded. The largest that is needed, a [`CiInput`] with a
-/// tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its bytes.
+/// Most bytes of a message on TCP that are accepted, length excluded. The largest one needed, a [`CiInput`]
+/// with a tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its
+/// bytes.
 ///
 /// [`CiInput`]: crate::controller::CiInput
 pub const MESSAGE_MAX: usize = 256 * 1024;
@@ -20,19 +21,19 @@ pub const DATAGRAM_MAX: usize = 65_507;
 /// 8192).
 pub const LEAGUE_DATAGRAM_MAX: usize = 8192;
 
-/// The message as it goes over TCP: its length, then its bytes.
+/// The message encoded for TCP: its length, then its bytes.
 pub fn delimited(message: &impl Message) -> Vec<u8> {
     message.encode_length_delimited_to_vec()
 }
 
-/// Takes whole messages out of what a stream brings in pieces.
+/// Extracts whole messages from the pieces of a stream.
 ///
 /// Holds at most the limit and one push more, if every push is followed by [`next_message`](Self::next_message) until it
 /// has none.
 #[derive(Debug)]
 pub struct FrameReader {
     buffer: Vec<u8>,
-    /// Bytes of `buffer` that were taken out already.
+    /// Number of bytes of `buffer` that were consumed already.
     taken: usize,
     limit: usize,
     lost: Option<StreamError>,
@@ -78,7 +79,7 @@ impl FrameReader {
         }
     }
 
-    /// Bytes of a message that is not whole yet. Not 0 when the peer closes: it was cut.
+    /// Bytes of an incomplete message. Not 0 when the peer closes: the message was truncated.
     pub fn pending(&self) -> usize {
         self.buffer.len() - self.taken
     }
@@ -94,7 +95,7 @@ pub enum StreamError {
         /// Accepted length, bytes.
         limit: usize,
     },
-    /// Ten bytes and no end of the length.
+    /// The length has ten bytes without an end.
     EndlessLength,
 }
 
@@ -117,7 +118,7 @@ impl std::fmt::Display for StreamError {
 
 impl std::error::Error for StreamError {}
 
-/// Bytes of the length itself and the length, once it is whole.
+/// Number of bytes of the length itself and the length, once it is complete.
 fn length(bytes: &[u8], limit: usize) -> Result<Option<(usize, usize)>, StreamError> {
     let mut length = 0u64;
     for (at, byte) in bytes.iter().take(VARINT_MAX).enumerate() {

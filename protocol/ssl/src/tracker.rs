@@ -1,6 +1,7 @@
 //! `tracker`: tracker packets. One [`TrackerWrapperPacket`] a datagram, to 224.5.23.2:10010.
 //!
-//! Units: m, m/s, rad, rad/s, s in the field frame. Several sources may share the port: keep them apart by `uuid`.
+//! Units: m, m/s, rad, rad/s, s in the field frame. Several sources may share the port: they are
+//! distinguished by `uuid`.
 
 use prost::{Enumeration, Message};
 
@@ -9,7 +10,7 @@ use crate::common::{Vector2, Vector3};
 /// A frame with its source.
 #[derive(Clone, PartialEq, Message)]
 pub struct TrackerWrapperPacket {
-    /// Names the source, the same through a session.
+    /// Id of the source, the same through a session.
     #[prost(string, required, tag = "1")]
     pub uuid: String,
     /// Name of the source.
@@ -26,7 +27,7 @@ pub struct TrackedFrame {
     /// Counts this source's frames.
     #[prost(uint32, required, tag = "1")]
     pub frame_number: u32,
-    /// The moment, s, on the clock of vision's `t_capture`.
+    /// Time of the frame, s, on the clock of vision's `t_capture`.
     #[prost(double, required, tag = "2")]
     pub timestamp: f64,
     /// Balls; the first is the one in play.
@@ -35,7 +36,7 @@ pub struct TrackedFrame {
     /// Robots of both teams.
     #[prost(message, repeated, tag = "4")]
     pub robots: Vec<TrackedRobot>,
-    /// The last kick while it lasts.
+    /// The last kick while its ball moves.
     #[prost(message, optional, tag = "5")]
     pub kicked_ball: Option<KickedBall>,
     /// Abilities of this source, [`Capability`].
@@ -103,7 +104,7 @@ pub struct TrackedRobot {
     pub visibility: Option<f32>,
 }
 
-/// A robot by shell number and team, as trackers name it.
+/// A robot by shell number and team, as in tracker packets.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedRobotId {
     /// Shell number, 0–15.

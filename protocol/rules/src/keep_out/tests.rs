@@ -170,7 +170,7 @@ fn no_situation_has_more_regions_than_the_list_holds() {
             for duty in DUTIES {
                 for own in [GoalEnd::Negative, GoalEnd::Positive] {
                     let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: false };
-                    // `List::add` asserts in tests; here: room is left.
+                    // `List::add` asserts in tests; here: capacity is left.
                     assert!(keep_out(&s).forbidden.len() < FORBIDDEN_MAX, "{s:?}");
                 }
             }

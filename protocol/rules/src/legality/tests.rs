@@ -37,7 +37,7 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
     let got = crossing(&field, p(-4.4, 0.2), p(-4.6, 0.3)).unwrap();
     assert_eq!(got.line, Line::Mouth(N));
     assert!(got.at.distance(p(-4.5, 0.25)) < 1e-5);
-    // First seen outside: straight over the nearest line.
+    // First observed outside: straight over the nearest line.
     let got = crossing(&field, p(9.0, -3.2), p(2.0, -3.2)).unwrap();
     assert_eq!((got.line, got.at), (Line::Touch { positive: false }, p(2.0, -3.0)));
 }

@@ -189,7 +189,7 @@ fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
     assert_eq!(state.tick(now + 2 * S - 1, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 2 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
-    // A HALT in between wins.
+    // A HALT in between takes precedence.
     let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart, Command::Halt]);
     assert_eq!(state.tick(now + 20 * S, None, &limits()), Ticked::Same);
     assert_eq!(state.phase(), Phase::Halt);
@@ -278,7 +278,7 @@ fn whatever_is_said_nobody_starts_from_a_standstill_within_two_seconds_without_s
         bits % below
     };
     let (all, mut state, mut now) = (commands(), GameState::new(), 0);
-    // The time of the first command that would have us move out of HALT or a time-out.
+    // Time of the first command that would let robots move out of HALT or a time-out.
     let (mut stands, mut called) = (false, None);
     let (mut held, mut moved) = (0, 0);
     for _ in 0..100_000 {

@@ -15,7 +15,7 @@ pub struct AutoRefRegistration {
     /// Name of the automatic referee.
     #[prost(string, required, tag = "1")]
     pub identifier: String,
-    /// Proof, where the controller has its key.
+    /// Signature, where the controller has its key.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
 }

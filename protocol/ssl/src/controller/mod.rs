@@ -23,7 +23,7 @@ pub use remote::{
 /// The controller's answer to any message.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerReply {
-    /// Accepted or not, [`StatusCode`].
+    /// Result, [`StatusCode`].
     #[prost(enumeration = "StatusCode", optional, tag = "1")]
     pub status_code: Option<i32>,
     /// Reason of a refusal.
@@ -37,7 +37,7 @@ pub struct ControllerReply {
     pub verification: Option<i32>,
 }
 
-/// Accepted or not.
+/// Result of a request.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -74,7 +74,7 @@ pub struct TeamRegistration {
     /// Must be the team's name in the controller.
     #[prost(string, required, tag = "1")]
     pub team_name: String,
-    /// Proof, where the controller has the team's key.
+    /// Signature, where the controller has the team's key.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
     /// Team colour, where both teams have one name, [`Team`].
@@ -102,7 +102,7 @@ pub enum TeamRequest {
     /// Stop or continue after a foul against us, [`AdvantageChoice`].
     #[prost(enumeration = "AdvantageChoice", tag = "3")]
     AdvantageChoice(i32),
-    /// Ask for, or take back, a substitution.
+    /// Request, or withdraw, a substitution.
     #[prost(bool, tag = "4")]
     SubstituteBot(bool),
     /// Requests a reply as a sign of life.

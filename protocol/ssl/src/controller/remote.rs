@@ -36,13 +36,13 @@ pub enum RemoteControlMessage {
     /// Make this robot the keeper.
     #[prost(int32, tag = "3")]
     DesiredKeeper(i32),
-    /// Ask for, or take back, a substitution.
+    /// Request, or withdraw, a substitution.
     #[prost(bool, tag = "4")]
     RequestRobotSubstitution(bool),
-    /// Ask for, or take back, a time-out.
+    /// Request, or withdraw, a time-out.
     #[prost(bool, tag = "5")]
     RequestTimeout(bool),
-    /// Ask for, or take back, an emergency stop.
+    /// Request, or withdraw, an emergency stop.
     #[prost(bool, tag = "6")]
     RequestEmergencyStop(bool),
 }
@@ -91,19 +91,19 @@ pub struct RemoteControlTeamState {
     /// Number of challenges left.
     #[prost(int32, optional, tag = "6")]
     pub challenge_flags_left: Option<i32>,
-    /// Robots it may have on the field.
+    /// Number of robots it may have on the field.
     #[prost(int32, optional, tag = "7")]
     pub max_robots: Option<i32>,
     /// Time left of each yellow card, s.
     #[prost(float, repeated, packed = "false", tag = "8")]
     pub yellow_cards_due: Vec<f32>,
-    /// Robots it has on the field.
+    /// Number of robots it has on the field.
     #[prost(int32, optional, tag = "9")]
     pub robots_on_field: Option<i32>,
     /// Time left for time-outs, s.
     #[prost(float, optional, tag = "10")]
     pub timeout_time_left: Option<f32>,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     #[prost(bool, optional, tag = "11")]
     pub can_substitute_robot: Option<bool>,
     /// Team colour, [`Team`].

@@ -235,7 +235,7 @@ pub struct PlacementFailed {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Ball to its target, m.
+    /// Distance from the ball to its target, m.
     #[prost(float, optional, tag = "2")]
     pub remaining_distance: Option<f32>,
     /// The nearest robot of the placing team to the ball, m.
@@ -252,7 +252,7 @@ pub struct PlacementSucceeded {
     /// Duration of the preparation, s.
     #[prost(float, optional, tag = "2")]
     pub time_taken: Option<f32>,
-    /// Ball to its target, m.
+    /// Distance from the ball to its target, m.
     #[prost(float, optional, tag = "3")]
     pub precision: Option<f32>,
     /// Distance from the ball to the target, m.

@@ -1,4 +1,4 @@
-//! `event`: game events. Events that automatic referees see and the game controller decides and repeats.
+//! `event`: game events, reported by automatic referees, decided and repeated by the game controller.
 //!
 //! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is the team that caused
 //! the event.
@@ -25,7 +25,7 @@ pub struct GameEvent {
     /// Time of its creation, µs, Unix time.
     #[prost(uint64, optional, tag = "49")]
     pub created_timestamp: Option<u64>,
-    /// Names this event.
+    /// Id of this event.
     #[prost(string, optional, tag = "50")]
     pub id: Option<String>,
     /// The event and its evidence.
@@ -102,13 +102,13 @@ pub enum Event {
     /// Two robots crashed, one at fault.
     #[prost(message, tag = "22")]
     BotCrashUnique(BotCrashUnique),
-    /// The same, play went on (deprecated).
+    /// The same, play continued (deprecated).
     #[prost(message, tag = "23")]
     BotCrashUniqueSkipped(BotCrashUnique),
     /// A robot pushed another.
     #[prost(message, tag = "24")]
     BotPushedBot(BotPushedBot),
-    /// The same, play went on (deprecated).
+    /// The same, play continued (deprecated).
     #[prost(message, tag = "25")]
     BotPushedBotSkipped(BotPushedBot),
     /// A robot held the ball so that no other robot could reach it.
@@ -138,22 +138,22 @@ pub enum Event {
     /// A team committed several fouls: a yellow card.
     #[prost(message, tag = "34")]
     MultipleFouls(MultipleFouls),
-    /// A human saw minor unsporting behaviour.
+    /// A human referee saw minor unsporting behaviour.
     #[prost(message, tag = "35")]
     UnsportingBehaviorMinor(UnsportingBehaviorMinor),
-    /// A human saw major unsporting behaviour.
+    /// A human referee saw major unsporting behaviour.
     #[prost(message, tag = "36")]
     UnsportingBehaviorMajor(UnsportingBehaviorMajor),
-    /// A team wants to substitute a robot.
+    /// A team requests to substitute a robot.
     #[prost(message, tag = "37")]
     BotSubstitution(BotSubstitution),
     /// A team had too many robots on the field.
     #[prost(message, tag = "38")]
     TooManyRobots(TooManyRobots),
-    /// Perhaps a goal: the human referee decides.
+    /// A possible goal: the human referee decides.
     #[prost(message, tag = "39")]
     PossibleGoal(Goal),
-    /// The same as above, play went on (deprecated).
+    /// The same as above, play continued (deprecated).
     #[prost(message, tag = "42")]
     AttackerTouchedOpponentInDefenseAreaSkipped(AttackerTouchedOpponentInDefenseArea),
     /// A ball flew over the boundary's wall.

@@ -33,7 +33,7 @@ pub struct DefenderTooCloseToKickPoint {
     /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to ball, without the robot's radius, m.
+    /// Distance from robot to ball, without the robot's radius, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -41,10 +41,10 @@ pub struct DefenderTooCloseToKickPoint {
 /// Two robots crashed; the difference of speeds was small.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotCrashDrawn {
-    /// The yellow one.
+    /// The yellow robot.
     #[prost(uint32, optional, tag = "1")]
     pub bot_yellow: Option<u32>,
-    /// The blue one.
+    /// The blue robot.
     #[prost(uint32, optional, tag = "2")]
     pub bot_blue: Option<u32>,
     /// Position, m.
@@ -67,10 +67,10 @@ pub struct BotCrashUnique {
     /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// The faster one, of `by_team`.
+    /// The faster robot, of `by_team`.
     #[prost(uint32, optional, tag = "2")]
     pub violator: Option<u32>,
-    /// The other one, of the other team.
+    /// The other robot, of the other team.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
     /// Position, m.
@@ -153,7 +153,7 @@ pub struct DefenderInDefenseArea {
     /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to the nearest point outside the area, m.
+    /// Distance from the robot to the nearest point outside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -207,7 +207,7 @@ pub struct AttackerTooCloseToDefenseArea {
     /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to the area, m.
+    /// Distance from the robot to the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
     /// Position of the ball, m.

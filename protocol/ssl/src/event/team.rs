@@ -32,7 +32,7 @@ pub struct MultiplePlacementFailures {
     pub by_team: i32,
 }
 
-/// A human saw minor unsporting behaviour.
+/// A human referee saw minor unsporting behaviour.
 #[derive(Clone, PartialEq, Message)]
 pub struct UnsportingBehaviorMinor {
     /// The team that caused the event, [`Team`].
@@ -43,7 +43,7 @@ pub struct UnsportingBehaviorMinor {
     pub reason: String,
 }
 
-/// A human saw major unsporting behaviour.
+/// A human referee saw major unsporting behaviour.
 #[derive(Clone, PartialEq, Message)]
 pub struct UnsportingBehaviorMajor {
     /// The team that caused the event, [`Team`].
@@ -54,7 +54,7 @@ pub struct UnsportingBehaviorMajor {
     pub reason: String,
 }
 
-/// A team wants to substitute a robot.
+/// A team requests to substitute a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotSubstitution {
     /// The team that caused the event, [`Team`].

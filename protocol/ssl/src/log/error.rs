@@ -16,7 +16,7 @@ pub enum LogError {
     },
     /// Its first bytes cannot be read (or gunzipped).
     Read(io::Error),
-    /// It ends within its header.
+    /// The file ends within its header.
     Short {
         /// Number of the header's 16 bytes that the file has.
         bytes: usize,
@@ -26,7 +26,7 @@ pub enum LogError {
         /// Its first bytes.
         begins: Vec<u8>,
     },
-    /// It is of the league's first logger: Qt's strings and compression.
+    /// It is of the league's first logger, with Qt's strings and compression.
     LegacyQt,
     /// Its version is unknown.
     Version(i32),

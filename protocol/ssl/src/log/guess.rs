@@ -30,7 +30,7 @@ pub fn guess(payload: &[u8]) -> Option<MessageKind> {
     tracker.then_some(MessageKind::Tracker2020)
 }
 
-/// Numbers and wire types a message may have; numbers it must have.
+/// Field numbers and wire types a message may have; numbers it must have.
 type Known = [(u32, u8)];
 
 const REFEREE: [(u32, u8); 18] = [
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(guess(&[0xff; 40]), None);
         // A referee without its teams.
         assert_eq!(guess(&[8, 1, 16, 1, 32, 1, 40, 1, 48, 1]), None);
-        // A detection frame without its camera is no frame: field 4 is required.
+        // A detection frame without its camera is invalid: field 4 is required.
         let mut frame = DetectionFrame { frame_number: 7, ..Default::default() }.encode_to_vec();
         frame.truncate(frame.len() - 2);
         let mut packet = vec![0x0a, frame.len() as u8];

@@ -18,14 +18,14 @@ const TAIL: usize = 8 + MARK.len();
 pub enum Index {
     /// Start of each message, bytes from the file's start, rising.
     Whole(Vec<u64>),
-    /// No index: it was not written, or the file is cut.
+    /// No index: it was not written, or the file is truncated.
     Absent,
-    /// An index that cannot be right.
+    /// An invalid index, with the reason.
     Broken(&'static str),
 }
 
 impl Index {
-    /// Looks for an index at the end. Allocates no more than the file is long.
+    /// Searches an index at the end. Allocates no more bytes than the file has.
     pub fn read(file: &mut (impl Read + Seek)) -> io::Result<Self> {
         let length = file.seek(SeekFrom::End(0))?;
         if length < (FILE_HEADER + MESSAGE_HEADER + TAIL) as u64 {

@@ -38,8 +38,8 @@ const FILE_HEADER: usize = 16;
 /// Bytes before each payload: time, type, size.
 const MESSAGE_HEADER: usize = 16;
 
-/// Most bytes of a payload that are accepted: a message is a datagram, and a datagram's length has 16 bits. A larger
-/// size is taken for damage, so that damage cannot ask for gigabytes.
+/// Most bytes of a payload that are accepted: a message is a datagram, and a datagram's length has 16 bits. A
+/// larger size counts as damage, so that damage cannot request gigabytes.
 pub const PAYLOAD_MAX: usize = 65_535;
 
 /// Kind of a message in a log file.
@@ -47,7 +47,7 @@ pub const PAYLOAD_MAX: usize = 65_535;
 pub enum MessageKind {
     /// 0: no message; to be skipped.
     Blank,
-    /// 1: some message; [`guess`] finds out.
+    /// 1: unknown message; [`guess`] detects its type.
     Unknown,
     /// 2: [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
     Vision2010,
@@ -59,7 +59,7 @@ pub enum MessageKind {
     Tracker2020,
     /// 6: the [`Index`].
     Index2021,
-    /// A number that is not the league's.
+    /// A number not defined by the league.
     Other(i32),
 }
 
@@ -120,7 +120,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The message itself; `None` where there is none to have (blank, index).
+    /// The decoded message; `None` for blank messages and the index.
     pub fn decode(&self) -> Result<Option<Packet>, PacketError> {
         Packet::decode(self.kind, &self.payload)
     }

@@ -12,7 +12,7 @@ use super::{Index, LogError, LogReader, MESSAGE_HEADER};
 /// The bytes of an opened file.
 #[derive(Debug)]
 pub enum Source {
-    /// As they are.
+    /// An uncompressed file.
     Plain(BufReader<File>),
     /// A gzipped file.
     Gzip(Box<MultiGzDecoder<BufReader<File>>>),
@@ -82,7 +82,7 @@ fn source(path: &Path) -> Result<Source, LogError> {
     Ok(if gzip { Source::Gzip(Box::new(MultiGzDecoder::new(file))) } else { Source::Plain(file) })
 }
 
-/// Halves the index; `None` where an offset leads outside the file's messages.
+/// Bisects the index; `None` where an offset leads outside the file's messages.
 fn search(file: &mut BufReader<File>, offsets: &[u64], timestamp_ns: i64) -> io::Result<Option<u64>> {
     let mut low = 0;
     let mut high = offsets.len();
@@ -91,7 +91,7 @@ fn search(file: &mut BufReader<File>, offsets: &[u64], timestamp_ns: i64) -> io:
         let next = offsets.get(at + 1);
         let (time, size) = header_at(file, offsets[at])?;
         let length = u64::try_from(size).unwrap_or(u64::MAX).saturating_add(MESSAGE_HEADER as u64);
-        // The next message may lie further on: blanks between them need no offset.
+        // The next message may be farther on: blanks between them need no offset.
         plausible &= next.is_none_or(|next| offsets[at].saturating_add(length) <= *next);
         Ok(time >= timestamp_ns)
     };

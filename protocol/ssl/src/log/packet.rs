@@ -8,9 +8,9 @@ use crate::{referee, tracker, vision};
 /// A message of a log file, decoded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Packet {
-    /// Vision as of today.
+    /// Present vision packet.
     Vision(vision::WrapperPacket),
-    /// Vision until 2014.
+    /// Vision packet until 2014.
     VisionLegacy(vision::legacy::WrapperPacket),
     /// A referee packet.
     Referee(referee::Referee),
@@ -38,7 +38,7 @@ impl Packet {
         Ok(Some(packet))
     }
 
-    /// The kind a log file keeps it under.
+    /// The kind under which a log file stores it.
     pub const fn kind(&self) -> MessageKind {
         match self {
             Self::Vision(_) => MessageKind::Vision2014,

@@ -8,7 +8,7 @@ use std::io::{self, Read};
 
 use super::{FILE_HEADER, LogError, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, Record, VERSION};
 
-/// Reads messages from first to last; an iterator. Blank messages and the index are counted and passed over.
+/// Reads messages from first to last; an iterator. Blank messages and the index are counted and skipped.
 #[derive(Debug)]
 pub struct LogReader<R> {
     source: R,
@@ -25,11 +25,11 @@ pub struct LogReader<R> {
 pub struct Counts {
     /// Number of messages returned.
     pub messages: u64,
-    /// Blank messages passed over.
+    /// Number of blank messages skipped.
     pub blank: u64,
-    /// Indices passed over: 0 or 1 in a sound file.
+    /// Number of indices skipped: 0 or 1 in a valid file.
     pub index: u64,
-    /// Messages earlier than the one before them.
+    /// Number of messages earlier than the one before them.
     pub back_steps: u64,
     /// The largest such step, ns.
     pub largest_back_step_ns: u64,
@@ -38,9 +38,9 @@ pub struct Counts {
 /// How a file ends. Positions and sizes are bytes of the unzipped file.
 #[derive(Debug)]
 pub enum End {
-    /// After a whole message.
+    /// The file ends after a whole message.
     Whole,
-    /// Within a message.
+    /// The file ends within a message.
     Cut {
         /// Start of that message.
         at: u64,
@@ -51,7 +51,7 @@ pub enum End {
     Size {
         /// Start of that message.
         at: u64,
-        /// The size it claims.
+        /// The size it declares.
         size: i32,
     },
     /// The file cannot be read or gunzipped any further.
@@ -114,7 +114,7 @@ impl<R: Read> LogReader<R> {
         }
     }
 
-    /// Reads on from a message's first byte, which is byte `at` of the file.
+    /// Continues reading from a message's first byte, which is byte `at` of the file.
     pub(super) fn from_message(source: R, at: u64) -> Self {
         Self { source, at, ahead: None, last_ns: None, counts: Counts::default(), end: None }
     }
@@ -134,7 +134,7 @@ impl<R: Read> LogReader<R> {
         self.at
     }
 
-    /// Passes over messages until the first of `timestamp_ns` or later, which comes next.
+    /// Skips messages until the first of `timestamp_ns` or later, which is returned next.
     pub fn skip_to(&mut self, timestamp_ns: i64) {
         while let Some(record) = self.next() {
             if record.timestamp_ns >= timestamp_ns {

@@ -6,7 +6,7 @@ use std::io::Read;
 
 use super::{Counts, LogReader, MessageKind, Packet, PacketError};
 
-/// A file in numbers.
+/// Statistics of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// By the kind that the file names; a message of kind `Unknown` is counted there, even if its kind was
@@ -28,21 +28,21 @@ pub struct Summary {
     pub damage: String,
 }
 
-/// Messages of one kind.
+/// Statistics of one kind of messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KindSummary {
     /// Number of messages.
     pub messages: u64,
-    /// Their payloads, bytes.
+    /// Total length of their payloads, bytes.
     pub bytes: u64,
-    /// Those that could not be decoded.
+    /// Number of those that could not be decoded.
     pub undecodable: u64,
     /// Least and greatest time, ns, Unix time.
     pub span_ns: (i64, i64),
 }
 
 impl Summary {
-    /// Reads to the end.
+    /// Reads the file to its end.
     pub fn of<R: Read>(reader: &mut LogReader<R>) -> Self {
         let mut summary = Self::default();
         for (number, record) in (0..).zip(reader.by_ref()) {
@@ -71,7 +71,7 @@ impl Summary {
         summary
     }
 
-    /// Messages that could not be decoded, of all kinds.
+    /// Number of messages that could not be decoded, of all kinds.
     pub fn undecodable(&self) -> u64 {
         self.kinds.values().map(|kind| kind.undecodable).sum()
     }

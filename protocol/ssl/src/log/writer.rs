@@ -1,4 +1,4 @@
-//! `writer`: writer of log files. Writes `.log`, with an index at its end, and `.log.gz`.
+//! `writer`: writer of log files: `.log`, with an index at its end, and `.log.gz`.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -41,7 +41,7 @@ impl LogWriter<Sink> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Without an index.
+    /// A writer without an index.
     pub fn new(sink: W) -> io::Result<Self> {
         Self::begin(sink, None)
     }
@@ -99,7 +99,7 @@ impl<W: Write> LogWriter<W> {
 /// A file being written.
 #[derive(Debug)]
 pub enum Sink {
-    /// As it is.
+    /// An uncompressed file.
     Plain(BufWriter<File>),
     /// A gzipped file.
     Gzip(GzEncoder<BufWriter<File>>),

@@ -1,4 +1,4 @@
-//! `connection`: TCP connection to the game controller. Whole messages over TCP, each after its length.
+//! `connection`: TCP connection to the game controller, with whole messages, each after its length.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -37,7 +37,7 @@ impl Connection {
         Ok(Self { stream, peer, reader: FrameReader::new(MESSAGE_MAX), chunk: vec![0; CHUNK].into() })
     }
 
-    /// The other side.
+    /// Address of the peer.
     pub const fn peer(&self) -> SocketAddr {
         self.peer
     }
@@ -91,7 +91,7 @@ fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted)
 }
 
-/// A wait of zero would be forever.
+/// Shortest wait; zero would wait forever.
 const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
 /// The game controller answers within its tick of 25 ms; a peer that takes a second does not read any more.

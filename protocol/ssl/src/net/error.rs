@@ -9,7 +9,7 @@ use crate::stream::StreamError;
 /// Why a socket cannot be opened or used.
 #[derive(Debug)]
 pub enum NetError {
-    /// Another program has the port and does not share it.
+    /// Another program has bound the port and does not share it.
     Busy {
         /// Address of the port.
         address: SocketAddr,
@@ -51,11 +51,11 @@ pub enum NetError {
         /// Cause of the failure.
         error: io::Error,
     },
-    /// The other side closed the TCP connection.
+    /// The peer closed the TCP connection.
     Closed {
         /// Address of the peer.
         by: SocketAddr,
-        /// Bytes of a message that did not come whole.
+        /// Bytes of an incomplete message.
         pending: usize,
     },
     /// Bytes received by TCP are no messages of the league's.
@@ -65,7 +65,7 @@ pub enum NetError {
         /// Cause of the failure.
         error: StreamError,
     },
-    /// A message came by TCP that is not the one expected.
+    /// A message received by TCP is not of the expected type.
     NotDecoded {
         /// Address of the sender.
         from: SocketAddr,
@@ -76,7 +76,7 @@ pub enum NetError {
     System {
         /// Operation that failed.
         doing: &'static str,
-        /// On which address.
+        /// Address concerned.
         address: SocketAddr,
         /// Cause of the failure.
         error: io::Error,

@@ -1,4 +1,4 @@
-//! `interfaces`: choice of the network interface. Those with IPv4: the league's groups are IPv4.
+//! `interfaces`: choice of the network interface, among those with IPv4: the league's groups are IPv4.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};
@@ -8,7 +8,7 @@ use super::NetError;
 /// An interface that is up and has IPv4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
-    /// As the system names it: `lo`, `eth0`.
+    /// Its name in the system: `lo`, `eth0`.
     pub name: String,
     /// Its first IPv4 address.
     pub address: Ipv4Addr,
@@ -33,7 +33,7 @@ pub enum Interfaces {
     /// Every interface that can, loopback included: vision is received from any of them.
     #[default]
     All,
-    /// These, by name or IPv4 address; one that is missing or cannot is an error.
+    /// These, by name or IPv4 address; a missing or unsuitable one is an error.
     These(Vec<String>),
 }
 
@@ -43,7 +43,7 @@ impl Interfaces {
         Self::These(vec![Ipv4Addr::LOCALHOST.to_string()])
     }
 
-    /// The interfaces themselves.
+    /// The interfaces chosen.
     pub(super) fn choose(&self) -> Result<Vec<Interface>, NetError> {
         let there_are = interfaces().map_err(|error| NetError::System {
             doing: "list the interfaces of",

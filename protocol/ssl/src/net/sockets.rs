@@ -11,7 +11,7 @@ use super::error::multicast_group;
 use super::interfaces::find;
 use super::{Interface, Interfaces, NetError, interfaces};
 
-/// A datagram as it came.
+/// A received datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Datagram<'a> {
     /// Bytes of one message.
@@ -58,7 +58,7 @@ impl Receiver {
         &self.joined
     }
 
-    /// The next datagram, within `wait`; a wait of zero looks only. `None`: none came.
+    /// The next datagram, within `wait`; a wait of zero only polls. `None`: none came.
     pub fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
         self.inbox.receive(wait)
     }
@@ -113,7 +113,8 @@ impl Sender {
     }
 }
 
-/// A UDP port of one's own, for both directions: a simulator's, a robot's, or a client's that gets answers.
+/// A UDP port of one's own, for both directions: a simulator's, a robot's, or a client's that receives
+/// answers.
 ///
 /// Not shared: of several listeners on one port, a datagram sent straight to it reaches one (README, trap 7).
 #[derive(Debug)]
@@ -134,7 +135,7 @@ impl Port {
         self.inbox.address
     }
 
-    /// The next datagram, within `wait`; a wait of zero looks only. `None`: none came.
+    /// The next datagram, within `wait`; a wait of zero only polls. `None`: none came.
     pub fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
         self.inbox.receive(wait)
     }
@@ -146,7 +147,7 @@ impl Port {
     }
 }
 
-/// A bound socket and room for its largest datagram, taken once.
+/// A bound socket and a buffer for its largest datagram, allocated once.
 #[derive(Debug)]
 struct Inbox {
     socket: UdpSocket,
@@ -196,11 +197,11 @@ fn share(socket: &Socket) -> io::Result<()> {
     Ok(())
 }
 
-/// As the game controller's.
+/// Time to live, as the game controller's.
 const MULTICAST_TTL: u32 = 32;
 
-/// The largest datagram and a byte, so that none is cut unseen.
+/// The largest datagram and a byte, so that truncation is detected.
 const BUFFER: usize = crate::stream::DATAGRAM_MAX + 1;
 
-/// Bytes the system shall keep for us: half a second of vision (four cameras, 100 Hz, 2 kB) while we compute.
+/// Bytes of the system's receive buffer: half a second of vision (four cameras, 100 Hz, 2 kB).
 const RECEIVE_BUFFER: usize = 512 * 1024;

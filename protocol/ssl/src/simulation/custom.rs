@@ -1,5 +1,5 @@
-//! `custom`: custom messages of ER-Force's simulator and its relatives. Messages that travel in `custom`
-//! fields as [`crate::common::Any`].
+//! `custom`: messages of ER-Force's simulator and its relatives, which travel in `custom` fields as
+//! [`crate::common::Any`].
 //!
 //! Units: m, rad, ns as named. The `type_url` must match: ER-Force has the specification in package `sslsim`, the
 //! realism in none.
@@ -9,10 +9,10 @@ use prost::Message;
 /// Deviations of ER-Force's simulator from an ideal camera and radio.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RealismConfigErForce {
-    /// Noise of the ball's place, m (standard deviation).
+    /// Noise of the ball's position, m (standard deviation).
     #[prost(float, optional, tag = "1")]
     pub stddev_ball_p: Option<f32>,
-    /// Noise of a robot's place, m.
+    /// Noise of a robot's position, m.
     #[prost(float, optional, tag = "2")]
     pub stddev_robot_p: Option<f32>,
     /// Noise of a robot's heading, rad.
@@ -30,7 +30,7 @@ pub struct RealismConfigErForce {
     /// Overlap of the cameras' views, m.
     #[prost(float, optional, tag = "7")]
     pub camera_overlap: Option<f32>,
-    /// False balls seen at dribblers, probability.
+    /// False balls detected at dribblers, probability.
     #[prost(float, optional, tag = "8")]
     pub dribbler_ball_detections: Option<f32>,
     /// Error of the reported camera positions, m.
@@ -42,7 +42,7 @@ pub struct RealismConfigErForce {
     /// Feedback lost in transmission, probability.
     #[prost(float, optional, tag = "11")]
     pub robot_response_loss: Option<f32>,
-    /// Balls not seen, probability a frame.
+    /// Balls not detected, probability a frame.
     #[prost(float, optional, tag = "12")]
     pub missing_ball_detections: Option<f32>,
     /// Latency from camera frame to packet, ns.
@@ -54,13 +54,13 @@ pub struct RealismConfigErForce {
     /// Simulate the dribbler's roller instead of a force.
     #[prost(bool, optional, tag = "15")]
     pub simulate_dribbling: Option<bool>,
-    /// Shift of what is seen, growing with the distance to the camera's centre, m.
+    /// Shift of detections, growing with the distance to the camera's centre, m.
     #[prost(float, optional, tag = "16")]
     pub object_position_offset: Option<f32>,
-    /// Robots not seen, probability a frame.
+    /// Robots not detected, probability a frame.
     #[prost(float, optional, tag = "17")]
     pub missing_robot_detections: Option<f32>,
-    /// Command to effect, ns.
+    /// Latency from command to effect, ns.
     #[prost(uint64, optional, tag = "18")]
     pub command_delay: Option<u64>,
 }
@@ -68,7 +68,7 @@ pub struct RealismConfigErForce {
 /// Dimensions of a robot's dribbler opening.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotSpecErForce {
-    /// Centre to the kicker, m.
+    /// Distance from the centre to the kicker, m.
     #[prost(float, optional, tag = "1")]
     pub shoot_radius: Option<f32>,
     /// Width of the dribbler, m.

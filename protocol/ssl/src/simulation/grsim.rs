@@ -24,7 +24,7 @@ pub struct GrsimCommands {
     /// True: for yellow.
     #[prost(bool, required, tag = "2")]
     pub isteamyellow: bool,
-    /// One a robot.
+    /// Commands, one per robot.
     #[prost(message, repeated, tag = "3")]
     pub robot_commands: Vec<GrsimRobotCommand>,
 }
@@ -35,10 +35,10 @@ pub struct GrsimRobotCommand {
     /// Shell number, 0–15.
     #[prost(uint32, required, tag = "1")]
     pub id: u32,
-    /// Kick along the ground, m/s; 0: none.
+    /// Speed of a kick along the ground, m/s; 0: none.
     #[prost(float, required, tag = "2")]
     pub kickspeedx: f32,
-    /// Kick upwards, m/s; with the above it makes a chip.
+    /// Speed of a kick upwards, m/s; with the above it makes a chip.
     #[prost(float, required, tag = "3")]
     pub kickspeedz: f32,
     /// Velocity forward, m/s.
@@ -50,22 +50,22 @@ pub struct GrsimRobotCommand {
     /// Turning rate, counter-clockwise, rad/s.
     #[prost(float, required, tag = "6")]
     pub velangular: f32,
-    /// The dribbler turns.
+    /// Whether the dribbler turns.
     #[prost(bool, required, tag = "7")]
     pub spinner: bool,
     /// The wheels' speeds below hold instead of the velocities above.
     #[prost(bool, required, tag = "8")]
     pub wheelsspeed: bool,
-    /// Front left, rad/s.
+    /// Speed of the front left wheel, rad/s.
     #[prost(float, optional, tag = "9")]
     pub wheel1: Option<f32>,
-    /// Back left, rad/s.
+    /// Speed of the back left wheel, rad/s.
     #[prost(float, optional, tag = "10")]
     pub wheel2: Option<f32>,
-    /// Back right, rad/s.
+    /// Speed of the back right wheel, rad/s.
     #[prost(float, optional, tag = "11")]
     pub wheel3: Option<f32>,
-    /// Front right, rad/s.
+    /// Speed of the front right wheel, rad/s.
     #[prost(float, optional, tag = "12")]
     pub wheel4: Option<f32>,
 }
@@ -116,7 +116,7 @@ pub struct GrsimRobotReplacement {
     /// True: yellow's.
     #[prost(bool, required, tag = "5")]
     pub yellowteam: bool,
-    /// False: it is switched off, and vision does not see it. Absent: on.
+    /// False: it is switched off, and invisible to vision. Absent: on.
     #[prost(bool, optional, tag = "6")]
     pub turnon: Option<bool>,
 }
@@ -124,7 +124,7 @@ pub struct GrsimRobotReplacement {
 /// To port 30011 (blue) or 30012 (yellow) of the last commander: robots whose state changed.
 #[derive(Clone, PartialEq, Message)]
 pub struct RobotsStatus {
-    /// One a robot.
+    /// States, one per robot.
     #[prost(message, repeated, tag = "1")]
     pub robots_status: Vec<RobotStatus>,
 }
@@ -135,13 +135,13 @@ pub struct RobotStatus {
     /// Shell number, 0–15.
     #[prost(int32, required, tag = "1")]
     pub robot_id: i32,
-    /// The ball is at the dribbler.
+    /// Whether the ball is at the dribbler.
     #[prost(bool, required, tag = "2")]
     pub infrared: bool,
-    /// It kicks along the ground now.
+    /// Whether it kicks along the ground now.
     #[prost(bool, required, tag = "3")]
     pub flat_kick: bool,
-    /// It chips now.
+    /// Whether it chips now.
     #[prost(bool, required, tag = "4")]
     pub chip_kick: bool,
 }

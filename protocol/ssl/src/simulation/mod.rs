@@ -1,8 +1,9 @@
 //! `simulation`: simulation control. [`SimulatorCommand`] to port 10300, [`RobotControl`] to 10301 (blue) and
 //! 10302 (yellow).
 //!
-//! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm. What is
-//! absent stays as it is. What a simulator cannot do it answers with a [`SimulatorError`].
+//! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm.
+//! Absent fields stay as they are. A simulator answers requests that it cannot fulfil with a
+//! [`SimulatorError`].
 
 mod custom;
 mod grsim;
@@ -26,7 +27,7 @@ pub use robot::{
 /// Failed request to a simulator.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorError {
-    /// For programs, of the simulator's own choice.
+    /// Error code, of the simulator's own choice.
     #[prost(string, optional, tag = "1")]
     pub code: Option<String>,
     /// Text for the user.
@@ -99,7 +100,7 @@ pub struct TeleportBall {
     pub by_force: Option<bool>,
 }
 
-/// Move a robot, or take it away.
+/// Move a robot, or remove it.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TeleportRobot {
     /// Robot to be moved.
@@ -177,10 +178,10 @@ pub struct RobotSpecs {
     /// Fastest chip kick, m/s, in space.
     #[prost(float, optional, tag = "8")]
     pub max_chip_kick_speed: Option<f32>,
-    /// Centre to the flat front, m.
+    /// Distance from the centre to the flat front, m.
     #[prost(float, optional, tag = "9")]
     pub center_to_dribbler: Option<f32>,
-    /// Bounds of its motion.
+    /// Limits of its motion.
     #[prost(message, optional, tag = "10")]
     pub limits: Option<RobotLimits>,
     /// Angles of its wheels.
@@ -191,19 +192,19 @@ pub struct RobotSpecs {
     pub custom: Vec<Any>,
 }
 
-/// Bounds of a robot's motion.
+/// Limits of a robot's motion.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotLimits {
-    /// Getting faster, m/s².
+    /// Largest acceleration, m/s².
     #[prost(float, optional, tag = "1")]
     pub acc_speedup_absolute_max: Option<f32>,
-    /// Turning faster, rad/s².
+    /// Largest angular acceleration, rad/s².
     #[prost(float, optional, tag = "2")]
     pub acc_speedup_angular_max: Option<f32>,
     /// Braking, m/s².
     #[prost(float, optional, tag = "3")]
     pub acc_brake_absolute_max: Option<f32>,
-    /// Braking a turn, rad/s².
+    /// Largest angular braking, rad/s².
     #[prost(float, optional, tag = "4")]
     pub acc_brake_angular_max: Option<f32>,
     /// Speed, m/s.
@@ -217,16 +218,16 @@ pub struct RobotLimits {
 /// Directions of the wheels' axles, rad, counter-clockwise from the robot's front.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotWheelAngles {
-    /// Front right, rad.
+    /// Axle of the front right wheel, rad.
     #[prost(float, required, tag = "1")]
     pub front_right: f32,
-    /// Back right, rad.
+    /// Axle of the back right wheel, rad.
     #[prost(float, required, tag = "2")]
     pub back_right: f32,
-    /// Back left, rad.
+    /// Axle of the back left wheel, rad.
     #[prost(float, required, tag = "3")]
     pub back_left: f32,
-    /// Front left, rad.
+    /// Axle of the front left wheel, rad.
     #[prost(float, required, tag = "4")]
     pub front_left: f32,
 }

@@ -59,16 +59,16 @@ pub enum MoveCommand {
 /// Speed of each wheel at its rim.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct MoveWheelVelocity {
-    /// Front right, m/s.
+    /// Front right wheel, m/s.
     #[prost(float, required, tag = "1")]
     pub front_right: f32,
-    /// Back right, m/s.
+    /// Back right wheel, m/s.
     #[prost(float, required, tag = "2")]
     pub back_right: f32,
-    /// Back left, m/s.
+    /// Back left wheel, m/s.
     #[prost(float, required, tag = "3")]
     pub back_left: f32,
-    /// Front left, m/s.
+    /// Front left wheel, m/s.
     #[prost(float, required, tag = "4")]
     pub front_left: f32,
 }

@@ -2,13 +2,13 @@
 
 use prost::Message;
 
-/// One orange blob.
+/// Detection of one orange blob.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionBall {
     /// Confidence that it is a ball, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
-    /// Pixels of the blob.
+    /// Area of the blob, px.
     #[prost(uint32, optional, tag = "2")]
     pub area: Option<u32>,
     /// Along the field's length, mm.
@@ -28,13 +28,13 @@ pub struct DetectionBall {
     pub pixel_y: f32,
 }
 
-/// One pattern of markers.
+/// Detection of one marker pattern.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionRobot {
     /// Confidence of the pattern, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
-    /// Shell number, 0–15; absent where only the centre marker was seen.
+    /// Shell number, 0–15; absent where only the centre marker was detected.
     #[prost(uint32, optional, tag = "2")]
     pub robot_id: Option<u32>,
     /// Along the field's length, mm.
@@ -43,7 +43,7 @@ pub struct DetectionRobot {
     /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
-    /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
+    /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was detected.
     #[prost(float, optional, tag = "5")]
     pub orientation: Option<f32>,
     /// Column in the camera frame, px; simulators send dummies.

@@ -59,22 +59,23 @@ pub struct FieldCircularArc {
     pub r#type: Option<i32>,
 }
 
-/// The field's measures and lines. Neither simulator sets the fields after `field_arcs` (README, trap 8).
+/// Dimensions and lines of the field. Neither simulator sets the fields after `field_arcs` (README, trap 8).
 #[derive(Clone, PartialEq, Message)]
 pub struct GeometryFieldSize {
-    /// Goal line to goal line, mm.
+    /// Distance from goal line to goal line, mm.
     #[prost(int32, required, tag = "1")]
     pub field_length: i32,
-    /// Touch line to touch line, mm.
+    /// Distance from touch line to touch line, mm.
     #[prost(int32, required, tag = "2")]
     pub field_width: i32,
-    /// Between the posts, inside, mm.
+    /// Distance between the posts, inside, mm.
     #[prost(int32, required, tag = "3")]
     pub goal_width: i32,
-    /// Goal line to the goal's back, mm.
+    /// Distance from the goal line to the goal's back, mm.
     #[prost(int32, required, tag = "4")]
     pub goal_depth: i32,
-    /// Touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line` is absent.
+    /// Distance from the touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line`
+    /// is absent.
     #[prost(int32, required, tag = "5")]
     pub boundary_width: i32,
     /// Straight lines, in any order.
@@ -95,10 +96,10 @@ pub struct GeometryFieldSize {
     /// Width of every line, mm.
     #[prost(int32, optional, tag = "11")]
     pub line_thickness: Option<i32>,
-    /// Goal centre to penalty mark, mm.
+    /// Distance from the goal centre to the penalty mark, mm.
     #[prost(int32, optional, tag = "12")]
     pub goal_center_to_penalty_mark: Option<i32>,
-    /// Ground to the crossbar's lower edge, mm.
+    /// Height of the crossbar's lower edge, mm.
     #[prost(int32, optional, tag = "13")]
     pub goal_height: Option<i32>,
     /// Radius of the ball, mm.
@@ -107,7 +108,7 @@ pub struct GeometryFieldSize {
     /// Largest radius of a robot, mm.
     #[prost(float, optional, tag = "15")]
     pub max_robot_radius: Option<f32>,
-    /// Goal line to the wall, mm.
+    /// Distance from the goal line to the wall, mm.
     #[prost(int32, optional, tag = "16")]
     pub boundary_width_goal_line: Option<i32>,
     /// Width of the substitution area behind the goal lines, mm.
@@ -148,10 +149,10 @@ pub struct GeometryCameraCalibration {
     /// Translation from field to camera, mm, camera frame.
     #[prost(float, required, tag = "10")]
     pub tx: f32,
-    /// Translation, y, mm.
+    /// Translation along y, mm.
     #[prost(float, required, tag = "11")]
     pub ty: f32,
-    /// Translation, z, mm.
+    /// Translation along z, mm.
     #[prost(float, required, tag = "12")]
     pub tz: f32,
     /// Position of the camera along x, mm, field frame.
@@ -223,7 +224,7 @@ pub struct BallModelChipFixedLoss {
 /// Ball model of this field. Simulators differ widely: it must be read, not hard-coded.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryModels {
-    /// On the ground.
+    /// Model on the ground.
     #[prost(message, optional, tag = "1")]
     pub straight_two_phase: Option<BallModelStraightTwoPhase>,
     /// Model in the air.
@@ -234,7 +235,7 @@ pub struct GeometryModels {
 /// The field, its cameras and its ball.
 #[derive(Clone, PartialEq, Message)]
 pub struct GeometryData {
-    /// Measures and lines.
+    /// Dimensions and lines.
     #[prost(message, required, tag = "1")]
     pub field: GeometryFieldSize,
     /// Cameras: all of them, or one a packet; merge by camera id.

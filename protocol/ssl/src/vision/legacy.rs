@@ -7,7 +7,7 @@ use prost::Message;
 
 use super::{DetectionFrame, GeometryCameraCalibration};
 
-/// The field as eleven measures and three for restarts, mm.
+/// Field geometry: eleven dimensions and three for restarts, mm.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryFieldSize {
     /// Width of every line, mm.
