@@ -22,7 +22,8 @@ pub const VERSION: u8 = 2;
 pub const HEADER_LEN: usize = 11;
 /// Bytes of the tag where there is one.
 pub const TAG_LEN: usize = 8;
-/// Bytes of each tag where there are several: a forgery passes once in 2²⁴ tries, 3.7 h at 1,250 frames a second.
+/// Bytes of each tag where there are several: a forgery passes once in 2²⁴ tries, 3.7 h at 1,250 frames a
+/// second.
 pub const SHORT_TAG_LEN: usize = 3;
 /// Bytes that name the audience.
 pub const AUDIENCE_LEN: usize = 2;
@@ -262,7 +263,8 @@ impl<'a> Frame<'a> {
         Ok(Self { team, sender, audience, epoch, counter, payload })
     }
 
-    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in `reader`'s place.
+    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in
+    /// `reader`'s place.
     pub fn is_genuine(&self, bytes: &[u8], key: &Key, reader: RobotId) -> bool {
         let covered_len = bytes.len().wrapping_sub(tags_len(self.audience));
         let Some((covered, tags)) = bytes.split_at_checked(covered_len) else { return false };

@@ -71,8 +71,8 @@ pub struct Welcome {
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
     pub life: u32,
-    /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs, wrapping
-    /// ([`crate::host_clock`]).
+    /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs,
+    /// wrapping ([`crate::host_clock`]).
     #[serde(with = "postcard::fixint::le")]
     pub offset: u32,
 }

@@ -1,8 +1,9 @@
 //! `host_clock`: maximum age of a frame of the host, on a robot's clock. Ticks of 64 µs, wrapping after 76 h.
 //!
-//! The counter of the host's frames is its clock ([`crate::host_link::HostLink::seal`]). A robot's telemetry carries the robot's
-//! clock, and a welcome the host's clock at that telemetry's arrival less this reading: the `offset`. Since no frame arrives before
-//! it was sent, the offset is never less than the true difference of the clocks, so
+//! The counter of the host's frames is its clock ([`crate::host_link::HostLink::seal`]). A robot's telemetry
+//! carries the robot's clock, and a welcome the host's clock at that telemetry's arrival less this reading:
+//! the `offset`. Since no frame arrives before it was sent, the offset is never less than the true difference
+//! of the clocks, so
 //!
 //! ```text
 //! age = own clock now + offset − counter of the frame

@@ -1,8 +1,8 @@
 //! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and tracks
 //! which robots are present; [`crate::link`] is the robots'.
 //!
-//! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more than the last where several
-//! frames go out in a tick; a robot takes a frame's age from it.
+//! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more
+//! than the last where several frames go out in a tick; a robot takes a frame's age from it.
 //!
 //! **A robot is trusted** once its [`Telemetry`] names the host's present epoch, which no recording can.
 //! Until then its telemetry leads to a welcome and to nothing else, and its beacons and handshakes are
@@ -40,12 +40,14 @@ pub struct HostLink {
 pub enum Opened {
     /// A message of a trusted robot.
     Believed(RobotId, TeamMessage),
-    /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It may be welcomed.
+    /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It
+    /// may be welcomed.
     Stranger(RobotId, Telemetry),
 }
 
 impl HostLink {
-    /// A link in the epoch `epoch` of the host, at least 1; a later start must bring a larger one (seconds of a calendar do).
+    /// A link in the epoch `epoch` of the host, at least 1; a later start must bring a larger one (seconds of
+    /// a calendar do).
     pub fn new(team: TeamId, key: TeamKey, epoch: u32) -> Self {
         Self {
             team,
@@ -74,7 +76,8 @@ impl HostLink {
     /// The packet that carries `message`; empty if it is addressed to no robot.
     pub fn seal(&mut self, now: Instant, message: &HostMessage) -> Packet {
         let mut payload = [0; PAYLOAD_LEN_MAX];
-        // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
+        // A message always fits (tested with the longest there is); if it did not, silence is the safe
+        // answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         let to = match message {
             HostMessage::World(_) => None,

@@ -73,7 +73,8 @@ impl Link {
     /// The packet that carries `message`.
     pub fn seal(&mut self, message: &TeamMessage) -> Packet {
         let mut payload = [0; TEAM_MESSAGE_LEN_MAX];
-        // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
+        // A message always fits (tested with the longest there is); if it did not, silence is the safe
+        // answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);

@@ -21,7 +21,8 @@ impl Instant {
         Duration(self.0.saturating_sub(earlier.0))
     }
 
-    /// Seconds since the start of the clock (exact to the microsecond for the first 16 seconds, then to 2⁻²⁴).
+    /// Seconds since the start of the clock (exact to the microsecond for the first 16 seconds, then to
+    /// 2⁻²⁴).
     pub fn as_secs_f32(self) -> f32 {
         Duration(self.0).as_secs_f32()
     }

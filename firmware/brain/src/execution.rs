@@ -224,7 +224,8 @@ impl Execution {
         (done && !taken) || coming
     }
 
-    /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its place.
+    /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its
+    /// place.
     fn receiver_is_ready(&mut self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
         let Some((_, receive)) = self.partner_of(scene, index) else { return true };
         let Some(Progress::Execute { done }) = scene.progress_of(to) else { return false };

@@ -293,8 +293,8 @@ impl Governor {
     }
 }
 
-/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less 11 %, as a kicker may
-/// give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
+/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less 11 %, as a
+/// kicker may give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
 pub fn ball_speed(league: League) -> f32 {
     match league {
         League::Ssl2013 => 7.1,
@@ -339,9 +339,10 @@ pub const SILENCE: Duration = Duration::millis(100);
 pub const LATENCY_MAX: Duration = Duration::millis(100);
 const _: () =
     assert!(SILENCE.0 + LATENCY_MAX.0 == protocol::host_clock::AGE_MAX.0, "200 ms of age are silence");
-/// After a silence at least this long, that of a host which ended or a link that was lost, the robot waits for [`ARM_AFTER`]. Shorter
-/// ones are gaps of the radio and end with the first fresh frame: with gaps of 40–150 ms at random, half a second without one of
-/// 50 ms, which was asked for before, is rare (robots stood for 52–78 % of the time in play).
+/// After a silence at least this long, that of a host which ended or a link that was lost, the robot waits
+/// for [`ARM_AFTER`]. Shorter ones are gaps of the radio and end with the first fresh frame: with gaps of
+/// 40–150 ms at random, half a second without one of 50 ms, which was asked for before, is rare (robots stood
+/// for 52–78 % of the time in play).
 const LONG_SILENCE: Duration = Duration::millis(500);
 /// After a boot or a long silence, the host must be received for this time before the robot may move
 /// (docs/architecture.md §6.2).

@@ -1,5 +1,5 @@
-//! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators that hold it there.
-//! Field frame, SI.
+//! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators
+//! that hold it there. Field frame, SI.
 
 use brain::belief::{Ball, Belief};
 use brain::body::omni::{Drive, Drivetrain};

@@ -1,8 +1,9 @@
 //! `debian`: toolchain fallback on Debian-like systems without access to rustup's server: packages and
 //! `core`'s sources.
 //!
-//! The sources of `core` must be of exactly the compiler's release. Debian's backports carry them as `rust-src`; they are
-//! read through an apt state of our own (lists, cache, one source), so that the system's sources stay untouched.
+//! The sources of `core` must be of exactly the compiler's release. Debian's backports carry them as
+//! `rust-src`; they are read through an apt state of our own (lists, cache, one source), so that the system's
+//! sources stay untouched.
 
 use std::env;
 use std::fs;

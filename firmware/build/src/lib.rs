@@ -33,7 +33,8 @@ pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
 pub enum Install {
     /// Into the user's own directories only: rustup's targets, a cache. What a program may do unasked.
     ForUser,
-    /// System packages as well, where we are root. For the test command, which promises to install what it needs.
+    /// System packages as well, where we are root. For the test command, which promises to install what it
+    /// needs.
     SystemWide,
 }
 

@@ -50,7 +50,8 @@ impl BallModel {
         self.moving(at, velocity, f32::INFINITY)
     }
 
-    /// The path of a ball that slides until its speed is `switch_speed` (that share of the kick's speed), then rolls.
+    /// The path of a ball that slides until its speed is `switch_speed` (that share of the kick's speed),
+    /// then rolls.
     ///
     /// A position that is not a number is replaced by the origin, a velocity by zero.
     pub fn moving<F: Copy>(&self, at: Point<F>, velocity: Vector<F>, switch_speed: f32) -> BallPath<F> {

@@ -1,8 +1,8 @@
 //! `legged`: abilities of a walking robot, as its own brain assumes them. Speeds, reach and kicks of an AIBO;
 //! SI units.
 //!
-//! Walking speeds lie between CMU's own gait (180 mm/s, Tekkotsu's `CMPackWalkMC`) and learned ones (291 mm/s, UT Austin
-//! 2003; 350–450 mm/s reported for the ERS-7).
+//! Walking speeds lie between CMU's own gait (180 mm/s, Tekkotsu's `CMPackWalkMC`) and learned ones (291
+//! mm/s, UT Austin 2003; 350–450 mm/s reported for the ERS-7).
 
 /// Commanded walking speed ahead, m/s.
 pub const WALK_FORWARD: f32 = 0.3;

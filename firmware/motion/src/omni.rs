@@ -20,7 +20,8 @@ pub struct Wheels {
 }
 
 impl Default for Wheels {
-    /// A usual robot: 60° in front to make room for the dribbler, 135° behind; wheels just within the 90 mm of the hull.
+    /// A usual robot: 60° in front to make room for the dribbler, 135° behind; wheels just within the 90 mm
+    /// of the hull.
     fn default() -> Self {
         Self { angles: [-60.0, -135.0, 135.0, 60.0].map(Angle::degrees), distance: 0.081 }
     }
@@ -106,7 +107,8 @@ impl Omni {
         Twist { linear: Vector::new(x, y), angular }
     }
 
-    /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a wheel slips, m/s.
+    /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a
+    /// wheel slips, m/s.
     pub fn slip(&self, rims: Rims) -> f32 {
         let explained = self.rims(self.twist(rims));
         rims.iter().zip(explained).map(|(rim, explained)| (rim - explained).abs()).fold(0.0, f32::max)

@@ -6,8 +6,8 @@
 //! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a
 //!   trapezoid or triangle, and one angle shares the limits out between the axes. The default for a robot
 //!   that was not measured.
-//! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy, D'Andrea,
-//!   Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
+//! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy,
+//!   D'Andrea, Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
 //!
 //! Both are near-time-optimal: the axes are parallel to the frame's, and the share between them is sought
 //! until both arrive at nearly the same time. `cargo xtask bench motion` measures how near, and what it costs

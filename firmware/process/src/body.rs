@@ -1,15 +1,15 @@
 //! `body`: robot body in another simulator. Orders become `RobotControl`, `RobotControlResponse` becomes
 //! sensor frames.
 //!
-//! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so this keeps to what
-//! all of them do:
+//! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so
+//! this keeps to what all of them do:
 //! - **Motion.** Velocity in the robot's frame; ER-Force takes no wheel speeds. Wheel rims go through
 //!   `motion::omni` back to the body's motion.
-//! - **Every 10 ms, everything.** ER-Force puts a robot to standby after 0.1 s without a command and resets a dribbler
-//!   whose speed is missing, so each command holds motion and dribbler, also where nothing changed.
-//! - **Kick.** grSim kicks once per command that has a speed, ER-Force and ours whenever ball and charge are there while the
-//!   last command has one. So the speed is in a command only while a kick is wanted; absent is no kick everywhere. ER-Force knows
-//!   0° and 45° only: flat and chip.
+//! - **Every 10 ms, everything.** ER-Force puts a robot to standby after 0.1 s without a command and resets a
+//!   dribbler whose speed is missing, so each command holds motion and dribbler, also where nothing changed.
+//! - **Kick.** grSim kicks once per command that has a speed, ER-Force and ours whenever ball and charge are
+//!   there while the last command has one. So the speed is in a command only while a kick is wanted; absent
+//!   is no kick everywhere. ER-Force knows 0° and 45° only: flat and chip.
 //! - **Ball contact.** Responses list other robots too, also ones that are off the field; ER-Force's
 //!   "realistic" leaves robots out at random. Ours counts alone, and the last response holds for
 //!   [`CONTACT_HOLDS`].

@@ -5,8 +5,8 @@
 //! place the median tick of 24 trials under QEMU takes 9,169 instructions instead of 12,242, the worst 31,976
 //! instead of 40,770. The board's program `math-hash` tries every length and alignment.
 //!
-//! Registers: r0 to, r1 from, r2 length in bytes; r3 and r12 are free, r4 is kept. Nothing is returned (`__aeabi_…`), or r0
-//! (`memcpy`).
+//! Registers: r0 to, r1 from, r2 length in bytes; r3 and r12 are free, r4 is kept. Nothing is returned
+//! (`__aeabi_…`), or r0 (`memcpy`).
 
 // `__aeabi_memcpy4` and `8` are promised 4-byte alignment, so load and store multiple may be used: 4
 // instructions for 16 bytes. The others take what comes: this processor loads and stores 4 bytes at any

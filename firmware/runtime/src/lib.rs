@@ -18,7 +18,8 @@
 //! async fn brain(config: BrainConfig, base: CaseBase<'static>) { tasks::brain(&config, base, &BOXES).await }
 //! ```
 //!
-//! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped and counted.
+//! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped
+//! and counted.
 #![no_std]
 // The functions of the processor's run-time ABI are assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]

@@ -1,6 +1,7 @@
 //! `ports`: traits that a board implements: radio, sensors, actuators.
 //!
-//! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
+//! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by
+//! the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(
     async_fn_in_trait,
     reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send"

@@ -118,8 +118,8 @@ const INTEGRAL_A_STEP: f32 = 0.006;
 mod tests {
     use super::*;
 
-    /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a load that takes
-    /// 8 % of its voltage.
+    /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a
+    /// load that takes 8 % of its voltage.
     fn motor(speed: f32, duty: f32) -> f32 {
         speed + ((duty - 0.08) * 5.4 - speed) * (0.001 / 0.03)
     }

@@ -6,7 +6,8 @@
 //!   marks that turn the direction of writing. [`Printable`] does the same to everything that is written
 //!   through it, line ends aside.
 //!
-//! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no other character.
+//! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no
+//! other character.
 #![forbid(unsafe_code)]
 
 mod file;

@@ -47,7 +47,8 @@ fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(
             character,
-            // Arabic letter mark, left-to-right and right-to-left marks, embeddings, overrides and isolates: "Trojan source".
+            // Arabic letter mark, left-to-right and right-to-left marks, embeddings, overrides and isolates:
+            // "Trojan source".
             '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
             // Line and paragraph separator, byte order mark.
             | '\u{2028}' | '\u{2029}' | '\u{feff}'

@@ -71,8 +71,8 @@ pub fn floor(x: f32) -> f32 {
     micromath::F32(x).floor().0
 }
 
-/// `x` within `[low, high]`; NaN stays NaN. Never panics, unlike `f32::clamp`: bounds that contradict each other, or are NaN,
-/// give `high`, or are no bounds.
+/// `x` within `[low, high]`; NaN stays NaN. Never panics, unlike `f32::clamp`: bounds that contradict each
+/// other, or are NaN, give `high`, or are no bounds.
 #[inline]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     let x = if x < low { low } else { x };

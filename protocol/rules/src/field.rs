@@ -22,7 +22,8 @@ pub struct FieldSpec {
     pub margin: f32,
     /// Field surface beyond the goal lines, up to the wall.
     pub goal_line_margin: f32,
-    /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is none.
+    /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is
+    /// none.
     pub goal_substitution: f32,
     /// Between the goalposts.
     pub goal_width: f32,
@@ -149,8 +150,9 @@ impl FieldSpec {
     /// Region of the centre of a robot that defends `goal` and does not count as being on the field: the
     /// whole robot in the goal substitution area. `None` where that area is narrower than a robot.
     ///
-    /// The league's game controller counts every robot outside this box (its `NumTeamRobotsExcludingSubstitutionZone`), in
-    /// both divisions; the centre substitution area does not stop it from counting.
+    /// The league's game controller counts every robot outside this box (its
+    /// `NumTeamRobotsExcludingSubstitutionZone`), in both divisions; the centre substitution area does not
+    /// stop it from counting.
     pub fn goal_substitution_area(&self, goal: GoalEnd) -> Option<Shape<Field>> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         let edge = x - self.goal_substitution + ROBOT_RADIUS;
@@ -235,7 +237,8 @@ mod tests {
     fn the_round_area_of_2013_has_no_corners() {
         let field = League::Ssl2013.field();
         let goal = GoalEnd::Negative;
-        // The middle of the front, the start of the curve, 45° along it (0.8 / √2 = 0.566), and the square's corner.
+        // The middle of the front, the start of the curve, 45° along it (0.8 / √2 = 0.566), and the square's
+        // corner.
         assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.0)));
         assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.175)));
         assert!(field.in_penalty_area(goal, Point::new(-3.0 + 0.565, 0.175 + 0.565)));

@@ -97,7 +97,8 @@ pub struct KeepOut {
 }
 
 impl KeepOut {
-    /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed), if any.
+    /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed),
+    /// if any.
     pub fn offence(&self, center: Point<Field>, radius: f32) -> Option<Why> {
         let hit = self.forbidden.iter().find(|region| region.shape.distance_to(center) < radius);
         let out = self.within.distance_to(center) > -radius;
@@ -279,8 +280,8 @@ impl List {
         }
     }
 
-    /// The body touches the goal line as long as all of it is within its own width of the line, on either side; and it is
-    /// between the posts.
+    /// The body touches the goal line as long as all of it is within its own width of the line, on either
+    /// side; and it is between the posts.
     fn keeper_line(&mut self, s: &Situation) {
         let (line, sign) = (s.field.goal_line(s.own), s.own.sign() as f32);
         let strip = 2.0 * ROBOT_RADIUS;

@@ -8,8 +8,9 @@
 //! single-size field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75
 //! m, 0.25 m of margin within the referee's walk.
 //!
-//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026, of which
-//! the 0.3 m at the wall are the goal substitution area; division B has none (chapter on substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
+//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines
+//! since 2026, of which the 0.3 m at the wall are the goal substitution area; division B has none (chapter on
+//! substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
 
 use serde::{Deserialize, Serialize};
 
@@ -144,7 +145,8 @@ impl League {
     pub const fn ball(self) -> BallSpec {
         match self {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },
-            // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured (0.26–0.5).
+            // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured
+            // (0.26–0.5).
             Self::Ssl2013 | Self::DivisionB | Self::DivisionA => {
                 BallSpec { radius: 0.0215, rolling_deceleration: 0.35 }
             }

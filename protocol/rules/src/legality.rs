@@ -1,7 +1,8 @@
 //! `legality`: predicates of offences for an automatic referee, each with its rule (2026), without state.
 //!
-//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
-//! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.
+//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong
+//! to the areas and the field that they bound, so those are left over a line's outer edge. Field frame, m,
+//! m/s.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 
@@ -48,8 +49,8 @@ pub fn ball_is_out(field: &FieldSpec, ball: Point<Field>) -> bool {
 /// The line that the ball crossed between two observations, the second of which is out; `None` while it is
 /// in.
 ///
-/// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line, straight: at most a
-/// ball's radius off.
+/// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line,
+/// straight: at most a ball's radius off.
 pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> Option<Crossing> {
     if !ball_is_out(field, now) {
         return None;
@@ -82,7 +83,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     }
 }
 
-/// Whether all of the ball is in this goal: over the line, between the posts, under the upper edge of the walls.
+/// Whether all of the ball is in this goal: over the line, between the posts, under the upper edge of the
+/// walls.
 pub fn ball_in_goal(field: &FieldSpec, goal: GoalEnd, ball: Point<Field>, height: f32) -> bool {
     let depth = (ball.x() - field.goal_line(goal)) * goal.sign() as f32;
     depth > beyond(field)
@@ -102,8 +104,9 @@ pub enum NoGoal {
     Foul,
 }
 
-/// Whether a ball in the goal counts: `height` is the greatest since the scorers' last touch, m (the ball's lower side
-/// where it is known, else its centre), `since_foul` the time since their last foul that did not stop the game, s.
+/// Whether a ball in the goal counts: `height` is the greatest since the scorers' last touch, m (the ball's
+/// lower side where it is known, else its centre), `since_foul` the time since their last foul that did not
+/// stop the game, s.
 pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option<f32>) -> Option<NoGoal> {
     if robots > robots_allowed {
         Some(NoGoal::TooManyRobots)
@@ -229,8 +232,8 @@ pub fn crash(first: (Point<Field>, Vector<Field>), second: (Point<Field>, Vector
     Some(Crash { blame, speed, difference })
 }
 
-/// The keeper has turned a penalty's ball by at least 90° (where the scalar product changes its sign), which ends it without
-/// a goal.
+/// The keeper has turned a penalty's ball by at least 90° (where the scalar product changes its sign), which
+/// ends it without a goal.
 pub fn turned_back(before: Vector<Field>, after: Vector<Field>) -> bool {
     before.dot(after) <= 0.0 && before.norm() > 0.0
 }

@@ -1,17 +1,19 @@
 //! `limits`: limits of the rules. Every number of the rules that players and referee need: m, m/s, s.
 //!
-//! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a robot are
-//! measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the ball's centre.
+//! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a
+//! robot are measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the
+//! ball's centre.
 
 use crate::League;
 
 /// Robots on STOP are slower than this, m/s (referee commands, stop). Not required in ball placement
 /// (offenses).
 pub const STOP_SPEED: f32 = 1.5;
-/// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line between ball and
-/// target while opponents place, m (referee commands; offenses).
+/// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line
+/// between ball and target while opponents place, m (referee commands; offenses).
 pub const BALL_DISTANCE: f32 = 0.5;
-/// Time to brake after HALT, to slow down after STOP, to leave the opponents' defence area or the placement stadium, s.
+/// Time to brake after HALT, to slow down after STOP, to leave the opponents' defence area or the placement
+/// stadium, s.
 pub const GRACE: f32 = 2.0;
 /// On STOP and at free kicks robots keep this far from the opponents' defence area, m (offenses).
 pub const OPPONENT_AREA_DISTANCE: f32 = 0.2;
@@ -23,7 +25,8 @@ pub const KICKOFF_TIME: f32 = 10.0;
 pub const PENALTY_TIME: f32 = 10.0;
 /// All but keeper and shooter are this far behind the ball at a penalty, m (same).
 pub const PENALTY_BEHIND: f32 = 1.0;
-/// A ball this near its mark lies for a kick-off or a penalty, m (ours: the game controller starts it within 0.15 m).
+/// A ball this near its mark lies for a kick-off or a penalty, m (ours: the game controller starts it within
+/// 0.15 m).
 pub const NEAR_MARK: f32 = 0.3;
 /// Placing the ball may take this long, s (referee commands, ball placement).
 pub const PLACEMENT_TIME: f32 = 30.0;
@@ -48,7 +51,8 @@ pub const BALL_STILL: f32 = 0.05;
 pub const GOAL_BALL_HEIGHT: f32 = 0.15;
 /// No goal this soon after a foul that did not stop the game, s (scoring goals).
 pub const GOAL_AFTER_FOUL: f32 = 2.0;
-/// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses, crashing).
+/// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses,
+/// crashing).
 pub const CRASH_SPEED: f32 = 1.5;
 /// … both teams' foul where their speeds differ by less than this, m/s (same).
 pub const CRASH_DRAWN: f32 = 0.3;

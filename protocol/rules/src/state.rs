@@ -224,7 +224,8 @@ impl GameState {
         self.since
     }
 
-    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the ball is in play.
+    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the
+    /// ball is in play.
     pub const fn ball_in_play(&self) -> bool {
         match self.phase {
             Phase::Run => true,

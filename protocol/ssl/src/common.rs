@@ -1,8 +1,8 @@
 //! `common`: types shared by several of the league's messages. Teams, points, robot ids, and the two messages
 //! of protobuf itself.
 //!
-//! Units of the game controller, the tracker and the simulation protocol: metres in the field frame (origin at the
-//! centre, +x along the length, +y to the left, angles counter-clockwise).
+//! Units of the game controller, the tracker and the simulation protocol: metres in the field frame (origin
+//! at the centre, +x along the length, +y to the left, angles counter-clockwise).
 
 use prost::{Enumeration, Message};
 

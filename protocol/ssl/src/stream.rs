@@ -28,8 +28,8 @@ pub fn delimited(message: &impl Message) -> Vec<u8> {
 
 /// Extracts whole messages from the pieces of a stream.
 ///
-/// Holds at most the limit and one push more, if every push is followed by [`next_message`](Self::next_message) until it
-/// has none.
+/// Holds at most the limit and one push more, if every push is followed by
+/// [`next_message`](Self::next_message) until it has none.
 #[derive(Debug)]
 pub struct FrameReader {
     buffer: Vec<u8>,

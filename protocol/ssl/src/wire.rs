@@ -39,8 +39,8 @@ pub(crate) const FIXED32: u8 = 5;
 /// A varint of 64 bits has at most this many bytes; the last has one bit.
 pub(crate) const VARINT_MAX: usize = 10;
 
-/// A message's fields, outermost level. `Some(Err(_))` once, where the bytes are no message or hold a group, which none
-/// of the league's messages does.
+/// A message's fields, outermost level. `Some(Err(_))` once, where the bytes are no message or hold a group,
+/// which none of the league's messages does.
 #[derive(Clone, Debug)]
 pub(crate) struct Fields<'a> {
     rest: &'a [u8],

@@ -1,7 +1,8 @@
 //! `board_stm32`: board support for the STM32H743: pins, clocks and drivers only; the logic is `runtime`'s
 //! and `brain`'s (docs/architecture.md §1). README.md has the wiring.
 //!
-//! The robot is the program `onetwo-stm32` (`src/main.rs`), its parts are tried one by one by `examples/`. Empty on the PC.
+//! The robot is the program `onetwo-stm32` (`src/main.rs`), its parts are tried one by one by `examples/`.
+//! Empty on the PC.
 //!
 //! | part | module |
 //! | assignment of pins | [`pins`] |

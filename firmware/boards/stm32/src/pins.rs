@@ -1,8 +1,8 @@
 //! `pins`: pin assignment. This table is the only source; README.md lists it as wiring, and a test holds both
 //! equal.
 //!
-//! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left as they are. A line
-//! `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
+//! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left
+//! as they are. A line `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
 
 use embassy_stm32::{Peri, Peripherals, peripherals};
 
@@ -32,7 +32,8 @@ macro_rules! parts {
 }
 
 parts! {
-    /// Four motor drivers, and the one of the dribbler. Wheels in the order of the wire: front right, back right, back left, front left.
+    /// Four motor drivers, and the one of the dribbler. Wheels in the order of the wire: front right, back
+    /// right, back left, front left.
     Motors motors {
         timer: TIM1, "the wheels' PWM";
         pwm_front_right: PE9, "out: PWM of the front right wheel";

@@ -96,7 +96,8 @@ impl Brain<'_> {
         }
     }
 
-    /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in play.
+    /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in
+    /// play.
     fn is_available(&self, now: Instant) -> bool {
         self.host.as_ref().is_none_or(|host| {
             let plays = matches!(host.directive(now), Some(Directive::Gameplay { .. }));

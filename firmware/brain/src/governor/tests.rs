@@ -323,8 +323,8 @@ fn motors_are_released_half_a_second_after_a_silent_robot_stands_and_never_befor
     let silent =
         |t| Circumstances { host: Some(Hearing { frame: heard, command: heard }), ..at(t, Phase::Run) };
     let released = released_after(&mut driving(600, Phase::Run), 610, silent);
-    // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than the brake's 5 m/s²:
-    // 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
+    // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than
+    // the brake's 5 m/s²: 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
     let after = released.expect("released in the end") - 600;
     assert!((1150..=1200).contains(&after), "{after} ms");
 }

@@ -279,17 +279,20 @@ const DODGE_STEP: f32 = 0.5;
 const DODGE_FOR: Duration = Duration::millis(1500);
 /// After this time the ball is kicked in any direction.
 const HOLD_FOR: Duration = Duration::millis(3000);
-/// A kick is free if it passes every opponent's centre at this distance, m: body and ball (0.1625) and its scatter of 10° over 0.4 m.
+/// A kick is free if it passes every opponent's centre at this distance, m: body and ball (0.1625) and its
+/// scatter of 10° over 0.4 m.
 const LANE: f32 = 0.24;
 /// A lane clearer than this is no better, m.
 const LANE_ENOUGH: f32 = 0.4;
-/// A dodge aims to pass the opponent at this distance, m: [`LANE`] and what the opponent walks sideways while the leg swings.
+/// A dodge aims to pass the opponent at this distance, m: [`LANE`] and what the opponent walks sideways while
+/// the leg swings.
 const PASS_BY: f32 = 0.3;
 /// A dodge's direction is at least and at most this far off the opponent's, rad: about 35° and 70°.
 const DODGE_OFF: [f32; 2] = [0.6, 1.2];
 /// Being nearer than every opponent by more than this is no better, m: time for a grab that fails once.
 const FIRST_BY: f32 = 0.5;
-/// Prefers the side towards the field's middle axis: small enough to decide between equally clear sides alone, per m off the axis.
+/// Prefers the side towards the field's middle axis: small enough to decide between equally clear sides
+/// alone, per m off the axis.
 const INNER_SIDE: f32 = 0.05;
 /// A hard kick should end this far within the lines, m: half of its scatter in distance.
 const KICK_INSIDE: f32 = 0.3;
@@ -298,7 +301,8 @@ const ACROSS_FROM: f32 = 0.3;
 /// A robot that waits across the field waits this far ahead of the ball, m: within one pass and one
 /// adaptation.
 const ACROSS_AHEAD: f32 = 0.6;
-/// And this far off the axis, m: half a penalty area's width, where a goalie opposite the ball leaves the far post open.
+/// And this far off the axis, m: half a penalty area's width, where a goalie opposite the ball leaves the far
+/// post open.
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;

@@ -1,9 +1,9 @@
 //! `hybrid`: combination of the deliberative and the reactive approach (Ros et al. 2009, §5.4 and §7).
 //!
-//! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting plays", elsewhere
-//! cooperation is better. So the reactive behaviour competes with the retrieved case by the time to its shot, as both are
-//! expected: the case's gameplay and what is left to the goal after it, against fetching the ball and kicking it on until
-//! the goal is in reach. SI units.
+//! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting
+//! plays", elsewhere cooperation is better. So the reactive behaviour competes with the retrieved case by the
+//! time to its shot, as both are expected: the case's gameplay and what is left to the goal after it, against
+//! fetching the ball and kicking it on until the goal is in reach. SI units.
 
 use geometry::{Field, Point, Segment};
 
@@ -66,7 +66,8 @@ fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
     spec.grab + pushes * (spec.kick + estimate::roll(scene, PUSH) + spec.grab) + spec.turn + spec.kick
 }
 
-/// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach, m.
+/// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach,
+/// m.
 const IN_REACH: f32 = 2.15;
 /// Least lead of the reactive behaviour, s: the accuracy of a gameplay's estimate.
 const MARGIN: f32 = 1.0;

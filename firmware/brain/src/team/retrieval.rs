@@ -42,7 +42,8 @@ pub fn problem(
     Some(problem)
 }
 
-/// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are present, each once.
+/// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are
+/// present, each once.
 pub fn accept(
     base: &CaseBase<'_>,
     problem: &Problem,

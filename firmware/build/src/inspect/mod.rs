@@ -122,8 +122,9 @@ impl<'a> Image<'a> {
         self.symbols.iter().map(|symbol| symbol.name.as_str())
     }
 
-    /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions an operation on a
-    /// processor that has single precision only (run-time ABI for the Arm architecture, §5.1.2).
+    /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions
+    /// an operation on a processor that has single precision only (run-time ABI for the Arm architecture,
+    /// §5.1.2).
     pub fn soft_double(&self) -> Option<&str> {
         self.soft_double.as_deref()
     }

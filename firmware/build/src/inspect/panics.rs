@@ -121,7 +121,8 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             let Some(file) = location.file else { continue };
             let name = frame.function.as_ref().and_then(|f| Some(demangled(f.raw_name().ok()?.as_ref())));
             let name = name.unwrap_or_else(|| symbol.to_owned());
-            // Line 0 is code that the compiler made; the file beside it is any that was merged with it, the name is right.
+            // Line 0 is code that the compiler made; the file beside it is any that was merged with it, the
+            // name is right.
             let crate_name = match (location.line, name.split_once("::")) {
                 (None | Some(0), Some((named, _))) if !named.contains('<') => named.replace('_', "-"),
                 _ => crate_of(file).to_owned(),
@@ -146,7 +147,8 @@ fn demangled(name: &str) -> String {
     format!("{:#}", rustc_demangle::demangle(name))
 }
 
-/// A path without its generic arguments, so that it stays the same from build to build: the last two of its segments.
+/// A path without its generic arguments, so that it stays the same from build to build: the last two of its
+/// segments.
 fn plain(name: &str) -> String {
     let (mut depth, mut text) = (0_usize, String::new());
     for c in name.chars() {

@@ -1,4 +1,5 @@
-//! `exit`: finds a free point near a covered one: out of overlapping obstacles and inside the region to stay in. m.
+//! `exit`: finds a free point near a covered one: out of overlapping obstacles and inside the region to stay
+//! in. m.
 //!
 //! A best-first search over candidates: on the sides of the box, or around the disc or capsule, that covers a
 //! point; a candidate that is covered itself is left by the same method, the one nearest to the start first.
@@ -191,7 +192,8 @@ fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
 const FREE: f32 = 0.002;
 /// Distance of candidates from a shape, m.
 const OFF: f32 = 2.0 * FREE;
-/// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may leave narrow gaps.
+/// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may
+/// leave narrow gaps.
 const SAME: f32 = 0.001;
 /// The same around discs and capsules, of which there would be too many.
 const SAME_AROUND: f32 = 0.03;

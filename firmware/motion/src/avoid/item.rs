@@ -379,7 +379,8 @@ const SPEED_MIN: f32 = 0.02;
 /// Effort for a piece of path besides testing obstacles: its corner and its place in the search.
 const PIECE: u32 = 12;
 
-/// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for `side` +1.
+/// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for
+/// `side` +1.
 pub(super) fn tangent<F: Copy>(from: Point<F>, center: Point<F>, radius: f32, side: f32) -> Vector<F> {
     let out = from - center;
     let squared = out.dot(out);

@@ -68,7 +68,8 @@ fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     drive
 }
 
-/// A field of division B with 12 robots on it, both defence areas, a stadium and a box forbidden, for a robot's centre.
+/// A field of division B with 12 robots on it, both defence areas, a stadium and a box forbidden, for a
+/// robot's centre.
 fn scene(rng: &mut Dice) -> Vec<Obstacle<Field>> {
     let mut scene: Vec<_> =
         (0..12).map(|_| disc(rng.within(4.2), rng.within(2.8), 0.25 + rng.within(0.05))).collect();

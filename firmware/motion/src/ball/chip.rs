@@ -80,8 +80,8 @@ impl ChipModel {
     }
 }
 
-/// The speeds along the ground and upwards that land a ball `distance` m away at its first touch, kicked upwards with this
-/// `slope` (rise over run: 1 for 45°), m/s.
+/// The speeds along the ground and upwards that land a ball `distance` m away at its first touch, kicked
+/// upwards with this `slope` (rise over run: 1 for 45°), m/s.
 pub fn launch(distance: f32, slope: f32) -> (f32, f32) {
     if distance > 0.0 && slope > 0.0 {
         let speed = math::sqrt(0.5 * GRAVITY * distance / slope);

@@ -95,7 +95,8 @@ impl AxisLimits {
         }
     }
 
-    /// The phases of the motion by `distance`, moving with `speed` now, when `share` of the limits is the axis's own.
+    /// The phases of the motion by `distance`, moving with `speed` now, when `share` of the limits is the
+    /// axis's own.
     pub(super) fn phases(&self, distance: f32, speed: f32, share: f32) -> Phases {
         let per_share = 1.0 / share;
         let scaled = self.ahead(distance * per_share, speed * per_share);

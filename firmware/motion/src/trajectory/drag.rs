@@ -10,7 +10,8 @@ use geometry::{Point, Vector, math};
 use super::balance::{Balance, balance};
 use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
-/// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v / `speed`).
+/// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v
+/// / `speed`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragLimits {
     /// Speed at which push and drag are equal: approached, never reached, m/s, > 0.

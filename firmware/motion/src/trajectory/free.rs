@@ -1,4 +1,5 @@
-//! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other; SI.
+//! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other;
+//! SI.
 
 use geometry::{Point, Vector, math};
 

@@ -1,8 +1,8 @@
 //! `api`: messages that drive the game controller. [`CiInput`] on port 10009; [`Input`] also as JSON text
 //! over its web socket.
 //!
-//! The controller's inner state, settings and changes are its own; they stay encoded here (`Vec<u8>`), so that they can
-//! be carried and stored.
+//! The controller's inner state, settings and changes are its own; they stay encoded here (`Vec<u8>`), so
+//! that they can be carried and stored.
 
 use prost::Message;
 

@@ -1,7 +1,8 @@
 //! `controller`: messages of the game controller's ports. Length-delimited over TCP ([`crate::stream`]), the
 //! controller first.
 //!
-//! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature` out.
+//! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature`
+//! out.
 
 mod api;
 mod autoref;

@@ -1,8 +1,8 @@
 //! `log`: the league's log files: `.log` and `.log.gz`, as its recorder writes and its players read.
 //!
-//! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32 type, int32
-//! size, payload; all integers big-endian. An index of the messages may stand at the end of an uncompressed file; a
-//! `.log.gz` is the whole file gzipped and has none.
+//! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32
+//! type, int32 size, payload; all integers big-endian. An index of the messages may stand at the end of an
+//! uncompressed file; a `.log.gz` is the whole file gzipped and has none.
 //!
 //! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end
 //! anywhere and hold anything: every whole message is returned, and [`LogReader::end`] reports what was found
@@ -111,7 +111,8 @@ impl std::fmt::Display for MessageKind {
 /// One message of a log file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README, trap 6).
+    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README,
+    /// trap 6).
     pub timestamp_ns: i64,
     /// Kind of the message.
     pub kind: MessageKind,

@@ -9,8 +9,8 @@ use flate2::write::GzEncoder;
 
 use super::{FILE_HEADER, Index, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, VERSION};
 
-/// Writes messages one after the other. [`finish`](Self::finish) it: without that there is no index, and the last
-/// messages of a `.log.gz` may be missing.
+/// Writes messages one after the other. [`finish`](Self::finish) it: without that there is no index, and the
+/// last messages of a `.log.gz` may be missing.
 #[derive(Debug)]
 pub struct LogWriter<W: Write> {
     sink: W,

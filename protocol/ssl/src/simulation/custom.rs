@@ -1,8 +1,8 @@
 //! `custom`: messages of ER-Force's simulator and its relatives, which travel in `custom` fields as
 //! [`crate::common::Any`].
 //!
-//! Units: m, rad, ns as named. The `type_url` must match: ER-Force has the specification in package `sslsim`, the
-//! realism in none.
+//! Units: m, rad, ns as named. The `type_url` must match: ER-Force has the specification in package `sslsim`,
+//! the realism in none.
 
 use prost::Message;
 

@@ -150,8 +150,8 @@ pub struct RobotStatus {
 mod tests {
     use super::*;
 
-    /// Written by hand from grSim's field numbers and types: yellow's robot 3 ahead at 1 m/s, turning, kicking, with its dribbler and
-    /// two wheels given; blue's robot 15 put somewhere and switched off.
+    /// Written by hand from grSim's field numbers and types: yellow's robot 3 ahead at 1 m/s, turning,
+    /// kicking, with its dribbler and two wheels given; blue's robot 15 put somewhere and switched off.
     const BYTES: [u8; 93] = [
         0x0a, 54, // commands, bytes
         0x09, 0, 0, 0, 0, 0, 0, 0xe0, 0x3f, // timestamp 0.5

@@ -1,8 +1,8 @@
 //! `vision`: packets of SSL-Vision. One [`WrapperPacket`] a datagram, to 224.5.23.2:10006 (simulators:
 //! 10020).
 //!
-//! Units: mm and rad in the field frame, times in s as `f64`: Unix time, but grSim counts from its own start (README,
-//! trap 1). Fields that newer versions added are optional here; older ones lack them.
+//! Units: mm and rad in the field frame, times in s as `f64`: Unix time, but grSim counts from its own start
+//! (README, trap 1). Fields that newer versions added are optional here; older ones lack them.
 
 mod decoder;
 mod detection;

@@ -25,8 +25,8 @@ pub(crate) struct Tally {
     pub framed: u64,
 }
 
-/// Breaks `count` packets and reads each; the same seed breaks the same ones. Panics where a decoder does, or where a
-/// message does not survive being encoded.
+/// Breaks `count` packets and reads each; the same seed breaks the same ones. Panics where a decoder does, or
+/// where a message does not survive being encoded.
 pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Tally {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut tally = Tally::default();

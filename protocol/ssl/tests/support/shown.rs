@@ -1,7 +1,7 @@
 //! `shown`: comparison of messages by their `Debug` text, read back as a tree and compared with JSON.
 //!
-//! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a wrong enum,
-//! which a round trip of bytes does not.
+//! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a
+//! wrong enum, which a round trip of bytes does not.
 
 use serde_json::Value;
 

@@ -1,7 +1,8 @@
 //! `instructions`: instruction counter, read from the system timer where the emulator counts instructions.
 //!
-//! QEMU with `-icount shift=6` lets each guest instruction take 2⁶ = 64 ns of virtual time; the timer ticks at 25 MHz, once
-//! in 40 ns. So a count is exact, up to the timer's 24 bits: 10.4 million instructions. Without `-icount` it is noise.
+//! QEMU with `-icount shift=6` lets each guest instruction take 2⁶ = 64 ns of virtual time; the timer ticks
+//! at 25 MHz, once in 40 ns. So a count is exact, up to the timer's 24 bits: 10.4 million instructions.
+//! Without `-icount` it is noise.
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;

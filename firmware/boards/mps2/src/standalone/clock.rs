@@ -1,8 +1,8 @@
 //! `clock`: time source and executor wake-up of the free-running board. The system timer counts microseconds,
 //! and the executor sleeps with WFI.
 //!
-//! Works on any Cortex-M whose core clock is a whole number of MHz. Embassy's own executor sleeps with WFE, which QEMU runs
-//! as nothing: an idle robot would keep a whole core of the PC busy.
+//! Works on any Cortex-M whose core clock is a whole number of MHz. Embassy's own executor sleeps with WFE,
+//! which QEMU runs as nothing: an idle robot would keep a whole core of the PC busy.
 
 use core::cell::RefCell;
 use core::ptr;

@@ -50,7 +50,8 @@ struct Register(usize);
 
 impl Register {
     fn write(self, value: u32) {
-        // SAFETY: every register below is one of this board's watchdog (MPS2 AN386: at 0x4000_8000), 32 bits wide.
+        // SAFETY: every register below is one of this board's watchdog (MPS2 AN386: at 0x4000_8000), 32 bits
+        // wide.
         unsafe { ((BASE + self.0) as *mut u32).write_volatile(value) }
     }
 }

@@ -180,7 +180,8 @@ const SHY: f32 = 0.03;
 const ROBOTS: f32 = 0.03;
 /// Distance kept from other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
-/// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room for a swing.
+/// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room
+/// for a swing.
 const KICKS_WITHIN: f32 = 0.35;
 /// Heading tolerance within which it faces the ball, rad.
 const LOOKS_AT: f32 = 0.35;

@@ -1,4 +1,5 @@
-//! `kick`, `pass_ball`, `dribble_to`: with the ball held, turn until the kick points right, and kick; or carry it.
+//! `kick`, `pass_ball`, `dribble_to`: with the ball held, turn until the kick points right, and kick; or
+//! carry it.
 
 use geometry::{Angle, Field, Point};
 use protocol::robot_io::LeggedKick;

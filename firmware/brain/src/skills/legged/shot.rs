@@ -183,7 +183,8 @@ const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, Legge
 const GOOD_SHOT: f32 = 0.3;
 /// A shot with this probability is taken if an opponent is about to take the ball.
 const FAIR_SHOT: f32 = 0.12;
-/// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's walk.
+/// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's
+/// walk.
 const PRESSED_WITHIN: f32 = 0.6;
 /// Shots are made from this far before the penalty area, m: out of its goalkeeper's reach.
 const SHOT_BEFORE_AREA: f32 = 0.5;
@@ -224,8 +225,8 @@ mod tests {
 
     #[test]
     fn an_empty_goal_is_as_wide_as_it_looks_to_a_scattering_kick() {
-        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a hard kick of
-        // 2.15 ± 0.645 m rolls 1 m in 96 of 100.
+        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a
+        // hard kick of 2.15 ± 0.645 m rolls 1 m in 96 of 100.
         assert!((chance(&belief(1.7, 0.0, &[])) - 0.95 * 0.963).abs() < 0.03);
         // From 2.15 m every second hard kick gets there, and the posts stand at ±9.4°: 65 of 100.
         assert!((chance(&belief(0.55, 0.0, &[])) - 0.5 * 0.65).abs() < 0.03);

@@ -1,4 +1,5 @@
-//! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked as it is touched.
+//! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked
+//! as it is touched.
 //!
 //! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
 //! armed and dribbler still, so that the first touch is the kick.
@@ -74,7 +75,8 @@ pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     Drive { kick, armed, ..Drive::holding(to, face) }.into()
 }
 
-/// The speed of a pass over `distance` m, m/s: it arrives fast enough not to be caught up with, slow enough to be taken.
+/// The speed of a pass over `distance` m, m/s: it arrives fast enough not to be caught up with, slow enough
+/// to be taken.
 pub fn pass_speed(distance: f32) -> f32 {
     BallModel::default().kick_speed(distance, ARRIVES).clamp(SLOWEST, SHOT)
 }
@@ -100,8 +102,8 @@ const GO_IN: f32 = 0.35;
 const CLOSE: f32 = 0.02;
 /// Between front and ball while the robot waits for the order to kick, m.
 const WAIT_OFF: f32 = 0.04;
-/// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that is missed rolls 2.4 m
-/// farther (v²/0.7), one of 2 nearly 6 m and off the field.
+/// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that
+/// is missed rolls 2.4 m farther (v²/0.7), one of 2 nearly 6 m and off the field.
 const ARRIVES: f32 = 1.3;
 /// Slowest pass, m/s.
 const SLOWEST: f32 = 1.5;
