@@ -131,7 +131,7 @@ impl HostLink {
         }
     }
 
-    /// In ticks since the epoch started.
+    /// The clock's reading, in ticks since the epoch started.
     fn clock(&self, now: Instant) -> u64 {
         (now.0 >> TICK_BITS).saturating_sub(self.zero)
     }

@@ -24,7 +24,7 @@ pub const MESSAGE_LEN_MAX: usize = 1_480;
 /// Local experimental Ethernet type.
 pub const ETHERTYPE: u16 = 0x88b5;
 
-/// From the simulator to a robot's computer.
+/// Message from the simulator to a robot's computer.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToRobot<'a> {
@@ -53,7 +53,7 @@ pub struct TickIn<'a> {
     pub sensors: SensorFrame,
 }
 
-/// From a robot's computer to the simulator.
+/// Message from a robot's computer to the simulator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromRobot<'a> {
     /// Started, waiting for a set-up.

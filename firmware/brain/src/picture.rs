@@ -22,7 +22,7 @@ pub enum Taken {
     More,
     /// A part that was received before.
     Doubled,
-    /// Of an older snapshot: dropped.
+    /// A part of an older snapshot: dropped.
     Late,
     /// A part beyond the last one, or of too many parts: dropped.
     Malformed,

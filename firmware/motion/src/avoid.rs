@@ -269,7 +269,7 @@ pub const OBSTACLES_MAX: usize = 38;
 pub const CHECKS_MAX: u32 = 12;
 /// The largest useful effort: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
-/// The same of a long search, for a route out or while there is time: around a goal and into its opening it
+/// The same for a long search, for a route out or while there is time: around a goal and into its opening it
 /// takes more.
 pub const CHECKS_LONG: u32 = 24;
 /// Longest control step, s.

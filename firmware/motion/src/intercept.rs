@@ -22,7 +22,8 @@ pub struct Interception<'b, F> {
     pub ball: &'b BallPath<F>,
     /// Target of the kick: the robot stops on the far side of the ball.
     pub target: Point<F>,
-    /// From the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm ([`kick_reach`]), m.
+    /// Distance from the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm
+    /// ([`kick_reach`]), m.
     pub reach: f32,
     /// Time for which the ball is of interest, s: until it leaves the field, or is taken. At most
     /// [`HORIZON`].
@@ -74,7 +75,8 @@ impl<F> Meeting<F> {
     }
 }
 
-/// From the robot's centre to the ball's, when it kicks, m: the ball enters the dribbler opening by 10 mm.
+/// Distance from the robot's centre to the ball's, when it kicks, m: the ball enters the dribbler opening by
+/// 10 mm.
 pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
     robot_radius + ball_radius - MOUTH_DEPTH
 }
@@ -159,7 +161,8 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// From the end backwards, as slack mostly grows to the end, after some probes for the slack available.
+    /// Searches from the end backwards, as slack mostly grows to the end, after some probes for the slack
+    /// available.
     fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
         let mut best = self.look(limits, horizon, 0.0).meeting();
@@ -226,7 +229,7 @@ impl<F: Copy> Interception<'_, F> {
 enum Look<F> {
     /// The robot intercepts the ball there.
     Meets(Meeting<F>),
-    /// It does not, by a planned motion.
+    /// It does not intercept, by a planned motion.
     TooLate,
     /// It cannot intercept; no motion was planned.
     OutOfReach,

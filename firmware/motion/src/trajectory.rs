@@ -66,7 +66,7 @@ pub trait CalcMotion {
     /// Type of the planned motion.
     type Motion<F: Copy>: Motion<F>;
 
-    /// From `from`, moving with `velocity`, to standstill at `to`.
+    /// Plans from `from`, moving with `velocity`, to standstill at `to`.
     fn plan<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> Self::Motion<F>;
 
     /// `t*` alone, s: the duration of [`Self::plan`].

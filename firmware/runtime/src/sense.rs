@@ -104,8 +104,8 @@ impl Tilt {
         Self { tipped: false, otherwise_since: None }
     }
 
-    /// From the upward part of the acceleration, g: 1 upright, 0 on its side. Short shocks are ignored; NaN
-    /// is no reading.
+    /// Whether the robot lies, from the upward part of the acceleration, g: 1 upright, 0 on its side. Short
+    /// shocks are ignored; NaN is no reading.
     pub fn step(&mut self, now: Instant, up: f32) -> bool {
         let seems = if up.is_nan() { self.tipped } else { up < UPRIGHT };
         if seems == self.tipped {

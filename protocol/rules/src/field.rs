@@ -29,7 +29,7 @@ pub struct FieldSpec {
     pub goal_width: f32,
     /// Distance from the goal line to the goal's back.
     pub goal_depth: f32,
-    /// From the field surface to the goal's upper edge.
+    /// Height of the goal's upper edge above the field surface.
     pub goal_height: f32,
     /// Thickness of the goal's walls.
     pub goal_wall: f32,

@@ -33,7 +33,7 @@ pub(super) struct Handling {
     held: f32,
     /// Since when this robot and an opponent have both been at the ball.
     disputed: Option<Instant>,
-    /// For how long they have, s.
+    /// Duration of the dispute, s.
     dispute: f32,
 }
 
@@ -87,7 +87,7 @@ impl Belief {
         }
     }
 
-    /// For how long the ball has been at its front, s: until there is a visible gap.
+    /// Time for which the ball has been at its front, s: until there is a visible gap.
     pub fn held(&self) -> f32 {
         self.handling.held
     }

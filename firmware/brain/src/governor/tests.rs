@@ -150,7 +150,7 @@ fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_ga
     assert_eq!(governor.rule(&at(770, Phase::Run), &go(1.0)).1, Ruling::Allowed);
 }
 
-/// After a silence of that many ms, ms from the first frame on until it may move again.
+/// Time from the first frame after a silence of `silence` ms until it may move again, ms.
 fn moves_again_after(silence: u64) -> Option<u64> {
     let mut governor = driving(600, Phase::Run);
     let heard = Instant(600_000);

@@ -5,11 +5,11 @@
 //! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
 //! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
 //!
-//! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalie): kicks
-//! out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots by the
-//! open angle of the goal, from aside of its middle, where a goalie opposite the ball leaves the far post
-//! open; standing turned to that post until it opens; roles by who has the ball first at its stop position.
-//! `onetwo evaluate` measures it.
+//! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalkeeper):
+//! kicks out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots
+//! by the open angle of the goal, from aside of its middle, where a goalkeeper opposite the ball leaves the
+//! far post open; standing turned to that post until it opens; roles by who has the ball first at its stop
+//! position. `onetwo evaluate` measures it.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use protocol::robot_io::LeggedKick;
@@ -301,8 +301,8 @@ const ACROSS_FROM: f32 = 0.3;
 /// A robot that waits across the field waits this far ahead of the ball, m: within one pass and one
 /// adaptation.
 const ACROSS_AHEAD: f32 = 0.6;
-/// And this far off the axis, m: half a penalty area's width, where a goalie opposite the ball leaves the far
-/// post open.
+/// And this far off the axis, m: half a penalty area's width, where a goalkeeper opposite the ball leaves the
+/// far post open.
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;

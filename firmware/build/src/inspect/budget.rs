@@ -15,12 +15,12 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of a robot's firmware with its cases (docs/architecture.md §9).
+    /// Budget of a robot's firmware with its cases (docs/architecture.md §9).
     pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
 
-    /// Of the firmware for a real robot's board: the same robot, and 27 kB of drivers, clocks and log of its
-    /// chip, which has 2 MiB. The brain is compiled as for the emulator, so that what is counted there is
-    /// what is flashed.
+    /// Budget of the firmware for a real robot's board: the same robot, and 27 kB of drivers, clocks and log
+    /// of its chip, which has 2 MiB. The brain is compiled as for the emulator, so that what is counted there
+    /// is what is flashed.
     pub const BOARD: Self = Self { flash: 192 * 1024, ..Self::IMAGE };
 
     /// Whether `sizes` keep to it.

@@ -173,7 +173,7 @@ struct Pushes {
 }
 
 impl Pushes {
-    /// To standstill at `distance`, moving with `speed`, pushing with `size` > 0.
+    /// Pushes to standstill at `distance`, moving with `speed`, pushing with `size` > 0.
     #[inline]
     fn new(distance: f32, speed: f32, size: f32) -> Self {
         if distance == 0.0 && speed == 0.0 {

@@ -23,7 +23,8 @@ impl Default for TurnLimits {
 }
 
 impl TurnLimits {
-    /// From `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner there.
+    /// Plans from `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner
+    /// there.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
         // False for NaN.

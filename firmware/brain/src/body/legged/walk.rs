@@ -44,8 +44,7 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
     }
 }
 
-/// Where a kick sends the ball, as the brain believes: direction from straight ahead, distance to its stop
-/// position in m.
+/// Nominal result of a kick: direction from straight ahead, distance to its stop position in m.
 ///
 /// Straight kicks: UT Austin's 50 measured ERS-7 power kicks stop 2.15 m ahead on average; the soft one and
 /// the head kicks are the simulator's nominal values.

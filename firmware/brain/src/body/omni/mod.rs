@@ -22,9 +22,9 @@ use crate::skills::{Reception, Step};
 
 pub use drivetrain::{Drivetrain, LIMITS};
 
-/// From the robot's centre to its flat front, m: usual for robots of 180 mm.
+/// Distance from the robot's centre to its flat front, m: usual for robots of 180 mm.
 pub const FRONT: f32 = 0.073;
-/// From the robot's centre to a ball at its front, m.
+/// Distance from the robot's centre to a ball at its front, m.
 pub const BALL_AT: f32 = FRONT + rules::limits::BALL_RADIUS;
 
 /// A target to drive to, and what dribbler and kicker do meanwhile.

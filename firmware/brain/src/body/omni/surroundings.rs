@@ -170,7 +170,7 @@ const LEADS_MOST: f32 = 0.3;
 const LIES: f32 = 0.3;
 /// A robot whose path ends this near the ball lines up behind it, m.
 const AT_BALL: f32 = 0.2;
-/// From the edge of the field surface, m.
+/// Distance kept from the edge of the field surface, m.
 const BORDER: f32 = 0.02;
 /// Distance kept from goal walls, m.
 const WALL: f32 = 0.01;

@@ -201,7 +201,7 @@ const RAYS: usize = 15;
 const TURN_PRICE: f32 = 0.1;
 /// Time that a standing robot needs to perceive a kick and to lift a leg, s.
 const REACTION: f32 = 0.3;
-/// √(2π).
+/// Square root of 2π, √(2π).
 const ROOT_TWO_PI: f32 = 2.506_628_3;
 
 #[cfg(test)]

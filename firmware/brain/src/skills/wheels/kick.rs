@@ -93,7 +93,8 @@ fn sideways(belief: &Belief) -> f32 {
 
 /// A slower ball counts as stationary, m/s.
 const LIES: f32 = 0.25;
-/// From a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side by side.
+/// Distance from a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side
+/// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 0.18;
 /// Approach speed for a kick, m/s.
