@@ -1,32 +1,33 @@
 //! `acquaintance`: replay protection between robots: a peer is trusted after it has echoed our boot epoch.
-//! What keeps recordings of mates from being believed after a boot.
+//! Prevents recordings of teammates from being trusted after a boot.
 //!
-//! A mate is believed once it has named this robot's present life in a [`Greeting`]: no recording can, for it was made
-//! before that life began. So whoever hears a new life of a mate greets it, and again every 40 ms, until both know of
-//! each other that they believe; then greetings cease.
+//! A teammate is trusted once it has named this robot's present boot epoch in a [`Greeting`] (handshake): no
+//! recording can, because it was made before that epoch started. So a robot that receives a new epoch of a
+//! teammate sends it a handshake, and again every 40 ms, until both know of each other that they trust; then
+//! handshakes cease.
 
 use crate::team::{Bond, GREETED_MAX, Greeted, Greeting};
 use crate::{Duration, Instant, RobotId};
 
-/// What is known of every mate.
+/// Handshake state of every teammate.
 #[derive(Clone, Debug, Default)]
 pub struct Acquaintances {
     mates: [Option<Mate>; RobotId::COUNT],
-    /// Whom to greet, a bit each: asked after every packet, and nearly always nobody.
+    /// Teammates due for a handshake, a bit each: checked after every packet, and nearly always empty.
     owed: u16,
-    /// When this robot greeted last.
+    /// When this robot sent its last handshake.
     greeted: Option<Instant>,
-    /// With whom the next greeting begins, so that nobody is left out for ever.
+    /// Number of the teammate with which the next handshake starts, so that none is left out for ever.
     next: u8,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Mate {
-    /// The newest life heard of.
+    /// The newest boot epoch received.
     life: u32,
-    /// It named our life.
+    /// It has named our boot epoch: we trust it.
     believed: bool,
-    /// It said that we named its life.
+    /// It has reported that we named its boot epoch: it trusts us.
     believes: bool,
 }
 
@@ -37,7 +38,7 @@ const fn bit(mate: RobotId) -> u16 {
 }
 
 impl Acquaintances {
-    /// A frame with the team's tag came from that life of a mate.
+    /// Handles a frame with the team's tag from that boot epoch (`life`) of a teammate.
     pub fn hear(&mut self, mate: RobotId, life: u32) {
         let slot = &mut self.mates[mate.index()];
         match slot {
@@ -52,7 +53,7 @@ impl Acquaintances {
         self.owed |= bit(mate);
     }
 
-    /// That life of a mate, heard already, has named our present life.
+    /// That boot epoch of a teammate, received already, has named our present one.
     pub fn believe(&mut self, mate: RobotId, life: u32, bond: Bond) {
         let Some(known) = self.mates[mate.index()].as_mut().filter(|known| known.life == life) else {
             return;
@@ -64,7 +65,7 @@ impl Acquaintances {
         }
     }
 
-    /// Whom to greet now, if anybody waits for it.
+    /// The handshake to send now, if one is due.
     pub fn poll(&mut self, now: Instant) -> Option<Greeting> {
         if self.owed == 0 || self.greeted.is_some_and(|last| now.since(last) < GREET_EVERY) {
             return None;
@@ -80,7 +81,7 @@ impl Acquaintances {
                 (true, false) => Bond::Believed,
                 (true, true) => Bond::Mutual,
             };
-            // There is room: looked at above.
+            // The capacity suffices: checked above.
             let _ = mates.push(Greeted { who, life: mate.life, bond });
             self.next = (number + 1) % RobotId::COUNT as u8;
         }
@@ -92,8 +93,8 @@ impl Acquaintances {
     }
 }
 
-/// A walking robot's step: ten greetings fit into the lease for which a booting robot listens, so that at 30 % loss one in
-/// 10^5 begins without knowing a mate.
+/// A walking robot's step: ten handshakes fit into the lease for which a booting robot listens, so that at 30
+/// % loss one in 10^5 starts without knowing a teammate.
 const GREET_EVERY: Duration = Duration::millis(40);
 
 #[cfg(test)]
@@ -121,7 +122,7 @@ mod tests {
             }
         }
         assert_eq!(at[..], [0, 40, 80, 120, 160, 200, 240, 280]);
-        // Silent: nobody to greet any more.
+        // Silent: no handshake is due any more.
         assert!(greeted(&mut all, 400).len() == 1 && greeted(&mut all, 500).is_empty());
     }
 
@@ -130,7 +131,7 @@ mod tests {
         let (mut a, mut b) = (Acquaintances::default(), Acquaintances::default());
         let mut bonds = heapless::Vec::<Bond, 16>::new();
         for round in 0..20 {
-            // Each speaks all the time; a's life is 5, b's 9.
+            // Both send all the time; a's boot epoch is 5, b's 9.
             a.hear(robot(2), 9);
             b.hear(robot(1), 5);
             for greeting in greeted(&mut a, round * 100) {

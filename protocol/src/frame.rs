@@ -1,4 +1,4 @@
-//! `frame`: the radio's envelope: sender, epoch, counter, payload and what proves them genuine
+//! `frame`: the radio's envelope: sender, epoch, counter, payload and tags that prove them genuine
 //! (docs/architecture.md §6.1).
 //!
 //! ```text
@@ -6,10 +6,11 @@
 //! version 1 | team 1 | 17       | epoch 4 LE | counter 4 LE | audience 2 LE | payload n | 3 for each robot in the audience
 //! ```
 //!
-//! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one is its first three
-//! bytes. The host seals what it sends to several robots once for each of them, so that no robot's key makes a frame that another
-//! one believes. Checks run in the order length → version, team, sender → epoch and counter → tag → decode; the epoch and counter
-//! are [`Sessions`]' business, the payload is its reader's. `protocol/SPEC.md` has worked bytes.
+//! A tag is SipHash-2-4 under the receiver's key over all bytes before the tags, little endian; a short one
+//! is its first three bytes. The host seals a frame for several robots once for each of them, so that no
+//! robot's key makes a frame that another one accepts. Checks run in the order length → version, team, sender
+//! → epoch and counter → tag → decode; epoch and counter are checked by [`Sessions`], the payload by its
+//! reader. `protocol/SPEC.md` has worked bytes.
 
 use crate::{RobotId, TeamId};
 
@@ -21,20 +22,21 @@ pub const VERSION: u8 = 2;
 pub const HEADER_LEN: usize = 11;
 /// Bytes of the tag where there is one.
 pub const TAG_LEN: usize = 8;
-/// Bytes of each tag where there are several: a forgery passes once in 2²⁴ tries, 3.7 h at 1,250 frames a second.
+/// Bytes of each tag where there are several: a forgery passes once in 2²⁴ tries, 3.7 h at 1,250 frames a
+/// second.
 pub const SHORT_TAG_LEN: usize = 3;
 /// Bytes that name the audience.
 pub const AUDIENCE_LEN: usize = 2;
 /// Bytes of a frame with one tag that are not payload.
 pub const OVERHEAD: usize = HEADER_LEN + TAG_LEN;
-/// The longest frame on the air (a part of the world; docs/architecture.md §6.1).
+/// The longest frame on the radio (a part of the world; docs/architecture.md §6.1).
 pub const FRAME_LEN_MAX: usize = 120;
 /// A frame's bytes.
 pub type FrameBytes = heapless::Vec<u8, FRAME_LEN_MAX>;
 /// The longest payload, in a frame with one tag.
 pub const PAYLOAD_LEN_MAX: usize = FRAME_LEN_MAX - OVERHEAD;
 
-/// Who speaks on a team's air.
+/// Sender of a frame in a team's radio network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sender {
     /// A robot of the team; 0–15 on the wire.
@@ -72,7 +74,7 @@ impl Sender {
         }
     }
 
-    /// For arrays with one place per sender.
+    /// Index for arrays with one entry per sender.
     pub const fn index(self) -> usize {
         match self {
             Self::Robot(robot) => robot.index(),
@@ -81,7 +83,7 @@ impl Sender {
     }
 }
 
-/// The host's number on the wire: the first that no robot has.
+/// The host's number on the wire: the first after the robots'.
 const HOST: u8 = RobotId::COUNT as u8;
 /// The host's number in a frame with an audience.
 const HOST_TO_SEVERAL: u8 = HOST + 1;
@@ -111,7 +113,7 @@ impl Audience {
         RobotId::all().filter(move |robot| self.has(*robot))
     }
 
-    /// How many of its robots have a lower number.
+    /// Number of its robots with a lower number.
     const fn before(self, robot: RobotId) -> usize {
         (self.0 & ((1 << robot.number()) - 1)).count_ones() as usize
     }
@@ -126,17 +128,17 @@ impl FromIterator<RobotId> for Audience {
 /// A frame, its payload borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Whose air this is.
+    /// Team of the network.
     pub team: TeamId,
-    /// Who speaks.
+    /// The sender.
     pub sender: Sender,
-    /// For whom it is sealed, where for several: a short tag each. Only the host's frames have one.
+    /// Robots for which it is sealed, if several: a short tag each. Only the host's frames have one.
     pub audience: Option<Audience>,
     /// The sender's boot epoch: rises with every boot.
     pub epoch: u32,
     /// Rises with every frame of an epoch.
     pub counter: u32,
-    /// postcard bytes.
+    /// Payload in postcard encoding.
     pub payload: &'a [u8],
 }
 
@@ -149,7 +151,7 @@ pub enum Refusal {
     Version(u8),
     /// Another team's frame.
     Team(TeamId),
-    /// No such sender, our own number, or one that does not speak to us.
+    /// No such sender, our own number, or one that does not send to us.
     Sender(u8),
     /// An earlier boot epoch of the sender.
     Epoch {
@@ -158,16 +160,16 @@ pub enum Refusal {
         /// The sender's current epoch.
         current: u32,
     },
-    /// Not newer than the last frame of this epoch: a duplicate, a straggler or a replay.
+    /// Not newer than the last frame of this epoch: a duplicate, a late frame or a replay.
     Counter {
         /// The counter in the frame.
         seen: u32,
         /// The last one accepted.
         last: u32,
     },
-    /// The tag is not the key's.
+    /// The tag does not fit the key.
     Tag,
-    /// The payload is no message.
+    /// The payload does not decode.
     Payload,
     /// A sender that has not named our present boot epoch: a new one, or a recording.
     Stranger {
@@ -182,7 +184,7 @@ impl Refusal {
     /// Number of kinds.
     pub const KINDS: usize = 10;
 
-    /// The kind's place in a table of counters.
+    /// The kind's index in a table of counters.
     pub fn kind(self) -> usize {
         match self {
             Self::Length(_) => 0,
@@ -220,7 +222,7 @@ impl core::fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// Who a frame claims to be from, by its header alone; nothing is checked.
+/// The sender that a frame claims to be from, by its header alone; nothing is checked.
 pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
     match *bytes.get(SENDER_AT)? {
         HOST_TO_SEVERAL => Some(Sender::Host),
@@ -228,11 +230,11 @@ pub fn claimed_sender(bytes: &[u8]) -> Option<Sender> {
     }
 }
 
-/// Where the sender stands: after version and team.
+/// Offset of the sender: after version and team.
 const SENDER_AT: usize = 2;
 
 impl<'a> Frame<'a> {
-    /// Reads the envelope; the tag is not looked at yet, see [`Frame::is_genuine`].
+    /// Reads the envelope; the tag is not checked yet, see [`Frame::is_genuine`].
     pub fn parse(bytes: &'a [u8], team: TeamId) -> Result<Self, Refusal> {
         let short = Refusal::Length(bytes.len());
         if bytes.len() > FRAME_LEN_MAX {
@@ -261,7 +263,8 @@ impl<'a> Frame<'a> {
         Ok(Self { team, sender, audience, epoch, counter, payload })
     }
 
-    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in `reader`'s place.
+    /// Whether `bytes`, the whole of this frame, carry the tag that `key` gives; where there are several, in
+    /// `reader`'s place.
     pub fn is_genuine(&self, bytes: &[u8], key: &Key, reader: RobotId) -> bool {
         let covered_len = bytes.len().wrapping_sub(tags_len(self.audience));
         let Some((covered, tags)) = bytes.split_at_checked(covered_len) else { return false };
@@ -274,7 +277,7 @@ impl<'a> Frame<'a> {
             Some(_) => None,
         };
         let kept = if self.audience.is_none() { u64::MAX } else { SHORT_TAG_BITS };
-        // One comparison of the whole tag: the time must not say how many bytes were right.
+        // One comparison of the whole tag: the time must not reveal the number of matching bytes.
         seen.is_some_and(|seen| (seen ^ key.tag(covered)) & kept == 0)
     }
 
@@ -313,7 +316,7 @@ impl<'a> Frame<'a> {
         Some(())
     }
 
-    /// Writes what tags cover.
+    /// Writes the bytes that tags cover.
     #[inline]
     fn write_covered(&self, out: &mut FrameBytes) -> Option<()> {
         let ([e0, e1, e2, e3], [c0, c1, c2, c3]) = (self.epoch.to_le_bytes(), self.counter.to_le_bytes());
@@ -341,14 +344,14 @@ fn short_tag([a, b, c]: [u8; SHORT_TAG_LEN]) -> u64 {
     u64::from(u32::from_le_bytes([a, b, c, 0]))
 }
 
-/// What a receiver remembers of every sender: its epoch and the last counter accepted.
+/// State of every sender at a receiver: its epoch and the last counter accepted.
 #[derive(Clone, Debug, Default)]
 pub struct Sessions {
     last: [Option<(u32, u32)>; Sender::COUNT],
 }
 
 impl Sessions {
-    /// Would this frame be news? To be asked before the tag is computed.
+    /// Refuses a frame that is not newer than the last. Called before the tag is computed.
     pub fn check(&self, frame: &Frame<'_>) -> Result<(), Refusal> {
         match self.last[frame.sender.index()] {
             Some((current, _)) if frame.epoch < current => Err(Refusal::Epoch { seen: frame.epoch, current }),
@@ -359,17 +362,17 @@ impl Sessions {
         }
     }
 
-    /// The sender's current epoch, if it was heard.
+    /// The sender's current epoch, if it was received.
     pub fn epoch(&self, sender: Sender) -> Option<u32> {
         self.last[sender.index()].map(|(epoch, _)| epoch)
     }
 
-    /// The sender's last counter, if it was heard.
+    /// The sender's last counter, if it was received.
     pub fn counter(&self, sender: Sender) -> Option<u32> {
         self.last[sender.index()].map(|(_, counter)| counter)
     }
 
-    /// Remembers a frame that was checked and found genuine.
+    /// Records a frame that was checked and found genuine.
     pub fn accept(&mut self, frame: &Frame<'_>) {
         self.last[frame.sender.index()] = Some((frame.epoch, frame.counter));
     }

@@ -1,11 +1,12 @@
 //! `host`: the host's messages to its robots and their telemetry (docs/architecture.md §3.3, §6.1).
 //! Millimetres, milliradians, field frame.
 //!
-//! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), what to do goes to each robot by itself
-//! ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet that was lost. All places hold at the
-//! moment of arrival: the host's tracking has carried them forward by the radio's latency, so no clocks need to agree.
-//! Everything is repeated with every snapshot; nothing is sent once. Robots answer with their [`Telemetry`]. Before a robot
-//! believes a host it must have had its [`Welcome`]: a recording of an earlier boot epoch cannot command it.
+//! The snapshot of the field goes to all robots present in parts ([`WorldPart`]), the directive goes to each
+//! robot by itself ([`Command`]). Both carry the phase of the game, so that a HALT never waits for a packet
+//! that was lost. All places hold at the moment of arrival: the host's tracking has carried them forward by
+//! the radio's latency, so no clocks need to agree. Everything is repeated with every snapshot; nothing is
+//! sent once. Robots answer with their [`Telemetry`]. Before a robot believes a host it must have had its
+//! [`Welcome`]: a recording of an earlier boot epoch cannot command it.
 
 mod read;
 
@@ -19,9 +20,9 @@ use crate::quantized::{WirePoint, WirePose};
 use crate::team::CASE_ROBOTS_MAX;
 use crate::{CaseId, RobotId};
 
-/// Robots in one part of the world, at most; more are addressed than six, and fewer fit ([`WorldPart::robots_max`]).
+/// Most robots in one part of the world; with more than six addressees fewer fit ([`WorldPart::robots_max`]).
 pub const PART_ROBOTS_MAX: usize = 6;
-/// Robots in a snapshot, at most; 11 + 11 play.
+/// Most robots in a snapshot; 11 + 11 play.
 pub const WORLD_ROBOTS_MAX: usize = 24;
 /// Parts that they need when 16 robots are addressed.
 pub const PARTS_MAX: usize = 8;
@@ -32,17 +33,17 @@ pub const COMMAND_LEN_MAX: usize = 40 - crate::frame::OVERHEAD;
 /// A message of the host.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum HostMessage {
-    /// To all: a part of the picture.
+    /// To all: a part of the snapshot.
     World(WorldPart),
-    /// To one robot: what to do.
+    /// To one robot: its directive.
     Command(Command),
-    /// To one robot: the host's answer to hearing it for the first time; repeated now and then.
+    /// To one robot: the host's answer to receiving it for the first time; repeated occasionally.
     Welcome(Welcome),
 }
 
 impl HostMessage {
-    /// Whether the numbers in it can be: a part of a picture is one of its parts, and there are no more than
-    /// [`PARTS_MAX`].
+    /// Whether the numbers in it are valid: the index of a part is less than the number of parts, which is
+    /// [`PARTS_MAX`] at most.
     pub fn is_sound(&self) -> bool {
         match self {
             Self::World(part) => part.part < part.parts && usize::from(part.parts) <= PARTS_MAX,
@@ -61,65 +62,68 @@ impl HostMessage {
     }
 }
 
-/// Proof that this host lives now: it has heard the robot in its present boot epoch. And how its clock stands to the robot's.
+/// Proof that this host is live: it has received the robot in its present boot epoch. Also the offset of its
+/// clock to the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
-    /// Who is meant.
+    /// Addressee.
     pub to: RobotId,
     /// The epoch of that robot's frames.
     #[serde(with = "postcard::fixint::le")]
     pub life: u32,
-    /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs, wrapping
-    /// ([`crate::host_clock`]).
+    /// The host's clock when the robot's newest telemetry came, less the clock in it; ticks of 64 µs,
+    /// wrapping ([`crate::host_clock`]).
     #[serde(with = "postcard::fixint::le")]
     pub offset: u32,
 }
 
-/// A part of the picture of the field.
+/// A part of the snapshot of the field.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WorldPart {
-    /// Which picture; parts of one picture carry one number, the next picture the next (wrapping).
+    /// Number of the snapshot; parts of one snapshot carry one number, the next snapshot the next (wrapping).
     pub picture: u8,
-    /// Which part of it, from 0.
+    /// Index of the part, from 0.
     pub part: u8,
-    /// How many parts it has.
+    /// Number of parts of the snapshot.
     pub parts: u8,
-    /// The phase of the game, in our words.
+    /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed; only while that matters.
+    /// Target of a ball placement, while one is running.
     pub placement: Option<WirePoint>,
-    /// The ball; in every part, the same.
+    /// The ball; the same in every part.
     pub ball: Option<WireBall>,
     /// Robots of both teams.
     pub robots: heapless::Vec<WireRobot, PART_ROBOTS_MAX>,
 }
 
 impl WorldPart {
-    /// How many robots fit into a part for so many addressees: six up to six of them, three for all sixteen.
+    /// Number of robots that fit into a part for `addressees` addressees: six up to six of them, three for
+    /// all sixteen.
     pub const fn robots_max(addressees: usize, placement: bool) -> usize {
         let tags = AUDIENCE_LEN + SHORT_TAG_LEN * addressees;
-        // Variant, picture, part, parts, the longer phase, two options, the ball, a length; then four bytes of placement.
+        // Variant, snapshot, part, parts, the longer phase, two options, the ball, a length; then four bytes
+        // of placement.
         let head = 1 + 3 + 2 + 1 + 11 + 1 + if placement { 4 } else { 0 };
         let fit = FRAME_LEN_MAX.saturating_sub(HEADER_LEN + tags + head) / WIRE_ROBOT_LEN;
         if fit < PART_ROBOTS_MAX { fit } else { PART_ROBOTS_MAX }
     }
 }
 
-/// Bytes of a robot in a part: who, x, y, heading, two velocities.
+/// Bytes of a robot in a part: identity, x, y, heading, two velocities.
 pub(crate) const WIRE_ROBOT_LEN: usize = 11;
 
 /// The ball on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireBall {
-    /// Where it is.
+    /// Position, mm.
     pub at: WirePoint,
-    /// How high, mm; 0 on the ground.
+    /// Height, mm; 0 on the ground.
     #[serde(with = "postcard::fixint::le")]
     pub height: u16,
-    /// Along +x, mm/s.
+    /// Velocity along +x, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vx: i16,
-    /// Along +y, mm/s.
+    /// Velocity along +y, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vy: i16,
 }
@@ -127,14 +131,14 @@ pub struct WireBall {
 /// A robot on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireRobot {
-    /// Whose, and its number.
+    /// Team and number.
     pub who: WireWho,
-    /// Where it is and faces.
+    /// Position, mm, and heading, mrad.
     pub pose: WirePose,
-    /// Along +x, mm/s.
+    /// Velocity along +x, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vx: i16,
-    /// Along +y, mm/s.
+    /// Velocity along +y, mm/s.
     #[serde(with = "postcard::fixint::le")]
     pub vy: i16,
 }
@@ -143,9 +147,9 @@ pub struct WireRobot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct WireWho {
-    /// Whose.
+    /// Team.
     pub side: Side,
-    /// Which.
+    /// Number in the team.
     pub id: RobotId,
 }
 
@@ -164,91 +168,93 @@ impl TryFrom<u8> for WireWho {
     }
 }
 
-/// What one robot shall do.
+/// Command to one robot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Command {
-    /// Who is meant.
+    /// Addressee.
     pub to: RobotId,
     /// The goal we defend: teams change ends at half-time.
     pub defending: GoalEnd,
-    /// The phase of the game, in our words.
+    /// The phase of the game, from our side.
     pub phase: Phase<Side>,
-    /// What it is now, besides a field player.
+    /// Its present role under the rules.
     pub duty: Duty,
-    /// What to do.
+    /// The directive.
     pub directive: Directive,
 }
 
-/// What to do, as the host's strategy wants it. The robot's skills do it, within what phase, duty and governor allow.
+/// The directive of the host's strategy. The robot's skills carry it out, within the limits of phase, role
+/// and governor.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Directive {
     /// Brake and stand.
     Stand,
-    /// Be at this place with this heading, around everything; away from the ball too unless the taker.
+    /// Be at this place with this heading, around all obstacles; away from the ball too unless the kicker of
+    /// a restart.
     GoTo {
-        /// Where and how.
+        /// Target pose.
         pose: WirePose,
     },
-    /// Have the ball at the dribbler, then face this point.
+    /// Get the ball to the dribbler, then face this point.
     GetBall {
-        /// What to face with it; nothing: the attacked goal.
+        /// Point to face with it; `None`: the attacked goal.
         face: Option<WirePoint>,
     },
     /// Kick the ball at a point; a shot at the goal and a clearance too.
     Kick {
-        /// At this point.
+        /// The target.
         at: WirePoint,
-        /// How.
+        /// Kick of the pass.
         kick: KickOrder,
     },
-    /// Pass to a mate, who will have the ball at `at`; waits, facing it, until told to be `ready`.
+    /// Pass to a teammate, who will have the ball at `at`; waits, facing it, until ordered to be `ready`.
     Pass {
-        /// The meeting point.
+        /// The interception point.
         at: WirePoint,
-        /// To whom.
+        /// Robot that receives the pass.
         receiver: RobotId,
-        /// How.
+        /// Kick of the pass.
         kick: KickOrder,
         /// Whether the ball may leave now.
         ready: bool,
     },
-    /// Have a passed ball at this place.
+    /// Receive a passed ball at this place.
     Receive {
-        /// The meeting point.
+        /// The interception point.
         at: WirePoint,
-        /// Shoot or pass it on at this point at first touch; nothing: take it.
+        /// Point to redirect the ball to at first touch; `None`: take it.
         then: Option<WirePoint>,
     },
     /// Carry the ball there, at most a metre (rules: the dribbling limit).
     Dribble {
-        /// Where to and how to face.
+        /// Target pose.
         pose: WirePose,
     },
     /// Stand on this stretch where the ball would cross it; stop a ball that comes.
     Block {
-        /// One end.
+        /// One end of the stretch.
         from: WirePoint,
         /// The other end.
         to: WirePoint,
     },
-    /// Bring the ball to this place and leave it there, at rest.
+    /// Bring the ball to this place and leave it there, stationary.
     PlaceBall {
         /// The designated position.
         at: WirePoint,
     },
-    /// Choose a case with the mates under this directive, and play it.
+    /// Choose a case with the teammates under this directive, and play it.
     Gameplay {
-        /// The host's proposal.
+        /// The host's proposal of a case.
         hint: Option<Hint>,
     },
 }
 
-/// How a ball is kicked.
+/// Kick order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum KickOrder {
-    /// Along the ground, with this speed, cm/s.
+    /// Along the ground; speed in cm/s.
     Flat(u16),
-    /// Through the air, with this speed, cm/s.
+    /// Through the air; speed in cm/s.
     Chip(u16),
 }
 
@@ -259,30 +265,31 @@ pub struct Hint {
     pub case: CaseId,
     /// Case robot i is played by entry i.
     pub robots: heapless::Vec<RobotId, CASE_ROBOTS_MAX>,
-    /// Where its first pass shall be received, if not at the adapted position.
+    /// Place at which its first pass shall be received, if not at the adapted position.
     pub pass_point: Option<WirePoint>,
 }
 
-/// What a robot tells the host of itself.
+/// A robot's report about itself to the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Telemetry {
-    /// Bits, see [`Condition`].
+    /// Condition bits, see [`Condition`].
     pub condition: Condition,
     /// Battery, cV (1/100 V); 0 where it is not measured.
     #[serde(with = "postcard::fixint::le")]
     pub battery: u16,
-    /// Parts of the host's pictures that came in this life, wrapping.
+    /// Number of parts of the host's snapshots received in this boot epoch, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub heard: u16,
-    /// Parts that never came, by the pictures' numbers, wrapping.
+    /// Number of parts never received, by the snapshots' numbers, wrapping.
     #[serde(with = "postcard::fixint::le")]
     pub lost: u16,
-    /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; the robot's own frames, given back, are not counted.
+    /// Frames refused in this boot epoch, by [`Refusal::kind`], saturating; echoes of the robot's own frames
+    /// are not counted.
     #[serde(with = "counts")]
     pub refused: [u16; Refusal::KINDS],
-    /// The newest picture a part of which came; means nothing before the first.
+    /// The newest snapshot of which a part was received; meaningless before the first.
     pub picture: u8,
-    /// How long ago the last frame of the host came, 0.1 ms, saturating.
+    /// Time since the last frame of the host, 0.1 ms, saturating.
     #[serde(with = "postcard::fixint::le")]
     pub silence: u16,
     /// The epoch of the host that this robot follows; 0 before it was welcomed.
@@ -293,7 +300,7 @@ pub struct Telemetry {
     pub clock: u32,
 }
 
-/// How a robot is, one bit each.
+/// Condition of a robot, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Condition(#[serde(with = "postcard::fixint::le")] pub u16);
@@ -307,12 +314,12 @@ impl Condition {
     pub const TIPPED: Self = Self(1 << 2);
     /// The battery is too low to play.
     pub const BATTERY_LOW: Self = Self(1 << 3);
-    /// The governor has cut down what the brain wanted.
+    /// The governor has limited the brain's orders.
     pub const GOVERNED: Self = Self(1 << 4);
-    /// The host has been silent for too long: brakes.
+    /// The host has been silent for too long: the robot brakes.
     pub const LINK_LOST: Self = Self(1 << 5);
 
-    /// Both sets together.
+    /// Union of both sets.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -325,7 +332,7 @@ impl Condition {
 }
 
 mod counts {
-    //! Counters as two fixed bytes each.
+    //! Encodes counters as two fixed bytes each.
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     use crate::frame::Refusal;

@@ -1,23 +1,24 @@
-//! `host_clock`: how old a frame of the host is, at most, on a robot's clock. Ticks of 64 µs, wrapping after 76 h.
+//! `host_clock`: maximum age of a frame of the host, on a robot's clock. Ticks of 64 µs, wrapping after 76 h.
 //!
-//! The counter of the host's frames is its clock ([`crate::host_link::HostLink::seal`]). A robot's telemetry carries the robot's
-//! clock, and a welcome the host's clock at that telemetry's arrival less this reading: the `offset`. Since no frame arrives before
-//! it was sent, the offset is never less than the true difference of the clocks, so
+//! The counter of the host's frames is its clock ([`crate::host_link::HostLink::seal`]). A robot's telemetry
+//! carries the robot's clock, and a welcome the host's clock at that telemetry's arrival less this reading:
+//! the `offset`. Since no frame arrives before it was sent, the offset is never less than the true difference
+//! of the clocks, so
 //!
 //! ```text
 //! age = own clock now + offset − counter of the frame
 //! ```
 //!
-//! is never less than the true age, whatever delayed or withheld either frame: it is the way up and the way down together. The
-//! smallest offset counts. It grows by 1/1024 of the time since it was learned, more than two clocks drift apart (crystals
-//! 100 ppm, a slewed system clock 500 ppm).
+//! is never less than the true age, whatever delayed or withheld either frame: it is the sum of both
+//! latencies, up and down. The smallest offset counts. It grows by 1/1024 of the time since it was learned,
+//! more than two clocks drift apart (crystals 100 ppm, a slewed system clock 500 ppm).
 
 use crate::{Duration, Instant};
 
-/// The host's frames are refused beyond this age: then the host is silent.
+/// Maximum accepted age of the host's frames: beyond it the host is silent.
 pub const AGE_MAX: Duration = Duration::millis(200);
-/// The host's counters may run ahead of its clock by this many ticks (20 ms): it sends at most 40 frames at once. A frame that is
-/// further ahead shows that the robot's clock stood still.
+/// The host's counters may run ahead of its clock by this many ticks (20 ms): it sends at most 40 frames at
+/// once. A frame that is further ahead proves that the robot's clock stood still.
 const AHEAD_MAX: u32 = 312;
 
 /// A clock's reading in ticks, wrapping.
@@ -25,22 +26,22 @@ pub const fn ticks(at: Instant) -> u32 {
     (at.0 >> TICK_BITS) as u32
 }
 
-/// A tick is 2⁶ µs, so that a shift does what a division would.
+/// A tick is 2⁶ µs, so that a shift replaces a division.
 pub(crate) const TICK_BITS: u32 = 6;
 
-/// What a robot knows of its host's clock.
+/// A robot's estimate of its host's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostClock {
-    /// The host's clock less the robot's, at most, when it was learned.
+    /// Upper bound of the host's clock less the robot's, when it was learned.
     offset: u32,
-    /// When that was, on the robot's clock.
+    /// Time of that reading, on the robot's clock.
     learned: u32,
 }
 
-/// What a frame's counter says of its age.
+/// Age of a frame by its counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Age {
-    /// At most so old.
+    /// Maximum age.
     Within(Duration),
     /// Older than [`AGE_MAX`].
     Stale,
@@ -49,7 +50,7 @@ pub enum Age {
 }
 
 impl HostClock {
-    /// After a welcome with this offset; `known` is what was known of the same host.
+    /// State after a welcome with this offset; `known` is the earlier state for the same host.
     pub const fn learned(known: Option<Self>, now: Instant, offset: u32) -> Self {
         let learned = ticks(now);
         let offset = match known {
@@ -59,7 +60,7 @@ impl HostClock {
         Self { offset, learned }
     }
 
-    /// How old a frame with this counter is.
+    /// Age of a frame with this counter.
     pub const fn age(&self, now: Instant, counter: u32) -> Age {
         let now = ticks(now);
         let age = now.wrapping_add(self.offset_at(now)).wrapping_sub(counter);
@@ -80,7 +81,7 @@ impl HostClock {
     }
 }
 
-/// In ticks.
+/// The same in ticks.
 const AGE_MAX_TICKS: u32 = (AGE_MAX.0 >> TICK_BITS) as u32;
 
 const fn is_before(a: u32, b: u32) -> bool {
@@ -104,7 +105,7 @@ mod tests {
 
     #[test]
     fn the_age_is_the_way_up_and_down_whatever_the_clocks_show() {
-        // The host's clock is 7 s ahead; 20 ms up, 30 ms down. Both clocks wrap on the way.
+        // The host's clock is 7 s ahead; 20 ms up, 30 ms down. Both clocks wrap in between.
         for start in [0, 3_600_000, 274_877_900 - 50, 274_877_900 - 7_000] {
             let host = |at: u64| ticks(ms(start + at + 7_000));
             let robot = |at: u64| ms(start + at);

@@ -1,12 +1,12 @@
-//! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and knows which robots are present;
-//! [`crate::link`] is the robots'.
+//! `host_link`: the host's end of the radio: seals snapshots and commands, opens robots' frames and tracks
+//! which robots are present; [`crate::link`] is the robots'.
 //!
-//! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more than the last where several
-//! frames go out in a tick; a robot takes a frame's age from it.
+//! **The counter is a clock.** It is the host's time in ticks of 64 µs ([`crate::host_clock`]), or one more
+//! than the last where several frames go out in a tick; a robot takes a frame's age from it.
 //!
-//! **A robot is believed** once its [`Telemetry`] names the host's present epoch, which no recording can. Until then its telemetry
-//! leads to a welcome and to nothing else, and its beacons and greetings are refused. Telemetry comes under a key that only this
-//! robot and the host hold.
+//! **A robot is trusted** once its [`Telemetry`] names the host's present epoch, which no recording can.
+//! Until then its telemetry leads to a welcome and to nothing else, and its beacons and handshakes are
+//! refused. Telemetry comes under a key that only this robot and the host hold.
 
 use crate::frame::{Audience, Frame, PAYLOAD_LEN_MAX, Refusal, Sender, Sessions, TeamKey, TeamKeys};
 use crate::host::{HostMessage, Telemetry, Welcome};
@@ -15,36 +15,39 @@ use crate::link::{Packet, count, decode, packet, packet_to_audience};
 use crate::team::TeamMessage;
 use crate::{Instant, RobotId, TeamId};
 
-/// The host's end of the radio: seals what it says, opens what robots say, counts what it refuses.
+/// The host's end of the radio: seals its messages, opens those of robots, counts what it refuses.
 #[derive(Clone, Debug)]
 pub struct HostLink {
     team: TeamId,
     keys: TeamKeys,
     epoch: u32,
     counter: u32,
-    /// When the epoch began, in ticks.
+    /// When the epoch started, in ticks.
     zero: u64,
     audience: Audience,
     /// The newest telemetry of each robot that named our epoch, and the newest of its other frames.
     own: Sessions,
     shared: Sessions,
-    /// By the newest telemetry of each robot, whether it named our epoch or not: its epoch, and our clock then less its own.
+    /// For each robot, from its newest telemetry: its epoch, and the difference of our clock to its own,
+    /// whether it named our epoch or not.
     newest: [Option<(u32, u32)>; RobotId::COUNT],
     refused: [u32; Refusal::KINDS],
 }
 
-/// What became of a packet.
+/// Result of opening a packet.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Opened {
-    /// A robot that is believed says this.
+    /// A message of a trusted robot.
     Believed(RobotId, TeamMessage),
-    /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It may be welcomed.
+    /// Genuine telemetry of a robot that has not named our epoch: new, led by another host, or recorded. It
+    /// may be welcomed.
     Stranger(RobotId, Telemetry),
 }
 
 impl HostLink {
-    /// A link in the epoch `epoch` of the host, at least 1; a later start must bring a larger one (seconds of a calendar do).
+    /// A link in the epoch `epoch` of the host, at least 1; a later start must bring a larger one (seconds of
+    /// a calendar do).
     pub fn new(team: TeamId, key: TeamKey, epoch: u32) -> Self {
         Self {
             team,
@@ -60,20 +63,21 @@ impl HostLink {
         }
     }
 
-    /// Whom parts of snapshots are sealed for from now on.
+    /// Sets the robots for which parts of snapshots are sealed from now on.
     pub fn set_audience(&mut self, audience: Audience) {
         self.audience = audience;
     }
 
-    /// Our epoch.
+    /// The host's epoch.
     pub fn epoch(&self) -> u32 {
         self.epoch
     }
 
-    /// The packet that carries `message`; empty if it is for nobody.
+    /// The packet that carries `message`; empty if it is addressed to no robot.
     pub fn seal(&mut self, now: Instant, message: &HostMessage) -> Packet {
         let mut payload = [0; PAYLOAD_LEN_MAX];
-        // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
+        // A message always fits (tested with the longest there is); if it did not, silence is the safe
+        // answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         let to = match message {
             HostMessage::World(_) => None,
@@ -90,8 +94,8 @@ impl HostLink {
         }
     }
 
-    /// Which robot says what, or why the packet is not believed (counted). A host's packet is refused by its sender, 16:
-    /// there is a second host on this air, or this one hears itself.
+    /// The robot and its message, or why the packet is refused (counted). A host's packet is refused by its
+    /// sender, 16: there is a second host on this channel, or this one receives itself.
     pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Opened, Refusal> {
         let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
@@ -100,7 +104,7 @@ impl HostLink {
         opened
     }
 
-    /// How many packets were refused, by [`Refusal::kind`].
+    /// Number of refused packets, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         &self.refused
     }
@@ -111,12 +115,13 @@ impl HostLink {
         Some(Welcome { to: robot, life, offset })
     }
 
-    /// The boot epoch in which that robot is believed.
+    /// The boot epoch in which that robot is trusted.
     pub fn life(&self, robot: RobotId) -> Option<u32> {
         self.own.epoch(Sender::Robot(robot))
     }
 
-    /// The clock's reading, or one more than the last; after 76 h a new epoch begins, for which robots are welcomed again.
+    /// The clock's reading, or one more than the last; after 76 h a new epoch starts, for which robots are
+    /// welcomed again.
     fn count_up(&mut self, now: Instant) {
         let clock = self.clock(now).max(u64::from(self.counter) + 1);
         if let Ok(counter) = u32::try_from(clock) {
@@ -126,7 +131,7 @@ impl HostLink {
         }
     }
 
-    /// In ticks since the epoch began.
+    /// The clock's reading, in ticks since the epoch started.
     fn clock(&self, now: Instant) -> u64 {
         (now.0 >> TICK_BITS).saturating_sub(self.zero)
     }
@@ -134,8 +139,8 @@ impl HostLink {
     fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Opened, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
-        // Every frame of an epoch before the one believed is refused; the counters of telemetry and of what teammates could have said
-        // in its name rise each by itself.
+        // Every frame of an epoch before the trusted one is refused; the counters of telemetry and of what
+        // teammates could have sent in its name rise each by itself.
         if let Some(current) = self.own.epoch(frame.sender).filter(|current| frame.epoch < *current) {
             return Err(Refusal::Epoch { seen: frame.epoch, current });
         }
@@ -167,14 +172,14 @@ impl HostLink {
             return Ok(Opened::Stranger(robot, telemetry));
         }
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
-            // What it said to its teammates before it knew us may be recorded.
+            // Its messages to teammates before it knew us may be recordings.
             self.shared.accept(frame);
         }
         self.own.accept(frame);
         Ok(Opened::Believed(robot, TeamMessage::Telemetry(telemetry)))
     }
 
-    /// Beacons and greetings, under the key that all robots hold.
+    /// Beacons and handshakes, under the key that all robots hold.
     fn open_shared(&mut self, packet: &[u8], frame: &Frame<'_>, robot: RobotId) -> Result<Opened, Refusal> {
         if self.own.epoch(frame.sender) != Some(frame.epoch) {
             return Err(Refusal::Stranger { epoch: frame.epoch });

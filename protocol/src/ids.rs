@@ -1,19 +1,19 @@
-//! `ids`: identifiers of robots, teams, cycles and cases. Ids that cannot be taken for each other.
+//! `ids`: identifiers of robots, teams, cycles and cases, as distinct types.
 
 use core::fmt;
 
 use rules::Colour;
 use serde::{Deserialize, Serialize};
 
-/// A robot of one team, 0–15; fixed for its life (paper §4.1: "each robot has a unique fixed Id").
+/// A robot of one team, 0–15; fixed permanently (paper §4.1: "each robot has a unique fixed Id").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "u8", into = "u8")]
 pub struct RobotId(u8);
 
 impl RobotId {
-    /// The lowest.
+    /// The lowest number.
     pub const ZERO: Self = Self(0);
-    /// Number of ids there are.
+    /// Number of valid ids.
     pub const COUNT: usize = 16;
 
     /// `None` above 15.
@@ -21,12 +21,12 @@ impl RobotId {
         if (id as usize) < Self::COUNT { Some(Self(id)) } else { None }
     }
 
-    /// 0–15.
+    /// The number, 0–15.
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// For arrays with one place per id.
+    /// Index for arrays with one entry per id.
     pub const fn index(self) -> usize {
         (self.0 & 0x0f) as usize
     }
@@ -37,7 +37,7 @@ impl RobotId {
     }
 }
 
-/// An id above 15.
+/// Error of an id above 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchRobot(pub u8);
 
@@ -68,7 +68,7 @@ impl fmt::Display for RobotId {
     }
 }
 
-/// A team on the air; two teams share no cycle and no key.
+/// A team in the radio network; two teams share no cycle and no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct TeamId(pub u8);
@@ -83,10 +83,10 @@ impl TeamId {
     }
 }
 
-/// Which robot of which team; yellow sorts first.
+/// Identity of a robot: team colour and number; yellow sorts first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Who {
-    /// Its team.
+    /// Colour of its team.
     pub colour: Colour,
     /// Its shell number.
     pub id: RobotId,
@@ -103,7 +103,7 @@ impl Who {
         Self { colour: Colour::Blue, id }
     }
 
-    /// One number for both: 0–15 yellow, 16–31 blue.
+    /// Index for both teams: 0–15 yellow, 16–31 blue.
     pub const fn slot(self) -> usize {
         let team = match self.colour {
             Colour::Yellow => 0,
@@ -125,7 +125,7 @@ impl fmt::Display for CaseId {
 }
 
 /// One retrieve–reuse cycle of a team. Totally ordered: the counter first, then the proposer, so that two
-/// proposals made at once still have one winner, and whatever carries an older id is known to be stale.
+/// proposals made at once still have one winner, and a message with an older id is known to be stale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct CycleId {
     /// Rises with every proposal.

@@ -5,10 +5,11 @@
 //!                     | SipHash-2-4(team key, "onetwo key 2" | purpose 1 | robot 1 | 01)        each 8 bytes, little endian
 //! ```
 //!
-//! Purpose `H` is the key between the host and that robot, purpose `T` (robot 0) the one among all robots of the team. SipHash is a
-//! pseudo-random function: two labels never give the same input, and no derived key tells the team key or another derived one.
-//! The host holds the team key; a robot holds only its own two ([`RobotKeys`]), so a stolen robot cannot speak as the host to
-//! another robot, nor as another robot to the host.
+//! Purpose `H` is the key between the host and that robot, purpose `T` (robot 0) the one among all robots of
+//! the team. SipHash is a pseudo-random function: two labels never give the same input, and no derived key
+//! reveals the team key or another derived one. The host holds the team key; a robot holds only its own two
+//! ([`RobotKeys`]), so a stolen robot cannot speak as the host to another robot, nor as another robot to the
+//! host.
 
 use core::fmt;
 use core::hash::Hasher as _;
@@ -17,7 +18,7 @@ use siphasher::sip::SipHasher24;
 
 use crate::RobotId;
 
-/// The secret of a team: held by its host and by whoever provisions its robots, never by a robot.
+/// The secret of a team: held by its host and by the program that provisions its robots, never by a robot.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct TeamKey(pub [u8; 16]);
 
@@ -25,16 +26,16 @@ pub struct TeamKey(pub [u8; 16]);
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Key(pub [u8; 16]);
 
-/// What one robot holds.
+/// Keys of one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotKeys {
-    /// Between this robot and the host.
+    /// Key between this robot and the host.
     pub host: Key,
-    /// Among all robots of the team; the host holds it too.
+    /// Key among all robots of the team; the host holds it too.
     pub team: Key,
 }
 
-/// What the host holds: every robot's key.
+/// Keys of the host: every robot's key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TeamKeys {
     robots: [Key; RobotId::COUNT],
@@ -42,7 +43,8 @@ pub struct TeamKeys {
 }
 
 impl TeamKey {
-    /// The public key of a team that has none: its frames can be told from noise, not from forgeries.
+    /// The public key of a team that has none: its frames can be distinguished from noise, not from
+    /// forgeries.
     pub const ZERO: Self = Self([0; 16]);
 
     /// The keys of one robot.
@@ -111,7 +113,7 @@ impl fmt::Debug for Key {
     }
 }
 
-/// Keeps derived keys apart from anything else that is ever hashed under a team key; 2 is the frame's version.
+/// Separates derived keys from any other input that is hashed under a team key; 2 is the frame's version.
 const LABEL: &[u8; 12] = b"onetwo key 2";
 
 #[cfg(test)]

@@ -1,11 +1,12 @@
-//! `protocol`: what travels between robots, host and simulator (docs/architecture.md §5–§7).
+//! `protocol`: messages between robots, host and simulator (docs/architecture.md §5–§7).
 //!
-//! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of the wire;
-//! [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags), [`link`] and [`host_link`] are its two
-//! ends ([`acquaintance`]: which teammates are believed; [`host_clock`]: how old a frame of the host is), [`serial`] puts it on a line;
-//! [`team`] is what robots tell each other, [`mod@host`] what host and robots do; [`robot_io`] is what a body gives its brain and takes
-//! from it; [`lockstep`] carries the latter between simulator and computer, [`provision`] is a robot's identity in its flash,
-//! [`slot`] is where a computer finds a case table that was not built into it.
+//! Bottom up: [`ids`] and [`time`] name things; [`quantized`] is the one place where SI becomes integers of
+//! the wire; [`key`] derives the keys, [`frame`] is the radio's envelope (sender, epoch, counter, tags),
+//! [`link`] and [`host_link`] are its two ends ([`acquaintance`]: which teammates are trusted;
+//! [`host_clock`]: the age of a frame of the host), [`serial`] puts it on a line; [`team`] has the messages
+//! between robots, [`mod@host`] those between host and robots; [`robot_io`] is what a body gives its brain
+//! and takes from it; [`lockstep`] carries the latter between simulator and computer, [`provision`] is a
+//! robot's identity in its flash, [`slot`] is where a computer finds a case table that was not built into it.
 //! The bytes are written down in `protocol/SPEC.md`, and tests hold the code to them.
 //!
 //! **Invariants.** No I/O, no clock, no allocation; no input from outside can panic.

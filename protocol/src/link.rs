@@ -1,10 +1,12 @@
 //! `link`: a robot's end of the radio: seals its messages, opens what it receives, counts what it refuses;
 //! [`crate::host_link`] is the other.
 //!
-//! A robot hears its teammates and its host, and believes neither before they have answered its present boot epoch: the host with a
-//! [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`]. A recording cannot, for it was made before the robot's epoch was known. Until then,
-//! and again when a host or teammate with a newer epoch speaks, its frames are refused as a [`Refusal::Stranger`]'s. The host's
-//! frames are refused as [`Refusal::Stale`] when they are older than [`AGE_MAX`](crate::host_clock::AGE_MAX).
+//! A robot receives its teammates and its host, and trusts neither before they have answered its present boot
+//! epoch: the host with a [`Welcome`](crate::host::Welcome), teammates with a [`Greeting`] (handshake). A
+//! recording cannot, because it was made before the robot's epoch was known. Until then, and again when a
+//! host or teammate with a newer epoch sends, its frames are refused as [`Refusal::Stranger`]
+//! (unauthenticated peer). The host's frames are refused as [`Refusal::Stale`] when they are older than
+//! [`AGE_MAX`](crate::host_clock::AGE_MAX).
 
 use crate::acquaintance::Acquaintances;
 use crate::frame::{Frame, FrameBytes, Refusal, RobotKeys, Sender, Sessions, TeamKeys};
@@ -14,22 +16,22 @@ use crate::key::Key;
 use crate::team::{Greeting, TEAM_MESSAGE_LEN_MAX, TeamMessage};
 use crate::{Duration, Instant, RobotId, TeamId};
 
-/// A packet of the air: one whole frame.
+/// A radio packet: one whole frame.
 pub type Packet = FrameBytes;
 
-/// What a robot heard.
+/// An accepted frame.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// A teammate says this.
+    /// A message of a teammate.
     Mate(RobotId, TeamMessage),
-    /// The host says this, at most [`Link::age`] ago.
+    /// A message of the host, sent at most [`Link::age`] ago.
     Host(HostMessage),
-    /// It is for another receiver: not opened, whatever it says changes nothing here.
+    /// It is for another receiver: not opened, without any effect here.
     Elsewhere,
 }
 
-/// One robot's end of the radio: seals what it says, opens what it hears, counts what it refuses.
+/// One robot's end of the radio: seals its messages, opens received frames, counts what it refuses.
 #[derive(Clone, Debug)]
 pub struct Link {
     team: TeamId,
@@ -39,12 +41,12 @@ pub struct Link {
     counter: u32,
     sessions: Sessions,
     acquaintances: Acquaintances,
-    /// What is known of the clock of the host that is believed.
+    /// State of the trusted host's clock.
     clock: Option<HostClock>,
-    /// Of the host's last frame that was opened.
+    /// Age of the host's last frame that was opened.
     age: Duration,
     refused: [u32; Refusal::KINDS],
-    /// Of these, its own messages given back.
+    /// Number of these that were its own messages, echoed.
     echoes: u32,
     pictures: Pictures,
 }
@@ -71,24 +73,25 @@ impl Link {
     /// The packet that carries `message`.
     pub fn seal(&mut self, message: &TeamMessage) -> Packet {
         let mut payload = [0; TEAM_MESSAGE_LEN_MAX];
-        // A message always fits (tested with the longest there is); if it did not, silence is the safe answer.
+        // A message always fits (tested with the longest there is); if it did not, silence is the safe
+        // answer.
         let Ok(payload) = postcard::to_slice(message, &mut payload) else { return Packet::new() };
         self.counter = self.counter.wrapping_add(1);
         let sender = Sender::Robot(self.me);
-        // Of its own body it speaks to the host alone, and no teammate can say it in its name.
+        // Telemetry about its own body goes to the host alone, and no teammate can send it in its name.
         let key =
             if matches!(message, TeamMessage::Telemetry(_)) { &self.keys.host } else { &self.keys.team };
         let (team, epoch, counter) = (self.team, self.epoch, self.counter);
         packet(&Frame { team, sender, audience: None, epoch, counter, payload }, key)
     }
 
-    /// The packet that greets mates who do not know yet that we live now, if there are any and it is time.
+    /// The handshake for teammates that do not yet know our present boot epoch, if one is due.
     pub fn poll_greeting(&mut self, now: Instant) -> Option<Packet> {
         let greeting = self.acquaintances.poll(now)?;
         Some(self.seal(&TeamMessage::Greeting(greeting)))
     }
 
-    /// Who says what, or why the packet is not believed (counted).
+    /// The sender and its message, or why the packet is refused (counted).
     pub fn open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let opened = self.try_open(now, packet);
         if let Err(refusal) = opened {
@@ -97,27 +100,28 @@ impl Link {
         opened
     }
 
-    /// The epoch of the host that is believed, if there is one; when it changes, what the last one's numbers meant is over.
+    /// The epoch of the trusted host, if there is one; when it changes, numbers of the last host's frames are
+    /// invalid.
     pub fn host_epoch(&self) -> Option<u32> {
         self.sessions.epoch(Sender::Host)
     }
 
-    /// How old the host's last frame was at most when it was opened.
+    /// Maximum age of the host's last frame when it was opened.
     pub fn age(&self) -> Duration {
         self.age
     }
 
-    /// How many packets were refused, by [`Refusal::kind`].
+    /// Number of refused packets, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         &self.refused
     }
 
-    /// What came of the host's pictures, and what did not.
+    /// Counters of received and lost parts of the host's snapshots.
     pub fn pictures(&self) -> &Pictures {
         &self.pictures
     }
 
-    /// Fills in what the link knows of itself; all but condition, battery and silence.
+    /// Fills in the link's counters; all but condition, battery and silence.
     pub fn tell(&self, now: Instant, telemetry: &mut Telemetry) {
         telemetry.host = self.host_epoch().unwrap_or(0);
         telemetry.clock = ticks(now);
@@ -125,12 +129,12 @@ impl Link {
         telemetry.lost = self.pictures.lost as u16;
         telemetry.picture = self.pictures.newest().unwrap_or(0);
         telemetry.refused = self.refused.map(|count| count.min(u32::from(u16::MAX)) as u16);
-        // A base station that sends to all gives a robot its own words back; that is no sign of trouble.
+        // A base station that sends to all echoes a robot's own messages; that is no sign of an attack.
         let sender = &mut telemetry.refused[Refusal::Sender(0).kind()];
         *sender = sender.saturating_sub(self.echoes.min(u32::from(u16::MAX)) as u16);
     }
 
-    /// The first checks: length, id, epoch and counter.
+    /// The first checks: length, team, sender, epoch and counter.
     fn envelope<'a>(&mut self, packet: &'a [u8]) -> Result<Frame<'a>, Refusal> {
         let frame = Frame::parse(packet, self.team)?;
         if frame.sender == Sender::Robot(self.me) {
@@ -141,7 +145,7 @@ impl Link {
         Ok(frame)
     }
 
-    /// Whether a frame is for this robot, as it says itself; its tag has not been looked at.
+    /// Whether a frame is addressed to this robot; its tag is not checked.
     #[inline]
     fn is_for_me(&self, frame: &Frame<'_>) -> bool {
         match (frame.sender, frame.audience) {
@@ -153,7 +157,7 @@ impl Link {
 
     fn try_open(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = self.envelope(packet)?;
-        // A tag costs: what is for another receiver is not opened.
+        // Tags are expensive: a frame for another receiver is not opened.
         if !self.is_for_me(&frame) {
             return Ok(Heard::Elsewhere);
         }
@@ -190,7 +194,7 @@ impl Link {
         {
             clock = Some(HostClock::learned(clock, now, welcome.offset));
         }
-        // Without a welcome nothing is known of a host's clock.
+        // Without a welcome the host's clock is unknown.
         let age = clock.ok_or(Refusal::Stranger { epoch: frame.epoch })?.age(now, frame.counter);
         if known {
             self.clock = if age == Age::Ahead && frame.audience.is_none() { None } else { clock };
@@ -209,35 +213,36 @@ impl Link {
     }
 }
 
-/// Which parts of the host's pictures came? Every robot is sent every part, so what is missing was lost.
+/// Counters of the host's snapshots. Every robot is sent every part, so a missing part was lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pictures {
-    /// Parts that came in this life.
+    /// Parts received in this boot epoch.
     pub heard: u32,
-    /// Parts that never came: of pictures that are over, or whole pictures between two that came (as many parts as the
-    /// later one). 256 pictures missed in a row cannot be told from none; who counts on it looks at the silence too.
+    /// Parts never received: of snapshots that are over, or whole snapshots between two received ones (as
+    /// many parts as the later one). 256 snapshots missed in a row cannot be distinguished from none; a
+    /// caller that relies on it must check the silence too.
     pub lost: u32,
     now: Option<Now>,
 }
 
-/// The picture that is coming in.
+/// The snapshot being received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Now {
     number: u8,
     parts: u8,
-    /// A bit for each part that came.
+    /// Bits of the parts received.
     came: u8,
 }
 
 const _: () = assert!(PARTS_MAX <= u8::BITS as usize, "a bit for each part");
 
 impl Pictures {
-    /// The newest picture a part of which came.
+    /// The newest snapshot of which a part was received.
     pub fn newest(&self) -> Option<u8> {
         self.now.map(|now| now.number)
     }
 
-    /// Another host: its numbers have nothing to do with the last one's.
+    /// Another host: its numbers are unrelated to the last one's.
     fn forget(&mut self) {
         self.now = None;
     }
@@ -260,8 +265,9 @@ impl Pictures {
     }
 }
 
-/// Reads a robot's packet without being part of the team: for an observer of the air (the keys are needed, order and repetition are
-/// not judged). The host's are refused as a sender's that does not speak to us.
+/// Reads a robot's packet without being part of the team: for an observer of the radio channel (the keys are
+/// needed, order and repetition are not judged). The host's packets are refused as those of a sender that
+/// does not send to us.
 pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId, TeamMessage), Refusal> {
     let frame = Frame::parse(packet, team)?;
     let Sender::Robot(robot) = frame.sender else { return Err(Refusal::Sender(frame.sender.number())) };
@@ -272,7 +278,7 @@ pub fn overhear(packet: &[u8], team: TeamId, keys: &TeamKeys) -> Result<(RobotId
     decode(frame.payload).map(|message| (robot, message)).ok_or(Refusal::Payload)
 }
 
-/// As [`overhear`], for the host's packets, read in the place of `reader`.
+/// As [`overhear`], for the host's packets, read in `reader`'s place.
 pub fn overhear_host(
     packet: &[u8],
     team: TeamId,
@@ -308,13 +314,13 @@ pub(crate) fn packet_to_audience(frame: &Frame<'_>, keys: &TeamKeys) -> Packet {
 }
 
 pub(crate) fn count(refused: &mut [u32; Refusal::KINDS], refusal: Refusal) {
-    // There is one for each kind.
+    // There is one counter for each kind.
     if let Some(count) = refused.get_mut(refusal.kind()) {
         *count = count.saturating_add(1);
     }
 }
 
-/// The message, if the payload is one to its last byte and its ids exist.
+/// Decodes a message that ends with the payload's last byte and whose ids exist.
 pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(payload: &'a [u8]) -> Option<T> {
     let (message, rest) = postcard::take_from_bytes::<T>(payload).ok()?;
     rest.is_empty().then_some(message)

@@ -1,21 +1,21 @@
-//! `lockstep`: lockstep between simulator and robot computer. One question, one answer, a tick at a time
+//! `lockstep`: lockstep between simulator and robot computer: one request, one answer, a tick at a time
 //! (docs/architecture.md §7.2).
 //!
-//! The simulator sends [`ToRobot::Setup`] once per life and then a [`ToRobot::Tick`] per brain step; the computer
-//! answers each with one [`FromRobot`]. Time moves only by ticks: timers due by `now` run before the tick's packets,
-//! packets in order, then the sensors. Over Ethernet each message is `length u16 LE | postcard` behind the 14-byte
-//! header with [`ETHERTYPE`].
+//! The simulator sends [`ToRobot::Setup`] once per boot epoch and then a [`ToRobot::Tick`] per brain step;
+//! the computer answers each with one [`FromRobot`]. Time moves only by ticks: timers due by `now` run before
+//! the tick's packets, packets in order, then the sensors. Over Ethernet each message is `length u16 LE |
+//! postcard` behind the 14-byte header with [`ETHERTYPE`].
 
 use serde::{Deserialize, Serialize};
 
 use crate::Instant;
 use crate::robot_io::{ActuatorFrame, SensorFrame};
 
-/// Packets of the air handed to a robot in one tick; the simulator keeps the rest for the next. Eleven robots' world in
-/// four parts, a command, a welcome and a beacon of each of ten mates.
+/// Radio packets handed to a robot in one tick; the simulator keeps further ones for the next. Eleven robots'
+/// world in four parts, a command, a welcome and a beacon of each of ten teammates.
 pub const AIR_IN_MAX: usize = 16;
-/// Bytes of packets handed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it stays within
-/// [`MESSAGE_LEN_MAX`].
+/// Bytes of packets passed to a robot in one tick; with as many lengths and the longest [`SensorFrame`] it
+/// stays within [`MESSAGE_LEN_MAX`].
 pub const AIR_IN_BYTES_MAX: usize = 1_280;
 /// Packets a robot may send in one tick.
 pub const AIR_OUT_MAX: usize = 6;
@@ -24,61 +24,62 @@ pub const MESSAGE_LEN_MAX: usize = 1_480;
 /// Local experimental Ethernet type.
 pub const ETHERTYPE: u16 = 0x88b5;
 
-/// From the simulator to a robot's computer.
+/// Message from the simulator to a robot's computer.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack, and no heap to box it on")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToRobot<'a> {
-    /// Start a new life with this configuration (postcard of the brain's own type; this crate does not look inside).
+    /// Start a new boot epoch with this configuration (postcard of the brain's own type; this crate does not
+    /// look inside).
     Setup {
         /// The brain's configuration.
         config: &'a [u8],
     },
-    /// One step.
+    /// One brain step.
     #[serde(borrow)]
     Tick(TickIn<'a>),
 }
 
-/// What a robot's computer learns in one tick.
+/// Input of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickIn<'a> {
-    /// Number of the tick; the answer carries it back.
+    /// Number of the tick; the answer returns it.
     pub seq: u32,
-    /// The time now.
+    /// Time of the tick.
     pub now: Instant,
     /// Packets that arrived, in order.
     #[serde(borrow)]
     pub air: heapless::Vec<&'a [u8], AIR_IN_MAX>,
-    /// What the robot perceives now.
+    /// The sensor frame of this tick.
     pub sensors: SensorFrame,
 }
 
-/// From a robot's computer to the simulator.
+/// Message from a robot's computer to the simulator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum FromRobot<'a> {
-    /// Awake, waiting for a set-up.
+    /// Started, waiting for a set-up.
     Hello,
-    /// Set up.
+    /// The set-up was accepted.
     Ready,
-    /// The set-up could not be read, or the library in flash is not one.
+    /// The set-up, or the library in flash, could not be read.
     Unusable,
     /// A tick's answer.
     #[serde(borrow)]
     Tick(TickOut<'a>),
 }
 
-/// What a robot's computer answers in one tick.
+/// Output of a robot's computer in one tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TickOut<'a> {
-    /// The tick answered.
+    /// Number of the tick that is answered.
     pub seq: u32,
-    /// What the body shall do; `None` when nothing new was said.
+    /// The actuator orders; `None` without new ones.
     pub actuators: Option<ActuatorFrame>,
     /// Packets to send, in order.
     #[serde(borrow)]
     pub air: heapless::Vec<&'a [u8], AIR_OUT_MAX>,
-    /// Guest instructions the tick took, where they can be counted; else 0.
+    /// Guest instructions of the tick, where they can be counted; else 0.
     pub instructions: u32,
-    /// Bytes of its stack that were ever used, as last looked at; 0 where nobody looks.
+    /// Bytes of its stack that were ever used, as measured last; 0 where it is not measured.
     pub stack: u32,
 }
 

@@ -1,10 +1,11 @@
 //! `provision`: a robot's identity and its keys, a page of the flash written by `onetwo firmware provision`
-//! (docs/architecture.md §6.1, docs/case-format.md §5): 64 bytes that are not part of the image.
+//! (docs/architecture.md §6.1, docs/case-format.md §5): 64 bytes that are not part of the firmware.
 //!
-//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, the rest 0xff. The keys are this
-//! robot's own ([`crate::key`]), never the team's secret. The check is SipHash-2-4 of the 40 bytes before it under the host key: a
-//! page that was written halfway, or is empty flash, is none. A robot without a page, or with keys that are public, is not
-//! commanded by any host ([`read`]).
+//! `magic 4 "1-2K" | version 1 | robot 1 | team 1 | league 1 | host key 16 | team's key 16 | check 8`, padded
+//! with 0xff. The keys are this robot's own ([`crate::key`]), never the team's secret. The check is
+//! SipHash-2-4 of the 40 bytes before it under the host key: a page that was written halfway, or is empty
+//! flash, is none. A robot without a page, or with keys that are public, is not commanded by any host
+//! ([`read`]).
 
 use core::fmt;
 
@@ -13,36 +14,36 @@ use rules::League;
 use crate::key::{Key, RobotKeys};
 use crate::{RobotId, TeamId};
 
-/// Bytes of a page; the rest of a flash sector stays empty.
+/// Bytes of a page; the remainder of a flash sector stays empty.
 pub const PAGE_LEN: usize = 64;
-/// Of those, the ones that mean something.
+/// Bytes of a page that are used.
 const USED: usize = CHECKED + 8;
 const CHECKED: usize = 40;
 const MAGIC: [u8; 4] = *b"1-2K";
-/// 1 held the team's key.
+/// Version of the page; version 1 held the team's key.
 const VERSION: u8 = 2;
 
-/// What is written into a robot.
+/// Content of a robot's page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Provision {
-    /// Its number.
+    /// The robot's number.
     pub robot: RobotId,
-    /// Its team.
+    /// The robot's team.
     pub team: TeamId,
-    /// What it plays.
+    /// League it plays in.
     pub league: League,
-    /// Its keys.
+    /// The robot's keys.
     pub keys: RobotKeys,
 }
 
-/// Why there is no telling who a robot is.
+/// Why a robot's identity cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProvisionError {
-    /// Nothing was ever written, or something else.
+    /// Never written, or foreign content.
     Empty,
-    /// Of another version of the firmware.
+    /// Written for another version of the firmware.
     Version(u8),
-    /// Written halfway, or damaged.
+    /// Written partly, or damaged.
     Damaged,
     /// The keys are derived from the team key of zeros, which is public.
     OpenKey,
@@ -82,7 +83,7 @@ pub fn page(who: &Provision) -> [u8; PAGE_LEN] {
     page
 }
 
-/// Reads a page. Public keys are refused unless `open` says that this is an image for trying things out.
+/// Reads a page. Public keys are refused unless `open` marks a firmware for trials.
 pub fn read(page: &[u8], open: bool) -> Result<Provision, ProvisionError> {
     let used: &[u8; USED] = page.first_chunk().ok_or(ProvisionError::Empty)?;
     let [m0, m1, m2, m3, version, robot, team, league, rest @ ..] = *used;
@@ -114,7 +115,7 @@ fn league_number(league: League) -> u8 {
     LEAGUES.iter().position(|known| *known == league).unwrap_or(0) as u8
 }
 
-/// By their number in a page; only ever added to.
+/// Leagues by their number in a page; new ones are only appended.
 const LEAGUES: [League; 4] = [League::FourLegged, League::Ssl2013, League::DivisionB, League::DivisionA];
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `quantized`: conversion between SI units and wire integers. Here and nowhere else
-//! (docs/architecture.md §2.2). All conversions saturate.
+//! `quantized`: conversion between SI units and wire integers, the only place for it (docs/architecture.md
+//! §2.2). All conversions saturate.
 
 use geometry::{Angle, Field, Point, Pose, math};
 use serde::{Deserialize, Serialize};
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 /// A place on the field, whole millimetres, ±32.767 m.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub struct WirePoint {
-    /// Along +x, mm.
+    /// Coordinate along +x, mm.
     #[serde(with = "postcard::fixint::le")]
     pub x: i16,
-    /// Along +y, mm.
+    /// Coordinate along +y, mm.
     #[serde(with = "postcard::fixint::le")]
     pub y: i16,
 }
@@ -20,7 +20,7 @@ pub struct WirePoint {
 pub struct WirePose {
     /// The robot's centre.
     pub at: WirePoint,
-    /// Where it faces, mrad, −3142 to 3142.
+    /// Heading, mrad, −3142 to 3142.
     #[serde(with = "postcard::fixint::le")]
     pub heading: i16,
 }
@@ -69,7 +69,7 @@ impl From<WirePose> for Pose<Field> {
     }
 }
 
-/// What does not fit into the wire's integers becomes the nearest that does.
+/// A value outside the range of the wire's integers becomes the nearest inside.
 pub fn saturate(value: i32) -> i16 {
     value.clamp(i32::from(i16::MIN), i32::from(i16::MAX)) as i16
 }

@@ -1,7 +1,7 @@
-//! `serial`: framing on a serial line. At the next zero byte: frames travel COBS-stuffed, a zero after each
-//! (docs/architecture.md §6.1).
+//! `serial`: framing on a serial line: frames are COBS-encoded, a zero byte after each; a receiver
+//! synchronises at the next zero (docs/architecture.md §6.1).
 //!
-//! COBS finds the next frame after any garbage and nothing more; whether the bytes are right, the frame's tag tells.
+//! COBS finds the next frame after any garbage and nothing more; the frame's tag verifies the bytes.
 
 use cobs::{DecodeResult, DecoderState};
 
@@ -11,10 +11,11 @@ use crate::link::Packet;
 /// The longest frame on a line: one byte of stuffing before it (254 would need two), the zero after it.
 pub const LINE_LEN_MAX: usize = FRAME_LEN_MAX + 2;
 
-/// A frame as it goes over a line, its zero included.
+/// An encoded frame for a line, its zero included.
 pub type Line = heapless::Vec<u8, LINE_LEN_MAX>;
 
-/// The line that carries `packet`; empty for one longer than [`FRAME_LEN_MAX`], a lone zero for an empty one.
+/// The line that carries `packet`; empty for one longer than [`FRAME_LEN_MAX`], a single zero for an empty
+/// one.
 pub fn line(packet: &[u8]) -> Line {
     let mut line = Line::new();
     if packet.len() <= FRAME_LEN_MAX && line.resize_default(LINE_LEN_MAX).is_ok() {
@@ -26,12 +27,12 @@ pub fn line(packet: &[u8]) -> Line {
     line
 }
 
-/// Takes bytes from a line and gives frames; garbage goes with everything up to the next zero, and is counted.
+/// Takes bytes from a line and returns frames; garbage is dropped up to the next zero, and counted.
 #[derive(Debug)]
 pub struct Lines {
     stuffing: DecoderState,
     frame: Packet,
-    /// More came than a frame can be: skip to the next zero.
+    /// More bytes than a frame can have were received: skip to the next zero.
     overlong: bool,
     dropped: u32,
 }
@@ -43,12 +44,12 @@ impl Default for Lines {
 }
 
 impl Lines {
-    /// A line of which nothing was heard yet.
+    /// A line on which nothing was received yet.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The next byte of the line; a frame when it was the last of one.
+    /// Takes the next byte of the line; returns a frame when it was the last of one.
     pub fn push(&mut self, byte: u8) -> Option<Packet> {
         let whole = match self.stuffing.feed(byte) {
             Ok(DecodeResult::DataContinue(byte)) => {
@@ -57,7 +58,7 @@ impl Lines {
             }
             Ok(DecodeResult::NoData) => return None,
             Ok(DecodeResult::DataComplete) => !self.overlong,
-            // A zero in the middle of a frame: the next one begins behind it.
+            // A zero in the middle of a frame: the next one starts behind it.
             Err(_) => false,
         };
         self.overlong = false;
@@ -69,7 +70,7 @@ impl Lines {
         None
     }
 
-    /// How often something between two zeros was no frame.
+    /// Number of byte sequences between two zeros that were no frame.
     pub fn dropped(&self) -> u32 {
         self.dropped
     }

@@ -1,7 +1,7 @@
-//! `slot`: flash slot of a case library that is not built into the image, with a header of its own.
+//! `slot`: flash slot of a case library that is not built into the firmware, with a header of its own.
 //!
-//! `magic 4 | length 4 LE | table`, at a fixed place above the image; QEMU puts it there with `-device loader`. An empty
-//! slot has no magic. The board reads it, the simulator's QEMU back end fills it.
+//! `magic 4 | length 4 LE | table`, at a fixed place above the firmware; QEMU puts it there with `-device
+//! loader`. An empty slot has no magic. The board reads it, the simulator's QEMU back end fills it.
 
 /// Address of the slot; a multiple of 8, and so is the table's behind the header.
 pub const ADDRESS: usize = 0x0030_0000;
@@ -10,9 +10,9 @@ pub const LEN: usize = 0x0010_0000;
 /// Bytes before the table.
 pub const HEADER_LEN: usize = 8;
 
-/// Address of the page that tells the robot who it is and which key it has ([`crate::provision`]), below the slot.
+/// Address of the page with the robot's identity and keys ([`crate::provision`]), below the slot.
 pub const PAGE_ADDRESS: usize = 0x002f_f000;
-/// Address of the word that asks the emulated board for a fault.
+/// Address of the value that requests a fault on the emulated board.
 pub const TRIAL_ADDRESS: usize = 0x002f_e000;
 
 /// The header of a table of this many bytes; `None` if it does not fit.

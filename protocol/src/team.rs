@@ -1,11 +1,11 @@
-//! `team`: messages between robots. Their whole state, again and again (docs/architecture.md §5.1; paper
-//! §4.1).
+//! `team`: messages between robots: their whole state, repeatedly (docs/architecture.md §5.1; paper §4.1).
 //!
-//! Mates care for one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot knows it, and how
-//! far the robot itself has come. Nothing is sent once: a lost packet only delays. What a robot knows of the cycle is
-//! a value that only grows ([`CycleState::is_newer_than`]), so that packets may be lost, doubled and reordered, and
-//! any robot may pass on what the coordinator said. [`Telemetry`] is for the host; mates leave it. A [`Greeting`] is what makes
-//! mates believe each other after a boot ([`crate::acquaintance`]).
+//! Teammates need one message, the [`Beacon`]: pose, ball, availability, the running cycle as this robot
+//! knows it, and the robot's own progress. Nothing is sent once: a lost packet only delays. What a robot
+//! knows of the cycle is a value that only grows ([`CycleState::is_newer_than`]), so that packets may be
+//! lost, doubled and reordered, and any robot may pass on the coordinator's announcements. [`Telemetry`] is
+//! for the host; teammates ignore it. A [`Greeting`] is the handshake by which teammates trust each other
+//! after a boot ([`crate::acquaintance`]).
 
 use serde::{Deserialize, Serialize};
 
@@ -24,96 +24,98 @@ pub const TEAM_MESSAGE_LEN_MAX: usize = 64 - crate::frame::OVERHEAD;
 pub enum TeamMessage {
     /// To all: the sender's whole state.
     Beacon(Beacon),
-    /// To the host: how the sender's body and link are.
+    /// To the host: state of the sender's body and link.
     Telemetry(Telemetry),
-    /// To mates that do not know yet that the sender lives now.
+    /// Handshake to teammates that do not know yet that the sender is live.
     Greeting(Greeting),
 }
 
 impl TeamMessage {
-    /// Whether a payload that is one of these is meant for the host alone, as its first byte tells: the variant's number.
+    /// Whether a payload that is one of these is meant for the host alone, by its first byte: the variant's
+    /// number.
     pub(crate) const fn is_for_host(payload: &[u8]) -> bool {
         matches!(*payload, [1, ..])
     }
 }
 
-/// Mates' lives that the sender has heard: who is named in its present life knows that this is no recording.
+/// Handshake: teammates' boot epochs that the sender has received. A robot that finds its present epoch named
+/// knows that this is no recording.
 #[derive(Clone, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Greeting {
-    /// Who, in which life.
+    /// Teammates and their boot epochs.
     pub mates: heapless::Vec<Greeted, GREETED_MAX>,
 }
 
-/// Mates in one greeting: as many as its frame holds.
+/// Teammates in one handshake: as many as its frame holds.
 pub const GREETED_MAX: usize = 7;
 
-/// A mate that is greeted.
+/// A teammate named in a handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Greeted {
-    /// Who.
+    /// The teammate's number.
     pub who: RobotId,
     /// The epoch of its frames.
     #[serde(with = "postcard::fixint::le")]
     pub life: u32,
-    /// How far the two are with each other.
+    /// State of the handshake between the two.
     pub bond: Bond,
 }
 
-/// How far two mates are with each other, as one of them knows.
+/// State of the handshake between two teammates, as one of them knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Bond {
-    /// The greeter has heard the other, and does not believe it yet.
+    /// The sender has received the other, and does not trust it yet.
     Heard,
-    /// It believes the other.
+    /// The sender trusts the other.
     Believed,
-    /// And knows that the other believes it: no answer is needed.
+    /// It also knows that the other trusts it: no answer is needed.
     Mutual,
 }
 
 /// A robot's whole state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beacon {
-    /// Where the robot is.
+    /// Pose of the robot.
     pub pose: WirePose,
-    /// Where it sees the ball, if it does.
+    /// Position of the ball, if it is detected.
     pub ball: Option<BallReport>,
-    /// What it is fit for.
+    /// Abilities of the robot.
     pub status: Status,
-    /// Which case base it carries (the hash of its table); robots with another base execute only what they can verify.
+    /// Hash of the table of its case base; robots with another base execute only what they can verify.
     #[serde(with = "postcard::fixint::le")]
     pub case_base: u32,
     /// The newest cycle it knows.
     pub cycle: Option<CycleState>,
-    /// How far it has come in that cycle.
+    /// Its progress in that cycle.
     pub progress: Progress,
-    /// What it does when no case binds it.
+    /// Its role while it plays no case.
     pub role: Role,
 }
 
-/// Ball as seen by the sender.
+/// Ball as detected by the sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BallReport {
-    /// Where it lies.
+    /// Position of the ball.
     pub at: WirePoint,
-    /// From the sender's centre, mm: what the elector compares.
+    /// Distance from the sender's centre, mm: compared by the elector.
     #[serde(with = "postcard::fixint::le")]
     pub distance: u16,
 }
 
-/// What a robot is fit for, one bit each.
+/// Abilities of a robot, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Status(pub u8);
 
 impl Status {
-    /// Present for election and retrieval: awake, on the field, under `Gameplay`.
+    /// Present for election and retrieval: started up, on the field, under `Gameplay`.
     pub const AVAILABLE: Self = Self(1);
     /// Able to retrieve cases (paper §4.1: one of the k).
     pub const RETRIEVER: Self = Self(2);
     /// Holds the ball.
     pub const HOLDS_BALL: Self = Self(4);
 
-    /// Both sets together.
+    /// Union of both sets.
     #[must_use]
     pub const fn with(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -128,22 +130,22 @@ impl Status {
 /// A retrieve–reuse cycle as one robot knows it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct CycleState {
-    /// Which cycle.
+    /// Id of the cycle.
     pub id: CycleId,
     /// The retriever nearest the ball, named by the proposer.
     pub coordinator: RobotId,
-    /// What became of it. The order of variants is the order of knowledge: later ones replace earlier ones.
+    /// State of the cycle. The order of variants is the order of knowledge: later ones replace earlier ones.
     pub decision: Decision,
 }
 
 impl CycleState {
-    /// Whether this is more than `known`: a later cycle, or more of the same one. A total order, so that robots who
-    /// hear the same things in any order end up knowing the same.
+    /// Whether this is more than `known`: a later cycle, or more of the same one. A total order, so that
+    /// robots that receive the same messages in any order end up knowing the same.
     pub fn is_newer_than(&self, known: Option<&Self>) -> bool {
         known.is_none_or(|known| self > known)
     }
 
-    /// The gameplay that runs, if one does.
+    /// The running gameplay, if there is one.
     pub fn play(&self) -> Option<&Play> {
         match &self.decision {
             Decision::Play(play) => Some(play),
@@ -152,20 +154,20 @@ impl CycleState {
     }
 }
 
-/// What the coordinator made of its cycle.
+/// Decision of the coordinator in its cycle.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Decision {
-    /// It has not said yet.
+    /// The coordinator has not announced its decision yet.
     Undecided,
     /// No case fits: default behaviour.
     NoCase,
     /// This case, by these robots.
     Play(Play),
-    /// Over.
+    /// The cycle is over.
     Closed(Closure),
 }
 
-/// A retrieved case and who plays it.
+/// A retrieved case and the robots that play it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Play {
     /// The stored case.
@@ -184,18 +186,18 @@ impl Play {
     }
 }
 
-/// How a cycle ended.
+/// End of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Closure {
-    /// Everybody involved reported the end of their actions.
+    /// Every robot involved reported the end of its actions.
     Finished,
-    /// There was no case; time to try again.
+    /// There was no case; the waiting time before the next try is over.
     NoCase,
-    /// Somebody involved stopped it.
+    /// A robot involved stopped it.
     Aborted {
-        /// Who.
+        /// Robot that stopped it.
         by: RobotId,
-        /// Why.
+        /// Reason of the abort.
         reason: AbortReason,
     },
 }
@@ -207,13 +209,13 @@ pub enum AbortReason {
     BallOutOfScope,
     /// Before the first touch: an opponent stands in the ball's path.
     PathBlocked,
-    /// A robot involved, or the coordinator, is gone or has started anew.
+    /// A robot involved, or the coordinator, is gone or has restarted.
     RobotLost,
     /// The holder lost the ball, or an action failed.
     ActionFailed,
     /// After the first touch: an opponent is on the ball.
     OpponentOnBall,
-    /// After the first touch: the ball came to rest where no one of the case expects it.
+    /// After the first touch: the ball stopped where no robot of the case expects it.
     BallAtRest,
     /// It took longer than 1.5 × the expected duration + 2 s.
     Timeout,
@@ -223,15 +225,15 @@ pub enum AbortReason {
     UnknownCase,
 }
 
-/// How far a robot has come in its cycle (paper §4.2, Fig. 10).
+/// Progress of a robot in its cycle (paper §4.2, Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub enum Progress {
-    /// Not bound by a case.
+    /// No case is being played.
     #[default]
     Idle,
-    /// On the way to its adapted position.
+    /// Walking to its adapted position.
     Adapt {
-        /// It is there.
+        /// Whether it has arrived.
         arrived: bool,
     },
     /// At its actions.
@@ -241,20 +243,20 @@ pub enum Progress {
     },
     /// Waiting for the end of the cycle.
     WaitEnd {
-        /// It was involved and has finished its actions.
+        /// Whether it was involved and has finished its actions.
         finished: bool,
     },
 }
 
-/// What a robot does by itself while no case binds it (paper §5: possessor and backers-up).
+/// Role of a robot while it plays no case (paper §5: possessor and backers-up).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Role {
-    /// Bound by a case, or standing still.
+    /// Plays a case, or stands still.
     #[default]
     None,
-    /// Goes for the ball.
+    /// Gets the ball.
     Attacker,
-    /// Backs up.
+    /// Backs the attacker up.
     Supporter,
 }
 

@@ -1,46 +1,47 @@
-//! `time`: instants and durations. Whatever the caller says: microseconds since the robot's start. Nothing
-//! here reads a clock.
+//! `time`: instants and durations, given by the caller: microseconds since the robot's start. Nothing here
+//! reads a clock.
 
 use core::ops::{Add, AddAssign, Mul, Sub};
 
 use serde::{Deserialize, Serialize};
 
-/// A moment, µs since the start of the clock of whoever speaks.
+/// A moment, µs since the start of the sender's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Instant(pub u64);
 
-/// A stretch of time, µs.
+/// A duration, µs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Duration(pub u64);
 
 impl Instant {
-    /// How long ago `earlier` was; zero if it lies ahead.
+    /// Time since `earlier`; zero if it is in the future.
     pub const fn since(self, earlier: Self) -> Duration {
         Duration(self.0.saturating_sub(earlier.0))
     }
 
-    /// Seconds since the start of the clock (exact to the microsecond for the first 16 seconds, then to 2⁻²⁴).
+    /// Seconds since the start of the clock (exact to the microsecond for the first 16 seconds, then to
+    /// 2⁻²⁴).
     pub fn as_secs_f32(self) -> f32 {
         Duration(self.0).as_secs_f32()
     }
 }
 
 impl Duration {
-    /// From milliseconds.
+    /// Duration from milliseconds.
     pub const fn millis(ms: u64) -> Self {
         Self(ms * 1000)
     }
 
-    /// In seconds.
+    /// Duration in seconds.
     pub fn as_secs_f32(self) -> f32 {
-        // The first hour in one instruction of a robot's processor; the same number either way.
+        // The first hour in one instruction of a robot's processor; the same number in both branches.
         let micros = u32::try_from(self.0).map_or_else(|_| self.0 as f32, |micros| micros as f32);
         micros * 1e-6
     }
 
-    /// From seconds; negative or NaN gives zero.
+    /// Duration from seconds; negative or NaN gives zero.
     pub fn from_secs_f32(seconds: f32) -> Self {
         Self((seconds * 1e6) as u64)
     }

@@ -1,4 +1,5 @@
-//! The code writes the bytes that `SPEC.md` says: every worked example there is named and checked, both ways.
+//! The code writes the bytes of `SPEC.md`: every worked example there is named and checked, in both
+//! directions.
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Key, Sender, TeamKey};
@@ -17,8 +18,8 @@ use rules::{Phase, Side};
 
 const SPEC: &str = include_str!("../SPEC.md");
 
-/// The bytes of the block that begins with ```` ```hex NAME ````: two hexadecimal digits a byte, `|` and words after
-/// `;` are for the eye.
+/// The bytes of the block that starts with ```` ```hex NAME ````: two hexadecimal digits a byte, `|` and text
+/// after `;` are for the reader.
 fn worked(name: &str) -> Vec<u8> {
     let block = SPEC
         .split("```")

@@ -16,8 +16,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The board has 4 MiB at each place. The image keeps to the sizes of a robot's microcontroller (STM32F405: 1 MiB,
-/// 128 KiB), and below the slot for case libraries at 3 MiB (`slot.rs`).
+/// The board has 4 MiB at each place. The firmware keeps to the sizes of a robot's microcontroller
+/// (STM32F405: 1 MiB, 128 KiB), and below the slot for case libraries at 3 MiB (`slot.rs`).
 const MEMORY: &str = "MEMORY
 {
   FLASH : ORIGIN = 0x00000000, LENGTH = 1M

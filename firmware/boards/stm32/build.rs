@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-link-arg-bins={argument}");
         println!("cargo:rustc-link-arg-examples={argument}");
     }
-    // Of the board's own words; without it defmt keeps errors alone.
+    // Log level of the board; without it defmt keeps errors alone.
     let level = env::var("DEFMT_LOG").unwrap_or_else(|_| "info".into());
     println!("cargo:rustc-env=DEFMT_LOG={level}");
     Ok(())

@@ -1,9 +1,9 @@
 //! `belief`: a robot's belief about the world, from its own sensors and its teammates' beacons, never from
 //! the true state.
 //!
-//! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the mate nearest
-//! the ball stands in (its information is the most accurate, paper §4.1). A fresh picture of the host overrides both
-//! ([`shown`]).
+//! SI units, field frame. Own sight of the ball comes first; when it is missing or stale, the report of the
+//! teammate nearest the ball is used (its information is the most accurate, paper §4.1). A fresh snapshot of
+//! the host overrides both ([`shown`]).
 
 pub mod shown;
 
@@ -18,38 +18,39 @@ use crate::belief::shown::Handling;
 use crate::body::{self, BodySpec};
 use crate::mates::Mates;
 
-/// Own sight older than this counts as none.
+/// Own detections older than this are ignored.
 const SIGHT_LEASE: Duration = Duration::millis(400);
-/// A sight this sharp needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
+/// A detection this precise needs no filter, m: over a walking robot's step of 40 ms it is 0.1 m/s.
 const SHARP: f32 = 0.004;
 /// A ball slower than this may be grabbed, m/s.
 const GRAB_SPEED: f32 = 0.4;
-/// A ball slower than this is at rest, m/s: below what a walking body's sway makes a resting ball seem to do.
+/// A ball slower than this is stationary, m/s: below the apparent speed that a walking body's sway gives a
+/// stationary ball.
 pub const REST_SPEED: f32 = 0.05;
 
-/// The ball as believed.
+/// Estimated state of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Where it is.
+    /// Position, m.
     pub position: Point<Field>,
-    /// Where it goes.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
-    /// Where it will come to rest: cut at the first opponent in its way and at the lines of the field.
+    /// Stop position: cut at the first opponent on its path and at the lines of the field.
     pub rest: Point<Field>,
 }
 
 impl Ball {
-    /// Slow enough to count as lying.
+    /// Whether it is slow enough to count as stationary.
     pub fn is_at_rest(&self) -> bool {
         self.velocity.norm() < REST_SPEED
     }
 
-    /// Seconds until it lies, slowing down evenly: twice its way at its speed.
+    /// Seconds until it stops, slowing down evenly: twice the remaining distance over its speed.
     pub fn rolls_for(&self) -> f32 {
         if self.is_at_rest() { 0.0 } else { 2.0 * self.position.distance(self.rest) / self.velocity.norm() }
     }
 
-    /// Whether it rolls towards `point`: within `reach` of it, sooner or later.
+    /// Whether it rolls towards `point`, so that its path comes within `reach` of it.
     pub fn rolls_towards(&self, point: Point<Field>, reach: f32) -> bool {
         !self.is_at_rest()
             && self.velocity.dot(point - self.position) > 0.0
@@ -57,39 +58,40 @@ impl Ball {
     }
 }
 
-/// Robots besides oneself: two teams of the largest league.
+/// Other robots: two teams of the largest league, less this one.
 pub const OTHERS_MAX: usize = 2 * OPPONENTS_MAX - 1;
 
-/// Another robot as the host shows it.
+/// Another robot as received from the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Other {
-    /// Whose.
+    /// Team of the robot.
     pub side: Side,
-    /// Which of that side.
+    /// Number in its team.
     pub id: RobotId,
-    /// Where it is and faces.
+    /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
 }
 
-/// What may be done now, and what this robot is for its team.
+/// Phase of the game, and this robot's role in its team.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Game {
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed, while that matters.
+    /// Target of a ball placement, while one is running.
     pub placement: Option<Point<Field>>,
-    /// What the rules allow this robot beyond others.
+    /// Role under the rules, which allow it more than others.
     pub duty: Duty,
     /// The goal its team defends.
     pub defending: GoalEnd,
-    /// It has touched the ball in a restart, and nobody else has since: it must not again.
+    /// Double touch: it has touched the ball in a restart and no other robot has since, so it must not touch
+    /// it again.
     pub barred: bool,
 }
 
 impl Default for Game {
-    /// Play, as where nobody says otherwise.
+    /// Play (`Phase::Run`), the default without a host.
     fn default() -> Self {
         Self {
             phase: Phase::Run,
@@ -101,34 +103,34 @@ impl Default for Game {
     }
 }
 
-/// The robot's picture of the world.
+/// The robot's world model.
 #[derive(Clone, Debug)]
 pub struct Belief {
-    /// Where it is itself.
+    /// Own pose.
     pub pose: Pose<Field>,
-    /// The ball, if anybody knows.
+    /// The ball; `None` if its position is unknown.
     pub ball: Option<Ball>,
-    /// Opponents.
+    /// Positions of the opponents.
     pub opponents: heapless::Vec<Point<Field>, OPPONENTS_MAX>,
-    /// It holds the ball itself.
+    /// The robot holds the ball.
     pub holds_ball: bool,
-    /// Its body is in the middle of a grab or kick.
+    /// Its body is executing a grab or kick.
     pub busy: bool,
-    /// How it moves itself, m/s.
+    /// Own velocity, m/s.
     pub velocity: Vector<Field>,
-    /// How it turns, rad/s.
+    /// Own turning rate, rad/s.
     pub angular: f32,
-    /// The kicker is charged.
+    /// Whether the kicker is charged.
     pub kicker_ready: bool,
-    /// Everybody else whose motion the host shows.
+    /// All other robots whose motion the host sends.
     pub others: heapless::Vec<Other, OTHERS_MAX>,
-    /// What may be done now, and what it is for its team.
+    /// Phase of the game, and its role in the team.
     pub game: Game,
-    /// What the ball at its front is for, once that is settled: where it is kicked to, and how.
+    /// Fixed target of the held ball: where it is kicked to, and how.
     pub resolved: Option<(Point<Field>, OmniKick)>,
     handling: Handling,
     sight: Option<Sight>,
-    /// Sights in a row of a loose ball slow enough to grab.
+    /// Consecutive detections of a loose ball slow enough to grab.
     slow_sights: u8,
     league: League,
     spec: &'static BodySpec,
@@ -142,7 +144,7 @@ struct Sight {
 }
 
 impl Belief {
-    /// Knows nothing yet.
+    /// A belief without any observation.
     pub fn new(league: League) -> Self {
         Self {
             pose: Pose::default(),
@@ -164,12 +166,12 @@ impl Belief {
         }
     }
 
-    /// Knows nothing yet but the goal its team defends.
+    /// A belief that knows only the goal its team defends.
     pub fn defending(league: League, defending: GoalEnd) -> Self {
         Self { game: Game { defending, ..Game::default() }, ..Self::new(league) }
     }
 
-    /// Takes in what the body perceives and what mates report.
+    /// Takes in what the body perceives and what teammates report.
     pub fn update(&mut self, now: Instant, me: RobotId, sensors: &SensorFrame, mates: &Mates) {
         if let Some(pose) = sensors.pose.filter(|pose| pose.position.is_finite()) {
             self.pose = pose;
@@ -203,17 +205,18 @@ impl Belief {
             && self.nearest_opponent(ball.position).is_some_and(|(_, d)| d < self.spec.opponent_holds_within)
     }
 
-    /// The ball lies still enough to be grabbed; a ball that has just left the legs does not, though its speed is unknown.
+    /// Whether the ball lies still enough to be grabbed; a ball that has just left the legs does not, though
+    /// its speed is unknown.
     pub fn may_grab(&self) -> bool {
         self.slow_sights >= 2
     }
 
-    /// The league played.
+    /// League of the robot.
     pub fn league(&self) -> League {
         self.league
     }
 
-    /// Velocity by an alpha–beta filter; a sharp sight (σ ≤ [`SHARP`]) is taken as it is.
+    /// Velocity by an alpha–beta filter; a precise detection (σ ≤ [`SHARP`]) is used unfiltered.
     fn see(&mut self, at: Instant, position: Point<Field>, sigma: f32) {
         let Some(before) = self.sight else {
             self.sight = Some(Sight { position, velocity: Vector::default(), at });
@@ -233,7 +236,7 @@ impl Belief {
     fn own_ball(&self, now: Instant) -> Option<Ball> {
         let sight = self.sight.filter(|s| now.since(s.at) <= SIGHT_LEASE)?;
         let mut ball = rolling(sight.position, sight.velocity, self.league);
-        // An opponent in its way stops it.
+        // An opponent on its path stops it.
         let within = self.spec.opponent_holds_within;
         let way = geometry::Segment::new(ball.position, ball.rest);
         let stops =
@@ -257,7 +260,7 @@ impl Belief {
     }
 }
 
-/// The nearest of `points` to `to`; the first one among equals.
+/// The nearest of `points` to `to`; the first of equals.
 pub(crate) fn nearest(
     points: impl Iterator<Item = Point<Field>>,
     to: Point<Field>,

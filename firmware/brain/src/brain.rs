@@ -1,8 +1,7 @@
-//! The brain as a value: what comes in, what goes out, and in which order it thinks
-//! (docs/architecture.md §3.1).
+//! The brain as a value: inputs, outputs, and the order of its steps (docs/architecture.md §3.1).
 //!
-//! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`, then ask
-//! `poll_timeout` when to come back.
+//! One mutation, then drain: after every `handle_…` call `poll_message` until `None`, then `poll_actuators`,
+//! then read the next deadline from `poll_timeout`.
 
 mod act;
 mod coordinate;
@@ -28,14 +27,14 @@ use crate::team::{Cycle, retrieval};
 use crate::timer::{Timer, TimerTable};
 use tell::Spoken;
 
-/// What has come since the last step, beside time.
+/// Inputs since the last step, besides time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
-    /// Frames of mates and host.
+    /// Number of frames received from teammates and host.
     heard: u8,
-    /// It has retrieved.
+    /// Whether it has retrieved.
     retrieved: bool,
-    /// A gameplay has begun or ended.
+    /// A gameplay has started or ended.
     turned: bool,
 }
 
@@ -52,7 +51,7 @@ pub struct Brain<'a> {
     reactive: Reactive,
     timers: TimerTable,
     awake: bool,
-    /// The closed cycle whose end this robot has told its mates.
+    /// The closed cycle whose end this robot has announced to its teammates.
     told_end_of: Option<CycleId>,
     limbs: Limbs,
     host: Option<Hosted>,
@@ -61,9 +60,9 @@ pub struct Brain<'a> {
     was_available: bool,
     actuators: Option<ActuatorFrame>,
     beacon_due: bool,
-    /// What has come since its last step.
+    /// Inputs since its last step.
     since: Since,
-    /// So many steps it may stay on its way before it must plan: up to [`ONWARDS_MOST`].
+    /// Number of steps that may still reuse the path before a step must plan: up to [`ONWARDS_MOST`].
     onwards: u8,
     spoken: Spoken,
 }
@@ -98,9 +97,9 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A teammate's beacon.
+    /// Handles a teammate's beacon.
     pub fn handle_team_message(&mut self, now: Instant, from: RobotId, message: &TeamMessage) {
-        // What mates tell the host of themselves is not for us.
+        // Teammates' messages to the host are not for this robot.
         let TeamMessage::Beacon(beacon) = message else { return };
         self.since.heard = self.since.heard.saturating_add(1);
         self.timers.advance(now);
@@ -112,7 +111,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// The host's message, sent at most `age` ago; a robot that expects no host does not listen.
+    /// Handles the host's message, sent at most `age` ago; a robot that expects no host ignores it.
     pub fn handle_host_message(&mut self, now: Instant, age: Duration, message: &HostMessage) {
         let Some(host) = &mut self.host else { return };
         self.since.heard = self.since.heard.saturating_add(1);
@@ -122,7 +121,7 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A host that was not believed before leads from now on.
+    /// A host that was not trusted before leads from now on.
     pub fn handle_new_host(&mut self) {
         if let Some(host) = &mut self.host {
             host.begin_anew();
@@ -130,12 +129,12 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// The body's senses: one whole step of thought.
+    /// Handles a sensor frame: one whole step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.timers.advance(now);
         self.mates.forget_the_silent(now);
-        // The host overrides own senses and mates' reports (docs/architecture.md §3.1): where one leads,
-        // nobody asks them.
+        // The host overrides own sensors and teammates' reports (docs/architecture.md §3.1): a robot led by a
+        // host does not use them.
         match &mut self.host {
             Some(host) => host.see(now, sensors, &mut self.belief),
             None => self.belief.update(now, self.config.robot, sensors, &self.mates),
@@ -148,8 +147,9 @@ impl<'a> Brain<'a> {
         self.beacon_due |= self.spoken.has_turn(self.config.robot, self.limbs.beacon_steps());
     }
 
-    /// What it wants of its body. Where steps are short, one of them is not for planning and something else that takes long: in
-    /// which a gameplay begins or ends it brakes for 10 ms; in which it retrieved or heard much it stays on its way.
+    /// What it wants of its body. Where steps are short, a step does not both plan and do something else that
+    /// takes long: a step in which a gameplay starts or ends brakes for 10 ms; a step that retrieved or
+    /// received many frames reuses its path.
     fn intent(&mut self, now: Instant) -> Intent {
         let since = core::mem::take(&mut self.since);
         let heard_most = if self.limbs.winds() { HEARD_MOST_WINDING } else { HEARD_MOST };
@@ -167,10 +167,10 @@ impl<'a> Brain<'a> {
         }
     }
 
-    /// A deadline has come.
+    /// Handles a deadline.
     pub fn handle_timeout(&mut self, now: Instant) {
         self.timers.advance(now);
-        // What follows from it is the next step's where that is near.
+        // Its consequences follow in the next step where that is near.
         if self.has_short_steps() {
             return;
         }
@@ -186,9 +186,10 @@ impl<'a> Brain<'a> {
         self.spoken.beacon(now);
         let beacon = self.beacon();
         if self.cycle.closure().is_some() && self.told_end_of != self.cycle.id() {
-            // The end is told before the next cycle begins: who hears only the beginning would not know why.
+            // The end is announced before the next cycle starts: a teammate that receives only the start
+            // would not know why.
             self.told_end_of = self.cycle.id();
-            // One word a step where steps are short: sealing costs, and the next step is near.
+            // One message a step where steps are short: sealing costs time, and the next step comes soon.
             if !self.has_short_steps() {
                 self.coordinate(now);
             }
@@ -196,48 +197,50 @@ impl<'a> Brain<'a> {
         Some(TeamMessage::Beacon(beacon))
     }
 
-    /// What the body shall do, once per step.
+    /// The actuator orders, once per step.
     pub fn poll_actuators(&mut self, _now: Instant) -> Option<ActuatorFrame> {
         self.actuators.take()
     }
 
-    /// When [`Brain::handle_timeout`] wants to be called.
+    /// Time at which [`Brain::handle_timeout`] must be called.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.timers.next()
     }
 
-    /// Whether its body's steps are short, so that not everything need happen in each.
+    /// Whether its body's steps are short, so that work is spread over several.
     pub(crate) fn has_short_steps(&self) -> bool {
         self.limbs.has_short_steps()
     }
 
-    /// What it believes.
+    /// The robot's belief.
     pub fn belief(&self) -> &Belief {
         &self.belief
     }
 
-    /// What the governor made of the last step's wish.
+    /// The governor's decision on the motion wanted in the last step.
     pub fn ruling(&self) -> Ruling {
         self.limbs.ruling()
     }
 
-    /// What it knows of the running cycle.
+    /// State of the running cycle.
     pub fn cycle(&self) -> &Cycle {
         &self.cycle
     }
 
-    /// The problem it would retrieve for, if it had to decide now.
+    /// The problem for which it would retrieve now.
     pub fn problem(&self, now: Instant) -> Option<Problem> {
         let Self { config, base, belief, mates, .. } = self;
         retrieval::problem(now, config.robot, base, belief.game.defending, belief, mates)
     }
 }
 
-/// Frames that a short step opens and still plans: both parts of a picture, a command and two mates' beacons. Opening one takes
-/// 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take (docs/architecture.md §9).
+/// Frames that a short step opens and still plans: both parts of a snapshot, a command and two teammates'
+/// beacons. Opening one takes 2,000 instructions, planning up to 25,000 of the 40,000 that a step may take
+/// (docs/architecture.md §9).
 const HEARD_MOST: u8 = 5;
-/// One less where the way leads around something: to look for such a way takes 7,000 of them.
+/// One less where the path leads around something: planning such a path takes 7,000 of them.
 const HEARD_MOST_WINDING: u8 = 4;
-/// So many steps in a row it stays on its way: a cycle's end, a proposal, its answer and mates' usual beacons between them, twice. Each
-/// step that plans earns one again, so that on an air that is always full every second step plans.
+/// Most steps in a row that reuse the path: a cycle's end, a proposal, its answer and teammates' usual
+/// beacons between them, twice. Each step that plans adds one again, so that on a radio channel that is
+/// always full every second step plans.
 const ONWARDS_MOST: u8 = 10;

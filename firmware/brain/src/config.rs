@@ -8,27 +8,28 @@ use serde::{Deserialize, Serialize};
 /// A robot's configuration; travels in the lockstep set-up and is compiled or provisioned on a board.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrainConfig {
-    /// Who it is.
+    /// The robot's number in its team.
     pub robot: RobotId,
-    /// Whose robot it is.
+    /// The robot's team.
     pub team: TeamId,
-    /// Which life this is: rises with every boot.
+    /// Boot epoch: rises with every boot.
     pub epoch: u32,
-    /// Whose field, robots and ball.
+    /// The league, which determines field, robots and ball.
     pub league: League,
     /// The goal its team defends.
     pub defending: GoalEnd,
     /// Whether it is one of the k robots that may retrieve (paper §4.1).
     pub retriever: bool,
-    /// When a case's actions begin.
+    /// When a case's actions start.
     pub positioning: Positioning,
-    /// How it chooses what to do.
+    /// How it chooses its actions.
     pub approach: Approach,
-    /// How it retrieves.
+    /// Retrieval settings.
     pub settings: Settings,
-    /// Whether a host leads it: without one heard it does nothing (docs/architecture.md §6.2).
+    /// Whether a host leads it: without frames of one it does nothing (docs/architecture.md §6.2).
     pub hosted: bool,
-    /// How long robots stand still after every cycle (5 s in the paper's experiments with real robots; else 0).
+    /// Time for which robots stand still after every cycle (5 s in the paper's experiments with real robots;
+    /// else 0).
     pub pause_after_cycle: Duration,
 }
 
@@ -38,11 +39,11 @@ pub enum Positioning {
     /// As soon as the robot that gets the ball is at its place.
     #[default]
     Dependent,
-    /// When all of them are at their places.
+    /// All robots are at their places.
     Independent,
 }
 
-/// What a robot lets itself be led by (paper §5).
+/// Source of a robot's actions (paper §5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Approach {
     /// Cases; the reactive behaviour where none fits.

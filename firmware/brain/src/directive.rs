@@ -1,4 +1,4 @@
-//! `directive`: execution of the host's directive: each has its skill, with the little memory that some need.
+//! `directive`: execution of the host's directive: each has its skill, some with a small state.
 
 use geometry::{Field, Point, Pose, Segment};
 use protocol::Instant;
@@ -10,14 +10,14 @@ use crate::body::Intent;
 use crate::skills::Step;
 use crate::skills::wheels::{self, Placement};
 
-/// The running directive's memory.
+/// State of the running directive.
 #[derive(Clone, Debug, Default)]
 pub struct Errand {
     placement: Placement,
 }
 
 impl Errand {
-    /// What is wanted of the body for `directive`; `None` where the robots choose for themselves.
+    /// The intent for `directive`; `None` where the robots choose for themselves.
     pub fn step(&mut self, now: Instant, belief: &Belief, directive: &Directive) -> Option<Intent> {
         if !matches!(directive, Directive::PlaceBall { .. }) {
             self.placement.end();
@@ -50,7 +50,7 @@ fn get_ball(belief: &Belief, face: Option<Point<Field>>) -> Intent {
     }
 }
 
-/// Whether it has to do with touching the ball.
+/// Whether its skill may touch the ball.
 fn touches(directive: &Directive) -> bool {
     matches!(
         directive,
@@ -62,7 +62,7 @@ fn touches(directive: &Directive) -> bool {
     )
 }
 
-/// From the wire's cm/s.
+/// Converts the wire's cm/s.
 fn order(kick: KickOrder) -> OmniKick {
     match kick {
         KickOrder::Flat(speed) => OmniKick::Flat(f32::from(speed) * 0.01),

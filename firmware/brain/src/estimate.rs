@@ -7,13 +7,13 @@ use protocol::Duration;
 
 use crate::execution::Scene;
 
-/// The limit for something expected to take `expected` seconds.
+/// Time limit for a task expected to take `expected` seconds.
 pub(crate) fn limit(expected: f32) -> Duration {
     Duration::from_secs_f32(1.5 * expected + 2.0)
 }
 
-/// Expected seconds from now until the whole gameplay is over: the way of the ball getter, then every action that the
-/// ball waits for, one after the other; walks without the ball run beside them.
+/// Expected seconds from now until the whole gameplay is over: the ball getter's walk, then every action that
+/// the ball waits for, one after the other; walks without the ball run beside them.
 pub(crate) fn gameplay(scene: &Scene<'_>) -> f32 {
     let case = &scene.case;
     let mut walk = 0.0_f32;
@@ -44,7 +44,7 @@ fn action(scene: &Scene<'_>, part: CaseRobot, index: usize) -> f32 {
     action_with(scene, part, index, || scene.case.partner_of(part, index))
 }
 
-/// The same, told by `partner` who is at the other end of the action's hand-over.
+/// The same, called for `partner` at the other end of the action's hand-over.
 pub(crate) fn action_with(
     scene: &Scene<'_>,
     part: CaseRobot,
@@ -61,7 +61,7 @@ pub(crate) fn action_with(
         Some(Action::GetBall) => {
             spec.grab
                 + match handed_over(scene, partner()) {
-                    // After a kick: from where it was kicked, or from the place, to where the ball will lie.
+                    // After a kick: from its origin, or from the robot's place, to the ball's stop position.
                     Some((from, leg)) => {
                         let start = if from == part { leg.start() } else { place };
                         walk(start, leg.end(), spec.speed).max(along(scene, &leg))
@@ -76,7 +76,7 @@ pub(crate) fn action_with(
     }
 }
 
-/// The leg by which the ball comes from that action of a partner, and who makes it.
+/// The leg by which the ball comes from that action of a partner, and the robot that makes it.
 fn handed_over(scene: &Scene<'_>, partner: Option<(CaseRobot, usize)>) -> Option<(CaseRobot, Leg)> {
     let (from, action) = partner?;
     Some((from, scene.leg(from, action)?))

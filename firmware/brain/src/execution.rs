@@ -1,9 +1,9 @@
 //! `execution`: execution of a robot's part of a case. Preconditions start actions, no clock does (paper
 //! §2.2; docs/case-format.md §4).
 //!
-//! The place in the action list is the whole memory that teammates see: `done` counts finished actions, is repeated in
-//! every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case are adapted by the ball
-//! the coordinator used. Field frame, SI.
+//! The place in the action list is the only state that teammates receive: `done` counts finished actions, is
+//! repeated in every beacon, and *is* the event `PassDone` (`done` has passed the pass). Points of the case
+//! are adapted by the ball the coordinator used. Field frame, SI.
 
 use casebase::{Action, Case, CaseBase, CaseRobot, KickAim, Leg, PointMm, TurnTarget};
 use geometry::{Angle, Field, Point};
@@ -17,24 +17,24 @@ use crate::mates::Mates;
 use crate::skills::{Reception, Step};
 use crate::timer::{Timer, TimerTable};
 
-/// Everything an execution looks at in one step.
+/// Inputs of an execution in one step.
 #[derive(Clone, Copy)]
 pub struct Scene<'s> {
-    /// The time.
+    /// Present time.
     pub now: Instant,
-    /// What this robot believes.
+    /// This robot's belief.
     pub belief: &'s Belief,
-    /// What its mates say.
+    /// Its teammates' beacons.
     pub mates: &'s Mates,
     /// The cycle's id.
     pub cycle: CycleId,
     /// The gameplay of the cycle.
     pub play: &'s Play,
-    /// Its case.
+    /// The case being played.
     pub case: Case<'s>,
-    /// Its case base.
+    /// The case base it is from.
     pub base: &'s CaseBase<'s>,
-    /// What plays it.
+    /// The body that plays it.
     pub body: &'s dyn Body,
 }
 
@@ -44,7 +44,7 @@ impl Scene<'_> {
         point.plus(self.case.shift(self.ball_used())).into()
     }
 
-    /// Where case robot `part` has its place.
+    /// Adapted position of case robot `part`.
     pub fn place_of(&self, part: CaseRobot) -> Point<Field> {
         self.case.adapted(part, self.ball_used()).into()
     }
@@ -54,12 +54,12 @@ impl Scene<'_> {
         self.play.ball.into()
     }
 
-    /// Who plays case robot `part`.
+    /// The robot that plays case robot `part`.
     pub fn player(&self, part: CaseRobot) -> Option<RobotId> {
         self.play.robots.get(part.index()).copied()
     }
 
-    /// How far the mate who plays `part` has come; `None` if nothing is known of it in this cycle.
+    /// How far the teammate that plays `part` has come; `None` if nothing is known of it in this cycle.
     pub fn progress_of(&self, part: CaseRobot) -> Option<Progress> {
         self.mates.get(self.now, self.player(part)?)?.progress_in(self.cycle)
     }
@@ -69,25 +69,25 @@ impl Scene<'_> {
         self.case.legs(self.ball_used()).into_iter().find(|leg| leg.robot == part && leg.action == action)
     }
 
-    /// Where that leg leads: field point of its end, and its direction.
+    /// End of that leg on the field, and its direction.
     fn leg_of(&self, part: CaseRobot, action: usize) -> Option<(Point<Field>, Angle)> {
         let leg = self.leg(part, action)?;
         Some((leg.end(), leg.start().direction_to(leg.end())))
     }
 }
 
-/// What came of one step of execution.
+/// Result of one step of execution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// Wanting this of the body.
+    /// It continues with this intent.
     Running(Intent),
     /// All actions are done.
     Finished,
-    /// This cannot be finished.
+    /// The part cannot be finished.
     Failed(AbortReason),
 }
 
-/// One robot's way through its actions.
+/// One robot's progress through its actions.
 #[derive(Clone, Debug)]
 pub struct Execution {
     part: CaseRobot,
@@ -96,7 +96,7 @@ pub struct Execution {
     held: bool,
     kicked: bool,
     started: bool,
-    /// The hand-overs of the actions asked for last, by their number: finding one walks the whole case.
+    /// The hand-overs of the actions looked up last, by their number: finding one walks the whole case.
     partners: [Option<(usize, Partner)>; 2],
 }
 
@@ -119,7 +119,7 @@ impl Execution {
         self.done.min(usize::from(u8::MAX)) as u8
     }
 
-    /// One step: runs the current action, going on to the next ones as they start and end.
+    /// One step: runs the current action, and continues with the next ones as they start and end.
     pub fn step(&mut self, scene: &Scene<'_>, timers: &mut TimerTable) -> Outcome {
         for _ in 0..ACTIONS_A_STEP {
             let Some(action) = scene.case.action(self.part, self.done) else { return Outcome::Finished };
@@ -172,7 +172,7 @@ impl Execution {
 
     /// The other end of the hand-over of action number `index`; looked up once.
     fn partner_of(&mut self, scene: &Scene<'_>, index: usize) -> Partner {
-        // The current action and the next are asked for in turn: two places are enough.
+        // The current action and the next are looked up in turn: two places are enough.
         let slot = &mut self.partners[index % 2];
         if let Some((of, partner)) = *slot
             && of == index
@@ -184,7 +184,7 @@ impl Execution {
         partner
     }
 
-    /// Whether action number `index` may begin.
+    /// Whether action number `index` may start.
     fn may_start(&mut self, scene: &Scene<'_>, timers: &mut TimerTable, index: usize) -> bool {
         match scene.case.action(self.part, index) {
             None | Some(Action::Wait | Action::GoToPoint(_) | Action::Turn(_)) => true,
@@ -224,14 +224,15 @@ impl Execution {
         (done && !taken) || coming
     }
 
-    /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its place.
+    /// The receiver has come to its `receive_ball` (a wait before it counts as waiting for it) and to its
+    /// place.
     fn receiver_is_ready(&mut self, scene: &Scene<'_>, index: usize, to: CaseRobot) -> bool {
         let Some((_, receive)) = self.partner_of(scene, index) else { return true };
         let Some(Progress::Execute { done }) = scene.progress_of(to) else { return false };
         let waits = |i| matches!(scene.case.action(to, i), Some(Action::Wait));
         let at_receive = (usize::from(done)..receive).all(waits);
         let Some((place, _)) = scene.leg_of(self.part, index) else { return at_receive };
-        // There before the ball is: it walks while the ball rolls.
+        // It arrives before the ball: it walks while the ball rolls.
         let rolls_for = estimate::roll(scene, scene.belief.pose.position.distance(place));
         let spec = scene.body.spec();
         let near = (rolls_for * spec.speed * spec.receiver_haste).max(spec.receiver_near);
@@ -294,7 +295,8 @@ impl Execution {
                     return Verdict::Failed(AbortReason::ActionFailed);
                 };
                 match kick.aim {
-                    // The case says that it is a shot; where between the posts, and with which leg, is seen only now.
+                    // The case only marks it as a shot; the aim between the posts, and the leg to kick with,
+                    // are chosen now.
                     KickAim::Goal { .. } => {
                         timers.set_if_idle(Timer::PassPatience, scene.now, scene.body.spec().shot_patience);
                         let patient = !timers.has_fired(Timer::PassPatience);
@@ -309,7 +311,7 @@ impl Execution {
         }
     }
 
-    /// Going for the ball fails when an opponent has had it for too long.
+    /// Getting the ball fails when an opponent has had it for too long.
     fn take(scene: &Scene<'_>, timers: &mut TimerTable, step: Step) -> Verdict {
         if scene.belief.opponent_on_ball(scene.now, scene.mates) {
             timers.set_if_idle(Timer::OpponentHolds, scene.now, OPPONENT_PATIENCE);
@@ -322,7 +324,7 @@ impl Execution {
         Verdict::from(step)
     }
 
-    /// Aims and kicks, as `intent` says; done when the ball has left, failed when it was lost before.
+    /// Aims and kicks as `intent` orders; done when the ball has left, failed when it was lost before.
     fn release(&mut self, belief: &Belief, intent: Intent) -> Verdict {
         if self.kicked && !belief.holds_ball {
             return Verdict::Done;
@@ -353,7 +355,7 @@ impl Execution {
         Some(scene.body.pass(scene.belief, place)).filter(|intent| matches!(intent, Intent::Turn { .. }))
     }
 
-    /// Where the action after the ball is had will want to face.
+    /// Heading that the action after getting the ball needs.
     fn onwards(&self, scene: &Scene<'_>) -> Option<Angle> {
         let next = self.done + 1;
         match scene.case.action(self.part, next)? {
@@ -393,13 +395,13 @@ fn attack_direction(scene: &Scene<'_>) -> Angle {
     if scene.case.defending().attack_sign() > 0 { Angle::ZERO } else { Angle::HALF_TURN }
 }
 
-/// Actions that may end and begin within one step; a list cannot be longer than the table's byte says.
+/// Actions that may end and start within one step; the table's byte limits a list to as many.
 const ACTIONS_A_STEP: usize = 8;
 /// A robot has turned within 10° (docs/case-format.md §4).
 const TURNED_WITHIN: f32 = 0.175;
-/// How long the passer waits for its receiver (docs/case-format.md §4).
+/// Time for which the passer waits for its receiver (docs/case-format.md §4).
 const PASS_PATIENCE: Duration = Duration::millis(1000);
-/// How long an opponent may hold the ball before `get_ball` gives up (docs/case-format.md §4).
+/// Time for which an opponent may hold the ball before `get_ball` gives up (docs/case-format.md §4).
 const OPPONENT_PATIENCE: Duration = Duration::millis(1000);
 /// A ball rolling within this distance of a receiver comes to it, m.
 const COMING_WITHIN: f32 = 0.4;

@@ -1,5 +1,5 @@
-//! `governor`: the last limits before the motors, whatever the brain wants (docs/architecture.md §6.2; rules
-//! 2026).
+//! `governor`: the last limits before the motors, independent of the brain's intents (docs/architecture.md
+//! §6.2; rules 2026).
 //!
 //! | why | what is left |
 //! |---|---|
@@ -8,31 +8,32 @@
 //! | STOP | 1.3 m/s, the rules' 1.5 less the noise of wheels |
 //! | a kick that is too fast, or that the phase does not allow | a kick of 5.8 m/s (7.1 in 2013), or none |
 //!
-//! Motors are released only by a robot that stands: after half a second without command (host silent), tipped or with an empty
-//! battery ([`Governor::has_let_go`]). Pushed then, it brakes again; told to go, it goes. In HALT it holds its place. A robot
-//! that expects no host (`BrainConfig::hosted`) is held to everything but the host's silence. A frame of the host counts as heard on
-//! arrival while it is at most [`LATENCY_MAX`] old, and earlier by what it is older: with nothing but withheld frames of a dead host
-//! the robot slows down from an age of 150 ms on and brakes at 200 ms. After a gap of less than [`LONG_SILENCE`] it goes on with the
-//! first fresh frame. Body frame, SI.
+//! Motors are released only while the robot stands: after half a second without command (host silent), tipped
+//! or with an empty battery ([`Governor::has_let_go`]). If it is pushed then, it brakes again; a command to
+//! move ends the release. In HALT it holds its place. A robot that expects no host (`BrainConfig::hosted`) is
+//! held to everything but the host's silence. A frame of the host counts as received on arrival while it is
+//! at most [`LATENCY_MAX`] old, and earlier by its excess age otherwise: with nothing but withheld frames of
+//! a dead host the robot slows down from an age of 150 ms on and brakes at 200 ms. After a gap of less than
+//! [`LONG_SILENCE`] it continues with the first fresh frame. Body frame, SI.
 
 use geometry::{Body, Twist, Vector, math};
 use protocol::robot_io::{Health, OmniKick};
 use protocol::{Duration, Instant};
 use rules::{League, Phase, Side};
 
-/// What the brain wants of wheels, dribbler and kicker for the coming step.
+/// Motion, dribbler and kick that the brain wants for the coming step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
-    /// How the body shall move.
+    /// Velocity of the body, m/s and rad/s.
     pub twist: Twist<Body>,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// What the kicker shall do.
+    /// Kick order.
     pub kick: OmniKick,
 }
 
 impl Wanted {
-    /// To stand.
+    /// Standing still.
     pub const STAND: Self = Self {
         twist: Twist { linear: Vector::new(0.0, 0.0), angular: 0.0 },
         dribbler: 0.0,
@@ -40,29 +41,29 @@ impl Wanted {
     };
 }
 
-/// What the governor knows of robot, host and game.
+/// Inputs of the governor about robot, host and game.
 #[derive(Clone, Copy, Debug)]
 pub struct Circumstances<'s> {
-    /// The time.
+    /// Present time.
     pub now: Instant,
-    /// Whether a host is expected, and how well it is heard.
+    /// Reception of the host's frames; `None` where no host is expected.
     pub host: Option<Hearing>,
-    /// The phase of the game, if anybody told.
+    /// The phase of the game; `None` if none was received.
     pub phase: Option<Phase<Side>>,
-    /// It knows where it is.
+    /// Whether its own place is known.
     pub placed: bool,
-    /// How the body is.
+    /// State of the body.
     pub health: &'s Health,
-    /// How it moves by its own measure.
+    /// Measured motion of the body.
     pub odometry: Twist<Body>,
 }
 
-/// How well the host is heard.
+/// How recently frames of the host were received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hearing {
-    /// When its last frame came.
+    /// Time of its last frame.
     pub frame: Option<Instant>,
-    /// When its last command to this robot came.
+    /// Time of its last command to this robot.
     pub command: Option<Instant>,
 }
 
@@ -72,25 +73,25 @@ pub struct Hearing {
 pub enum Why {
     /// HALT or a time-out.
     Halt = 1,
-    /// The host is silent, or has not been heard again for long enough.
+    /// The host is silent, or has not been received again for long enough.
     Silence = 1 << 1,
-    /// The host is heard, but has no command for this robot.
+    /// The host is received, but has no command for this robot.
     NoCommand = 1 << 2,
-    /// It does not know where it is.
+    /// Its own place is unknown.
     Lost = 1 << 3,
-    /// It lies on its side.
+    /// The robot lies on its side.
     Tipped = 1 << 4,
     /// It turns faster than any robot should.
     Spinning = 1 << 5,
     /// The battery is too low to play.
     Battery = 1 << 6,
-    /// A number that is none, wanted or measured.
+    /// NaN, wanted or measured.
     NotANumber = 1 << 7,
-    /// STOP's speed.
+    /// Speed limit of STOP.
     StopSpeed = 1 << 8,
     /// The host has missed a few frames.
     Hesitant = 1 << 9,
-    /// The ball would be too fast.
+    /// The ordered kick would be too fast.
     BallSpeed = 1 << 10,
     /// The ball may not be kicked now.
     NoKick = 1 << 11,
@@ -108,7 +109,7 @@ impl Reasons {
         self.0 & why as u16 != 0
     }
 
-    /// Whether there is none.
+    /// Whether there is no reason.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -125,14 +126,14 @@ impl Reasons {
     }
 }
 
-/// What the governor made of what was wanted.
+/// The governor's decision on a wanted motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ruling {
-    /// All of it.
+    /// Passed unchanged.
     Allowed,
-    /// Less of it.
+    /// Passed with less speed or kick.
     Limited(Reasons),
-    /// Nothing of it: it brakes, or stands.
+    /// Refused: it brakes, or stands.
     Braking(Reasons),
 }
 
@@ -140,20 +141,20 @@ pub enum Ruling {
 #[derive(Clone, Debug)]
 pub struct Governor {
     league: League,
-    /// What it let through last.
+    /// The motion allowed last.
     last: Twist<Body>,
     last_at: Option<Instant>,
-    /// Since when the host has been heard without a long silence.
+    /// Since when the host has been received without a long silence.
     heard_since: Option<Instant>,
     last_frame: Option<Instant>,
     low_since: Option<Instant>,
-    /// Since when it has stood still with nobody to command it.
+    /// Since when it has stood still without a command.
     left_since: Option<Instant>,
     let_go: bool,
 }
 
 impl Governor {
-    /// Of a robot of that league that has just booted.
+    /// The governor of a robot of that league that has just booted.
     pub fn new(league: League) -> Self {
         Self {
             league,
@@ -167,7 +168,7 @@ impl Governor {
         }
     }
 
-    /// A frame of the host counts as heard at that time, never before the last.
+    /// Counts a frame of the host as received at `heard`, never before the last.
     pub fn hear_host(&mut self, heard: Instant) {
         if self.last_frame.is_some_and(|last| heard.since(last) >= LONG_SILENCE) {
             self.heard_since = None;
@@ -175,7 +176,7 @@ impl Governor {
         self.last_frame = Some(heard);
     }
 
-    /// What may be done of what is wanted. Call it every step, with what was done of it going to the body.
+    /// The allowed part of the wanted motion. Must be called every step; its result goes to the body.
     pub fn rule(&mut self, at: &Circumstances<'_>, wanted: &Wanted) -> (Wanted, Ruling) {
         let step = self.last_at.map_or(STEP_MAX, |last| at.now.since(last)).min(STEP_MAX).as_secs_f32();
         self.last_at = Some(at.now);
@@ -192,12 +193,12 @@ impl Governor {
         (given, ruling)
     }
 
-    /// Whether the motors may be without current: it stands, and nobody commands it.
+    /// Whether the motors may be without current: the robot stands, and has no command.
     pub fn has_let_go(&self) -> bool {
         self.let_go
     }
 
-    /// What it let through last.
+    /// The motion allowed last.
     pub fn last(&self) -> Twist<Body> {
         self.last
     }
@@ -206,7 +207,7 @@ impl Governor {
         let mut why = Reasons::default();
         if let Some(hearing) = at.host {
             let silent = |last: Option<Instant>| last.is_none_or(|last| at.now.since(last) >= SILENCE);
-            // From the step on in which it came: a frame that was long on its way counts as heard before that.
+            // From the step on in which it came: a frame with a long latency counts as received before that.
             let gone = hearing.frame.is_none_or(|last| at.now.since(last) > LONG_SILENCE);
             self.heard_since = if gone { None } else { Some(self.heard_since.unwrap_or(at.now)) };
             let disarmed = self.heard_since.is_none_or(|since| at.now.since(since) < ARM_AFTER);
@@ -226,7 +227,8 @@ impl Governor {
         why
     }
 
-    /// Towards zero as fast as wheels hold the carpet; from what the body does, where that is slower than what it was told.
+    /// Decelerates to zero as fast as wheels hold the field surface; starts from the measured motion where
+    /// that is slower than the ordered one.
     fn braked(&self, at: &Circumstances<'_>, step: f32) -> Wanted {
         let measured = Some(at.odometry).filter(|twist| is_finite(*twist));
         let linear = measured.map_or(self.last.linear, |twist| {
@@ -255,7 +257,7 @@ impl Governor {
             let left = SILENCE.0.saturating_sub(silence.0) as f32 / (SILENCE.0 - RAMP_FROM.0) as f32;
             limit = limit.min(left * SPEED_MAX);
         }
-        // No limit asks for more than the carpet gives.
+        // No limit asks for more deceleration than the field surface allows.
         let allowed = limit.max(self.last.linear.norm() - BRAKE * step);
         let speed = wanted.twist.linear.norm();
         if speed > allowed {
@@ -291,8 +293,8 @@ impl Governor {
     }
 }
 
-/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less 11 %, as a kicker may
-/// give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
+/// The fastest ball a robot of that league kicks, m/s: the rules' 6.5 (8 in 2013, paper 2 §1) less 11 %, as a
+/// kicker may give 10 % more than it is ordered (the worlds' spread; docs/fields.md).
 pub fn ball_speed(league: League) -> f32 {
     match league {
         League::Ssl2013 => 7.1,
@@ -302,7 +304,8 @@ pub fn ball_speed(league: League) -> f32 {
 
 /// Whether we may kick a ball in that phase.
 pub fn may_kick(phase: Phase<Side>) -> bool {
-    // Who places the ball may kick it, as off a wall (rules: ball placement asks only where it comes to rest).
+    // A robot that places the ball may kick it, as off a wall (rules: ball placement restricts only where it
+    // stops).
     let ours = matches!(
         phase,
         Phase::FreeKick(Side::Ours) | Phase::Kickoff(Side::Ours) | Phase::BallPlacement(Side::Ours)
@@ -314,7 +317,7 @@ fn is_finite(twist: Twist<Body>) -> bool {
     twist.linear.is_finite() && twist.angular.is_finite()
 }
 
-/// As far as wheels and gyroscope can tell; not where they say something that is no number.
+/// Whether it stands, by wheels and gyroscope; false where they report NaN.
 fn stands(odometry: Twist<Body>) -> bool {
     odometry.linear.norm() < STANDS && odometry.angular.abs() < STANDS_TURN
 }
@@ -326,46 +329,49 @@ fn is_kick(kick: OmniKick) -> bool {
     }
 }
 
-/// From this silence of the host on the speed left shrinks (docs/architecture.md §6.2).
+/// From this silence of the host on the remaining speed shrinks (docs/architecture.md §6.2).
 const RAMP_FROM: Duration = Duration::millis(50);
-/// At this one the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
+/// From this silence on the robot brakes (docs/architecture.md §6.2); a command is stale after it too.
 pub const SILENCE: Duration = Duration::millis(100);
-/// The age up to which a frame counts as heard when it came. With [`SILENCE`] it makes the age at which the robot brakes, and beyond
-/// which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60 ms each way is the most that is planned for, and leaves
-/// 80 ms without a frame.
+/// The age up to which a frame counts as received on arrival. With [`SILENCE`] it makes the age at which the
+/// robot brakes, and beyond which the link refuses a frame. Radios of the league take 3–10 ms up and down; 60
+/// ms each direction is the most that is planned for, and leaves 80 ms without a frame.
 pub const LATENCY_MAX: Duration = Duration::millis(100);
 const _: () =
     assert!(SILENCE.0 + LATENCY_MAX.0 == protocol::host_clock::AGE_MAX.0, "200 ms of age are silence");
-/// After a silence at least this long, that of a host which ended or a link that was lost, the robot waits for [`ARM_AFTER`]. Shorter
-/// ones are gaps of the radio and end with the first fresh frame: with gaps of 40–150 ms at random, half a second without one of
-/// 50 ms, which was asked for before, is rare (robots stood for 52–78 % of the time in play).
+/// After a silence at least this long, that of a host which ended or a link that was lost, the robot waits
+/// for [`ARM_AFTER`]. Shorter ones are gaps of the radio and end with the first fresh frame: with gaps of
+/// 40–150 ms at random, half a second without one of 50 ms, which was asked for before, is rare (robots stood
+/// for 52–78 % of the time in play).
 const LONG_SILENCE: Duration = Duration::millis(500);
-/// Heard again for so long after a boot or a long silence, it may move again (docs/architecture.md §6.2).
+/// After a boot or a long silence, the host must be received for this time before the robot may move
+/// (docs/architecture.md §6.2).
 const ARM_AFTER: Duration = Duration::millis(500);
-/// How fast a robot may be in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's noise.
+/// Speed limit of a robot in STOP, m/s: 1.5 by the rules, less wheels that run 10 % fast and the vision's
+/// noise.
 pub const STOP_SPEED: f32 = 1.3;
-/// No robot is faster, m/s (an estimate; the fastest teams publish 4).
+/// Speed limit, m/s (an estimate; the fastest teams publish 4).
 const SPEED_MAX: f32 = 4.0;
-/// Nor turns faster, rad/s (an estimate).
+/// Largest turning rate, rad/s (an estimate).
 const TURN_MAX: f32 = 20.0;
-/// Deceleration on the carpet, m/s²: about what wheels hold (the simulator's 5.5, less a tenth).
+/// Deceleration on the field surface, m/s²: about what wheels hold (the simulator's 5.5, less a tenth).
 pub const BRAKE: f32 = 5.0;
 /// The same for turning, rad/s².
 const BRAKE_TURN: f32 = 40.0;
-/// A robot that turns this fast has gone mad, rad/s (TIGERs' robots use the same).
+/// A robot that turns this fast is out of control, rad/s (TIGERs' robots use the same).
 const SPINNING: f32 = 30.0;
 /// The battery is too low to play, V: four lithium cells of 3.5 V, where teams change them.
 const BATTERY_LOW: f32 = 14.0;
-/// For so long: a voltage sinks for a moment when the motors pull.
+/// Minimum duration of a low battery: the voltage sinks briefly when the motors pull.
 const LOW_FOR: Duration = Duration::millis(1000);
-/// Reasons to brake that may last: nobody commands, or it cannot go on.
+/// Reasons to brake that may last: no command, or the robot cannot go on.
 const LETS_GO: [Why; 3] = [Why::Silence, Why::Tipped, Why::Battery];
-/// It has stood for so long when its motors are released: ten times the host's shortest silence that counts.
+/// Standstill time before the motors are released: ten times the host's shortest silence that counts.
 const LET_GO_AFTER: Duration = Duration::millis(500);
-/// Slower than this it stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
+/// A slower robot stands, m/s and rad/s: a few counts of an encoder in a step, and a gyroscope's noise.
 const STANDS: f32 = 0.05;
 const STANDS_TURN: f32 = 0.2;
-/// No step is longer: after a gap a robot brakes as in one of these.
+/// Longest step: after a gap a robot brakes as in one of these.
 const STEP_MAX: Duration = Duration::millis(50);
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! `hosted`: what the host has said, how old it is, and what follows for this robot: snapshot, command, phase, double touch.
+//! `hosted`: what the host has sent, its age, and what follows for this robot: snapshot, command, phase,
+//! double touch.
 //!
 //! A directive is held until the next one, and stale after 100 ms without a command (the governor's
-//! [`SILENCE`]); the phase is the newest that any frame told. A frame counts as heard when it came, if it is at most
-//! [`LATENCY_MAX`] old, and by so much earlier as it is older (`heard_at`).
+//! [`SILENCE`]); the phase is that of the newest frame. A frame counts as received on arrival if it is at
+//! most [`LATENCY_MAX`] old, and earlier by its excess age otherwise (`heard_at`).
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive, Duty, HostMessage};
@@ -14,33 +15,33 @@ use crate::belief::{Belief, Game};
 use crate::governor::{Hearing, LATENCY_MAX, SILENCE};
 use crate::picture::{Picture, Taken};
 
-/// A robot's host, as it hears it.
+/// A robot's view of its host, from the frames received.
 #[derive(Clone, Debug)]
 pub struct Hosted {
     me: RobotId,
     picture: Picture,
     command: Option<(Instant, Command)>,
     frame: Option<Instant>,
-    /// When the last frame came, however old it was.
+    /// Arrival of the last frame, of any age.
     arrived: Option<Instant>,
     phase: Option<Phase<Side>>,
     restart: Restart,
 }
 
-/// Whose touch is it at our restart? (rules 2026: the taker touches the ball once, until another robot has)
+/// Touch state of our restart (rules 2026: the kicker touches the ball once, until another robot has).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Restart {
-    /// Nothing of the kind.
+    /// No restart of ours with a touch.
     #[default]
     None,
-    /// This robot has touched the ball as its taker; the ball lay here.
+    /// This robot has touched the ball as the kicker of the restart; the ball lay here.
     Touched(Point<Field>),
-    /// And the ball has left it: not again before another robot.
+    /// The ball has moved away from it: no second touch before another robot's.
     Barred,
 }
 
 impl Hosted {
-    /// Nothing heard yet.
+    /// Nothing received yet.
     pub fn new(me: RobotId) -> Self {
         Self {
             me,
@@ -53,7 +54,8 @@ impl Hosted {
         }
     }
 
-    /// A message of the host that was sent at most `age` ago; when it counts as heard, if it was for this robot, and new.
+    /// Handles a message of the host that was sent at most `age` ago. Returns when it counts as received, if
+    /// it was for this robot, and new.
     pub fn handle(&mut self, now: Instant, age: Duration, message: &HostMessage) -> Option<Instant> {
         let heard = heard_at(now, age);
         match message {
@@ -78,18 +80,18 @@ impl Hosted {
         self.frame
     }
 
-    /// Another host than before has welcomed this robot: its pictures have numbers of their own.
+    /// Another host than before has welcomed this robot: its snapshots have numbers of their own.
     pub fn begin_anew(&mut self) {
         self.picture.begin_anew();
     }
 
-    /// What the wheels measured: carries the picture on, and shows `belief` all of it.
+    /// Carries the snapshot forward by what the wheels measured, and copies it into `belief`.
     pub fn see(&mut self, now: Instant, sensors: &SensorFrame, belief: &mut Belief) {
         self.picture.handle_odometry(now, sensors.odometry);
         belief.show(now, &self.picture, sensors);
         let duty = self.command.as_ref().map_or(Duty::Player, |(_, command)| command.duty);
         let defending = self.command.as_ref().map_or(belief.game.defending, |(_, command)| command.defending);
-        // Who has not been told anything does nothing.
+        // A robot without a received phase does nothing.
         let phase = self.phase.unwrap_or(Phase::Halt);
         self.watch_touches(phase, duty, belief);
         belief.game = Game {
@@ -107,22 +109,22 @@ impl Hosted {
         (now.since(*at) < SILENCE).then_some(&command.directive)
     }
 
-    /// The phase that the newest frame told.
+    /// The phase of the newest frame.
     pub fn phase(&self) -> Option<Phase<Side>> {
         self.phase
     }
 
-    /// When the last frame came, however old it was.
+    /// Arrival of the last frame, of any age.
     pub fn arrived(&self) -> Option<Instant> {
         self.arrived
     }
 
-    /// When it was heard.
+    /// When the last frame and command count as received.
     pub fn hearing(&self) -> Hearing {
         Hearing { frame: self.frame, command: self.command.as_ref().map(|(at, _)| *at) }
     }
 
-    /// Whether the host shows this robot where it is.
+    /// Whether the host's snapshot has a current pose of this robot.
     pub fn shows_me(&self, now: Instant) -> bool {
         self.picture.own(now).is_some()
     }
@@ -143,7 +145,8 @@ impl Hosted {
             (_, Restart::None) if ours && belief.contact() => {
                 belief.ball.map_or(Restart::None, |ball| Restart::Touched(ball.position))
             }
-            // Before the ball is in play it may be touched again: the light barrier alone has sent nothing away.
+            // Before the ball is in play it may be touched again: contact at the break-beam sensor alone has
+            // not moved it.
             (_, Restart::Touched(lay)) if ours && !belief.contact() && gone(belief, lay) => Restart::Barred,
             (_, Restart::Touched(_) | Restart::Barred) if ours => self.restart,
             _ => Restart::None,
@@ -151,19 +154,20 @@ impl Hosted {
     }
 }
 
-/// When a frame of that age counts as heard.
+/// When a frame of that age counts as received.
 fn heard_at(now: Instant, age: Duration) -> Instant {
     now - Duration(age.0.saturating_sub(LATENCY_MAX.0))
 }
 
-/// The ball has left where it lay.
+/// Whether the ball has left its place `lay`.
 fn gone(belief: &Belief, lay: Point<Field>) -> bool {
     belief.ball.is_none_or(|ball| ball.position.distance(lay) > LEFT)
 }
 
 /// A robot whose centre is this near the ball touches it, m: both radii and the vision's noise.
 const TOUCHES_WITHIN: f32 = 0.125;
-/// The ball has left, m: in play after 0.05 m by the rules, and the mouth that told where it lay errs by a centimetre.
+/// Distance after which the ball has left, m: in play after 0.05 m by the rules, and the break-beam position
+/// of the ball errs by a centimetre.
 const LEFT: f32 = 0.06;
 
 #[cfg(test)]

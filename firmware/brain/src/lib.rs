@@ -1,17 +1,18 @@
-//! `brain`: the robot's logic as a value (docs/architecture.md §3–§5; Ros et al. 2009 §4–§5). Runs on the
-//! MCU, in the simulator and in tests, unchanged.
+//! `brain`: the robot's logic as a sans-IO value (docs/architecture.md §3–§5; Ros et al. 2009 §4–§5). Runs on
+//! the MCU, in the simulator and in tests, unchanged.
 //!
-//! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for what happens; `poll_*` for what it wants, to be
-//! drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`] and [`mates`]
-//! (what it holds true), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by itself), [`execution`]
-//! (its part of a case), [`team`] (the cycle), [`Brain`] (the order of thought), [`Station`] (brain with radio).
+//! Four kinds of methods, as on [`Brain`]: getters; `handle_*(now, …)` for inputs; `poll_*` for outputs, to
+//! be drained after every `handle_*`; no commands besides. Bottom up: [`timer`] (every deadline), [`belief`]
+//! and [`mates`] (what it knows), [`body`] and [`skills`] (what it can do), [`reactive`] (what it does by
+//! itself), [`execution`] (its part of a case), [`team`] (the cycle), [`Brain`] (the order of these within a
+//! step), [`Station`] (brain with radio).
 //!
-//! Where a host leads (wheels): [`picture`] and [`hosted`] (what it shows and says), [`directive`] (which skill does it),
-//! [`governor`] (what of it reaches the motors).
+//! Where a host leads (wheels): [`picture`] and [`hosted`] (what it sends), [`directive`] (the skill that
+//! carries it out), [`governor`] (what of it reaches the motors).
 //!
-//! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it knows the world only
-//! by [`SensorFrame`](protocol::robot_io::SensorFrame), its teammates' beacons and its host; it takes a
-//! [`CaseBase`](casebase::CaseBase) and never links a library.
+//! **Invariants.** No I/O, no clock, no allocation, no randomness; nothing from outside can panic; it
+//! perceives the world only by [`SensorFrame`](protocol::robot_io::SensorFrame), its teammates' beacons and
+//! its host; it takes a [`CaseBase`](casebase::CaseBase) and never links a library.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -4,53 +4,53 @@ use geometry::{Field, Pose};
 use protocol::team::{Beacon, CycleState, Progress, Status};
 use protocol::{CycleId, Duration, Instant, RobotId};
 
-/// Silent for longer, and a robot is gone (docs/architecture.md §5.1).
+/// Silence after which a robot counts as absent (docs/architecture.md §5.1).
 pub const PRESENCE_LEASE: Duration = Duration::millis(400);
 
 /// A teammate's newest beacon.
 #[derive(Clone, Debug)]
 pub struct Mate {
-    /// What it said.
+    /// Its newest beacon.
     pub beacon: Beacon,
-    /// When it was heard.
+    /// When it was received.
     pub heard: Instant,
 }
 
 impl Mate {
-    /// Where it says it is.
+    /// Its pose as reported.
     pub fn pose(&self) -> Pose<Field> {
         self.beacon.pose.into()
     }
 
-    /// How far it has come in cycle `id`; `None` while it speaks of another.
+    /// Its progress in cycle `id`; `None` while it reports another.
     pub fn progress_in(&self, id: CycleId) -> Option<Progress> {
         self.beacon.cycle.as_ref().filter(|c| c.id == id).map(|_| self.beacon.progress)
     }
 
-    /// What it knows of cycle `id`.
+    /// Its state of cycle `id`.
     pub fn knows(&self, id: CycleId) -> Option<&CycleState> {
         self.beacon.cycle.as_ref().filter(|c| c.id == id)
     }
 }
 
-/// Everybody heard of.
+/// The newest beacon of each teammate received.
 #[derive(Clone, Debug, Default)]
 pub struct Mates {
     table: [Option<Mate>; RobotId::COUNT],
 }
 
 impl Mates {
-    /// Takes in a beacon.
+    /// Stores a beacon.
     pub fn hear(&mut self, now: Instant, from: RobotId, beacon: &Beacon) {
         self.table[from.index()] = Some(Mate { beacon: beacon.clone(), heard: now });
     }
 
-    /// The mate, if it is present: heard within the lease and available.
+    /// The teammate, if it is present: received within the lease and available.
     pub fn get(&self, now: Instant, id: RobotId) -> Option<&Mate> {
         self.table[id.index()].as_ref().filter(|mate| is_present(now, mate))
     }
 
-    /// Every present mate, lowest id first.
+    /// Every present teammate, lowest id first.
     pub fn present(&self, now: Instant) -> impl Iterator<Item = (RobotId, &Mate)> {
         RobotId::all()
             .zip(&self.table)
@@ -58,12 +58,12 @@ impl Mates {
             .filter(move |(_, mate)| is_present(now, mate))
     }
 
-    /// Whether the newest word of any mate is that it holds the ball.
+    /// Whether the newest beacon of any teammate reports that it holds the ball.
     pub fn anyone_holds_ball(&self) -> bool {
         self.table.iter().flatten().any(|mate| mate.beacon.status.has(Status::HOLDS_BALL))
     }
 
-    /// Drops the words of those who have been silent for longer than the lease.
+    /// Drops the beacons of teammates that have been silent for longer than the lease.
     pub fn forget_the_silent(&mut self, now: Instant) {
         for slot in &mut self.table {
             if slot.as_ref().is_some_and(|mate| now.since(mate.heard) > PRESENCE_LEASE) {

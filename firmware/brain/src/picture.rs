@@ -1,9 +1,10 @@
-//! `picture`: the host's snapshot of the field as a robot receives it. Pictures put together from their
-//! parts, and carried forward to now.
+//! `picture`: the host's snapshot of the field as a robot receives it, put together from its parts and
+//! carried forward to the present.
 //!
-//! Parts may be lost, doubled and reordered, and their numbers wrap: what came counts, what did not keeps its last place for a
-//! moment. Places hold at the moment of arrival (docs/architecture.md §3.2); between pictures the own pose
-//! goes on by odometry, everybody else by their velocity, the ball as it rolls. Field frame, SI.
+//! Parts may be lost, doubled and reordered, and their numbers wrap: received parts are used, entries of lost
+//! ones keep their last position for a moment. Positions hold at the moment of arrival (docs/architecture.md
+//! §3.2); between snapshots the own pose is carried forward by odometry, other robots by their velocity, the
+//! ball as it rolls. Field frame, SI.
 
 use geometry::{Body, Field, Pose, Twist, Vector};
 use motion::ball::BallModel;
@@ -12,58 +13,58 @@ use protocol::quantized::from_mm;
 use protocol::{Duration, Instant, RobotId};
 use rules::{Phase, Side};
 
-/// What became of a part.
+/// Result of handling a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// The first part heard of a newer picture.
+    /// The first part received of a newer snapshot.
     Begun,
-    /// One more part of the picture at hand.
+    /// One more part of the present snapshot.
     More,
-    /// One that was heard before.
+    /// A part that was received before.
     Doubled,
-    /// Of an older picture: dropped.
+    /// A part of an older snapshot: dropped.
     Late,
-    /// A part beyond the last one, or of too many: dropped.
+    /// A part beyond the last one, or of too many parts: dropped.
     Malformed,
 }
 
-/// A robot of the picture.
+/// A robot of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
-    /// Whose, and which.
+    /// Team and number.
     pub who: WireWho,
-    /// Where it is.
+    /// Position, m, and heading.
     pub pose: Pose<Field>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<Field>,
     at: Instant,
     picture: u8,
 }
 
-/// The ball of the picture.
+/// The ball of the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownBall {
-    /// Where it is, above the ground or on it.
+    /// Position above or on the ground, m.
     pub position: geometry::Point<Field>,
-    /// How it moves along the ground, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// How high it is, m.
+    /// Height, m.
     pub height: f32,
     at: Instant,
 }
 
-/// Everything the host shows, as far as it came.
+/// Everything the host sends of the field, as far as it was received.
 #[derive(Clone, Debug)]
 pub struct Picture {
     me: RobotId,
     number: Option<u8>,
-    /// When the newest part came.
+    /// Arrival of the newest part.
     heard: Instant,
-    /// Parts of this picture that came, a bit each.
+    /// Parts of this snapshot that were received, a bit each.
     parts: u8,
     /// The phase of the game.
     phase: Option<Phase<Side>>,
-    /// Where the ball is to be placed.
+    /// Target of a ball placement.
     placement: Option<geometry::Point<Field>>,
     ball: Option<ShownBall>,
     robots: [[Option<Shown>; RobotId::COUNT]; 2],
@@ -71,7 +72,7 @@ pub struct Picture {
     odometry: Twist<Body>,
 }
 
-/// The own pose: shown at one time, carried on since.
+/// The own pose: received at one time, carried forward since.
 #[derive(Clone, Copy, Debug)]
 struct Own {
     pose: Pose<Field>,
@@ -80,7 +81,7 @@ struct Own {
 }
 
 impl Picture {
-    /// Nothing heard yet.
+    /// Nothing received yet.
     pub fn new(me: RobotId) -> Self {
         Self {
             me,
@@ -96,7 +97,7 @@ impl Picture {
         }
     }
 
-    /// A part has come.
+    /// Handles a received part.
     pub fn handle_part(&mut self, now: Instant, part: &WorldPart) -> Taken {
         if part.parts == 0 || usize::from(part.parts) > PARTS_MAX || part.part >= part.parts {
             return Taken::Malformed;
@@ -119,7 +120,7 @@ impl Picture {
         }
         let whole = (1_u16 << part.parts) - 1;
         if u16::from(self.parts) == whole {
-            // Who is in no part of a whole picture is not on the field.
+            // A robot that is in no part of a whole snapshot is not on the field.
             for slot in self.robots.iter_mut().flatten() {
                 *slot = slot.filter(|robot| robot.picture == part.picture);
             }
@@ -127,39 +128,39 @@ impl Picture {
         taken
     }
 
-    /// Another host shows the field from now on: any picture is a new one.
+    /// Another host sends the field from now on: any snapshot is a new one.
     pub fn begin_anew(&mut self) {
         self.number = None;
     }
 
-    /// The body's own measure of its motion; carries the pose on to `now`.
+    /// Carries the pose forward to `now` by the body's measured motion.
     pub fn handle_odometry(&mut self, now: Instant, odometry: Twist<Body>) {
         let finite = odometry.linear.is_finite() && odometry.angular.is_finite();
         self.odometry = if finite { odometry } else { Twist::default() };
         self.carry_own_to(now);
     }
 
-    /// When the newest part came; `None` before the first.
+    /// Arrival of the newest part; `None` before the first.
     pub fn heard(&self) -> Option<Instant> {
         self.number.map(|_| self.heard)
     }
 
-    /// The phase that the newest part told.
+    /// The phase in the newest part.
     pub fn phase(&self) -> Option<Phase<Side>> {
         self.phase
     }
 
-    /// Where the ball is to be placed, while that matters.
+    /// Target of a ball placement, while one is running.
     pub fn placement(&self) -> Option<geometry::Point<Field>> {
         self.placement
     }
 
-    /// The own pose; `None` where the host has not shown it for too long.
+    /// The own pose; `None` where the host has not sent it for too long.
     pub fn own(&self, now: Instant) -> Option<Pose<Field>> {
         self.own.filter(|own| now.since(own.shown) <= OWN_LEASE).map(|own| own.pose)
     }
 
-    /// The ball, where it will be `now`; `None` where the host shows none.
+    /// The ball, where it will be `now`; `None` where the host sends none.
     pub fn ball(&self, now: Instant) -> Option<ShownBall> {
         let ball = self.ball.filter(|ball| now.since(ball.at) <= BALL_LEASE)?;
         let time = now.since(ball.at).as_secs_f32();
@@ -171,7 +172,7 @@ impl Picture {
         Some(ShownBall { position: path.from() + path.along() * way, velocity: path.along() * speed, ..ball })
     }
 
-    /// Every robot shown but this one, where it will be `now`: ours first, lowest id first.
+    /// Every robot received but this one, where it will be `now`: ours first, lowest id first.
     pub fn others(&self, now: Instant) -> impl Iterator<Item = Shown> {
         let fresh = move |robot: &&Shown| now.since(robot.at) <= ROBOT_LEASE;
         self.robots.iter().flatten().flatten().filter(fresh).filter(|robot| !self.is_me(robot.who)).map(
@@ -193,7 +194,7 @@ impl Picture {
             0 if self.parts & (1 << part.part) != 0 => Taken::Doubled,
             0 => Taken::More,
             1..128 => Taken::Begun,
-            // A host that has started anew counts from anywhere.
+            // A host that has restarted counts from anywhere.
             _ if now.since(self.heard) > SILENCE => Taken::Begun,
             _ => Taken::Late,
         }
@@ -208,10 +209,11 @@ impl Picture {
         self.robots[(robot.who.side == Side::Theirs) as usize][robot.who.id.index()] = Some(shown);
     }
 
-    /// The host's word and the odometry's, weighed: the host's noise is a millimetre, the odometry's drift grows.
+    /// Weighted mean of the host's pose and odometry: the host's noise is a millimetre, the odometry's drift
+    /// grows.
     fn correct_own(&mut self, now: Instant, shown: Pose<Field>) {
         self.carry_own_to(now);
-        // A part that waited shows where it was then: the pose has gone on since.
+        // A part that waited holds the pose of its time: the pose has moved since.
         let carried_to = self.own.map_or(now, |own| own.carried_to.max(now));
         let shown = self.carried(shown, carried_to.since(now).as_secs_f32());
         let near = |own: &Own| {
@@ -237,7 +239,7 @@ impl Picture {
         }
     }
 
-    /// The pose after so many seconds of the motion that was measured last.
+    /// The pose after `time` seconds of the motion that was measured last.
     fn carried(&self, mut pose: Pose<Field>, time: f32) -> Pose<Field> {
         if time > 0.0 {
             let Twist { linear, angular } = self.odometry;
@@ -259,23 +261,26 @@ fn shown_ball(now: Instant, ball: WireBall) -> ShownBall {
     }
 }
 
-/// A robot that the newest parts left out keeps its place for so long: a few pictures at 60 Hz.
+/// A robot that the newest parts left out keeps its place for this time: a few snapshots at 60 Hz.
 const ROBOT_LEASE: Duration = Duration::millis(200);
-/// The ball too; longer, as it is hidden often.
+/// The same for the ball; longer, as it is hidden often.
 const BALL_LEASE: Duration = Duration::millis(500);
-/// How long odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an estimate).
+/// Maximum time for which odometry alone carries the own pose: at 3 m/s and 3 % of slip it errs by 5 cm (an
+/// estimate).
 const OWN_LEASE: Duration = Duration::millis(500);
-/// After so much silence any picture is a new one.
+/// After this silence any snapshot is a new one.
 const SILENCE: Duration = Duration::millis(300);
-/// The share of the host's word in the own pose: at 60 Hz the odometry's word has gone after half a second, in which it errs by
-/// millimetres. The host's word was carried on over cameras' and radio's delay with a velocity that lags in every turn and every
-/// start: a larger share brings that error into the control loop, and bodies sway (4° and 2 cm with 0.4).
+/// Weight of the host's pose in the own pose: at 60 Hz the odometry's part has decayed after half a second,
+/// in which it errs by millimetres. The host's pose was carried forward over cameras' and radio's delay with
+/// a velocity that lags in every turn and every start: a larger share brings that error into the control
+/// loop, and bodies sway (4° and 2 cm with 0.4).
 const SHARE: f32 = 0.1;
-/// The host shows it this far from where it believes to be: the host is right, m. More than vision's noise, less than a push.
+/// Distance between the host's pose and the own one from which the host's replaces it, m. More than vision's
+/// noise, less than a push.
 const JUMP: f32 = 0.1;
 /// The same for the heading, rad.
 const JUMP_TURN: f32 = 0.2;
-/// A ball higher than this flies, m: more than vision's error of height for a ball on the ground.
+/// A ball higher than this is in the air, m: more than vision's error of height for a ball on the ground.
 pub const IN_THE_AIR: f32 = 0.05;
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `Station`: brain plus radio endpoint; decodes received frames, encodes outgoing messages.
 //!
-//! `runtime`'s tasks on a board and the native simulator drive this very value, so that both send the same bytes.
+//! `runtime`'s tasks on a board and the native simulator drive this same value, so that both send the same
+//! bytes.
 
 use casebase::CaseBase;
 use protocol::frame::{RobotKeys, TeamKey};
@@ -11,19 +12,19 @@ use protocol::{Duration, Instant};
 
 use crate::{Brain, BrainConfig};
 
-/// A brain with its end of the radio.
+/// A brain with its radio endpoint.
 pub struct Station<'a> {
     brain: Brain<'a>,
     link: Link,
-    /// When the brain spoke last, and when mates were greeted last.
+    /// When the brain sent last, and when handshakes were sent to teammates last.
     spoke: Option<Instant>,
     greeted: Option<Instant>,
-    /// Something has happened since it had nothing more to say.
+    /// Something has happened since the brain had no more messages.
     stirred: bool,
 }
 
 impl<'a> Station<'a> {
-    /// A robot that wakes up at `now`.
+    /// A robot that starts at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>) -> Self {
         Self::with_keys(now, config, base, TeamKey::ZERO.of_robot(config.robot))
     }
@@ -39,8 +40,8 @@ impl<'a> Station<'a> {
         }
     }
 
-    /// A packet came; whatever is not a genuine, new message of this team is counted and dropped. Where steps are short nothing is
-    /// said before the next.
+    /// Handles a packet; anything but a genuine, new message of this team is counted and dropped. Where steps
+    /// are short nothing is sent before the next step.
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) {
         if !self.brain.has_short_steps() {
             self.stirred = true;
@@ -58,13 +59,13 @@ impl<'a> Station<'a> {
         }
     }
 
-    /// The body's senses: one brain step.
+    /// Handles a sensor frame: one brain step.
     pub fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame) {
         self.stirred = true;
         self.brain.handle_sensors(now, sensors);
     }
 
-    /// A deadline that [`Station::poll_timeout`] announced has come.
+    /// Handles the deadline announced by [`Station::poll_timeout`].
     pub fn handle_timeout(&mut self, now: Instant) {
         self.stirred = true;
         self.brain.handle_timeout(now);
@@ -82,7 +83,7 @@ impl<'a> Station<'a> {
 
     fn next_packet(&mut self, now: Instant) -> Option<Packet> {
         let Some(mut message) = self.brain.poll_message(now) else {
-            // One message a step, where steps are short: sealing costs, and the next step is near.
+            // One message a step, where steps are short: sealing costs time, and the next step comes soon.
             let waits =
                 self.spoke == Some(now) && self.greeted.is_some_and(|last| now.since(last) < GREET_WITHIN);
             let greeting = if waits { None } else { self.link.poll_greeting(now) };
@@ -98,26 +99,26 @@ impl<'a> Station<'a> {
         Some(self.link.seal(&message))
     }
 
-    /// What the body shall do, if something new was decided.
+    /// The actuator orders, if there are new ones.
     pub fn poll_actuators(&mut self, now: Instant) -> Option<ActuatorFrame> {
         self.brain.poll_actuators(now)
     }
 
-    /// When to call [`Station::handle_timeout`], if nothing else happens before.
+    /// Time at which [`Station::handle_timeout`] must be called without an earlier input.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.brain.poll_timeout()
     }
 
-    /// The brain, to look at.
+    /// The brain, read-only.
     pub fn brain(&self) -> &Brain<'a> {
         &self.brain
     }
 
-    /// The link, to look at.
+    /// The link, read-only.
     pub fn link(&self) -> &Link {
         &self.link
     }
 }
 
-/// Greetings wait for a step without other words, but no longer than this: a walking robot speaks in each.
+/// Handshakes wait for a step without other messages, but no longer than this: a walking robot sends in each.
 const GREET_WITHIN: Duration = Duration::millis(40);

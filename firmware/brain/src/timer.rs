@@ -1,16 +1,15 @@
-//! `timer`: the table of a robot's deadlines. All of them in one table, named by an enum
-//! (docs/architecture.md §3.1, §5).
+//! `timer`: the table of a robot's deadlines, each named by an enum (docs/architecture.md §3.1, §5).
 
 use protocol::{Duration, Instant};
 
-/// A deadline and what it is for.
+/// A deadline, by its purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timer {
     /// A booting robot has listened long enough to be present (one lease).
     Boot,
-    /// Robots that booted together have heard that each other are present: now they may propose.
+    /// Robots that booted together have received each other's presence: now they may propose.
     Settle,
-    /// The coordinator has been silent about its decision for too long: propose anew.
+    /// The coordinator has been silent about its decision for too long: propose again.
     NoDecision,
     /// There was no case; close the cycle and try again.
     Retry,
@@ -22,7 +21,7 @@ pub enum Timer {
     Action,
     /// The passer has waited long enough for its receiver.
     PassPatience,
-    /// An opponent has held the ball for too long to hope for it.
+    /// An opponent has held the ball for too long to win it.
     OpponentHolds,
 }
 
@@ -34,7 +33,7 @@ impl Timer {
 #[derive(Clone, Debug, Default)]
 pub struct TimerTable {
     slots: [Slot; Timer::COUNT],
-    /// The first deadline of those that run: asked for after every packet, changed far more rarely.
+    /// The first deadline of those that run: read after every packet, changed far more rarely.
     first: Option<Instant>,
 }
 
@@ -47,7 +46,7 @@ enum Slot {
 }
 
 impl TimerTable {
-    /// Starts `timer` anew.
+    /// Restarts `timer`.
     pub fn set(&mut self, timer: Timer, deadline: Instant) {
         self.put(timer, Slot::Running(deadline));
     }
@@ -74,7 +73,7 @@ impl TimerTable {
         self.slots[timer as usize] == Slot::Idle
     }
 
-    /// Fires what is due.
+    /// Fires all timers that are due.
     pub fn advance(&mut self, now: Instant) {
         if self.first.is_none_or(|first| first > now) {
             return;

@@ -1,5 +1,5 @@
-//! A keeper that was off the field, behind its own goal, comes around the goal to its line: with the robot's own motion planner,
-//! followed exactly. Field frame, SI.
+//! A keeper that was off the field, behind its own goal, comes around the goal to its line: with the robot's
+//! own motion planner, followed exactly. Field frame, SI.
 
 use brain::belief::{Ball, Belief};
 use brain::body::omni::{Drive, Drivetrain};

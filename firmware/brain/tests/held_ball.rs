@@ -1,5 +1,5 @@
-//! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators that hold it there.
-//! Field frame, SI.
+//! `held_ball`: tests: a robot that has to leave a ball which lies within its own outline, as in simulators
+//! that hold it there. Field frame, SI.
 
 use brain::belief::{Ball, Belief};
 use brain::body::omni::{Drive, Drivetrain};
@@ -7,7 +7,7 @@ use geometry::{Angle, GoalEnd, Point, Pose, Vector};
 use protocol::Instant;
 use rules::{Duty, League, Phase, Side};
 
-/// So far the robot is from the ball after two seconds, m.
+/// Distance of the robot from the ball after two seconds, m.
 fn left(gap: f32, held: bool, phase: Phase<Side>) -> f32 {
     let mut belief = Belief::defending(League::DivisionB, GoalEnd::Positive);
     (belief.game.phase, belief.game.duty) = (phase, Duty::Player);

@@ -14,9 +14,9 @@ use rules::{Duty, League, Phase, Side};
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 const DUTIES: [Duty; 3] = [Duty::Keeper, Duty::Taker, Duty::Player];
 const STEP: f32 = 0.01;
-/// What the controller gives teams to prepare, s.
+/// Time that the controller gives teams to prepare, s.
 const TIME: f32 = 10.0;
-/// Who has to move stands no longer than this, s.
+/// A robot that has to move stands no longer than this, s.
 const STANDS: f32 = 1.0;
 /// A robot slower than this stands, m/s.
 const STANDING: f32 = 0.02;
@@ -54,7 +54,7 @@ fn stopped() -> [Phase<Side>; 5] {
     ]
 }
 
-/// A robot that drives exactly what its drivetrain wants.
+/// A robot that moves exactly as its drivetrain orders.
 struct Player {
     belief: Belief,
     drivetrain: Drivetrain,
@@ -87,7 +87,7 @@ impl Player {
         self.belief.pose.position
     }
 
-    /// Where it must not be, if it is there.
+    /// Reason why it must not be where it is, if any.
     fn offence(&self) -> Option<Why> {
         let (belief, game) = (&self.belief, &self.belief.game);
         let field = belief.league().field();
@@ -129,7 +129,7 @@ fn turned(phase: Phase<Side>) -> Phase<Side> {
     phase.map(|side| if side == Side::Ours { Side::Theirs } else { Side::Ours })
 }
 
-/// The ball and where it is to be, in this phase.
+/// The ball and its placement target in this phase.
 fn ball(dice: &mut Dice, league: League, phase: Phase<Side>, own: GoalEnd) -> (Point<Field>, Point<Field>) {
     let field = league.field();
     let at = match phase {
@@ -147,7 +147,7 @@ fn ball(dice: &mut Dice, league: League, phase: Phase<Side>, own: GoalEnd) -> (P
     (at, dice.on_carpet(league, 0.5))
 }
 
-/// In a goal's walls no robot can be.
+/// Whether the point is inside a goal's walls, where no robot can be.
 fn in_walls(league: League, at: Point<Field>) -> bool {
     let field = league.field();
     let (x, y) = (at.x().abs() - 0.5 * field.length, at.y().abs());
@@ -173,7 +173,7 @@ fn starts(usual: u32) -> u32 {
     usual * times.unwrap_or(1)
 }
 
-/// No more of these drives failed than may.
+/// Fails if more of these drives failed than `may`.
 fn judge(drives: usize, failed: &[String], may: usize) {
     let first = failed.iter().take(8).map(String::as_str).collect::<Vec<_>>().join("\n  ");
     assert!(failed.len() <= may, "{} of {drives} drives failed:\n{first}", failed.len());
@@ -202,7 +202,7 @@ fn alone(phases: &[Phase<Side>], starts: u32, obstacles: usize, may_fail: usize)
     judge(drives, &failed, may_fail);
 }
 
-/// One drive; what was wrong with it, if anything was.
+/// One drive; returns its failure, if any.
 fn one(
     dice: &mut Dice,
     (league, phase, own, duty): (League, Phase<Side>, GoalEnd, Duty),
@@ -263,7 +263,7 @@ fn in_stop_placements_and_free_kicks_it_leaves_too_the_keeper_as_well() {
 
 #[test]
 fn others_that_stand_about_close_no_way_out() {
-    // Two keepers of 2013 do not get past three robots that stand close before their goal's mouth of 0.7 m.
+    // Two keepers of 2013 do not get past three robots that stand close before their goal opening of 0.7 m.
     alone(&prepared().chain(stopped()).collect::<Vec<_>>(), starts(15), 11, 2);
 }
 
@@ -332,7 +332,8 @@ fn teams(league: League, phase: Phase<Side>, robots: usize, seed: u64) -> Vec<St
     players.iter().filter_map(wrong).collect()
 }
 
-/// How near a robot on its way across comes to the first 0.9 m of the ball's way, when a teammate is about to kick it.
+/// How near a robot that crosses comes to the first 0.9 m of the ball's path, when a teammate is about to
+/// kick it.
 fn crossing(phase: Phase<Side>, duty: Duty) -> (f32, f32) {
     let (from, to) = (Point::new(0.5, -1.5), Point::new(0.5, 1.5));
     let mut player =
@@ -357,9 +358,9 @@ fn nobody_crosses_in_front_of_a_teammate_that_is_about_to_kick() {
     for phase in [Phase::FreeKick(Side::Ours), Phase::Kickoff(Side::Ours)] {
         let (nearest, left) = crossing(phase, Duty::Player);
         assert!(nearest > touches, "{phase:?}: {nearest} m");
-        // Around it, to the other side; at a kick-off the other half is closed.
+        // Around it, to the other side; at a kick-off the other half is forbidden.
         assert!(left < 0.01 || phase == Phase::Kickoff(Side::Ours), "{phase:?}: {left} m left");
     }
-    // In play there is no such lane: the test can tell.
+    // In play there is no such lane: the test distinguishes the two.
     assert!(crossing(Phase::Run, Duty::Player).0 < touches);
 }

@@ -1,8 +1,9 @@
 //! `debian`: toolchain fallback on Debian-like systems without access to rustup's server: packages and
 //! `core`'s sources.
 //!
-//! The sources of `core` must be of exactly the compiler's release. Debian's backports carry them as `rust-src`; they are
-//! read through an apt state of our own (lists, cache, one source), so that the system's sources stay untouched.
+//! The sources of `core` must be of exactly the compiler's release. Debian's backports carry them as
+//! `rust-src`; they are read through an apt state of our own (lists, cache, one source), so that the system's
+//! sources stay untouched.
 
 use std::env;
 use std::fs;
@@ -12,7 +13,8 @@ use std::time::Duration;
 
 use crate::process::{in_path, output_of, run_within};
 
-/// Unpacks `rust-src` of this very release into the user's cache; gives the folder that holds `library/`.
+/// Unpacks `rust-src` of this very release into the user's cache; returns the directory that holds
+/// `library/`.
 pub(crate) fn rust_sources(release: &str) -> Result<PathBuf, String> {
     let cache = cache_folder()?.join(format!("rust-src-{release}"));
     let sources = cache.join(format!("usr/src/rustc-{release}"));
@@ -34,7 +36,7 @@ pub(crate) fn rust_sources(release: &str) -> Result<PathBuf, String> {
             format!("Dir::Cache={}", cache.join("cache").display()),
             format!("Dir::Etc::SourceList={}", list.display()),
             "Dir::Etc::SourceParts=/dev/null".into(),
-            // The download's own user could not read a private folder.
+            // The download's own user could not read a private directory.
             "APT::Sandbox::User=root".into(),
         ] {
             command.args(["-o", &option]);
@@ -90,7 +92,7 @@ fn matching_version(madison: &str, release: &str) -> Option<String> {
         .map(str::to_string)
 }
 
-/// The mirror the system itself uses, in the new or the old format of apt's sources.
+/// The mirror that the system uses, from the new or the old format of apt's sources.
 fn mirror() -> Option<String> {
     let new = fs::read_to_string(Path::new(APT).join("sources.list.d/debian.sources")).unwrap_or_default();
     let old = fs::read_to_string(Path::new(APT).join("sources.list")).unwrap_or_default();
@@ -120,11 +122,11 @@ fn is_root() -> bool {
 }
 
 const APT: &str = "/etc/apt";
-/// Who signs Debian's archives, as the package `debian-archive-keyring` installs it.
+/// Keys that sign Debian's archives, as the package `debian-archive-keyring` installs them.
 const KEYRING: &str = "/usr/share/keyrings/debian-archive-keyring.gpg";
-/// Keeps several releases of the compiler's sources side by side.
+/// The suite that keeps several releases of the compiler's sources side by side.
 const SUITE: &str = "trixie-backports";
-/// 45 MB at 200 kB/s, the slowest line we would wait for.
+/// Time limit of the download: 45 MB at 200 kB/s, the slowest connection supported.
 const DOWNLOAD: Duration = Duration::from_mins(4);
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
-//! `image`: freshness check of a firmware image. Whoever plays on QEMU asks here first.
+//! `image`: freshness check of a firmware image, called before every run on QEMU.
 //!
-//! cargo itself is the judge of freshness: an image that is up to date costs one short call and no words.
+//! cargo itself decides on freshness: an up-to-date image costs one short call without output.
 
 use std::env;
 use std::fmt;
@@ -13,9 +13,10 @@ use crate::process::{line_of, output_of};
 use crate::target::cargo_program;
 use crate::{Install, TARGET, TargetError, ensure_target};
 
-/// The image of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or older than its sources.
+/// The firmware of a robot with that body for [`MACHINE`](crate::MACHINE), built first where it is missing or
+/// older than its sources.
 ///
-/// Where the sources or cargo are gone (an installed program), an image that is already there will do.
+/// Where the sources or cargo are gone (an installed program), an existing build is used.
 pub fn build_image(root: &Path, body: Body) -> Result<PathBuf, BuildError> {
     build_program(root, Program::Robot(body))
 }
@@ -45,27 +46,27 @@ fn build_into(target_dir: &Path, root: &Path, program: Program) -> Result<PathBu
     if image.is_file() { Ok(image) } else { Err(BuildError::NoImage { image }) }
 }
 
-/// What can be built for the boards: the emulated one, where nothing else is said.
+/// Programs that can be built for the boards: for the emulated one, where not stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// A whole robot: the brain for its body, its library and its tasks.
     Robot(Body),
     /// A robot on wheels that runs by its own clock, with a serial line for a radio.
     Free,
-    /// A robot on wheels for the chip of a real one, which the emulator does not know.
+    /// A robot on wheels for the chip of a real one, which the emulator does not support.
     Stm32,
-    /// Ends well where `geometry::math` has the bits it has on the PC.
+    /// Succeeds where `geometry::math` has the bits it has on the PC.
     MathHash,
-    /// Counts the instructions of retrievals.
+    /// Program that counts the instructions of retrievals.
     RetrievalBench,
-    /// Counts the instructions of motion.
+    /// Program that counts the instructions of motion planning.
     MotionBench,
-    /// Counts the instructions of radio frames.
+    /// Program that counts the instructions of radio frames.
     RadioBench,
 }
 
 impl Program {
-    /// Whole robots, which are held to the budgets of an image.
+    /// Whole robots, which are held to the budgets of their firmware.
     pub const IMAGES: [Self; 4] =
         [Self::Robot(Body::Legged), Self::Robot(Body::Omni), Self::Free, Self::Stm32];
 
@@ -83,7 +84,7 @@ impl Program {
         }
     }
 
-    /// What its image may take.
+    /// Limits of its size.
     pub const fn budget(self) -> Budget {
         match self {
             Self::Stm32 => Budget::BOARD,
@@ -100,7 +101,7 @@ impl Program {
     }
 }
 
-/// Whose brain an image carries.
+/// The body whose brain a firmware image contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
     /// A robot on four legs.
@@ -110,10 +111,10 @@ pub enum Body {
 }
 
 impl Body {
-    /// Both.
+    /// Both bodies.
     pub const ALL: [Self; 2] = [Self::Legged, Self::Omni];
 
-    /// Its word in options, which is the feature's name.
+    /// Its name in options, which is the feature's name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Legged => "legged",
@@ -130,35 +131,35 @@ pub fn target_dir(root: &Path) -> PathBuf {
         .unwrap_or_else(|| root.join("target"))
 }
 
-/// Why there is no image to run.
+/// Why there is no firmware image to run.
 #[derive(Debug)]
 pub enum BuildError {
-    /// Nothing here compiles for the robot's processor.
+    /// No compiler here builds for the robot's processor.
     Target(TargetError),
-    /// The sources or cargo are not here, and no image was built before.
+    /// The sources or cargo are missing, and there is no earlier build.
     NothingToBuild {
-        /// What is missing.
+        /// The missing part.
         why: String,
-        /// Where an image was looked for.
+        /// Where the build was looked for.
         image: PathBuf,
     },
     /// cargo could not be run.
     Cargo {
-        /// The command.
+        /// The command that failed.
         command: String,
-        /// The system's words.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// The firmware does not compile; the compiler's words are on stderr.
+    /// The firmware does not compile; the compiler's output is on stderr.
     Failed {
         /// The command that repeats it.
         command: String,
-        /// How it ended.
+        /// Exit status of the command.
         status: ExitStatus,
     },
-    /// cargo was content, but the image is not where it belongs.
+    /// cargo succeeded, but its output is not where it belongs.
     NoImage {
-        /// Where it should be.
+        /// Path at which it was expected.
         image: PathBuf,
     },
 }
@@ -192,7 +193,7 @@ impl std::error::Error for BuildError {
     }
 }
 
-/// Runs cargo with its words on our stderr, except where it had nothing to do: then it keeps silent.
+/// Runs cargo with its output on our stderr, except where it had nothing to do: then without output.
 fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     let color = if std::io::stderr().is_terminal() { "always" } else { "never" };
     build.args(["--color", color]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
@@ -216,7 +217,7 @@ fn run_cargo(build: &mut Command) -> Result<(), BuildError> {
     if status.success() { Ok(()) } else { Err(BuildError::Failed { command, status }) }
 }
 
-/// What keeps us from building at all, whatever the compiler.
+/// What prevents any build, independent of the compiler.
 fn cannot_build(root: &Path) -> Option<String> {
     let manifest = root.join(MANIFEST);
     if !manifest.is_file() {
@@ -225,10 +226,10 @@ fn cannot_build(root: &Path) -> Option<String> {
     output_of(Command::new(cargo_program()).current_dir(root).arg("--version")).err()
 }
 
-/// The board QEMU emulates.
+/// The board that QEMU emulates.
 const PACKAGE: &str = "board-mps2";
 const MANIFEST: &str = "firmware/boards/mps2/Cargo.toml";
-/// The one profile images are built with (Cargo.toml says why); a debug image would run 30 times slower.
+/// The one profile firmware is built with (Cargo.toml explains why); a debug build would run 30 times slower.
 const PROFILE: &str = "firmware";
 
 #[cfg(test)]

@@ -1,16 +1,17 @@
-//! `firmware_build`: building of the firmware image on this machine.
+//! `firmware_build`: building of the robot's firmware on this machine.
 //!
-//! Runs on the PC. `cargo xtask` and `onetwo` (`trial --backend qemu`, `firmware build`) stand on the same three
-//! questions, answered here once:
+//! Runs on the PC. `cargo xtask` and `onetwo` (`trial --backend qemu`, `firmware build`) use the same three
+//! functions:
 //!
-//! * [`ensure_target`]: with which compiler can we build for the robot's processor?
-//! * [`ensure_qemu`]: where is the emulator?
-//! * [`build_image`]: give me the image, fresh.
+//! * [`ensure_target`]: finds a compiler for the robot's processor.
+//! * [`ensure_qemu`]: finds the emulator.
+//! * [`build_image`]: returns the firmware, freshly built.
 //!
-//! [`inspect`] looks into an image: sizes, budgets, places that can panic. [`on_target`] runs an image of tests.
+//! [`inspect`] looks into a build: sizes, budgets, places that can panic. [`on_target`] runs a build of
+//! tests.
 //!
-//! A missing tool is fetched where that is allowed ([`Install`]), or the error tells what to install. Whatever is
-//! done that takes time is told on stderr.
+//! A missing tool is fetched where that is allowed ([`Install`]), or the error names what to install. Slow
+//! operations are reported on stderr.
 #![forbid(unsafe_code)]
 
 mod debian;
@@ -27,17 +28,18 @@ pub use image::{Body, BuildError, Program, build_image, build_program, target_di
 pub use qemu::{MACHINE, QEMU, QemuError, ensure_qemu};
 pub use target::{Attempt, TargetError, ThumbToolchain, ensure_target};
 
-/// How far may we go to get a tool that is missing?
+/// Which places a missing tool may be installed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
-    /// Into the user's own folders only: rustup's targets, a cache. What a program may do unasked.
+    /// Into the user's own directories only: rustup's targets, a cache. What a program may do unasked.
     ForUser,
-    /// System packages as well, where we are root. For the test command, which promises to install what it needs.
+    /// System packages as well, where we are root. For the test command, which promises to install what it
+    /// needs.
     SystemWide,
 }
 
 /// The workspace these sources were compiled in. It may be gone when an installed program runs; then
-/// [`build_image`] falls back to an image that is already there.
+/// [`build_image`] falls back to an existing build.
 pub fn workspace_root() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.ancestors().nth(2).unwrap_or(here).to_path_buf()

@@ -1,8 +1,9 @@
 //! `on_target`: on-target test runner.
 //!
-//! Images of `embedded-test` list their tests in a section that is not loaded: a symbol a test, whose name is a JSON object, at a
-//! pair of the test's function and its module's path. The image is told by its command line which function to call (semihosting),
-//! and says by its exit code how it went. That is what `probe-rs run` does with the same image on hardware.
+//! Test programs of `embedded-test` list their tests in a section that is not loaded: a symbol a test, whose
+//! name is a JSON object, at a pair of the test's function and its module's path. The program's command line
+//! selects the function to call (semihosting), and its exit code reports the result. `probe-rs run` does the
+//! same on hardware.
 
 use std::fmt;
 use std::io::Read as _;
@@ -15,29 +16,29 @@ use serde_json::Value;
 
 use crate::MACHINE;
 
-/// A test in an image.
+/// A test in a firmware image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OnTarget {
-    /// Module and function.
+    /// Module and function of the test.
     pub name: String,
-    /// Where its function begins.
+    /// Address of its function.
     address: u32,
     should_panic: bool,
-    /// Not to be run.
+    /// Whether the test is not to be run.
     pub ignored: bool,
     timeout: Duration,
 }
 
-/// How a test went.
+/// Result of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// As it should.
+    /// It ended as expected.
     Passed,
-    /// Otherwise, and what it said.
+    /// Any other result, with its output.
     Failed(String),
 }
 
-/// Why an image's tests cannot be told.
+/// Why the tests of a file cannot be listed.
 #[derive(Debug, PartialEq, Eq)]
 pub struct NoTests(&'static str);
 
@@ -49,7 +50,7 @@ impl fmt::Display for NoTests {
 
 impl std::error::Error for NoTests {}
 
-/// The tests of an image by name; `None` where it is not an image of tests.
+/// The tests of a firmware image by name; `None` where it holds no tests.
 pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
     let file = object::File::parse(elf).map_err(|_| NoTests("it is no ELF file"))?;
     let Some(section) = file.section_by_name(SECTION) else { return Ok(None) };
@@ -84,7 +85,7 @@ pub fn tests_in(elf: &[u8]) -> Result<Option<Vec<OnTarget>>, NoTests> {
     Ok(Some(tests))
 }
 
-/// A text of the image's, by the address it has there.
+/// A text of the program, by its address in memory.
 fn text_at(file: &object::File<'_>, address: u32, len: u32) -> Option<String> {
     let bytes = file.sections().find_map(|section| section.data_range(address.into(), len.into()).ok()?)?;
     String::from_utf8(bytes.to_vec()).ok()
@@ -115,7 +116,7 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<V
         std::thread::sleep(LOOK);
     };
     let mut said = String::new();
-    // What is no text is not shown; the status is told anyway.
+    // Output that is not text is dropped; the status is reported anyway.
     if let Some(mut stdout) = child.stdout.take() {
         let _ = stdout.read_to_string(&mut said);
     }
@@ -125,7 +126,7 @@ pub fn run_test(qemu: &Path, image: &Path, test: &OnTarget) -> std::io::Result<V
     Ok(judged(test, status.map(|status| status.success()), said.trim()))
 }
 
-/// What an end means; `None` is none within the test's time.
+/// The verdict for an exit status; `None` is no exit within the test's time.
 fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
     match (well, test.should_panic) {
         (Some(true), false) | (Some(false), true) => Verdict::Passed,
@@ -135,11 +136,11 @@ fn judged(test: &OnTarget, well: Option<bool>, said: &str) -> Verdict {
     }
 }
 
-/// Where `embedded-test` lists its tests.
+/// Section in which `embedded-test` lists its tests.
 const SECTION: &str = ".embedded_test";
-/// Of a test that names none: a hundred times what the longest takes, for a busy machine.
+/// Time limit of a test that names none: a hundred times the longest run, for a busy machine.
 const TIMEOUT: Duration = Duration::from_mins(1);
-/// How often an emulator is looked at.
+/// Period in which an emulator is polled.
 const LOOK: Duration = Duration::from_millis(5);
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// What the command prints on stdout, when it ends well.
+/// Output of the command on stdout, if it succeeds.
 pub(crate) fn output_of(command: &mut Command) -> Result<String, String> {
     let output = command
         .stdin(Stdio::null())
@@ -21,7 +21,7 @@ pub(crate) fn output_of(command: &mut Command) -> Result<String, String> {
     }
 }
 
-/// Runs the command with its words on our stderr; kills it after `limit`, for a download may hang.
+/// Runs the command with its output on our stderr; kills it after `limit`, because a download may hang.
 pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), String> {
     let line = line_of(command);
     eprintln!("firmware: {line}");
@@ -47,20 +47,20 @@ pub(crate) fn run_within(limit: Duration, command: &mut Command) -> Result<(), S
     }
 }
 
-/// The command as a person would type it: by the program's name, not by where it lies.
+/// The command as a user would type it: by the program's name, not by its path.
 pub(crate) fn line_of(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let words = std::iter::once(program.file_stem().unwrap_or_default()).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
-/// Where `PATH` has the program, as a shell would find it.
+/// Path of the program, searched in `PATH` as a shell does.
 pub(crate) fn in_path(program: &str) -> Option<PathBuf> {
     let name = format!("{program}{}", env::consts::EXE_SUFFIX);
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(&name)).find(|path| path.is_file())
 }
 
-/// How often a running command is looked at: short against any download, long against the look itself.
+/// Period in which a running command is polled: short against any download, long against the poll itself.
 const POLL: Duration = Duration::from_millis(50);
 
 #[cfg(test)]

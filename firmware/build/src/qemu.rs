@@ -7,7 +7,7 @@ use std::process::Command;
 use crate::process::{in_path, output_of};
 use crate::{Install, debian};
 
-/// The emulator's program, fit to run the image; installed first where `install` allows it.
+/// The emulator's program, able to run the firmware; installed first where `install` allows it.
 pub fn ensure_qemu(install: Install) -> Result<PathBuf, QemuError> {
     let program = match in_path(QEMU) {
         Some(program) => program,
@@ -23,22 +23,22 @@ pub fn ensure_qemu(install: Install) -> Result<PathBuf, QemuError> {
     if knows { Ok(program) } else { Err(QemuError::UnknownMachine { program }) }
 }
 
-/// Why there is no QEMU to run the image with.
+/// Why there is no QEMU to run the firmware with.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum QemuError {
-    /// It is not installed, and this is why we could not install it (where that was tried).
+    /// It is not installed, and its installation failed (where that was tried).
     Missing {
-        /// What stood in the way of installing it.
+        /// What prevented its installation.
         why: Option<String>,
     },
-    /// It is there but does not run.
+    /// It is installed but does not run.
     Broken {
-        /// What it said.
+        /// Its output.
         why: String,
     },
-    /// It is there but lacks the machine our image is made for: too old, or built without it.
+    /// It is there but lacks the machine our firmware is made for: too old, or built without it.
     UnknownMachine {
-        /// The program that was asked.
+        /// The program that was run.
         program: PathBuf,
     },
 }
@@ -62,7 +62,7 @@ impl std::error::Error for QemuError {}
 
 /// The emulator for 32-bit Arm.
 pub const QEMU: &str = "qemu-system-arm";
-/// The emulated board: Arm MPS2 with the AN386 image, a Cortex-M4F.
+/// The emulated board: Arm MPS2 with the AN386 FPGA configuration, a Cortex-M4F.
 pub const MACHINE: &str = "mps2-an386";
 
 const HOW_TO_INSTALL: &str = "\
@@ -88,7 +88,8 @@ mod tests {
 
     #[test]
     fn an_emulator_that_is_found_runs_the_machine() {
-        // Whichever holds on this machine: a program that knows the board, or words that tell what is missing.
+        // Either holds on this machine: a program that knows the board, or an error that names what is
+        // missing.
         match ensure_qemu(Install::ForUser) {
             Ok(program) => assert!(program.is_file()),
             Err(error) => assert!(error.to_string().starts_with(QEMU), "{error}"),

@@ -1,8 +1,8 @@
 //! `target`: compiler detection for the robot's processor.
 //!
-//! rustup's target where it is, or can be fetched. Where it cannot, `core` is compiled from its sources of the same
-//! release; last comes the distribution's own compiler. Each way that fails leaves its reason, and all reasons
-//! together are the error.
+//! rustup's target where it is, or can be fetched. Where it cannot, `core` is compiled from its sources of
+//! the same release; last comes the distribution's own compiler. Each method that fails leaves its reason,
+//! and all reasons together are the error.
 
 use std::env;
 use std::fmt;
@@ -14,7 +14,7 @@ use std::time::Duration;
 use crate::process::{in_path, output_of, run_within};
 use crate::{Install, TARGET, debian};
 
-/// Finds a way to build for [`TARGET`], fetching what is missing as far as `install` allows.
+/// Finds a compiler for [`TARGET`], fetching what is missing as far as `install` allows.
 pub fn ensure_target(root: &Path, install: Install) -> Result<ThumbToolchain, TargetError> {
     let compiler = Compiler::of(root).map_err(|why| TargetError::NoCompiler { why })?;
     let mut attempts = Vec::new();
@@ -27,23 +27,23 @@ pub fn ensure_target(root: &Path, install: Install) -> Result<ThumbToolchain, Ta
     Err(TargetError::NoWay { attempts })
 }
 
-/// How to compile for the robot's processor on this machine.
+/// Toolchain that compiles for the robot's processor on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ThumbToolchain {
-    /// The toolchain has `core` ready made for the target.
+    /// The toolchain has `core` prebuilt for the target.
     Prebuilt,
     /// The toolchain compiles `core` from its sources first.
     FromSources,
     /// The distribution's compiler and sources, with a linker found elsewhere.
     Distribution {
-        /// An LLVM linker.
+        /// Path of an LLVM linker.
         linker: PathBuf,
     },
 }
 
 impl ThumbToolchain {
-    /// `cargo`, in the workspace, with what this way needs; add a verb, packages and a profile, then run it. Every build
-    /// for the target has to start here: other flags would compile all of it again.
+    /// `cargo`, in the workspace, with what this toolchain needs; add a verb, packages and a profile, then
+    /// run it. Every build for the target has to start here: other flags would compile all of it again.
     pub fn cargo(&self, root: &Path, verb: &str) -> Command {
         let mut command = match self {
             Self::Prebuilt | Self::FromSources => Command::new(cargo_program()),
@@ -51,7 +51,7 @@ impl ThumbToolchain {
         };
         command.current_dir(root).arg(verb).args(["--target", TARGET]);
         if *self != Self::Prebuilt {
-            // Building `core` is called unstable, so the stable compiler has to be told that we mean it.
+            // Building `core` is an unstable feature, which the stable compiler must be allowed to use.
             command.env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core,alloc");
         }
         if let Self::Distribution { linker } = self {
@@ -74,12 +74,12 @@ impl fmt::Display for ThumbToolchain {
     }
 }
 
-/// One way that was tried, and why it led nowhere.
+/// One method that was tried, and why it failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attempt {
-    /// The way.
+    /// The method.
     pub way: &'static str,
-    /// Why not.
+    /// Why it failed.
     pub why: String,
 }
 
@@ -88,12 +88,12 @@ pub struct Attempt {
 pub enum TargetError {
     /// There is no Rust compiler at all.
     NoCompiler {
-        /// What was said when we asked for it.
+        /// Output of the attempt.
         why: String,
     },
-    /// Every way was tried.
+    /// Every method failed.
     NoWay {
-        /// In the order they were tried.
+        /// The attempts, in their order.
         attempts: Vec<Attempt>,
     },
 }
@@ -121,7 +121,7 @@ impl fmt::Display for TargetError {
 
 impl std::error::Error for TargetError {}
 
-/// `cargo` as it was called, so that the same toolchain goes on.
+/// `cargo` as it was called, so that the same toolchain is used.
 pub(crate) fn cargo_program() -> PathBuf {
     env::var_os("CARGO").map(PathBuf::from).filter(|path| path.is_file()).unwrap_or_else(|| "cargo".into())
 }
@@ -130,7 +130,7 @@ pub(crate) fn cargo_program() -> PathBuf {
 struct Compiler {
     root: PathBuf,
     sysroot: PathBuf,
-    /// `1.95.0`
+    /// Release of the compiler, such as `1.95.0`.
     release: String,
 }
 
@@ -157,7 +157,8 @@ fn rustc() -> Command {
 
 type Way = fn(&Compiler, Install) -> Result<ThumbToolchain, String>;
 
-/// Cheapest and most usual first. Sources we linked ourselves come before rustup's server: it was silent the last time.
+/// Cheapest and most usual first. Sources that an earlier run linked come before rustup's server, which did
+/// not answer then.
 const WAYS: [(&str, Way); 6] = [
     ("the installed target", prebuilt),
     ("sources linked by an earlier run", linked_sources),
@@ -236,9 +237,9 @@ fn distribution(compiler: &Compiler, install: Install) -> Result<ThumbToolchain,
     Ok(ThumbToolchain::Distribution { linker: linker.ok_or("no LLVM linker (package lld-19)")? })
 }
 
-/// What the distribution's compiler consists of, sources of its `core` included.
+/// Parts of the distribution's compiler, sources of its `core` included.
 const DISTRIBUTION: [&str; 3] = ["/usr/bin/rustc", "/usr/bin/cargo", "/usr/lib/rustlib/src/rust/library"];
-/// The target is 10 MB; a server that is silent for so long will stay so.
+/// The target is 10 MB; a server that is silent for this time is given up.
 const RUSTUP: Duration = Duration::from_mins(2);
 
 #[cfg(test)]

@@ -1,19 +1,22 @@
 //! `avoid`: path planning around robots and out of forbidden regions, with the velocity of the next control
 //! step.
 //!
-//! [`plan`] is called every step and remembers nothing. It answers in three parts:
+//! [`plan`] is called every step and keeps no state. It answers in three parts:
 //!
-//! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for such a point by a short
-//!    way ([`Verdict::Escape`]): through regions, around bodies and out of no wall.
-//! 2. **Route.** The straight way, or the cheapest way found over tangent points of what stands in it: a search of at most
-//!    [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed order. Cost is length, and what turning the present velocity costs.
-//! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can still brake
-//!    straight to rest without touching anything afterwards; else one that first loses its sideways speed; else braking.
-//!    So a robot that could brake before its first step can after every step: **it enters no obstacle that stands still.**
-//!    Moving ones are taken to keep their velocity for [`FORESIGHT`]; against these there is no guarantee.
+//! 1. **Goal.** A target inside an obstacle is moved to a free point nearby. A start inside one is left for
+//!    such a point by a short path ([`Verdict::Escape`]): through regions, around bodies and out of no wall.
+//! 2. **Route.** The straight path, or the cheapest path found over tangent points of the obstacles on it: a
+//!    search of at most [`CHECKS_MAX`] straight pieces, fewer where the course's effort is spent, in a fixed
+//!    order. Cost is length, plus what turning the present velocity costs.
+//! 3. **Next step.** The near-time-optimal motion to the goal, or past the first corner, if the robot can
+//!    still brake straight to a stop without touching anything afterwards; else one that first loses its
+//!    sideways speed; else braking. So a robot that could brake before its first step can after every step:
+//!    **it enters no obstacle that stands still.** Moving ones are taken to keep their velocity for
+//!    [`FORESIGHT`]; against these there is no guarantee.
 //!
-//! Obstacles are regions for the robot's *centre*: grow others' and the rules' shapes ([`Shape::grown`]) by the robot's own
-//! radius, and by what its sight and wheels err. Corners of boxes stay corners. SI units, field frame or any other.
+//! Obstacles are regions for the robot's *centre*: grow others' and the rules' shapes ([`Shape::grown`]) by
+//! the robot's own radius, and by the errors of its vision and wheels. Corners of boxes stay corners. SI
+//! units, field frame or any other.
 
 mod exit;
 mod item;
@@ -25,14 +28,15 @@ use self::item::Scene;
 use self::route::Route;
 use crate::trajectory::{CalcMotion, FreeLimits, FreeMotion, Motion, State, usable};
 
-/// What the robot's centre must not enter.
+/// A region that the robot's centre must not enter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle<F> {
-    /// Where, m.
+    /// Shape, m.
     pub shape: Shape<F>,
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
-    /// Whether something is there to be run into. Who leaves a region that is no body may go through others.
+    /// Whether it is a body to collide with. A robot that leaves a region without a body may go through
+    /// others.
     pub is_body: bool,
 }
 
@@ -42,7 +46,7 @@ impl<F: Copy> Obstacle<F> {
         Self { shape, velocity: Vector::default(), is_body: true }
     }
 
-    /// A region in which nothing stands, but that must not be entered: a rule's.
+    /// A region without a body that the rules forbid to enter.
     pub fn region(shape: Shape<F>) -> Self {
         Self { is_body: false, ..Self::standing(shape) }
     }
@@ -58,81 +62,81 @@ impl<F: Copy> Obstacle<F> {
     }
 }
 
-/// What is asked.
+/// Input of the planner.
 #[derive(Clone, Copy, Debug)]
 pub struct Course<'o, F> {
-    /// Where the robot is.
+    /// Position of the robot's centre, m.
     pub from: Point<F>,
-    /// How it moves.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
-    /// Where it shall come to rest.
+    /// Stop position.
     pub to: Point<F>,
-    /// What it can do, and may now.
+    /// Present limits of its motion.
     pub limits: FreeLimits,
-    /// What it must keep out of; the first [`OBSTACLES_MAX`] count.
+    /// Obstacles to keep out of; only the first [`OBSTACLES_MAX`] are used.
     pub obstacles: &'o [Obstacle<F>],
-    /// Where its centre must stay, as the carpet less the robot's radius; any shape without dents.
+    /// Where its centre must stay, such as the field surface less the robot's radius; any convex shape.
     pub within: Option<Shape<F>>,
-    /// Until it asks again, s, at most 1.
+    /// Time until the next plan, s, at most 1.
     pub step: f32,
-    /// Most that is spent on looking for a way: a unit for one straight piece and one obstacle, about forty instructions of a
-    /// Cortex-M4; a piece takes twelve besides. [`EFFORT_MAX`] does for every scene.
+    /// Most effort for planning a path: a unit for one straight piece and one obstacle, about forty
+    /// instructions of a Cortex-M4; a piece takes twelve units more. [`EFFORT_MAX`] suffices for every scene.
     pub effort: u32,
-    /// The same for the route of a way out.
+    /// The same for the route out of a region or obstacle.
     pub effort_to_leave: u32,
-    /// Most straight pieces that are looked at, [`CHECKS_LONG`] at most; a way out may take all of these.
+    /// Most straight pieces that are tested, [`CHECKS_LONG`] at most; a route out may take all of these.
     pub checks: u32,
 }
 
-/// Which way it goes.
+/// Kind of path found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
     /// Straight to the goal.
     Direct,
-    /// Around something.
+    /// Around at least one obstacle.
     Around {
-        /// The first corner.
+        /// The first corner, m.
         via: Point<F>,
     },
     /// Out of the obstacle it is in.
     Escape {
-        /// The point outside.
+        /// The point outside, m.
         to: Point<F>,
     },
-    /// No way was found; as near as it gets.
+    /// No path was found; goes as near as possible.
     Blocked {
         /// The reached point nearest to the goal.
         at: Point<F>,
     },
 }
 
-/// What became of the motion that the route asks for.
+/// Restraint of the route's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restraint {
-    /// It is driven.
+    /// No restraint: it is driven.
     None,
     /// It would not be safe; sideways speed is lost first.
     Straightened,
     /// Neither would be safe: it brakes.
     Braked,
-    /// Not even braking avoids a touch: it brakes.
+    /// Not even braking avoids a contact: it brakes.
     Unavoidable,
 }
 
-/// What came of it.
+/// Result of the planner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way<F> {
-    /// Which way it goes.
+    /// Kind of path.
     pub verdict: Verdict<F>,
-    /// Where it will rest: the target, or the free point that stands for it.
+    /// Stop position: the target, or the free point that replaces it.
     pub goal: Point<F>,
-    /// Length of the route to the goal, m; of what is known of it where blocked.
+    /// Length of the route to the goal, m; of its known part where blocked.
     pub length: f32,
-    /// Whether it drives what the route asks for.
+    /// Whether the route's motion is driven.
     pub restraint: Restraint,
-    /// **What to drive**: place, velocity and acceleration at the end of the step.
+    /// **Motion to drive**: place, velocity and acceleration at the end of the step.
     pub next: State<F>,
-    /// The motion that the route asks for: to the goal, or past the first corner.
+    /// Motion along the route: to the goal, or past the first corner.
     pub motion: FreeMotion<F>,
 }
 
@@ -141,7 +145,7 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     let Course { from, velocity, to, limits, within, step, .. } = *course;
     let time_passes = step > 0.0 && step <= STEP_MAX;
     if !time_passes || !limits.are_usable() || !usable(from, velocity, to) {
-        // At rest where it is, if that is known.
+        // Standing where it is, if that is known.
         let motion = FreeLimits::default().plan(from, Vector::new(f32::NAN, 0.0), to);
         let next = motion.at(0.0);
         let (verdict, restraint) = (Verdict::Blocked { at: next.position }, Restraint::Braked);
@@ -165,11 +169,11 @@ pub fn plan<F: Copy>(course: &Course<'_, F>) -> Way<F> {
     Way { verdict, goal, length: route.length, restraint, next, motion }
 }
 
-/// Out of what holds the start: to a free point, around all bodies, through any region.
+/// Out of the obstacle that holds the start: to a free point, around all bodies, through any region.
 fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let Course { from, velocity, to, limits, .. } = *course;
     let exit = scene.exit(from, course.effort_to_leave);
-    // One search a step: a free point for a covered target is sought when the robot is out.
+    // One search a step: a free point for a covered target is searched for when the robot is out.
     let goal = if scene.is_inside(to) { exit } else { to };
     scene.keep_apart(from, exit, true);
     scene.allow(course.effort_to_leave);
@@ -177,7 +181,7 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     let towards = match route.via {
         Some(via) if route.arrives => past(from, via, route.behind, &limits),
         Some(via) => via,
-        // Where no way is known, as far as it gets.
+        // Where no path is known, as far as it gets.
         None => exit,
     };
     let motion = limits.plan(from, velocity, towards);
@@ -186,8 +190,8 @@ fn escape<F: Copy>(course: &Course<'_, F>, scene: &mut Scene<'_, F>) -> Way<F> {
     Way { verdict: Verdict::Escape { to: exit }, goal, length, restraint, next, motion }
 }
 
-/// A point beyond a corner, so far that the robot comes to the corner as fast as it can turn there: as fast as its limit
-/// straight on, from rest at a right angle.
+/// A point beyond a corner, at such a distance that the robot comes to the corner as fast as it can turn
+/// there: from its speed limit straight on down to standstill at a right angle.
 fn past<F: Copy>(from: Point<F>, via: Point<F>, behind: Point<F>, limits: &FreeLimits) -> Point<F> {
     let (first, second) = (via - from, behind - via);
     let (Some(along), Some(on)) = (first.unit(), second.unit()) else { return via };
@@ -196,7 +200,7 @@ fn past<F: Copy>(from: Point<F>, via: Point<F>, behind: Point<F>, limits: &FreeL
     via + along * math::min(beyond, second.norm())
 }
 
-/// The first of the possible steps after which the robot can brake to rest without touching anything.
+/// The first of the possible steps after which the robot can brake to a stop without touching anything.
 fn safe_step<F: Copy>(
     course: &Course<'_, F>,
     scene: &Scene<'_, F>,
@@ -217,7 +221,7 @@ fn safe_step<F: Copy>(
     (braked, restraint)
 }
 
-/// From this state, braking straight ahead to rest touches nothing and stays within.
+/// From this state, braking straight ahead to a stop touches nothing and stays within.
 fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<'_, F>, state: &State<F>) -> bool {
     let speed = state.velocity.norm();
     let time = speed / course.limits.braking;
@@ -226,7 +230,7 @@ fn brakes_clear<F: Copy>(course: &Course<'_, F>, scene: &Scene<'_, F>, state: &S
         && scene.is_clear(state.position, way, course.step, time)
 }
 
-/// All that the limits leave goes into losing the speed across the way; the rest speeds up along it.
+/// Cancels the speed across the path with all that the limits leave; the remainder accelerates along it.
 fn straightened<F: Copy>(course: &Course<'_, F>, towards: Point<F>) -> State<F> {
     let Course { from, velocity, limits, step, .. } = *course;
     let along = (towards - from).unit().unwrap_or(Vector::new(1.0, 0.0));
@@ -234,7 +238,8 @@ fn straightened<F: Copy>(course: &Course<'_, F>, towards: Point<F>) -> State<F> 
     let (ahead, side) = (velocity.dot(along), velocity.dot(across));
     let loss = limits.braking * step;
     let lost = math::clamp(side, -loss, loss);
-    // Nothing is left for speeding up where all of it is needed; a robot that goes back brakes that first.
+    // No acceleration is left along the path where all of it is needed; a robot that moves backwards brakes
+    // that first.
     let left = (1.0 - lost.abs() / loss.max(f32::MIN_POSITIVE)).max(0.0);
     let gain = limits.acceleration * step * left;
     let next = velocity + across * -lost + along * gain.min((limits.speed - ahead).max(0.0));
@@ -258,17 +263,18 @@ fn moved<F: Copy>(course: &Course<'_, F>, velocity: Vector<F>) -> State<F> {
     }
 }
 
-/// Most obstacles that are regarded: 21 other robots, the rules' 12 shapes, and some to spare.
+/// Most obstacles that are used: 21 other robots, the rules' 12 shapes, and a reserve.
 pub const OBSTACLES_MAX: usize = 38;
-/// Most straight pieces that a search looks at.
+/// Most straight pieces that a search tests.
 pub const CHECKS_MAX: u32 = 12;
-/// More is never worth it: twelve pieces among forty obstacles.
+/// The largest useful effort: twelve pieces among forty obstacles.
 pub const EFFORT_MAX: u32 = 624;
-/// The same of a long search, for a way out or while there is time: around a goal and into its mouth it takes more.
+/// The same for a long search, for a route out or while there is time: around a goal and into its opening it
+/// takes more.
 pub const CHECKS_LONG: u32 = 24;
-/// A control step is no longer, s.
+/// Longest control step, s.
 const STEP_MAX: f32 = 1.0;
-/// So long others are taken to keep their velocity, s: about what a robot needs to change it.
+/// Time for which other robots are assumed to keep their velocity, s: about what a robot needs to change it.
 pub const FORESIGHT: f32 = 0.5;
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! `ball`: prediction of a kicked ball. It slides, then rolls (two decelerations), in the air it hops
 //! ([`chip`]); m, s, m/s, m/s².
 //!
-//! Kicked with v₀ it slides with a_s until its speed is c·v₀, where it rolls without slipping, then rolls with a_r until it
-//! rests. All of a path in closed form: t_s = v₀ (1 − c) / a_s, d_s = v₀² (1 − c²) / (2 a_s). Lines and robots in its way are
-//! the caller's to find; a path goes on until rest.
+//! Kicked with v₀ it slides with a_s until its speed is c·v₀, where it rolls without slipping, then rolls
+//! with a_r until it stops. All of a path in closed form: t_s = v₀ (1 − c) / a_s, d_s = v₀² (1 − c²) / (2
+//! a_s). Lines and robots on its path are for the caller to find; a path continues until the ball stops.
 
 pub mod chip;
 
@@ -12,7 +12,7 @@ use geometry::{Point, Vector, math};
 use crate::rolling::RollingBall;
 use crate::trajectory::{Motion, State};
 
-/// What carpet and ball are like.
+/// Parameters of field surface and ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallModel {
     /// Deceleration while it slides, m/s², > 0.
@@ -24,15 +24,15 @@ pub struct BallModel {
 }
 
 impl Default for BallModel {
-    /// 3.9 and 0.35 m/s² of ER-Force's simulator, 5/7 of a solid ball that begins to roll (1 / (1 + 2/5)).
+    /// 3.9 and 0.35 m/s² of ER-Force's simulator, 5/7 of a solid ball that starts to roll (1 / (1 + 2/5)).
     fn default() -> Self {
         Self { slide: 3.9, roll: 0.35, switch: 5.0 / 7.0 }
     }
 }
 
 impl BallModel {
-    /// From `BallModelStraightTwoPhase` of the league's geometry packets: `acc_slide`, `acc_roll` (m/s²; simulators send
-    /// them negative), `k_switch`. `None` where no ball could behave like that.
+    /// From `BallModelStraightTwoPhase` of the league's geometry packets: `acc_slide`, `acc_roll` (m/s²;
+    /// simulators send them negative), `k_switch`. `None` where the numbers are not physical.
     pub fn from_wire(acc_slide: f64, acc_roll: f64, k_switch: f64) -> Option<Self> {
         let (slide, roll, switch) = (acc_slide.abs() as f32, acc_roll.abs() as f32, k_switch as f32);
         let deceleration = |a: f32| (DECELERATION_MIN..=DECELERATION_MAX).contains(&a);
@@ -45,14 +45,15 @@ impl BallModel {
         self.moving(at, velocity, self.switch * velocity.norm())
     }
 
-    /// The path of a ball that rolls already, as one does whose kick nobody saw.
+    /// The path of a ball that rolls already, such as one whose kick was not observed.
     pub fn rolling<F: Copy>(&self, at: Point<F>, velocity: Vector<F>) -> BallPath<F> {
         self.moving(at, velocity, f32::INFINITY)
     }
 
-    /// The path of a ball that slides until its speed is `switch_speed` (that share of the kick's speed), then rolls.
+    /// The path of a ball that slides until its speed is `switch_speed` (that share of the kick's speed),
+    /// then rolls.
     ///
-    /// A position that is not a number is taken for the origin, a velocity for rest.
+    /// A position that is not a number is replaced by the origin, a velocity by zero.
     pub fn moving<F: Copy>(&self, at: Point<F>, velocity: Vector<F>, switch_speed: f32) -> BallPath<F> {
         let speed = velocity.norm();
         let (along, speed) = match velocity.unit() {
@@ -78,7 +79,7 @@ impl BallModel {
         }
     }
 
-    /// The kick that lets the ball arrive with `arrival` m/s after `distance` m, m/s.
+    /// Speed of the kick with which the ball arrives with `arrival` m/s after `distance` m, m/s.
     pub fn kick_speed(&self, distance: f32, arrival: f32) -> f32 {
         let (d, a) = (distance.max(0.0), arrival.max(0.0));
         let c = self.switch * self.switch;
@@ -86,16 +87,16 @@ impl BallModel {
         if (1.0 - c) * rolls * rolls <= 2.0 * self.slide * d {
             return rolls;
         }
-        // It is there before it rolls.
+        // It arrives before it rolls.
         math::sqrt(a * a + 2.0 * self.slide * d)
     }
 }
 
-/// A ball's way until it rests.
+/// A ball's path until it stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallPath<F> {
     from: Point<F>,
-    /// Of length 1.
+    /// Direction, of length 1.
     along: Vector<F>,
     speed: f32,
     roll_speed: f32,
@@ -108,7 +109,7 @@ pub struct BallPath<F> {
 }
 
 impl<F: Copy> BallPath<F> {
-    /// Where it starts.
+    /// Start of the path.
     pub fn from(&self) -> Point<F> {
         self.from
     }
@@ -118,17 +119,17 @@ impl<F: Copy> BallPath<F> {
         self.along
     }
 
-    /// Where it comes to rest.
+    /// Stop position.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * self.rest_distance
     }
 
-    /// How far it gets, m.
+    /// Distance until it stops, m.
     pub fn rest_distance(&self) -> f32 {
         self.rest_distance
     }
 
-    /// How far it got, and how fast it is, after `time` seconds.
+    /// Distance travelled, m, and speed, m/s, after `time` seconds.
     pub fn progress(&self, time: f32) -> (f32, f32) {
         if time >= self.rest_time {
             return (self.rest_distance, 0.0);
@@ -143,7 +144,7 @@ impl<F: Copy> BallPath<F> {
         (0.5 * (self.speed + speed) * t, speed)
     }
 
-    /// When it has gone `distance` m, s; `None` where it rests before.
+    /// When it has gone `distance` m, s; `None` where it stops before.
     pub fn time_to(&self, distance: f32) -> Option<f32> {
         if distance <= self.slide_distance {
             return self.slide.travel_time(self.speed, distance);
@@ -175,7 +176,8 @@ impl<F: Copy> Motion<F> for BallPath<F> {
     }
 }
 
-/// Decelerations a carpet can have, m/s²: published ones lie between 0.26 (rolling) and 14 (sliding, grSim).
+/// Range of plausible decelerations on a field surface, m/s²: published ones lie between 0.26 (rolling) and
+/// 14 (sliding, grSim).
 const DECELERATION_MIN: f32 = 0.01;
 const DECELERATION_MAX: f32 = 100.0;
 

@@ -1,34 +1,36 @@
 //! `intercept`: interception of a moving ball, soonest or with the most time to spare (paper 2 §2, equations
 //! 1 and 2; m, s).
 //!
-//! For future places of the ball, [`STEP`] apart in time: when is the ball there, when can the robot be behind it, looking
-//! at the kick's target? Their difference is the slack; only a slack ≥ 0 meets the ball. Places that a bound of the robot's
-//! reach rules out are skipped, eight at a time and then singly, without planning a motion to them; the answer is that of
-//! the search through all of them.
+//! For future places of the ball, [`STEP`] apart in time: the time when the ball is there, and the time when
+//! the robot can be behind it, facing the kick's target. Their difference is the slack; only a slack ≥ 0
+//! intercepts the ball. Places that a bound of the robot's reach rules out are skipped, eight at a time and
+//! then singly, without planning a motion to them; the result equals that of the search through all of them.
 
 use geometry::{Point, Vector};
 
 use crate::ball::BallPath;
 use crate::trajectory::{CalcMotion, Motion};
 
-/// What is asked.
+/// Input of an interception.
 #[derive(Clone, Copy, Debug)]
 pub struct Interception<'b, F> {
-    /// Where the robot is.
+    /// Position of the robot, m.
     pub robot: Point<F>,
-    /// How it moves.
+    /// Velocity of the robot, m/s.
     pub velocity: Vector<F>,
-    /// Where the ball goes.
+    /// Predicted path of the ball.
     pub ball: &'b BallPath<F>,
-    /// Where the ball shall be kicked to: the robot comes to stand on the far side of the ball.
+    /// Target of the kick: the robot stops on the far side of the ball.
     pub target: Point<F>,
-    /// From the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm ([`kick_reach`]), m.
+    /// Distance from the robot's centre to the ball's, when it kicks: r_robot + r_ball − 10 mm
+    /// ([`kick_reach`]), m.
     pub reach: f32,
-    /// The ball is of interest so long, s: until it leaves the field, or is taken. At most [`HORIZON`].
+    /// Time for which the ball is of interest, s: until it leaves the field, or is taken. At most
+    /// [`HORIZON`].
     pub until: f32,
 }
 
-/// Which of the places that can be reached in time.
+/// Which of the reachable interceptions to choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wish {
     /// arg min t_ball: for an attacker, whose failure is cheap.
@@ -37,55 +39,56 @@ pub enum Wish {
     Safest,
 }
 
-/// What came of it.
+/// Result of an interception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict<F> {
-    /// The robot can be there in time.
+    /// The robot can intercept in time.
     Meets(Meeting<F>),
-    /// Nowhere in time: go where the ball comes to rest, or is lost from interest, and hope.
+    /// No point is reached in time: go to the ball's stop position, or to where it is no longer of interest.
     Chase {
-        /// The ball, then.
+        /// Position of the ball then, m.
         ball: Point<F>,
-        /// Where the robot stands behind it.
+        /// Position of the robot behind it.
         place: Point<F>,
-        /// When the robot can be there, s.
+        /// Time at which the robot can be there, s.
         robot_time: f32,
     },
 }
 
-/// A meeting of ball and robot.
+/// An interception of the ball by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting<F> {
-    /// The ball, then.
+    /// Position of the ball then, m.
     pub ball: Point<F>,
-    /// Where the robot stands behind it.
+    /// Position of the robot behind it.
     pub place: Point<F>,
-    /// When the ball is there, s from now.
+    /// Time at which the ball is there, s from now.
     pub ball_time: f32,
-    /// When the robot can be there, s from now.
+    /// Time at which the robot can be there, s from now.
     pub robot_time: f32,
 }
 
 impl<F> Meeting<F> {
-    /// How long the robot waits, s.
+    /// Time that the robot waits, s.
     pub fn slack(&self) -> f32 {
         self.ball_time - self.robot_time
     }
 }
 
-/// From the robot's centre to the ball's, when it kicks, m: the mouth lets the ball in by 10 mm.
+/// Distance from the robot's centre to the ball's, when it kicks, m: the ball enters the dribbler opening by
+/// 10 mm.
 pub fn kick_reach(robot_radius: f32, ball_radius: f32) -> f32 {
     robot_radius + ball_radius - MOUTH_DEPTH
 }
 
-/// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. Where ball and target are one, the robot
-/// comes from −x.
+/// The robot's place for a kick of a ball at `ball` to `target`: `reach` behind it. If ball and target
+/// coincide, the robot is on the −x side.
 pub fn kick_place<F: Copy>(ball: Point<F>, target: Point<F>, reach: f32) -> Point<F> {
     ball - (target - ball).unit().unwrap_or(Vector::new(1.0, 0.0)) * reach
 }
 
 impl<F: Copy> Interception<'_, F> {
-    /// Finds the place.
+    /// Finds the interception.
     pub fn find<L: CalcMotion>(&self, limits: &L, wish: Wish) -> Verdict<F> {
         let best = match wish {
             Wish::Soonest => self.soonest(limits, u32::MAX),
@@ -94,8 +97,9 @@ impl<F: Copy> Interception<'_, F> {
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
     }
 
-    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: once as many places as `most` were looked at in vain, only
-    /// every fourth is, and after as many more one of eight; from the first in time back by halving.
+    /// As [`Interception::find`] with [`Wish::Soonest`], in bounded time: after `most` points without an
+    /// interception only every fourth is tested, and after as many more one of eight; from the first in time
+    /// back by bisection.
     pub fn find_within<L: CalcMotion>(&self, limits: &L, most: u32) -> Verdict<F> {
         let best = self.soonest(limits, most);
         best.map_or_else(|| self.chase(limits, self.horizon()), Verdict::Meets)
@@ -105,14 +109,14 @@ impl<F: Copy> Interception<'_, F> {
         self.until.min(self.ball.duration()).clamp(0.0, HORIZON)
     }
 
-    /// Number of the last step; the horizon itself comes after it, wherever the steps end.
+    /// Number of the last step; the horizon itself comes after it.
     fn steps(&self) -> u32 {
         (self.horizon() * (1.0 / STEP)) as u32
     }
 
     fn soonest<L: CalcMotion>(&self, limits: &L, most: u32) -> Option<Meeting<F>> {
         let steps = self.steps();
-        // The last place that was looked at in vain; so many were, that far apart.
+        // The last point without an interception, the number of such points, and their stride.
         let (mut late, mut vain, mut stride) = (0, 0, 1);
         let mut begins = 0.0;
         for block in 0..=steps / BLOCK {
@@ -143,7 +147,8 @@ impl<F: Copy> Interception<'_, F> {
         None
     }
 
-    /// The soonest of the places between one in vain and one in time, halving: once in time, the robot mostly stays so.
+    /// The soonest of the points between a late one and one in time, by bisection: once in time, the robot
+    /// mostly stays so.
     fn sooner<L: CalcMotion>(&self, limits: &L, late: u32, in_time: u32, found: Meeting<F>) -> Meeting<F> {
         let (mut late, mut in_time, mut best) = (late, in_time, found);
         while in_time - late > 1 {
@@ -156,7 +161,8 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// From the end backwards, as slack mostly grows to the end, after some probes for what is there to be had.
+    /// Searches from the end backwards, as slack mostly grows to the end, after some probes for the slack
+    /// available.
     fn safest<L: CalcMotion>(&self, limits: &L) -> Option<Meeting<F>> {
         let (steps, horizon) = (self.steps(), self.horizon());
         let mut best = self.look(limits, horizon, 0.0).meeting();
@@ -178,7 +184,7 @@ impl<F: Copy> Interception<'_, F> {
                 continue;
             }
             for step in (first..=last).rev() {
-                // Of equal ones the first.
+                // The first of equal ones.
                 if let Look::Meets(meeting) = self.look(limits, step as f32 * STEP, least) {
                     least = meeting.slack();
                     best = Some(meeting);
@@ -188,7 +194,7 @@ impl<F: Copy> Interception<'_, F> {
         best
     }
 
-    /// No place with the ball's ways in between is reached within this time.
+    /// Whether no point with the ball's distances in `ways` is reached within this time.
     fn is_out_of_reach<L: CalcMotion>(&self, limits: &L, ways: [f32; 2], within: f32) -> bool {
         let [begins, ends] = ways;
         let middle = self.ball.from() + self.ball.along() * (0.5 * (begins + ends));
@@ -196,14 +202,14 @@ impl<F: Copy> Interception<'_, F> {
         limits.is_surely_longer(self.robot, self.velocity, middle, radius, within)
     }
 
-    /// The meeting at a time, if its slack is `least` at least.
+    /// The interception at a time, if its slack is `least` at least.
     fn look<L: CalcMotion>(&self, limits: &L, time: f32, least: f32) -> Look<F> {
         let ball = self.ball.from() + self.ball.along() * self.ball.progress(time).0;
         let place = kick_place(ball, self.target, self.reach);
         if limits.is_surely_longer(self.robot, self.velocity, place, 0.0, time - least) {
             return Look::OutOfReach;
         }
-        // A little more than is asked, as both differences are rounded.
+        // Slightly more than required, as both differences are rounded.
         let within = time - least + ROUNDING;
         let Some(robot_time) = limits.time_within(self.robot, self.velocity, place, within) else {
             return Look::TooLate;
@@ -219,13 +225,13 @@ impl<F: Copy> Interception<'_, F> {
     }
 }
 
-/// What a look at one place tells.
+/// Result of testing one point.
 enum Look<F> {
-    /// The robot meets the ball there.
+    /// The robot intercepts the ball there.
     Meets(Meeting<F>),
-    /// It does not, as a planned motion shows.
+    /// It does not intercept, by a planned motion.
     TooLate,
-    /// It cannot; no motion was planned.
+    /// It cannot intercept; no motion was planned.
     OutOfReach,
 }
 
@@ -238,19 +244,19 @@ impl<F> Look<F> {
     }
 }
 
-/// Between two future places of the ball, s.
+/// Time between two points of the ball's path, s.
 pub const STEP: f32 = 0.02;
-/// Places that are ruled out together.
+/// Number of points that are ruled out together.
 const BLOCK: u32 = 8;
-/// In bounded time, so many times farther apart places are looked at after so many in vain.
+/// In bounded time, factor by which the stride grows after each run of points without an interception.
 const COARSER: u32 = 4;
-/// s.
+/// Tolerance for rounding, s.
 const ROUNDING: f32 = 1e-5;
-/// Shares of the horizon that are tried first for how much slack there is.
+/// Number of shares of the horizon that are probed first for the slack.
 const PROBES: u32 = 6;
-/// Nobody plans farther ahead, s: a kick of 6.5 m/s has left the field by then.
+/// Longest prediction, s: a kick of 6.5 m/s has left the field by then.
 pub const HORIZON: f32 = 5.0;
-/// m (paper 2's robots; docs/papers.md D2).
+/// Depth of the dribbler opening, m (paper 2's robots; docs/papers.md D2).
 const MOUTH_DEPTH: f32 = 0.01;
 
 #[cfg(test)]

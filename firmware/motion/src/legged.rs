@@ -1,16 +1,16 @@
 //! `legged`: abilities of a walking robot, as its own brain assumes them. Speeds, reach and kicks of an AIBO;
 //! SI units.
 //!
-//! Walking speeds lie between CMU's own gait (180 mm/s, Tekkotsu's `CMPackWalkMC`) and learned ones (291 mm/s, UT Austin
-//! 2003; 350–450 mm/s reported for the ERS-7).
+//! Walking speeds lie between CMU's own gait (180 mm/s, Tekkotsu's `CMPackWalkMC`) and learned ones (291
+//! mm/s, UT Austin 2003; 350–450 mm/s reported for the ERS-7).
 
-/// Wanted walking speed ahead, m/s.
+/// Commanded walking speed ahead, m/s.
 pub const WALK_FORWARD: f32 = 0.3;
-/// Wanted walking speed sideways and backwards, m/s.
+/// Commanded walking speed sideways and backwards, m/s.
 pub const WALK_SIDEWAYS: f32 = 0.2;
-/// How fast the gait changes, m/s²: twice the largest speed a second (Tekkotsu).
+/// Acceleration of the gait, m/s²: twice the largest speed a second (Tekkotsu).
 pub const WALK_ACCELERATION: f32 = 0.6;
-/// Wanted turning rate, rad/s.
+/// Commanded turning rate, rad/s.
 pub const TURN_RATE: f32 = 2.0;
 /// Walking with the ball between the legs: half the speed, as carrying ties the front legs, m/s.
 pub const CARRY_SPEED: f32 = 0.15;

@@ -1,13 +1,13 @@
 //! `motion`: motion models of balls and bodies. Models for decisions, not the simulator's physics.
 //!
-//! | question | answer |
+//! | function | module |
 //! |---|---|
-//! | How soon can a robot be there and at rest, and how? (paper 2 §2, CalcMotion2D) | [`trajectory`] |
-//! | Where will a kicked or chipped ball be? | [`ball`], [`ball::chip`] |
-//! | Where along a moving ball's way can a robot meet it, soonest or with most time to spare? (paper 2 §2) | [`intercept`] |
-//! | How does it get around others and forbidden places? | [`avoid`] |
-//! | Which rim speeds drive a body with four wheels like this, and how fast can it go that way? | [`omni`] |
-//! | The walking league: a ball that only rolls, and what an AIBO can do | [`rolling`], [`legged`] |
+//! | Time and motion of a robot to standstill at a place (paper 2 §2, CalcMotion2D) | [`trajectory`] |
+//! | Position of a kicked or chipped ball | [`ball`], [`ball::chip`] |
+//! | Interception point on a moving ball's path, soonest or with most slack (paper 2 §2) | [`intercept`] |
+//! | Path around robots and forbidden regions | [`avoid`] |
+//! | Rim speeds of four wheels for a body motion, and the largest speed in a direction | [`omni`] |
+//! | The walking league: a ball that only rolls, and the abilities of an AIBO | [`rolling`], [`legged`] |
 //!
 //! ```
 //! use geometry::{Field, Point, Vector};
@@ -20,8 +20,9 @@
 //! assert!(next.velocity.x() > 0.0 && arrival < 2.0);
 //! ```
 //!
-//! **Invariants.** No I/O, no clock, no allocation, SI units. Every input is answered; what is not a number rests. The
-//! simulator's physics are written apart from these models, so that a wrong model shows as missed passes instead of hiding.
+//! **Invariants.** No I/O, no clock, no allocation, SI units. Every input has an answer; for NaN it is to
+//! stand still. The simulator's physics are written apart from these models, so that a wrong model causes
+//! missed passes instead of hiding.
 #![forbid(unsafe_code)]
 #![no_std]
 

@@ -1,31 +1,33 @@
 //! `omni`: kinematics of four omnidirectional wheels; body frame, m/s at the rim, rad/s.
 //!
-//! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle α from where
-//! the robot faces, counter-clockwise, at the distance R from its centre, and drives along its tangent: its rim runs at
-//! −sin α · v_x + cos α · v_y + R · ω. Positive rims turn the robot counter-clockwise.
+//! Order as on the league's wire: front right, back right, back left, front left. A wheel stands at the angle
+//! α from the robot's heading, counter-clockwise, at the distance R from its centre, and drives along its
+//! tangent: its rim runs at −sin α · v_x + cos α · v_y + R · ω. Positive rims turn the robot
+//! counter-clockwise.
 
 use geometry::{Angle, Body, Twist, Vector};
 
 /// Rim speeds in the order of the wire, m/s.
 pub type Rims = [f32; 4];
 
-/// Where the wheels are.
+/// Arrangement of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheels {
-    /// Angles from where the robot faces, counter-clockwise, in the order of the wire.
+    /// Angles from the robot's heading, counter-clockwise, in the order of the wire.
     pub angles: [Angle; 4],
-    /// From the robot's centre to a wheel, m.
+    /// Distance from the robot's centre to a wheel, m.
     pub distance: f32,
 }
 
 impl Default for Wheels {
-    /// A usual robot: 60° in front to make room for the dribbler, 135° behind; wheels just within the 90 mm of the hull.
+    /// A usual robot: 60° in front to make room for the dribbler, 135° behind; wheels just within the 90 mm
+    /// of the hull.
     fn default() -> Self {
         Self { angles: [-60.0, -135.0, 135.0, 60.0].map(Angle::degrees), distance: 0.081 }
     }
 }
 
-/// Which wheels cannot drive a robot in every way.
+/// Error of a wheel arrangement that cannot drive a robot in every direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WheelsError;
 
@@ -55,7 +57,7 @@ impl Default for Omni {
 }
 
 impl Omni {
-    /// Of these wheels.
+    /// Kinematics of these wheels.
     pub fn new(wheels: &Wheels) -> Result<Self, WheelsError> {
         let rows = wheels.angles.map(|angle| {
             let (s, c) = angle.sin_cos();
@@ -95,7 +97,7 @@ impl Omni {
         self.rows.map(|[x, y, turn]| x * linear.x() + y * linear.y() + turn * angular)
     }
 
-    /// How the body moves at these rim speeds: the motion that fits them best.
+    /// Motion of the body at these rim speeds: least-squares fit.
     pub fn twist(&self, rims: Rims) -> Twist<Body> {
         let [x, y, angular] = self.inverse.map(|row| {
             let [a, b, c, d] = row;
@@ -105,14 +107,15 @@ impl Omni {
         Twist { linear: Vector::new(x, y), angular }
     }
 
-    /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a wheel slips, m/s.
+    /// The fastest wheel's part in these rim speeds that no motion of the body explains: above some cm/s a
+    /// wheel slips, m/s.
     pub fn slip(&self, rims: Rims) -> f32 {
         let explained = self.rims(self.twist(rims));
         rims.iter().zip(explained).map(|(rim, explained)| (rim - explained).abs()).fold(0.0, f32::max)
     }
 
-    /// The motion, slowed as a whole until no rim is faster than `rim_max` m/s: direction and curve stay. And by which
-    /// factor, 1 where nothing had to be slowed.
+    /// The motion, slowed as a whole until no rim is faster than `rim_max` m/s: direction and curve stay.
+    /// Also returns the factor, 1 where no slowing was needed.
     pub fn saturated(&self, twist: Twist<Body>, rim_max: f32) -> (Twist<Body>, f32) {
         let fastest = self.rims(twist).into_iter().map(f32::abs).fold(0.0, f32::max);
         if fastest <= rim_max || fastest.is_nan() {
@@ -122,8 +125,8 @@ impl Omni {
         (Twist { linear: twist.linear * factor, angular: twist.angular * factor }, factor)
     }
 
-    /// How fast the body can move in this direction while it turns with `angular` rad/s and no rim exceeds `rim_max`,
-    /// m/s; 0 where turning alone takes more.
+    /// Largest speed of the body in this direction while it turns with `angular` rad/s and no rim exceeds
+    /// `rim_max`, m/s; 0 where turning alone takes more.
     pub fn speed_limit(&self, direction: Angle, angular: f32, rim_max: f32) -> f32 {
         let (s, c) = direction.sin_cos();
         let mut limit = f32::INFINITY;
@@ -142,7 +145,7 @@ impl Omni {
     }
 }
 
-/// Share of the diagonal's product below which the determinant is rounding.
+/// Share of the diagonal's product below which the determinant is only rounding.
 const SINGULAR: f32 = 1e-4;
 /// A wheel across the direction does not limit it.
 const ALONG_MIN: f32 = 1e-4;
@@ -233,7 +236,7 @@ mod tests {
                 assert!((fastest - 3.0).abs() < 1e-3, "{degrees}°, {angular}: {fastest}");
             }
         }
-        // Straight ahead the front wheels, at sin 60°, give out first.
+        // Straight ahead the front wheels, at sin 60°, reach their limit first.
         assert!((omni.speed_limit(Angle::ZERO, 0.0, 3.0) - 3.0 / 0.866_025).abs() < 1e-4);
         assert_eq!(omni.speed_limit(Angle::ZERO, 40.0, 3.0), 0.0);
     }

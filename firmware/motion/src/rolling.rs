@@ -1,16 +1,16 @@
-//! `rolling`: distance and time of a rolling ball. Constant deceleration until rest; m, s, m/s, m/s².
+//! `rolling`: distance and time of a rolling ball. Constant deceleration until it stops; m, s, m/s, m/s².
 
 use geometry::math;
 
 /// A ball that slows down evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollingBall {
-    /// m/s², > 0.
+    /// Deceleration, m/s², > 0.
     pub deceleration: f32,
 }
 
 impl RollingBall {
-    /// How far it gets from `speed` to rest, m.
+    /// Distance from `speed` to its stop, m.
     pub fn rest_distance(self, speed: f32) -> f32 {
         speed * speed / (2.0 * self.deceleration)
     }
@@ -20,7 +20,7 @@ impl RollingBall {
         math::sqrt(2.0 * self.deceleration * distance.max(0.0))
     }
 
-    /// How long it takes for `distance`, s; `None` if it stops before.
+    /// Time for `distance`, s; `None` if it stops before.
     pub fn travel_time(self, speed: f32, distance: f32) -> Option<f32> {
         let squared = speed * speed - 2.0 * self.deceleration * distance;
         (squared >= 0.0 && distance >= 0.0).then(|| (speed - math::sqrt(squared)) / self.deceleration)

@@ -1,18 +1,21 @@
-//! `trajectory`: time-optimal motion of a robot to a place at rest (paper 2 §2: `CalcMotion2D`).
+//! `trajectory`: time-optimal motion of a robot to standstill at a place (paper 2 §2: `CalcMotion2D`).
 //!
-//! `CalcMotion2D(x_s, v_s, x_f) → (t*, V*)` is [`CalcMotion::plan`]: `t*` is [`Motion::duration`], `V*` is [`Motion::at`].
-//! The end is always at rest. Two models of a robot answer it:
+//! `CalcMotion2D(x_s, v_s, x_f) → (t*, V*)` is [`CalcMotion::plan`]: `t*` is [`Motion::duration`], `V*` is
+//! [`Motion::at`]. The motion always ends at standstill. Two robot models implement it:
 //!
-//! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a trapezoid
-//!   or triangle, and one angle shares the limits out between the axes. What to use unless a robot was measured.
-//! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy, D'Andrea,
-//!   Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
+//! - [`FreeLimits`], without drag: speed, acceleration and braking have limits of their own; each axis gets a
+//!   trapezoid or triangle, and one angle shares the limits out between the axes. The default for a robot
+//!   that was not measured.
+//! - [`DragLimits`], with a motor's falling torque: the faster, the less it can still speed up (Kalmár-Nagy,
+//!   D'Andrea, Ganguly 2004; z″ + z′ = u, |u| ≤ 1 in units of `speed` and `acceleration`).
 //!
-//! Both are near-time-optimal: the axes are parallel to the frame's, and the share between them is sought until both
-//! arrive at nearly the same time. `cargo xtask bench motion` tells how near, and what it costs (firmware/motion/README.md).
+//! Both are near-time-optimal: the axes are parallel to the frame's, and the share between them is sought
+//! until both arrive at nearly the same time. `cargo xtask bench motion` measures how near, and what it costs
+//! (firmware/motion/README.md).
 //!
-//! Units: m, s, m/s, m/s². **Any input is answered**: where a coordinate is NaN, infinite or over [`COORDINATE_MAX`], or a
-//! limit is not a positive number, the answer is to rest where one is ([`Motion::duration`] 0).
+//! Units: m, s, m/s, m/s². **Any input is answered**: where a coordinate is NaN, infinite or over
+//! [`COORDINATE_MAX`], or a limit is not a positive number, the answer is to stay in place
+//! ([`Motion::duration`] 0).
 
 mod axis;
 mod balance;
@@ -26,18 +29,18 @@ pub use turn::{Turn, TurnLimits};
 
 use geometry::{Point, Vector, math};
 
-/// Largest coordinate (m) and speed (m/s) that is taken for a true one: 1 km, above any field and below where squares of
+/// Largest coordinate (m) and speed (m/s) that is accepted: 1 km, above any field and below where squares of
 /// `f32` lose their last use.
 pub const COORDINATE_MAX: f32 = 1_000.0;
 
-/// Where a robot is and how it moves, at one time of a motion.
+/// Position and velocity of a robot at one time of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<F> {
-    /// m.
+    /// Position, m.
     pub position: Point<F>,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vector<F>,
-    /// m/s²; where it jumps, the value after the jump.
+    /// Acceleration, m/s²; at a jump, the value after it.
     pub acceleration: Vector<F>,
 }
 
@@ -48,21 +51,22 @@ impl<F> State<F> {
     }
 }
 
-/// A motion from a start to rest.
+/// A motion from a start to standstill.
 pub trait Motion<F> {
-    /// `t*`: from the start until it rests, s.
+    /// `t*`: time from the start until it stands, s.
     fn duration(&self) -> f32;
 
-    /// The state `time` seconds after the start: before 0 the start, after the duration rest at the end.
+    /// The state `time` seconds after the start: before 0 the start, after the duration standstill at the
+    /// end.
     fn at(&self, time: f32) -> State<F>;
 }
 
-/// What a robot can do, as far as its motion from place to place is concerned.
+/// Motion model of a robot from place to place.
 pub trait CalcMotion {
-    /// The motion it plans.
+    /// Type of the planned motion.
     type Motion<F: Copy>: Motion<F>;
 
-    /// From `from`, moving with `velocity`, to rest at `to`.
+    /// Plans from `from`, moving with `velocity`, to standstill at `to`.
     fn plan<F: Copy>(&self, from: Point<F>, velocity: Vector<F>, to: Point<F>) -> Self::Motion<F>;
 
     /// `t*` alone, s: the duration of [`Self::plan`].
@@ -77,8 +81,8 @@ pub trait CalcMotion {
         within: f32,
     ) -> Option<f32>;
 
-    /// Is it certain, without planning, that [`Self::time`] to every place within `radius` m of `to` is over `within`
-    /// seconds? A bound from the largest acceleration and speed; `false` says nothing.
+    /// Whether it is certain, without planning, that [`Self::time`] to every place within `radius` m of `to`
+    /// is over `within` seconds. A bound from the largest acceleration and speed; `false` is inconclusive.
     fn is_surely_longer<F: Copy>(
         &self,
         from: Point<F>,
@@ -89,9 +93,9 @@ pub trait CalcMotion {
     ) -> bool;
 }
 
-/// All the numbers are ones that a field can have.
+/// Whether all coordinates and speeds are within the accepted range.
 pub(crate) fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bool {
-    // NaN is not below anything.
+    // False for NaN.
     let small = |x: f32| x.abs() <= COORDINATE_MAX;
     small(from.x())
         && small(from.y())
@@ -101,22 +105,22 @@ pub(crate) fn usable<F>(from: Point<F>, velocity: Vector<F>, to: Point<F>) -> bo
         && small(to.y())
 }
 
-/// A place to rest for who does not know where it is.
+/// A place to stand for a robot whose position is unknown.
 fn somewhere<F>(from: Point<F>) -> Point<F> {
     if from.x().abs() <= COORDINATE_MAX && from.y().abs() <= COORDINATE_MAX { from } else { Point::default() }
 }
 
-/// The fastest a robot may be within a bound.
+/// Largest acceleration and speed of a robot within a bound.
 #[derive(Clone, Copy)]
 struct Utmost {
-    /// m/s².
+    /// Acceleration, m/s².
     acceleration: f32,
-    /// m/s.
+    /// Speed, m/s.
     speed: f32,
 }
 
-/// No motion within `utmost` brings about an offset within `radius` of `offset` and ends at rest, within `time`: it would
-/// move by v·t/2 and at most a·t²/4 more.
+/// No motion within `utmost` brings about an offset within `radius` of `offset` and ends at standstill,
+/// within `time`: it would move by v·t/2 and at most a·t²/4 more.
 #[inline]
 fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f32, utmost: Utmost) -> bool {
     if time < 0.0 {
@@ -127,7 +131,7 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     if far.dot(far) > reach * reach {
         return true;
     }
-    // Straight there: what speeding up and braking take at least, and the speed.
+    // On the straight line: lower bounds of speeding up and braking, and the speed.
     let length = offset.norm();
     let Utmost { acceleration, speed } = utmost;
     let distance = length - radius;
@@ -154,7 +158,7 @@ fn out_of_reach<F>(offset: Vector<F>, velocity: Vector<F>, radius: f32, time: f3
     least > time * BOUND_SLACK
 }
 
-/// What rounding may take from a bound: 10⁻⁴, a thousand times what `f32` errs.
+/// Allowance for rounding in a bound: 10⁻⁴, a thousand times the error of `f32`.
 const BOUND_SLACK: f32 = 1.0001;
 
 #[cfg(test)]

@@ -1,17 +1,18 @@
 //! `body`: robot body in another simulator. Orders become `RobotControl`, `RobotControlResponse` becomes
-//! senses.
+//! sensor frames.
 //!
-//! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so this keeps to what
-//! all of them do:
-//! - **Way.** Velocity in the robot's frame; ER-Force takes no wheel speeds. Wheel rims go through `motion::omni` back to
-//!   the body's motion.
-//! - **Every 10 ms, everything.** ER-Force puts a robot to standby after 0.1 s without a command and resets a dribbler
-//!   whose speed is missing, so each command holds motion and dribbler, also where nothing changed.
-//! - **Kick.** grSim kicks once per command that has a speed, ER-Force and ours whenever ball and charge are there while the
-//!   last command has one. So the speed is in a command only while a kick is wanted; absent is no kick everywhere. ER-Force knows
-//!   0° and 45° only: flat and chip.
-//! - **Ball contact.** Responses list other robots too, also ones that are off the field; ER-Force's "realistic" leaves
-//!   robots out at random. Ours counts alone, and what was last heard holds for [`CONTACT_HOLDS`].
+//! Simulators differ (reference: the header of ER-Force's simulator, grSim's code, recordings of both), so
+//! this keeps to what all of them do:
+//! - **Motion.** Velocity in the robot's frame; ER-Force takes no wheel speeds. Wheel rims go through
+//!   `motion::omni` back to the body's motion.
+//! - **Every 10 ms, everything.** ER-Force puts a robot to standby after 0.1 s without a command and resets a
+//!   dribbler whose speed is missing, so each command holds motion and dribbler, also where nothing changed.
+//! - **Kick.** grSim kicks once per command that has a speed, ER-Force and ours whenever ball and charge are
+//!   there while the last command has one. So the speed is in a command only while a kick is wanted; absent
+//!   is no kick everywhere. ER-Force knows 0° and 45° only: flat and chip.
+//! - **Ball contact.** Responses list other robots too, also ones that are off the field; ER-Force's
+//!   "realistic" leaves robots out at random. Ours counts alone, and the last response holds for
+//!   [`CONTACT_HOLDS`].
 
 use geometry::{Body, Twist, Vector};
 use motion::omni::Omni;
@@ -21,21 +22,21 @@ use ssl::simulation::{
     MoveCommand, MoveLocalVelocity, RobotCommand, RobotControl, RobotControlResponse, RobotMoveCommand,
 };
 
-/// Between two commands, and between two pictures of the senses.
+/// Period of commands, and of sensor frames.
 pub const TICK: Duration = Duration::millis(10);
-/// How long the last word on ball contact holds: five responses in a row are lost once in 100,000 at the 10 % loss of
-/// ER-Force's "realistic".
+/// How long the last response on ball contact holds: five responses in a row are lost once in 100,000 at the
+/// 10 % loss of ER-Force's "realistic".
 const CONTACT_HOLDS: Duration = Duration::millis(50);
-/// Of a dribbler's full speed, rpm: what ours and our other simulated robots' turn at; ER-Force's is full at 1432.
+/// Full speed of a dribbler, rpm: that of our simulated robots; ER-Force's is full at 1432.
 const DRIBBLER_FULL: f32 = 1000.0;
-/// Of a chip kick, degrees above the ground.
+/// Angle of a chip kick, degrees above the ground.
 const CHIP_ANGLE: f32 = 45.0;
-/// Nobody's simulated kicker is faster, and nobody's robot: what is beyond is a mistake, m/s.
+/// No known kicker, simulated or real, is faster: a larger value is an error, m/s.
 const SPEED_MAX: f32 = 10.0;
-/// rad/s.
+/// Largest turning rate, rad/s.
 const TURN_MAX: f32 = 30.0;
 
-/// A robot's body as the simulation protocol knows it.
+/// A robot's body in the simulation protocol.
 #[derive(Clone, Debug)]
 pub struct SimulatedBody {
     id: RobotId,
@@ -63,7 +64,8 @@ impl SimulatedBody {
         }
     }
 
-    /// The brain wants this from now on. What no wheels can do (NaN, a walking body's order) is standing.
+    /// Sets the brain's orders. Orders that wheels cannot execute (NaN, a walking body's order) are standing
+    /// still.
     pub fn obey(&mut self, order: ActuatorFrame) {
         let ActuatorFrame::Omni { wheels, dribbler, kick } = order else {
             (self.motion, self.dribbler, self.kick) = (Twist::default(), 0.0, OmniKick::None);
@@ -91,7 +93,7 @@ impl SimulatedBody {
         let (kick_speed, kick_angle) = match self.kick {
             OmniKick::Flat(speed) if speed > 0.0 => (Some(speed.min(SPEED_MAX)), Some(0.0)),
             OmniKick::Chip(speed) if speed > 0.0 => (Some(speed.min(SPEED_MAX)), Some(CHIP_ANGLE)),
-            // A simulated kicker holds no charge that could hurt.
+            // A simulated kicker has no dangerous charge.
             OmniKick::None | OmniKick::Discharge | OmniKick::Flat(_) | OmniKick::Chip(_) => (None, None),
         };
         let command = RobotCommand {
@@ -104,7 +106,7 @@ impl SimulatedBody {
         RobotControl { robot_commands: vec![command] }
     }
 
-    /// The simulator answered.
+    /// Handles the simulator's answer.
     pub fn handle_response(&mut self, now: Instant, response: &RobotControlResponse) {
         // A late answer may hold several of one robot: the last is the newest.
         let ours = response.feedback.iter().rfind(|robot| robot.id == u32::from(self.id.number()));
@@ -117,7 +119,7 @@ impl SimulatedBody {
         }
     }
 
-    /// What the robot feels.
+    /// The robot's sensor frame.
     pub fn sensors(&self, now: Instant) -> SensorFrame {
         SensorFrame {
             pose: None,
@@ -125,13 +127,13 @@ impl SimulatedBody {
             opponents: heapless::Vec::new(),
             ball_contact: self.contact.is_some_and(|(at, contact)| contact && now.since(at) <= CONTACT_HOLDS),
             busy: false,
-            // Nobody tells how fast it moves, so it takes its own word.
+            // The protocol does not report its motion, so the commanded one is used.
             odometry: self.motion,
             health: Health { battery: None, tipped: false, kicker_ready: true },
         }
     }
 
-    /// Errors that the simulator has answered with, and the last one's words.
+    /// Number of errors that the simulator has answered with, and the text of the last one.
     pub fn errors(&self) -> (u32, Option<&str>) {
         (self.errors, self.last_error.as_deref())
     }

@@ -1,11 +1,12 @@
-//! `virtual_robot`: a virtual robot for other simulators. As a process of its own, which takes radio frames
-//! from whoever commands and speaks the league's simulation protocol with any simulator. Runs on the PC.
+//! `virtual_robot`: a virtual robot for other simulators. It runs as a process of its own on the PC, takes
+//! radio frames from a host and speaks the league's simulation protocol with any simulator.
 //!
-//! [`VirtualRobot`] is the whole robot without sockets: the very [`brain::Station`] of a board, in a [`SimulatedBody`] that the
-//! simulation protocol moves. [`run`] gives it a socket and a clock. `onetwo control --robots sim://HOST` starts one for
-//! each robot.
+//! [`VirtualRobot`] is the whole robot without sockets: the same [`brain::Station`] as on a board, in a
+//! [`SimulatedBody`] that the simulation protocol moves. [`run`] gives it a socket and a clock. `onetwo
+//! control --robots sim://HOST` starts one for each robot.
 //!
-//! **Invariants.** Times come from the caller everywhere but in [`run`]. Whatever comes from outside is counted and survived.
+//! **Invariants.** Times come from the caller everywhere but in [`run`]. Invalid input from outside is
+//! counted and dropped.
 #![forbid(unsafe_code)]
 
 mod body;

@@ -21,7 +21,7 @@ pub struct VirtualRobot<'a> {
 }
 
 impl<'a> VirtualRobot<'a> {
-    /// A robot that wakes up at `now`.
+    /// A robot that starts at `now`.
     pub fn new(now: Instant, config: &BrainConfig, base: CaseBase<'a>, keys: RobotKeys) -> Self {
         Self {
             station: Station::with_keys(now, config, base, keys),
@@ -32,12 +32,12 @@ impl<'a> VirtualRobot<'a> {
         }
     }
 
-    /// A radio frame came.
+    /// Handles a radio frame.
     pub fn handle_frame(&mut self, now: Instant, frame: &[u8]) {
         self.station.handle_packet(now, frame);
     }
 
-    /// The simulator answered.
+    /// Handles the simulator's answer.
     pub fn handle_response(&mut self, now: Instant, bytes: &[u8]) {
         match RobotControlResponse::decode(bytes) {
             Ok(response) => self.body.handle_response(now, &response),
@@ -45,8 +45,8 @@ impl<'a> VirtualRobot<'a> {
         }
     }
 
-    /// A deadline that [`VirtualRobot::poll_timeout`] announced has come: the brain's own, and every [`TICK`] senses in and a
-    /// command out.
+    /// Handles the deadline announced by [`VirtualRobot::poll_timeout`]: the brain's own, and every [`TICK`]
+    /// a sensor frame in and a command out.
     pub fn handle_timeout(&mut self, now: Instant) {
         if self.station.poll_timeout().is_some_and(|due| due <= now) {
             self.station.handle_timeout(now);
@@ -59,11 +59,11 @@ impl<'a> VirtualRobot<'a> {
             self.body.obey(order);
         }
         self.control = Some(self.body.control().encode_to_vec());
-        // A process that was held up does not catch up: the missed ticks are over.
+        // A delayed process does not catch up: missed ticks are skipped.
         self.tick = if now.since(self.tick) < TICK { self.tick + TICK } else { now + TICK };
     }
 
-    /// When to call [`VirtualRobot::handle_timeout`].
+    /// Time at which [`VirtualRobot::handle_timeout`] must be called.
     pub fn poll_timeout(&self) -> Instant {
         self.station.poll_timeout().map_or(self.tick, |due| due.min(self.tick))
     }
@@ -78,17 +78,17 @@ impl<'a> VirtualRobot<'a> {
         self.control.take()
     }
 
-    /// The body, to look at.
+    /// The body, read-only.
     pub fn body(&self) -> &SimulatedBody {
         &self.body
     }
 
-    /// The brain and its radio, to look at.
+    /// The brain and its radio, read-only.
     pub fn station(&self) -> &Station<'a> {
         &self.station
     }
 
-    /// Datagrams of the simulator that were no responses.
+    /// Number of datagrams of the simulator that were no responses.
     pub fn unreadable(&self) -> u32 {
         self.unreadable
     }

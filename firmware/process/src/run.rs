@@ -14,30 +14,30 @@ use protocol::frame::RobotKeys;
 
 use crate::robot::VirtualRobot;
 
-/// Who the robot is, and whom it speaks with.
+/// Identity of the robot, and its peers.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Its brain.
+    /// Configuration of its brain.
     pub brain: BrainConfig,
-    /// Its keys.
+    /// Its radio keys.
     pub keys: RobotKeys,
-    /// Whoever commands.
+    /// Address of the host.
     pub host: SocketAddr,
     /// The simulator's port for this team's robots: 10301 blue, 10302 yellow.
     pub simulator: SocketAddr,
 }
 
-/// Why a robot ended, where that is no mistake.
+/// Regular end of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It was asked to.
+    /// The parent process requested it.
     Asked,
 }
 
 /// Why a robot cannot run.
 #[derive(Debug)]
 pub enum RunError {
-    /// No socket could be had.
+    /// A socket could not be opened.
     Socket(io::Error),
 }
 
@@ -56,7 +56,7 @@ impl std::error::Error for RunError {
     }
 }
 
-/// A flag that is raised when standard input closes: whoever started the robot has gone, or wants it to end.
+/// A flag that is raised when standard input closes: the parent process has gone, or requests the end.
 pub fn parent_gone() -> Arc<AtomicBool> {
     let gone = Arc::new(AtomicBool::new(false));
     let raised = gone.clone();
@@ -70,7 +70,7 @@ pub fn parent_gone() -> Arc<AtomicBool> {
     gone
 }
 
-/// Plays until `end` is raised.
+/// Runs the robot until `end` is raised.
 pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<End, RunError> {
     let local = |address: &SocketAddr| address.ip().is_loopback();
     let any: SocketAddr = match options.simulator {
@@ -88,7 +88,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
         socket
             .set_read_timeout(Some(Duration::from_micros(wait.0).max(WAIT_MIN)))
             .map_err(RunError::Socket)?;
-        // A time-out, or somebody who does not listen yet: both pass.
+        // A time-out, or a peer that does not listen yet: both pass.
         if let Ok((len, from)) = socket.recv_from(&mut bytes) {
             let datagram = bytes.get(..len).unwrap_or(&[]);
             if from == options.host {
@@ -108,7 +108,7 @@ pub fn run(options: &Options, base: CaseBase<'_>, end: &AtomicBool) -> Result<En
     Ok(End::Asked)
 }
 
-/// The longest datagram that is read: the league's programs send none beyond.
+/// The longest datagram that is read: the league's programs send no longer ones.
 const LEN_MAX: usize = 8192;
-/// The shortest wait that a socket can be told.
+/// The shortest time-out that a socket accepts.
 const WAIT_MIN: Duration = Duration::from_micros(1);

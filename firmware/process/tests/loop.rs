@@ -1,4 +1,4 @@
-//! A virtual robot keeps its rate and survives whatever it is sent, with a clock of ours and with the system's.
+//! A virtual robot keeps its rate and survives any input, with a simulated clock and with the system's.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};

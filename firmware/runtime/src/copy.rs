@@ -1,16 +1,17 @@
-//! `copy`: memory copy for the Cortex-M4. Four words at a time.
+//! `copy`: memory copy for the Cortex-M4, 16 bytes at a time.
 //!
-//! Rust moves values by calling these functions of the Arm run-time ABI (§4.3.4). The compiler's own are weak symbols and
-//! copy word by word, five instructions each: a third of a robot's tick. With these in their place the median tick of 24
-//! trials under QEMU takes 9,169 instructions instead of 12,242, the worst 31,976 instead of 40,770. The board's program
-//! `math-hash` tries every length and alignment.
+//! Rust moves values by calling these functions of the Arm run-time ABI (§4.3.4). The compiler's own are weak
+//! symbols and copy 4 bytes at a time, five instructions each: a third of a robot's tick. With these in their
+//! place the median tick of 24 trials under QEMU takes 9,169 instructions instead of 12,242, the worst 31,976
+//! instead of 40,770. The board's program `math-hash` tries every length and alignment.
 //!
-//! Registers: r0 to, r1 from, r2 length in bytes; r3 and r12 are free, r4 is kept. Nothing is returned (`__aeabi_…`), or r0
-//! (`memcpy`).
+//! Registers: r0 to, r1 from, r2 length in bytes; r3 and r12 are free, r4 is kept. Nothing is returned
+//! (`__aeabi_…`), or r0 (`memcpy`).
 
-// `__aeabi_memcpy4` and `8` are promised whole words' alignment, so load and store multiple may be used: 4 instructions for
-// 16 bytes. The others take what comes: this processor loads and stores single words at any address, 10 instructions for
-// 16 bytes. What is left of 16 is bits 3 to 0 of the length: two shifts put them into the carry and negative flags.
+// `__aeabi_memcpy4` and `8` are promised 4-byte alignment, so load and store multiple may be used: 4
+// instructions for 16 bytes. The others take what comes: this processor loads and stores 4 bytes at any
+// address, 10 instructions for 16 bytes. What is left of 16 is bits 3 to 0 of the length: two shifts put them
+// into the carry and negative flags.
 core::arch::global_asm!(
     ".syntax unified",
     ".thumb",

@@ -1,22 +1,22 @@
-//! `ending`: crash record of a robot's program. The place of a panic or a fault, in words that can outlive a
-//! reset (docs/architecture.md §6.2).
+//! `ending`: crash record of a robot's program. The source location of a panic or a fault, as numbers that
+//! can outlive a reset (docs/architecture.md §6.2).
 //!
-//! Without `core::fmt`, whose formatting takes 7 kB of an image. What a board does besides is its own: motors without current, a
-//! record kept, a new life.
+//! Without `core::fmt`, whose formatting takes 7 kB of flash. The further reaction is the board's: motors
+//! without current, a record kept, a restart.
 
 use core::panic::Location;
 
-/// What ended the program.
+/// Cause of the program's end.
 #[derive(Clone, Copy, Debug)]
 pub enum Ending<'a> {
-    /// A panic, and where, as far as that is known.
+    /// A panic, with its place as far as known.
     Panic(Option<&'a Location<'a>>),
-    /// A hard fault, and where the program counter stood.
+    /// A hard fault, with the program counter.
     Fault(u32),
 }
 
 impl Ending<'_> {
-    /// Writes the place into `text`, as much of it as there is room for; how many bytes that is.
+    /// Writes the place into `text`, as far as it fits; returns the number of bytes.
     pub fn write(&self, text: &mut [u8]) -> usize {
         match self {
             Self::Panic(Some(place)) => fill(text, &[place.file().as_bytes(), b":", &digits(place.line())]),

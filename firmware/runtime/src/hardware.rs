@@ -1,5 +1,5 @@
-//! `hardware`: hardware tasks of a robot's computer: wheel control, kicker, sensors, watchdog. Wheels a
-//! thousand times a second, kicker, senses, and the watchdog over all of it.
+//! `hardware`: hardware tasks of a robot's computer: wheel control (1 kHz), kicker, sensors, and the watchdog
+//! over all of them.
 //!
 //! ```text
 //! brain ─► orders ─► control (1 kHz) ─► wheels, dribbler
@@ -8,8 +8,8 @@
 //! control, radio, brain ─► progress ─► watchdog
 //! ```
 //!
-//! **What may be lost.** Orders, rims and wishes are signals: only the newest counts. Packets and pictures go through the
-//! channels of [`Mailboxes`], which count what they drop.
+//! **What may be lost.** Orders, rim speeds and kicker requests are signals: only the newest counts. Packets
+//! and sensor frames go through the channels of [`Mailboxes`], which count what they drop.
 
 use core::pin::pin;
 
@@ -28,16 +28,16 @@ use crate::progress::Part;
 use crate::tasks::now;
 use crate::wheel::{CONTROL_PERIOD, Control, Motors, WHEELS};
 
-/// What the tasks of this module tell each other.
+/// Signals between the tasks of this module.
 pub struct Wires {
-    /// Rim speeds as measured, m/s.
+    /// Measured rim speeds, m/s.
     rims: Signal<CriticalSectionRawMutex, [f32; WHEELS]>,
-    /// What the kicker shall do.
+    /// Kicker request.
     wish: Signal<CriticalSectionRawMutex, OmniKick>,
 }
 
 impl Wires {
-    /// Nothing said yet.
+    /// Without any signal yet.
     pub const fn new() -> Self {
         Self { rims: Signal::new(), wish: Signal::new() }
     }
@@ -49,7 +49,7 @@ impl Default for Wires {
     }
 }
 
-/// Leads the wheels to what the brain orders, and to a stop where it orders nothing. Takes the place of
+/// Controls the wheels to the brain's orders, and to a stop without orders. Replaces
 /// [`tasks::body`](crate::tasks::body).
 pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(CONTROL_PERIOD.0));
@@ -72,11 +72,11 @@ pub async fn control(mut wheels: impl Wheels, boxes: &Mailboxes, wires: &Wires) 
     }
 }
 
-/// Charges and fires, as far as the interlock lets it.
+/// Charges and fires, as far as the interlock allows.
 pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
     let mut interlock = Interlock::new();
     loop {
-        // The control loop says it every millisecond; if it says nothing any more, nobody may fire.
+        // The control loop requests it every millisecond; once it stops, the kicker must not fire.
         let wish = match select(wires.wish.wait(), Timer::after(SILENT)).await {
             Either::First(wish) => wish,
             Either::Second(()) => OmniKick::Discharge,
@@ -84,13 +84,14 @@ pub async fn kicker(mut kicker: impl Kicker, wires: &Wires) -> ! {
         let act = interlock.step(now(), wish, kicker.state());
         kicker.act(act).await;
         if matches!(act, KickerAct::Flat(_) | KickerAct::Chip(_)) {
-            // What was wished while the coil had current is old.
+            // A request made while the coil had current is outdated.
             wires.wish.reset();
         }
     }
 }
 
-/// Puts what wheels and probes say before the brain, at its pace. The place is the host's to tell.
+/// Passes the readings of wheels and probes to the brain, at its pace. The robot's position comes from the
+/// host.
 pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -> ! {
     let mut ticker = Ticker::every(BRAIN_PERIOD);
     let kinematics = Omni::default();
@@ -102,7 +103,7 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
         }
         let seen = probes.look();
         let Twist { linear, angular } = kinematics.twist(rims);
-        // A gyroscope knows better than four wheels how the body turns, where there is one.
+        // A gyroscope measures the turning rate better than four wheels, where there is one.
         let odometry: Twist<Body> = Twist { linear, angular: seen.turn.unwrap_or(angular) };
         let health = Health { battery: seen.battery, tipped: seen.tipped, kicker_ready: seen.kicker_ready };
         let picture = SensorFrame {
@@ -119,11 +120,12 @@ pub async fn senses(mut probes: impl Probes, boxes: &Mailboxes, wires: &Wires) -
     }
 }
 
-/// As [`tasks::radio_receive`](crate::tasks::radio_receive), and says that it listens, whether it hears something or not.
+/// As [`tasks::radio_receive`](crate::tasks::radio_receive), and reports that it listens, whether it receives
+/// something or not.
 pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
     loop {
         let packet = {
-            // Not dropped half-way: bytes of a packet that is coming in would be lost.
+            // Not cancelled midway: bytes of a packet that is coming in would be lost.
             let mut next = pin!(radio.receive());
             loop {
                 boxes.progress.mark(Part::Radio);
@@ -137,7 +139,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// Feeds the dog as long as control, radio and brain all run. It is as patient as [`Dog::PATIENCE`].
+/// Feeds the watchdog as long as control, radio and brain all run. Its time-out is [`Dog::PATIENCE`].
 pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     let mut ticker = Ticker::every(Duration::from_micros(D::PATIENCE.0 / LOOKS_A_PATIENCE));
     loop {
@@ -148,13 +150,13 @@ pub async fn watchdog<D: Dog>(mut dog: D, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// The brain's pace on wheels (docs/architecture.md §2.3).
+/// Period of the brain on wheels (docs/architecture.md §2.3).
 const BRAIN_PERIOD: Duration = Duration::from_millis(10);
-/// The control loop has said nothing for ten of its steps.
+/// Silence of the control loop for ten of its steps.
 const SILENT: Duration = Duration::from_millis(10);
-/// How often a radio that hears nothing says that it listens.
+/// Period in which a radio that receives nothing reports that it listens.
 const LISTENS: Duration = Duration::from_millis(10);
-/// The watchdog's task looks so often while the dog waits.
+/// Number of checks by the watchdog's task within its time-out.
 const LOOKS_A_PATIENCE: u64 = 5;
 
 #[cfg(test)]

@@ -1,35 +1,35 @@
-//! `kicker`: interlock of charger and kicker. The interlock between the brain's wish and 200 V
-//! (docs/architecture.md §6.2). Sans-IO.
+//! `kicker`: interlock of charger and kicker, between the brain's requests and 200 V (docs/architecture.md
+//! §6.2). Sans-IO.
 //!
-//! | wish | ball at the mouth | capacitor | what happens |
+//! | request | ball at the dribbler | capacitor | result |
 //! |---|---|---|---|
 //! | `Discharge` | – | – | not charged, bled through the coil too slowly to move the plunger |
 //! | none, or a kick | – | low | charged |
-//! | a kick | no | full | waits: the light barrier fires it, the brain's order only arms it |
+//! | a kick | no | full | waits: the break-beam sensor fires it, the brain's order only arms it |
 //! | a kick | yes | full | one pulse, then nothing for half a second |
 
 use protocol::robot_io::OmniKick;
 use protocol::{Duration, Instant};
 
-/// What the kicker's board shall do until the next step.
+/// Output of the kicker's board until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KickerAct {
     /// Neither charge nor fire.
     Rest,
     /// Charge the capacitor.
     Charge,
-    /// Let it run empty without a kick.
+    /// Discharge it without a kick.
     Bleed,
-    /// A pulse through the flat kicker's coil, of this length.
+    /// A pulse through the flat kicker's coil, of this duration.
     Flat(Duration),
     /// The same through the chip kicker's.
     Chip(Duration),
 }
 
-/// What the kicker's sensors say.
+/// Readings of the kicker's sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KickerState {
-    /// The light barrier in front of the kicker is broken.
+    /// The beam in front of the kicker is interrupted.
     pub ball: bool,
     /// The capacitor's voltage, V.
     pub volts: f32,
@@ -42,14 +42,14 @@ pub struct Interlock {
 }
 
 impl Interlock {
-    /// Of a kicker that has not fired yet.
+    /// A kicker that has not fired yet.
     pub const fn new() -> Self {
         Self { fired: None }
     }
 
-    /// One step.
+    /// Output for the next step.
     pub fn step(&mut self, now: Instant, wish: OmniKick, state: KickerState) -> KickerAct {
-        // A voltage that cannot be read is taken for a full capacitor: it is not charged, and not fired.
+        // An unreadable voltage counts as a full capacitor: it is not charged, and not fired.
         let (full, readable) = (state.volts.is_nan() || state.volts >= FULL_VOLTS, !state.volts.is_nan());
         if wish == OmniKick::Discharge {
             return if readable && state.volts < EMPTY_VOLTS { KickerAct::Rest } else { KickerAct::Bleed };
@@ -67,7 +67,7 @@ impl Interlock {
         if full { KickerAct::Rest } else { KickerAct::Charge }
     }
 
-    /// Whether a kick would be fired at once, as far as charge and pause tell.
+    /// Whether a kick would be fired at once, judged by charge and pause.
     pub fn is_ready(&self, now: Instant, volts: f32) -> bool {
         volts >= FULL_VOLTS && self.fired.is_none_or(|fired| now.since(fired) >= PAUSE)
     }
@@ -79,7 +79,7 @@ impl Default for Interlock {
     }
 }
 
-/// How long a pulse gives the ball this speed; `None` for a speed that is none. Never longer than the table's last.
+/// Pulse length for a ball speed; `None` for an invalid speed. Never longer than the table's last.
 fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
     if !speed.is_finite() || speed <= 0.0 {
         return None;
@@ -97,13 +97,13 @@ fn pulse(speed: f32, table: &[(f32, u64)]) -> Option<Duration> {
 
 /// Ball speed, m/s, and the pulse for it, µs: estimates that stand in for a robot's own calibration.
 const FLAT_PULSE: &[(f32, u64)] = &[(2.0, 1_500), (4.0, 2_600), (6.5, 4_500)];
-/// The same of the chip kicker.
+/// The same for the chip kicker.
 const CHIP_PULSE: &[(f32, u64)] = &[(2.0, 2_000), (4.0, 3_800), (6.0, 6_000)];
-/// The capacitor is full, V (teams use 180 to 240).
+/// Voltage of a full capacitor, V (teams use 180 to 240).
 pub const FULL_VOLTS: f32 = 200.0;
-/// It is safe to touch below this, V (extra-low voltage is 60 V of direct current; half of it).
+/// Voltage below which it is safe to touch, V (extra-low voltage is 60 V of direct current; half of it).
 const EMPTY_VOLTS: f32 = 30.0;
-/// No second kick before this: the plunger must come back.
+/// Pause before the next kick: the plunger must return.
 const PAUSE: Duration = Duration::millis(500);
 
 #[cfg(test)]

@@ -1,29 +1,30 @@
-//! `ledger`: persistent counter of starts. A ledger in its flash, for every start must bring a larger epoch
-//! than all before it (docs/architecture.md §6.1): hosts and mates take nothing of an older one. Sans-IO.
+//! `ledger`: persistent counter of starts in the robot's flash. Every start must use a larger epoch than all
+//! before it (docs/architecture.md §6.1): hosts and teammates accept nothing of an older one. Sans-IO.
 //!
-//! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and writes the next one
-//! into the next empty cell. A full half goes on in the other, which is erased first; until the new cell is written the old half
-//! still says all. A cell that was written halfway, when the power went, is skipped.
+//! Two halves, each erased as a whole, of cells that are written once: a start finds the largest epoch and
+//! writes the next one into the next empty cell. After a full half the other is used, which is erased first;
+//! until the new cell is written the old half still holds every epoch needed. A cell that was only partly
+//! written when the power went is skipped.
 //!
-//! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, the rest 0xff.
+//! A cell: `magic 4 "1-2B" | epoch 4 LE | the epoch's bits inverted 4 LE`, padded with 0xff.
 
-/// Bytes of a cell: what an STM32H7 writes into its flash at once.
+/// Bytes of a cell: the unit in which an STM32H7 writes its flash.
 pub const CELL_LEN: usize = 32;
 const MAGIC: [u8; 4] = *b"1-2B";
 
-/// What lies in a cell.
+/// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cell {
-    /// Erased.
+    /// Erased flash.
     Empty,
     /// A start with this epoch.
     Epoch(u32),
-    /// Something else, or something that cannot be read.
+    /// Other content, or unreadable.
     Damaged,
 }
 
 impl Cell {
-    /// Of its bytes.
+    /// Decodes a cell's bytes.
     pub fn of(bytes: &[u8; CELL_LEN]) -> Self {
         let [m0, m1, m2, m3, e0, e1, e2, e3, i0, i1, i2, i3, rest @ ..] = *bytes;
         let epoch = u32::from_le_bytes([e0, e1, e2, e3]);
@@ -46,30 +47,30 @@ pub fn cell(epoch: u32) -> [u8; CELL_LEN] {
     bytes
 }
 
-/// Where a cell is.
+/// Position of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// Which half, 0 or 1.
+    /// Half, 0 or 1.
     pub half: usize,
-    /// Which of its cells.
+    /// Index of the cell in its half.
     pub index: usize,
 }
 
-/// What a start has to do before it says anything.
+/// What a start has to do before it sends anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Its epoch.
+    /// Epoch of this start.
     pub epoch: u32,
-    /// Where to write it.
+    /// Cell to write it to.
     pub at: Place,
-    /// Erase that half first.
+    /// Whether that half must be erased first.
     pub erase: bool,
 }
 
 /// Reads all cells, `cells` in each half; `None` after 2³² starts.
 pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
     let (mut newest, mut active) = (0, 0);
-    // The first cell of each half behind all that was written.
+    // The first cell of each half behind all written ones.
     let mut free = [0; 2];
     for (half, free) in free.iter_mut().enumerate() {
         for index in 0..cells {
@@ -91,7 +92,7 @@ pub fn plan(cells: usize, mut read: impl FnMut(Place) -> Cell) -> Option<Plan> {
     })
 }
 
-/// Erased flash.
+/// Value of an erased byte.
 const EMPTY: u8 = 0xff;
 
 #[cfg(test)]
@@ -102,7 +103,7 @@ mod tests {
 
     const CELLS: usize = 4;
 
-    /// A flash of two halves that knows when the power goes.
+    /// A flash of two halves with a simulated loss of power.
     struct Flash(Vec<[u8; CELL_LEN]>);
 
     impl Flash {
@@ -114,12 +115,12 @@ mod tests {
             plan(CELLS, |at| Cell::of(&self.0[at.half * CELLS + at.index])).unwrap()
         }
 
-        /// A start that loses its power after so many steps: erasing, half a cell, the whole cell.
+        /// A start that loses its power after `steps` steps: erasing, half a cell, the whole cell.
         fn start(&mut self, steps: usize) -> Option<u32> {
             let Plan { epoch, at, erase } = self.plan();
             if erase {
                 if steps == 0 {
-                    // Erasing was cut: some of it is gone, and some is neither.
+                    // Erasing was interrupted: some cells are erased, and some are undefined.
                     self.0[at.half * CELLS] = [0xf0; CELL_LEN];
                     self.0[at.half * CELLS + 1] = [EMPTY; CELL_LEN];
                     return None;
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn power_that_goes_at_any_moment_never_brings_an_epoch_back() {
-        // Every pattern of six starts, three ways to end each, twice over.
+        // Every pattern of six starts, three endings each, twice over.
         for pattern in 0..3_usize.pow(6) {
             let (mut flash, mut last) = (Flash::new(), 0);
             for n in 0..12 {

@@ -7,9 +7,10 @@
 //! senses ─► sensors ─────┘              └─► orders ─► body ────────► wheels, legs, kicker
 //! ```
 //!
-//! Whatever reaches the brain passes one inbox, so that it is handled in the order of its arrival. Where no simulator moves the
-//! body, the tasks of [`hardware`] do: wheels, kicker, senses, and a watchdog. A board implements the traits of [`ports`], declares a task for each function of
-//! [`tasks`] (embassy's tasks cannot be generic) and starts them with one [`Mailboxes`] between them:
+//! All input of the brain passes one inbox, so that it is handled in the order of its arrival. Where no
+//! simulator moves the body, the tasks of [`hardware`] do: wheels, kicker, sensors, and a watchdog. A board
+//! implements the traits of [`ports`], declares a task for each function of [`tasks`] (embassy's tasks cannot
+//! be generic) and starts them with one [`Mailboxes`] between them:
 //!
 //! ```text
 //! static BOXES: Mailboxes = Mailboxes::new();
@@ -17,9 +18,10 @@
 //! async fn brain(config: BrainConfig, base: CaseBase<'static>) { tasks::brain(&config, base, &BOXES).await }
 //! ```
 //!
-//! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped and counted.
+//! **Invariants.** Nothing here allocates, and nothing that arrives can panic: what does not fit is dropped
+//! and counted.
 #![no_std]
-// The run-time ABI of the processor is assembly.
+// The functions of the processor's run-time ABI are assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `mailboxes`: mailboxes between a robot's tasks. One inbox to the brain, one outbox and one slip of orders
-//! from it.
+//! `mailboxes`: mailboxes between a robot's tasks: one inbox to the brain, one outbox of packets and one
+//! signal of orders from it.
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -12,10 +12,11 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
 use crate::progress::Progress;
 
-/// Arrivals that may wait for the brain. When full, radio and senses wait with the next one: what is lost then, their
-/// drivers count.
+/// Inputs that may wait for the brain. When full, radio and sensors wait with the next one: their drivers
+/// count what is lost then.
 pub const INBOX_LEN: usize = 8;
-/// Packets that may wait for the air: more than the brain says in one step. When full, the newest is dropped and counted.
+/// Packets that may wait for the radio: more than the brain sends in one step. When full, the newest is
+/// dropped and counted.
 pub const OUTBOX_LEN: usize = 8;
 
 /// Something for the brain.
@@ -25,9 +26,9 @@ pub const OUTBOX_LEN: usize = 8;
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Arrival {
-    /// A packet of the air.
+    /// A received packet.
     Packet(Packet),
-    /// A picture of the world: the brain makes a step.
+    /// A sensor frame: the brain makes a step.
     Sensors(SensorFrame),
 }
 
@@ -35,16 +36,16 @@ pub enum Arrival {
 pub struct Mailboxes {
     pub(crate) inbox: Channel<CriticalSectionRawMutex, Arrival, INBOX_LEN>,
     pub(crate) outbox: Channel<CriticalSectionRawMutex, Packet, OUTBOX_LEN>,
-    /// The latest word counts: a body never works off old orders.
+    /// Only the latest orders count: a body never executes old ones.
     pub(crate) orders: Signal<CriticalSectionRawMutex, ActuatorFrame>,
-    /// Who has run, for the watchdog.
+    /// Parts that have run, for the watchdog.
     pub(crate) progress: Progress,
     unsent: AtomicU32,
     undelivered: AtomicU32,
 }
 
 impl Mailboxes {
-    /// All empty.
+    /// Empty mailboxes.
     pub const fn new() -> Self {
         Self {
             inbox: Channel::new(),
@@ -56,17 +57,18 @@ impl Mailboxes {
         }
     }
 
-    /// How many packets the brain said that found the outbox full.
+    /// Number of packets of the brain that were dropped because the outbox was full.
     pub fn unsent(&self) -> u32 {
         self.unsent.load(Ordering::Relaxed)
     }
 
-    /// How many arrivals found the inbox full: none, as long as all tasks of a robot run on one executor.
+    /// Number of arrivals that found the inbox full: none, as long as all tasks of a robot run on one
+    /// executor.
     pub fn undelivered(&self) -> u32 {
         self.undelivered.load(Ordering::Relaxed)
     }
 
-    /// A packet of the air, for a board that is handed them without a radio; whether there was room for it.
+    /// Delivers a received packet on a board without a radio; returns whether there was room for it.
     pub fn hear(&self, packet: Packet) -> bool {
         self.inbox.try_send(Arrival::Packet(packet)).is_ok()
     }
@@ -81,14 +83,15 @@ impl Mailboxes {
         poll_fn(|context| self.inbox.poll_ready_to_send(context)).await;
     }
 
-    /// Something for the brain. Call when there is room and nothing was awaited since; else it is lost, and counted.
+    /// Puts an input into the inbox. Must be called when there is room, without an await since the check;
+    /// else the input is lost, and counted.
     pub(crate) fn deliver(&self, arrival: Arrival) {
         if self.inbox.try_send(arrival).is_err() {
             self.undelivered.fetch_add(1, Ordering::Relaxed);
         }
     }
 
-    /// A packet for the air, or one more that is lost.
+    /// Sends a packet, or counts it as lost.
     pub(crate) fn post(&self, packet: Packet) {
         if self.outbox.try_send(packet).is_err() {
             self.unsent.fetch_add(1, Ordering::Relaxed);

@@ -1,12 +1,12 @@
-//! `mind`: the interface of the brain that its task needs. The sans-IO face of [`brain::Station`]
-//! (docs/architecture.md §3.1), so that tests can put a simpler mind in its place.
+//! `mind`: the interface of the brain that its task needs. The sans-IO methods of [`brain::Station`]
+//! (docs/architecture.md §3.1), so that tests can substitute a simpler implementation.
 
 use brain::Station;
 use protocol::Instant;
 use protocol::link::Packet;
 use protocol::robot_io::{ActuatorFrame, SensorFrame};
 
-/// Bytes, pictures and deadlines in; packets, orders and the next deadline out.
+/// Bytes, sensor frames and deadlines in; packets, orders and the next deadline out.
 pub(crate) trait Mind {
     fn handle_packet(&mut self, now: Instant, packet: &[u8]);
     fn handle_sensors(&mut self, now: Instant, sensors: &SensorFrame);

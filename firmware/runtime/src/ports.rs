@@ -1,7 +1,7 @@
-//! `ports`: traits that a board implements: radio, sensors, actuators. Hear and speak on the air, sense, and
-//! move.
+//! `ports`: traits that a board implements: radio, sensors, actuators.
 //!
-//! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by the task that waits for it; a board that has both on one chip shares the chip itself.
+//! The first four are all that a board in lockstep needs; the others are a robot's own. Each half is owned by
+//! the task that waits for it; a board that has both on one chip shares the chip itself.
 #![allow(
     async_fn_in_trait,
     reason = "all tasks of a robot run on one executor in one thread: nobody asks for Send"
@@ -14,78 +14,79 @@ use protocol::robot_io::{ActuatorFrame, SensorFrame};
 use crate::kicker::{KickerAct, KickerState};
 use crate::wheel::WHEELS;
 
-/// The ear of a radio.
+/// The receiver of a radio.
 pub trait RadioReceiver {
-    /// The next packet of the air, as it came: nobody has checked it yet.
+    /// The next packet received, not yet authenticated.
     async fn receive(&mut self) -> Packet;
 }
 
-/// The mouth of a radio.
+/// The sender of a radio.
 pub trait RadioSender {
-    /// Puts a packet on the air; returns when the next may follow. Whether anybody hears it is not known.
+    /// Sends a packet; returns when the next may follow. Whether it was received is not known.
     async fn send(&mut self, packet: Packet);
 }
 
-/// What a robot perceives with.
+/// Sensors of a robot.
 pub trait Senses {
-    /// The next picture of the world, at the pace of the control loop.
+    /// The next sensor frame, at the pace of the control loop.
     async fn sense(&mut self) -> SensorFrame;
 }
 
-/// What a robot moves with.
+/// Actuators of a robot.
 pub trait Body {
-    /// Does what is wanted from now on, until the next call.
+    /// Executes the orders until the next call.
     async fn act(&mut self, wanted: ActuatorFrame);
 }
 
 /// Four wheels with their motors, and the dribbler.
 pub trait Wheels {
-    /// Rim speeds since the last call, m/s; a number that is none where an encoder is known to be broken.
+    /// Rim speeds since the last call, m/s; NaN where an encoder is known to be broken.
     fn measured(&mut self) -> [f32; WHEELS];
 
-    /// These shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed, until the next call.
+    /// Applies these shares of the battery's voltage, −1 to 1, and the dribbler's share of its full speed,
+    /// until the next call.
     fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32);
 
-    /// No current in any of them.
+    /// Takes the current off all of them.
     fn release(&mut self);
 }
 
 /// The kicker's capacitor and coils.
 pub trait Kicker {
-    /// What its sensors say.
+    /// Readings of its sensors.
     fn state(&mut self) -> KickerState;
 
-    /// Does this; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay switched on longer
-    /// than the pulse, whatever becomes of the task: the board's timer ends it, not the program.
+    /// Executes `act`; returns when a pulse is over, or after a step of about a millisecond. Nothing may stay
+    /// switched on longer than the pulse, even if the task stops: the board's timer ends it, not the program.
     async fn act(&mut self, act: KickerAct);
 }
 
-/// What a robot on wheels feels, besides its wheels.
+/// Sensors of a wheeled robot, besides its encoders.
 pub trait Probes {
-    /// Everything at this moment.
+    /// All readings at this moment.
     fn look(&mut self) -> Seen;
 }
 
-/// What probes say.
+/// Readings of the probes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// How fast the body turns, rad/s; `None` without a gyroscope.
+    /// Turning rate of the body, rad/s; `None` without a gyroscope.
     pub turn: Option<f32>,
-    /// The light barrier at the dribbler is broken.
+    /// The beam at the dribbler is interrupted.
     pub ball: bool,
     /// The robot lies on its side.
     pub tipped: bool,
-    /// Battery, V; `None` where it is not measured.
+    /// Battery voltage, V; `None` where it is not measured.
     pub battery: Option<f32>,
-    /// The kicker is charged.
+    /// Whether the kicker is charged.
     pub kicker_ready: bool,
 }
 
 /// A watchdog that resets the computer unless it is fed.
 pub trait Dog {
-    /// How long it waits.
+    /// Time-out.
     const PATIENCE: Duration;
 
-    /// Makes it wait anew.
+    /// Restarts its time-out.
     fn feed(&mut self);
 }

@@ -3,34 +3,34 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Who has to say that it runs.
+/// Parts that have to report that they run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The control loop of the wheels.
     Control = 1,
-    /// The ear of the radio, whether it hears something or not.
+    /// The radio receiver, whether it receives something or not.
     Radio = 1 << 1,
-    /// The brain: it had a thought.
+    /// The brain: it has run.
     Brain = 1 << 2,
 }
 
-/// Who has run since the watchdog was fed last.
+/// Parts that have run since the watchdog was fed last.
 #[derive(Debug, Default)]
 pub struct Progress(AtomicU32);
 
 impl Progress {
-    /// Nobody yet.
+    /// No part yet.
     pub const fn new() -> Self {
         Self(AtomicU32::new(0))
     }
 
-    /// This one runs.
+    /// Records that this part runs.
     pub fn mark(&self, part: Part) {
         // Load and store, not a swap: all tasks of a robot run on one executor.
         self.0.store(self.0.load(Ordering::Relaxed) | part as u32, Ordering::Relaxed);
     }
 
-    /// Whether all have run since the last time this was true.
+    /// Whether all parts have run since the last time this was true.
     pub fn all(&self) -> bool {
         let all = self.0.load(Ordering::Relaxed) == ALL;
         if all {

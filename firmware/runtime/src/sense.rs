@@ -1,5 +1,6 @@
-//! `sense`: conversion of raw sensor readings. Encoder counts to rim speed, a gyroscope without its zero, a
-//! light barrier in daylight, and which way is up. Sans-IO; SI units, fed at the pace of the control loop.
+//! `sense`: conversion of raw sensor readings: encoder counts to rim speed, a gyroscope without its offset, a
+//! break-beam sensor in daylight, and whether the robot is tipped. Sans-IO; SI units, fed at the pace of the
+//! control loop.
 
 use protocol::{Duration, Instant};
 
@@ -9,18 +10,19 @@ pub struct Encoder {
     per_count: f32,
     last: Option<(Instant, u16)>,
     speed: f32,
-    /// Since when, and from which count, the wheel has been driven hard without moving.
+    /// Time and count at which the wheel started to be driven hard without moving.
     stuck: Option<(Instant, u16)>,
 }
 
 impl Encoder {
-    /// One whose count is `per_count` m of rim; negative where it counts down forwards.
+    /// An encoder whose count is `per_count` m of rim; negative where it counts down forwards.
     pub const fn new(per_count: f32) -> Self {
         Self { per_count, last: None, speed: 0.0, stuck: None }
     }
 
-    /// Rim speed since the last step, m/s, from the counter and from the duty of that time; NaN once the wheel was driven hard
-    /// for a while without moving. Then the encoder, its cable or the motor is broken, and the governor brakes the robot.
+    /// Rim speed since the last step, m/s, from the counter and from the duty cycle of that time; NaN once
+    /// the wheel was driven hard for a while without moving. Then the encoder, its cable or the motor is
+    /// broken, and the governor brakes the robot.
     pub fn step(&mut self, now: Instant, count: u16, duty: f32) -> f32 {
         if let Some((at, before)) = self.last {
             let micros = now.since(at).0;
@@ -35,7 +37,7 @@ impl Encoder {
         let hard = duty.abs() >= HARD;
         self.stuck = match self.stuck {
             Some((_, from)) if count.wrapping_sub(from).cast_signed().unsigned_abs() > SHAKES => None,
-            // Broken stays broken until the wheel moves: the duty goes down because it is.
+            // Broken stays broken until the wheel moves: the duty cycle falls because the wheel is broken.
             Some((since, _)) if !hard && now.since(since) < STUCK_FOR => None,
             None if hard => Some((now, count)),
             stuck => stuck,
@@ -45,7 +47,7 @@ impl Encoder {
     }
 }
 
-/// A gyroscope's zero, found while the robot stands after its start.
+/// A gyroscope's offset, determined while the robot stands after its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     zero: Option<f32>,
@@ -56,12 +58,13 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Zero not known yet.
+    /// Offset not known yet.
     pub const fn new() -> Self {
         Self { zero: None, sum: 0.0, seen: 0, least: f32::INFINITY, most: f32::NEG_INFINITY }
     }
 
-    /// The rate without the sensor's zero, rad/s; `None` until it stood still for half a second, and for a reading that is none.
+    /// The rate without the sensor's offset, rad/s; `None` until it stood still for half a second, and for a
+    /// reading of NaN.
     pub fn step(&mut self, rate: f32) -> Option<f32> {
         if !rate.is_finite() {
             return None;
@@ -88,7 +91,7 @@ impl Default for Turn {
     }
 }
 
-/// Whether the robot lies on its side.
+/// Detector of a robot that lies on its side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Tilt {
     tipped: bool,
@@ -96,12 +99,13 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// Upright.
+    /// Starts as upright.
     pub const fn new() -> Self {
         Self { tipped: false, otherwise_since: None }
     }
 
-    /// From the upward part of the acceleration, g: 1 upright, 0 on its side. Blows are short; a reading that is none says nothing.
+    /// Whether the robot lies, from the upward part of the acceleration, g: 1 upright, 0 on its side. Short
+    /// shocks are ignored; NaN is no reading.
     pub fn step(&mut self, now: Instant, up: f32) -> bool {
         let seems = if up.is_nan() { self.tipped } else { up < UPRIGHT };
         if seems == self.tipped {
@@ -116,7 +120,7 @@ impl Tilt {
     }
 }
 
-/// A light barrier whose lamp goes on and off with every step, so that daylight is told from the lamp.
+/// A break-beam sensor whose lamp toggles with every step, so that daylight is distinguished from the lamp.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Barrier {
     dark: Option<f32>,
@@ -124,13 +128,13 @@ pub struct Barrier {
 }
 
 impl Barrier {
-    /// Nothing seen yet.
+    /// A sensor without readings.
     pub const fn new() -> Self {
         Self { dark: None, broken: false }
     }
 
-    /// Whether something stands in the beam, from what the receiver sees now, 0 to 1, and whether the lamp is lit. A receiver that
-    /// is blinded, or gives no number, sees no ball: the kicker fires by it.
+    /// Whether the beam is interrupted, from the receiver's reading, 0 to 1, and whether the lamp is lit. A
+    /// receiver that is blinded, or reads NaN, detects no ball, because the kicker fires by it.
     pub fn step(&mut self, lit: bool, level: f32) -> bool {
         if !lit {
             self.dark = Some(level);
@@ -150,24 +154,25 @@ impl Barrier {
 
 /// A share of full voltage that moves any wheel that can be moved.
 const HARD: f32 = 0.8;
-/// A wheel that does not move by then, at that duty, is broken: the motor follows in 30 ms.
+/// A wheel that has not moved by then, at that duty cycle, is broken: the motor follows in 30 ms.
 const STUCK_FOR: Duration = Duration::millis(200);
-/// Counts by which a line that is broken, or a blocked wheel, may shake.
+/// Counts by which a broken line, or a blocked wheel, may fluctuate.
 const SHAKES: u16 = 8;
-/// Of a gyroscope that stands, rad/s: noise of 0.3° a second, and some.
+/// Turning rate of a standing gyroscope, rad/s: noise of 0.3° a second, and a margin.
 const UNREST: f32 = 0.1;
-/// A zero further off is none, rad/s: data sheets allow 1° a second.
+/// A larger offset is invalid, rad/s: data sheets allow 1° a second.
 const ZERO_MAX: f32 = 0.05;
-/// Readings that make a zero: half a second of a millisecond each.
+/// Number of readings for an offset: half a second of a millisecond each.
 const STILL_SAMPLES: u16 = 500;
-/// Less of the acceleration upwards is lying, g: 60° from upright.
+/// Upward part of the acceleration below which the robot lies, g: 60° from upright.
 const UPRIGHT: f32 = 0.5;
-/// A kick or a bump is over by then.
+/// Duration after which a kick or a bump is over.
 const TILT_FOR: Duration = Duration::millis(300);
-/// Share of the receiver's range by which the lamp lifts it where a ball hides it, and where nothing does (to be measured on a robot).
+/// Share of the receiver's range by which the lamp lifts it, with a ball in the beam and without (to be
+/// measured on a robot).
 const LAMP_HIDDEN: f32 = 0.08;
 const LAMP_SEEN: f32 = 0.16;
-/// Daylight that leaves no room for the lamp.
+/// Daylight above which the lamp cannot be distinguished.
 const BLIND: f32 = 0.8;
 
 #[cfg(test)]
@@ -185,7 +190,7 @@ mod tests {
         // 20 counts of 0.1 mm in a millisecond.
         assert!((encoder.step(ms(1), 14, 0.3) - 2.0).abs() < 1e-5);
         assert!((encoder.step(ms(3), 65_530, -0.3) + 1.0).abs() < 1e-5);
-        // Asked twice at one time: as before.
+        // Two calls at one time: as before.
         assert!((encoder.step(ms(3), 65_530, -0.3) + 1.0).abs() < 1e-5);
         let mut mirrored = Encoder::new(-0.0001);
         mirrored.step(ms(0), 100, 0.0);
@@ -195,7 +200,7 @@ mod tests {
     #[test]
     fn a_wheel_that_is_driven_hard_and_does_not_move_is_told_and_heals_when_it_moves() {
         let mut encoder = Encoder::new(0.0001);
-        // One channel is broken: the count shakes.
+        // One channel is broken: the count fluctuates.
         for t in 0..200 {
             assert!(encoder.step(ms(t), (t % 2) as u16, 1.0).is_finite(), "{t} ms");
         }

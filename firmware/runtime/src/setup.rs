@@ -1,4 +1,4 @@
-//! `setup`: a robot's configuration as it comes from outside: from the simulator, or from provisioning.
+//! `setup`: reading of a robot's configuration from the simulator, or from provisioning.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use brain::BrainConfig;
 use brain::body::Kind;
 use rules::League;
 
-/// Reads a configuration (postcard), to its last byte.
+/// Reads a configuration (postcard), which must end with the last byte.
 pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
     match postcard::take_from_bytes::<BrainConfig>(bytes) {
         Ok((config, [])) if !Kind::is_built(config.league) => Err(SetupError::Body(config.league)),
@@ -16,14 +16,14 @@ pub fn read(bytes: &[u8]) -> Result<BrainConfig, SetupError> {
     }
 }
 
-/// Why bytes are no configuration.
+/// Why bytes are not a configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SetupError {
     /// They do not decode: cut short, or of another version of the firmware.
     Unreadable,
-    /// This many bytes are left over behind it.
+    /// Number of surplus bytes behind it.
     Rest(usize),
-    /// The image has no brain for the body of that league's robots.
+    /// The firmware has no brain for the body of that league's robots.
     Body(League),
 }
 

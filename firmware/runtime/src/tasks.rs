@@ -1,9 +1,10 @@
 //! `tasks`: the five tasks that a board starts.
 //!
-//! The brain's task sleeps until something arrives or its own deadline comes, does that one thing, and takes from the
-//! brain everything it has to say about it. Each deadline is handled at its own time, and one that is due when it is set
-//! as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's native robots
-//! keep the same order, therefore a trial has the same bits there and here (docs/architecture.md §7.2).
+//! The brain's task sleeps until something arrives or its own deadline comes, handles that one event, and
+//! drains the brain's output for it. Each deadline is handled at its own time, and one that is due when it is
+//! set as soon as the clock moves: in lockstep that is before the packets of the next tick. The simulator's
+//! native robots keep the same order, therefore a trial has the same bits there and here
+//! (docs/architecture.md §7.2).
 
 use brain::{BrainConfig, Station};
 use casebase::CaseBase;
@@ -17,7 +18,7 @@ use crate::mind::Mind;
 use crate::ports::{Body, RadioReceiver, RadioSender, Senses};
 use crate::progress::Part;
 
-/// The robot's life: begins with the first poll of this task.
+/// The robot's task: starts the boot epoch with its first poll.
 pub async fn brain(config: &BrainConfig, base: CaseBase<'_>, boxes: &Mailboxes) -> ! {
     brain_with_keys(config, base, TeamKey::ZERO.of_robot(config.robot), boxes).await
 }
@@ -29,12 +30,12 @@ pub async fn brain_with_keys(
     keys: RobotKeys,
     boxes: &Mailboxes,
 ) -> ! {
-    // Born where it lives: by value it would lie in this future twice, and on the stack on its way there.
+    // Constructed in place; moving it would store it twice in this future, and on the stack in between.
     let mut station = Station::with_keys(now(), config, base, keys);
     think(&mut station, boxes).await
 }
 
-/// From the air into the inbox.
+/// Moves received packets into the inbox.
 pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> ! {
     loop {
         let packet = radio.receive().await;
@@ -43,7 +44,7 @@ pub async fn radio_receive(mut radio: impl RadioReceiver, boxes: &Mailboxes) -> 
     }
 }
 
-/// From the outbox onto the air.
+/// Sends the packets of the outbox.
 pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
     loop {
         let packet = boxes.outbox.receive().await;
@@ -51,7 +52,7 @@ pub async fn radio_send(mut radio: impl RadioSender, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// From the senses into the inbox.
+/// Moves sensor frames into the inbox.
 pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     loop {
         let picture = senses.sense().await;
@@ -60,7 +61,7 @@ pub async fn sensors(mut senses: impl Senses, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// From the brain's latest order to the body.
+/// Passes the brain's latest orders to the body.
 pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
     loop {
         let wanted = boxes.orders.wait().await;
@@ -68,13 +69,13 @@ pub async fn body(mut body: impl Body, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// The brain's task, for any mind.
+/// The brain's task, for any implementation of the interface.
 pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     let mut last = now();
     loop {
         let time = now();
         let due = mind.poll_timeout().map(|due| due.max(last));
-        // However much arrives, a missed deadline waits for one arrival at most.
+        // With any number of arrivals, a missed deadline waits for one of them at most.
         last = if let Some(due) = due.filter(|due| *due < time) {
             mind.handle_timeout(due);
             due
@@ -91,9 +92,9 @@ pub(crate) async fn think(mind: &mut impl Mind, boxes: &Mailboxes) -> ! {
     }
 }
 
-/// Gives the mind what has waited longest; whether anything did.
+/// Gives `mind` the input that has waited longest; returns whether there was any.
 fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
-    // An arrival is not handed around: it is large, and every hand would copy it.
+    // An arrival is not passed by value: it is large, and every move would copy it.
     match &boxes.inbox.try_receive() {
         Ok(Arrival::Packet(packet)) => mind.handle_packet(now, packet),
         Ok(Arrival::Sensors(picture)) => mind.handle_sensors(now, picture),
@@ -102,7 +103,7 @@ fn take(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) -> bool {
     true
 }
 
-/// Waits for what comes next: the mind's deadline, or (`None`) something that arrives.
+/// Waits for what comes next: the deadline, or (`None`) an arrival.
 async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Mailboxes) -> Option<Instant> {
     let Some(due) = due else {
         boxes.inbox.ready_to_receive().await;
@@ -113,7 +114,7 @@ async fn deadline_before_arrival(due: Option<Instant>, last: Instant, boxes: &Ma
     with_deadline(alarm, boxes.inbox.ready_to_receive()).await.err().map(|_| due)
 }
 
-/// Takes from the mind whatever it has to say.
+/// Drains the output of `mind`.
 fn empty(mind: &mut impl Mind, now: Instant, boxes: &Mailboxes) {
     while let Some(packet) = mind.poll_packet(now) {
         boxes.post(packet);
@@ -128,7 +129,7 @@ pub(crate) fn now() -> Instant {
     Instant(embassy_time::Instant::now().as_ticks())
 }
 
-/// The least by which a clock moves.
+/// Smallest step of the clock.
 const CLOCK_STEP: Duration = Duration(1);
 
 // Both clocks count microseconds, so an instant is copied, not converted.

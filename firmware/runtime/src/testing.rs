@@ -1,4 +1,4 @@
-//! `testing`: test executor and test clock. A little executor, and embassy's clock in their hands.
+//! `testing`: test executor and test clock: a small executor, and embassy's clock under its control.
 
 use std::boxed::Box;
 use std::future::Future;
@@ -9,7 +9,8 @@ use std::task::{Context, Wake, Waker};
 use std::vec;
 use std::vec::Vec;
 
-/// A little executor on a clock that moves only when told to; one at a time, for embassy has one clock a program.
+/// A small executor on a clock that moves only by calls; one at a time, because embassy has one clock a
+/// program.
 pub(crate) struct World {
     tasks: Vec<Pin<Box<dyn Future<Output = ()>>>>,
     woken: Arc<Flag>,
@@ -30,7 +31,7 @@ impl World {
         self.woken.0.store(true, Ordering::Relaxed);
     }
 
-    /// Polls until nobody wants to be polled.
+    /// Polls until no task is ready.
     pub(crate) fn settle(&mut self) {
         let waker = Waker::from(self.woken.clone());
         while self.woken.0.swap(false, Ordering::Relaxed) {
@@ -40,7 +41,7 @@ impl World {
         }
     }
 
-    /// Moves time to `to`, stopping at every alarm on the way.
+    /// Moves time to `to`, stopping at every alarm in between.
     pub(crate) fn advance(&mut self, to: u64) {
         while let Some(alarm) = CLOCK.next_alarm(to) {
             alarm.wake();
@@ -69,7 +70,7 @@ impl Clock {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Moves to the first alarm not after `to`, and takes it.
+    /// Moves to the first alarm not after `to`, and removes it.
     fn next_alarm(&self, to: u64) -> Option<Waker> {
         let mut time = self.lock();
         let first = time.alarms.iter().enumerate().min_by_key(|(_, (at, _))| *at)?.0;
@@ -97,7 +98,7 @@ impl embassy_time_driver::Driver for Clock {
     }
 }
 
-/// The clock of all tests, held.
+/// The clock of all tests, locked.
 pub(crate) fn clock() -> MutexGuard<'static, Time> {
     CLOCK.lock()
 }

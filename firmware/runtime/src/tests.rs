@@ -1,5 +1,4 @@
-//! Tests: tasks drive a brain exactly as a plain loop does. Against a plain loop over the same mind
-//! (docs/architecture.md §7.2).
+//! Tests: tasks drive a brain exactly as a plain loop over the same brain does (docs/architecture.md §7.2).
 
 use std::boxed::Box;
 use std::cell::RefCell;
@@ -85,7 +84,7 @@ fn a_station_says_and_does_the_same_through_the_tasks() {
     let config = |id| BrainConfig::new(RobotId::new(id).unwrap(), TeamId(1));
     let base = case_library::four_legged();
     let station = |id| Station::new(Instant(0), &config(id), base);
-    // The robot under test, its twin driven by a plain loop, and a mate whose packets both hear.
+    // The robot under test, its twin driven by a plain loop, and a teammate whose packets both receive.
     let mut robot = Robot::new(station(1));
     let mut twin = Plain::new(station(1));
     let mut mate = Plain::new(station(2));
@@ -112,7 +111,7 @@ fn what_the_outbox_cannot_hold_is_dropped_and_counted() {
     let diary = Diary::default();
     let boxes: &'static Mailboxes = Box::leak(Box::default());
     let mut clerk = Clerk::new(&diary, &[]);
-    // Nobody sends: the radio is stuck.
+    // No sender task runs: the radio is stuck.
     for n in 0..OUTBOX_LEN as u8 + 3 {
         clerk.handle_packet(Instant(0), &[n]);
     }
@@ -137,7 +136,7 @@ fn a_body_that_is_late_does_the_latest_order_only() {
     assert_eq!(*done.borrow(), [order(3.0)]);
 }
 
-/// A robot as a board starts it: all five tasks around a mind.
+/// A robot as a board starts it: all five tasks around a brain.
 struct Robot {
     world: World,
     air: &'static Mail<Packet>,
@@ -176,7 +175,7 @@ impl Robot {
     }
 }
 
-/// The same mind, driven by hand.
+/// The same brain, driven by hand.
 struct Plain<M> {
     mind: M,
     sent: Vec<Packet>,
@@ -214,14 +213,14 @@ impl<M: Mind> Plain<M> {
     }
 }
 
-/// What a clerk was asked, and when.
+/// Calls of a test brain, with their times.
 type Diary = Rc<RefCell<Vec<String>>>;
 
-/// A mind that writes down what it is asked, answers every packet, and sets a deadline where a packet wants one.
+/// A test brain that records its inputs, answers every packet, and sets a deadline where a packet wants one.
 struct Clerk {
     diary: Diary,
     deadlines: Vec<u64>,
-    /// How far the clock goes while it works on one.
+    /// Time by which the clock advances while it handles a packet.
     packet_takes: u64,
     answers: Vec<Packet>,
     order: Option<ActuatorFrame>,
@@ -320,7 +319,7 @@ fn picture(x: f32) -> SensorFrame {
     }
 }
 
-/// A small generator of whole numbers, for scripts.
+/// A small random generator of integers, for scripts.
 struct Random(u64);
 impl Random {
     fn below(&mut self, n: u32) -> u32 {

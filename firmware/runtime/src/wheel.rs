@@ -1,32 +1,32 @@
-//! `wheel`: wheel speed control at 1 kHz, with a stop when the brain is silent. A thousand times a second,
-//! from encoder to duty, and to a stop where the brain has gone silent (docs/architecture.md §2.3, §6.2).
-//! Sans-IO; m/s at the rim, duty as a share of the battery's voltage.
+//! `wheel`: wheel speed control at 1 kHz, from encoder to duty cycle, and to a stop when the brain is silent
+//! (docs/architecture.md §2.3, §6.2). Sans-IO; m/s at the rim, duty cycle as a share of the battery's
+//! voltage.
 
 use protocol::robot_io::{ActuatorFrame, OmniKick};
 use protocol::{Duration, Instant};
 
-/// Wheels of a robot.
+/// Number of wheels of a robot.
 pub const WHEELS: usize = 4;
-/// How often the loop runs (docs/architecture.md §2.3).
+/// Period of the control loop (docs/architecture.md §2.3).
 pub const CONTROL_PERIOD: Duration = Duration::millis(1);
 
-/// What the motors shall do until the next step.
+/// Output of the motors until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motors {
-    /// These duties, −1 to 1.
+    /// Duty cycle of each wheel, −1 to 1.
     Driven([f32; WHEELS]),
-    /// No current.
+    /// Motors without current.
     Released,
 }
 
-/// What is wanted of everything that moves, after the loop's own check.
+/// Outputs of one step, after the loop's own check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// The wheels.
+    /// Output of the wheels.
     pub motors: Motors,
     /// The dribbler's share of full speed, 0–1.
     pub dribbler: f32,
-    /// The kicker.
+    /// Kick order.
     pub kick: OmniKick,
 }
 
@@ -34,23 +34,23 @@ pub struct Step {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Control {
     order: Option<(Instant, ActuatorFrame)>,
-    /// What the wheels are led to now; runs down where orders stay away.
+    /// Present target rim speeds, m/s; decrease without orders.
     wanted: [f32; WHEELS],
     integral: [f32; WHEELS],
 }
 
 impl Control {
-    /// Nothing ordered yet: the motors are without current.
+    /// A controller without orders: the motors are without current.
     pub const fn new() -> Self {
         Self { order: None, wanted: [0.0; WHEELS], integral: [0.0; WHEELS] }
     }
 
-    /// The brain wants this from now on.
+    /// Takes the brain's new orders.
     pub fn order(&mut self, now: Instant, order: ActuatorFrame) {
         self.order = Some((now, order));
     }
 
-    /// One step of a millisecond: what to do, from what the encoders say.
+    /// One step of a millisecond: the drive for the encoders' readings.
     pub fn step(&mut self, now: Instant, measured: [f32; WHEELS]) -> Step {
         let fresh = self.order.filter(|(at, _)| now.since(*at) < ORDER_STALE).map(|(_, order)| order);
         let (dribbler, kick) = match (self.order, fresh) {
@@ -64,7 +64,8 @@ impl Control {
                 self.wanted = wheels;
                 (dribbler, kick)
             }
-            // The brain has gone silent, or said something that is no number: to a stop, as fast as the carpet holds.
+            // The brain is silent, or has sent NaN: brakes to a stop as fast as wheels hold the field
+            // surface.
             (Some(_), _) => {
                 let slower = |speed: f32| (speed.abs() - BRAKE_A_STEP).max(0.0) * speed.signum();
                 self.wanted = self.wanted.map(slower);
@@ -75,13 +76,13 @@ impl Control {
         for (((duty, wanted), measured), integral) in
             duty.iter_mut().zip(&self.wanted).zip(&measured).zip(&mut self.integral)
         {
-            // A sensor that is broken is not followed: the wheel runs open, by the motor's own constant.
+            // A broken sensor is ignored: the wheel runs open-loop, by the motor's own constant.
             let error = if measured.is_finite() { wanted - measured } else { 0.0 };
             let open = wanted * FEED_FORWARD + error * PROPORTIONAL;
             let trial = *integral + error * INTEGRAL_A_STEP;
             let free = open + trial;
             *duty = free.clamp(-1.0, 1.0);
-            // At the voltage's end nothing is added up that would have to be taken back later.
+            // At the voltage limit the integral does not grow (anti-windup).
             if free == *duty || free.abs() < (open + *integral).abs() {
                 *integral = trial;
             }
@@ -100,24 +101,25 @@ fn is_finite(wheels: &[f32; WHEELS], dribbler: f32) -> bool {
     wheels.iter().all(|speed| speed.is_finite()) && dribbler.is_finite()
 }
 
-/// An order older than this is none: five steps of the brain. The governor brakes for a silent host, this loop for a
-/// silent brain.
+/// An order older than this is invalid: five steps of the brain. The governor brakes for a silent host, this
+/// loop for a silent brain.
 pub const ORDER_STALE: Duration = Duration::millis(50);
-/// By so much a rim slows down in a step, m/s: the governor's 5 m/s².
+/// Decrease of a rim's speed in a step, m/s: the governor's 5 m/s².
 const BRAKE_A_STEP: f32 = 0.005;
-/// Duty for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on a robot).
+/// Duty cycle for a rim speed, s/m: a rim runs 6 m/s free at full voltage (the simulator's; to be measured on
+/// a robot).
 const FEED_FORWARD: f32 = 1.0 / 6.0;
-/// Duty for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
+/// Duty cycle for an error, s/m: a tenth of full voltage for 0.25 m/s (an estimate, to be tuned on a robot).
 const PROPORTIONAL: f32 = 0.4;
-/// Duty an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
+/// Duty cycle that an error of 1 m/s adds in a step: 6 s/m a second (an estimate, likewise).
 const INTEGRAL_A_STEP: f32 = 0.006;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a load that takes
-    /// 8 % of its voltage.
+    /// A motor that runs 5.4 m/s free (a weak battery), reaches two thirds of a change in 30 ms, and has a
+    /// load that takes 8 % of its voltage.
     fn motor(speed: f32, duty: f32) -> f32 {
         speed + ((duty - 0.08) * 5.4 - speed) * (0.001 / 0.03)
     }

@@ -1,6 +1,6 @@
-//! `radio-bench`: what the radio is measured on, one robot's end of it: each kind of message sealed and opened, shortest and longest, and
-//! frames refused. The same frames in the bench's image (`radio-bench` of the QEMU board) and in `cargo xtask bench radio`,
-//! which drives it.
+//! `radio-bench`: tasks of the radio benchmark, one robot's end of it: each kind of message sealed and
+//! opened, shortest and longest, and frames refused. The same frames in the bench's firmware (`radio-bench`
+//! of the QEMU board) and in `cargo xtask bench radio`, which drives it.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -17,40 +17,40 @@ use protocol::team::{BallReport, Beacon, CycleState, Decision, Play, Progress, R
 use protocol::{CaseId, CycleId, Instant, RobotId, TeamId};
 use rules::{Phase, Side};
 
-/// How often each work is done.
+/// Number of repetitions of each work.
 pub const ROUNDS: usize = 20;
 
-/// One thing a robot's radio does.
+/// One operation of a robot's radio.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// Says what a robot says that has just booted.
+    /// Seals the first message after a boot.
     SealShort,
-    /// The longest beacon.
+    /// Seals the longest beacon.
     SealLong,
-    /// Telemetry.
+    /// Seals telemetry.
     SealTelemetry,
-    /// Hears the shortest command.
+    /// Opens the shortest command.
     OpenCommand,
-    /// The longest one.
+    /// Opens the longest command.
     OpenLongCommand,
-    /// A mate's short beacon.
+    /// Opens a teammate's short beacon.
     OpenShort,
-    /// A mate's longest beacon.
+    /// Opens a teammate's longest beacon.
     OpenLong,
-    /// A part of the world with one robot in it.
+    /// Opens a part of the world with one robot in it.
     OpenSmallWorld,
-    /// A full part of the world.
+    /// Opens a full part of the world.
     OpenWorld,
-    /// A command to another robot.
+    /// Skips a command to another robot.
     Skip,
-    /// A frame that came before.
+    /// Refuses a frame that was received before.
     RefuseReplay,
-    /// A forged frame of a mate, as long as its longest.
+    /// Refuses a forged frame of a teammate, as long as its longest.
     RefuseForged,
 }
 
 impl Work {
-    /// Each.
+    /// All works, in the order of the report.
     pub const ALL: [Self; 12] = [
         Self::SealShort,
         Self::SealLong,
@@ -66,7 +66,7 @@ impl Work {
         Self::RefuseForged,
     ];
 
-    /// What it is, for a table.
+    /// Its name in tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::SealShort => "seal a short beacon",
@@ -84,29 +84,29 @@ impl Work {
         }
     }
 
-    /// Whether it opens something, or refuses it; else it seals.
+    /// Whether it opens or refuses a frame; else it seals one.
     pub const fn opens(self) -> bool {
         !matches!(self, Self::SealShort | Self::SealLong | Self::SealTelemetry)
     }
 }
 
-/// A robot, its mate and its host, who have heard each other.
+/// A robot, its teammate and its host, after their handshakes.
 pub struct Bench {
     robot: Link,
     mate: Link,
     host: HostLink,
 }
 
-/// A work with all it needs.
+/// A work with its inputs.
 pub struct Task<'b> {
     link: &'b mut Link,
-    /// Frame to open; empty for what seals.
+    /// Frame to open; empty for works that seal.
     packet: Packet,
     message: Option<TeamMessage>,
 }
 
 impl Bench {
-    /// With a key that is not all zeros.
+    /// A bench with a key that is not all zeros.
     pub fn new() -> Self {
         let (team, key) = (TeamId(2), TeamKey(core::array::from_fn(|i| 7 * i as u8 + 1)));
         let mut bench = Self {
@@ -118,7 +118,8 @@ impl Bench {
         bench.host.set_audience(Audience(0b11_1111));
         let welcome = HostMessage::Welcome(Welcome { to: id(2), life: 9, offset: 0 });
         let _welcomed = bench.robot.open(NOW, &bench.host.seal(NOW, &welcome));
-        // The mate hears a first frame and greets; whom it has greeted believes it.
+        // The teammate receives a first frame and sends a handshake; the receiver of a handshake trusts its
+        // sender.
         let first = bench.robot.seal(&short());
         let _heard = bench.mate.open(NOW, &first);
         if let Some(greeting) = bench.mate.poll_greeting(Instant(0)) {
@@ -127,7 +128,7 @@ impl Bench {
         bench
     }
 
-    /// Everything ready: only [`Task::run`] is to be counted.
+    /// Prepares a task: only [`Task::run`] is measured.
     pub fn task(&mut self, work: Work) -> Task<'_> {
         let Self { robot, mate, host } = self;
         let mut message = None;
@@ -165,7 +166,7 @@ impl Default for Bench {
 }
 
 impl Task<'_> {
-    /// Does it; gives the frame's length, and 1,000 more where a frame was believed.
+    /// Runs the work; returns the frame's length, and 1,000 more where a frame was accepted.
     #[inline(never)]
     pub fn run(&mut self) -> u32 {
         if let Some(message) = &self.message {
@@ -176,7 +177,7 @@ impl Task<'_> {
     }
 }
 
-/// Whatever time it is.
+/// An arbitrary time.
 const NOW: Instant = Instant(12_345_678);
 
 fn id(number: u8) -> RobotId {

@@ -1,13 +1,13 @@
-//! `file`: files that others wrote, read up to a limit. Sizes in bytes.
+//! `file`: files of untrusted sources, read up to a limit. Sizes in bytes.
 
 use std::fs::{self, File, FileType};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Opens a regular file for streaming; anything else is refused by what it is.
+/// Opens a regular file for streaming; any other kind of file is refused.
 ///
-/// It is looked at before it is opened, because opening a pipe waits for a writer and opening a device may do something; and again
-/// afterwards, in case it was exchanged in between.
+/// Its type is checked before it is opened, because opening a pipe waits for a writer and opening a device
+/// may have an effect; and again afterwards, in case it was exchanged in between.
 pub fn open(path: &Path) -> io::Result<File> {
     regular(fs::metadata(path)?.file_type())?;
     let file = File::open(path)?;
@@ -20,7 +20,7 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_from(&open(path)?, limit)
 }
 
-/// The same of a file that is open already, from where it stands.
+/// The same for a file that is open already, from its present position.
 pub fn read_from(file: &File, limit: u64) -> io::Result<Vec<u8>> {
     regular(file.metadata()?.file_type())?;
     let mut bytes = Vec::new();
@@ -108,7 +108,7 @@ mod tests {
         let pipe = scratch("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
         assert!(made.is_ok_and(|status| status.success()), "mkfifo is part of every Unix");
-        // Nothing ever writes to it: reading it would never end.
+        // It has no writer: reading it would never end.
         assert!(read(&pipe, 8).unwrap_err().to_string().contains("a pipe"));
         let link = scratch("link");
         std::os::unix::fs::symlink("/dev/zero", &link).unwrap();

@@ -1,11 +1,13 @@
-//! `foreign`: reads files that others wrote and shows text that others chose. Sizes in bytes.
+//! `foreign`: reads files and prints text from untrusted sources. Sizes in bytes.
 //!
-//! - [`read`], [`read_text`] and [`open`] take regular files only: a device, pipe or socket may never end, or may never begin.
-//!   What is read into memory is read up to a limit.
-//! - [`printable`] escapes what a terminal obeys instead of showing it: control characters, and the marks that turn the direction of
-//!   writing. [`Printable`] does the same to everything that is written through it, line ends aside.
+//! - [`read`], [`read_text`] and [`open`] take regular files only: a device, pipe or socket may never end, or
+//!   may never start. What is read into memory is read up to a limit.
+//! - [`printable`] escapes what a terminal executes instead of displaying it: control characters, and the
+//!   marks that turn the direction of writing. [`Printable`] does the same to everything that is written
+//!   through it, line ends aside.
 //!
-//! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no other character.
+//! **Invariants.** No input panics; nothing larger than the limit is allocated; [`printable`] changes no
+//! other character.
 #![forbid(unsafe_code)]
 
 mod file;

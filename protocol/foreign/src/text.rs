@@ -1,11 +1,11 @@
-//! `text`: text that others chose, made fit for a terminal, a report or a log line.
+//! `text`: text of untrusted sources, escaped for a terminal, a report or a log line.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// The text with every character escaped that a terminal would obey: `\n`, `\r`, `\t`, and the others as `\u001b`. So one value
-/// stays within its line, and cannot colour, move or hide what stands around it.
+/// The text with every character escaped that a terminal would execute: `\n`, `\r`, `\t`, and the others as
+/// `\u001b`. So one value stays within its line, and cannot colour, move or hide the text around it.
 ///
 /// The escapes are JSON's: text in a JSON document stays the same text.
 pub fn printable(text: &str) -> Cow<'_, str> {
@@ -17,7 +17,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// The text's first `most` characters, made [`printable`]; where it is longer, `…` and how many bytes there are.
+/// The text's first `most` characters, made [`printable`]; where it is longer, `…` and the number of its
+/// bytes.
 pub fn excerpt(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         None => printable(text).into_owned(),
@@ -33,7 +34,7 @@ fn push(out: &mut String, character: char) {
         '\n' => out.push_str("\\n"),
         '\r' => out.push_str("\\r"),
         '\t' => out.push_str("\\t"),
-        // All of them lie in the first 65,536, as JSON's escapes do.
+        // All of them are in the first 65,536, as JSON's escapes are.
         _ if is_obeyed(character) => {
             let _ = write!(out, "\\u{:04x}", u32::from(character));
         }
@@ -41,29 +42,30 @@ fn push(out: &mut String, character: char) {
     }
 }
 
-/// A terminal or a text view does something about it instead of showing it.
+/// Whether a terminal or a text view executes it instead of displaying it.
 fn is_obeyed(character: char) -> bool {
     character.is_control()
         || matches!(
             character,
-            // Arabic letter mark, left-to-right and right-to-left marks, embeddings, overrides and isolates: "Trojan source".
+            // Arabic letter mark, left-to-right and right-to-left marks, embeddings, overrides and isolates:
+            // "Trojan source".
             '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
             // Line and paragraph separator, byte order mark.
             | '\u{2028}' | '\u{2029}' | '\u{feff}'
         )
 }
 
-/// A writer for text: what passes through it is escaped as by [`printable`], except line ends and tabs, which are the program's own.
-/// Bytes that are no UTF-8 become `\u{fffd}`.
+/// A writer for text: its input is escaped as by [`printable`], except line ends and tabs, which are the
+/// program's own. Bytes that are no UTF-8 become `\u{fffd}`.
 #[derive(Debug)]
 pub struct Printable<W: Write> {
     into: W,
-    /// The first bytes of a character whose others have not come: at most 3.
+    /// The first bytes of a character whose others have not arrived: at most 3.
     begun: Vec<u8>,
 }
 
 impl<W: Write> Printable<W> {
-    /// Around `into`.
+    /// A writer that passes escaped text to `into`.
     pub const fn new(into: W) -> Self {
         Self { into, begun: Vec::new() }
     }

@@ -1,8 +1,7 @@
-//! `fuzz`: fuzz targets of every reader of external bytes. The targets of `cargo fuzz`, and of the seeded
-//! loop that CI runs.
+//! `fuzz`: fuzz targets of every reader of external bytes, for `cargo fuzz` and for the seeded loop of CI.
 //!
-//! A target panics where a reader does, where something without the key is believed, or where a message changes on its way out and
-//! in again.
+//! A target panics where a reader does, where something without the key is accepted, or where a message
+//! changes in an encoding round trip.
 #![forbid(unsafe_code)]
 
 use std::fmt::Debug;
@@ -20,10 +19,10 @@ use serde::de::DeserializeOwned;
 use ssl::log::{MessageKind, Packet, guess};
 use ssl::stream::FrameReader;
 
-/// A target: its name, which is its corpus' folder too, and what it does.
+/// A target: its name, which is its corpus' directory too, and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// All of them.
+/// All fuzz targets.
 pub const TARGETS: [Target; 6] = [
     ("frame", frame),
     ("line", line),
@@ -33,7 +32,7 @@ pub const TARGETS: [Target; 6] = [
     ("ssl", league),
 ];
 
-/// A frame of the air.
+/// Target: a radio frame.
 pub fn frame(bytes: &[u8]) {
     let (team, key) = (TeamId(1), TeamKey([0x5a; 16]));
     if let Ok(frame) = Frame::parse(bytes, team) {
@@ -47,7 +46,7 @@ pub fn frame(bytes: &[u8]) {
         let covered = out.len() - tags;
         assert_eq!(out[..covered], bytes[..covered]);
     }
-    // The key belongs to no one: nothing is believed.
+    // The key belongs to no sender: every frame is refused.
     let (mut robot, now) = (Link::new(team, RobotId::ZERO, key.of_robot(RobotId::ZERO), 3), Instant(0));
     let opened = robot.open(now, bytes);
     assert!(matches!(opened, Err(_) | Ok(Heard::Elsewhere)));
@@ -57,7 +56,7 @@ pub fn frame(bytes: &[u8]) {
     let _message = overhear_host(bytes, team, &TeamKey::ZERO.of_robot(RobotId::ZERO), RobotId::ZERO);
 }
 
-/// Bytes of a serial line.
+/// Target: bytes of a serial line.
 pub fn line(bytes: &[u8]) {
     let mut lines = Lines::new();
     for packet in bytes.iter().filter_map(|byte| lines.push(*byte)) {
@@ -70,26 +69,26 @@ pub fn line(bytes: &[u8]) {
     }
 }
 
-/// A robot's message.
+/// Target: a robot's message.
 pub fn team(bytes: &[u8]) {
     same_again::<TeamMessage>(bytes);
 }
 
-/// The host's message.
+/// Target: the host's message.
 pub fn host(bytes: &[u8]) {
     if let Some(message) = same_again::<HostMessage>(bytes) {
         let _sound = message.is_sound();
     }
 }
 
-/// A message between simulator and computer.
+/// Target: a message between simulator and computer.
 pub fn lockstep(bytes: &[u8]) {
     let question = postcard::take_from_bytes::<ToRobot<'_>>(bytes);
     let answer = postcard::take_from_bytes::<FromRobot<'_>>(bytes);
     assert!(format!("{question:?} {answer:?}").len() > 2);
 }
 
-/// A packet of the league: a datagram, and a stream.
+/// Target: a packet of the league, as a datagram and as a stream.
 pub fn league(bytes: &[u8]) {
     let guessed = guess(bytes);
     for kind in [
@@ -109,7 +108,7 @@ pub fn league(bytes: &[u8]) {
     }
 }
 
-/// If the bytes begin with a message, it is the same after going out and in again.
+/// If the bytes start with a message, it is the same after encoding and decoding.
 fn same_again<T>(bytes: &[u8]) -> Option<T>
 where
     T: Serialize + DeserializeOwned + PartialEq + Debug,

@@ -6,15 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::math;
 
-/// A direction or a turn, rad, always in (−π, π]. It has no `Ord`: "greater" means nothing on a circle.
+/// A direction or a turn, rad, always in (−π, π]. It has no `Ord`: "greater" is undefined on a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Angle(f32);
 
 impl Angle {
-    /// Along +x.
+    /// Direction along +x.
     pub const ZERO: Self = Self(0.0);
-    /// Along −x.
+    /// Direction along −x.
     pub const HALF_TURN: Self = Self(math::PI);
 
     /// Wraps `radians` into (−π, π]; NaN and infinities become 0.
@@ -36,29 +36,29 @@ impl Angle {
         Self(radians)
     }
 
-    /// From degrees.
+    /// Angle from degrees.
     pub fn degrees(degrees: f32) -> Self {
         Self::new(degrees * (math::PI / 180.0))
     }
 
-    /// In rad, (−π, π].
+    /// Value in rad, (−π, π].
     #[inline]
     pub fn radians(self) -> f32 {
         self.0
     }
 
-    /// In degrees, (−180, 180].
+    /// Value in degrees, (−180, 180].
     pub fn to_degrees(self) -> f32 {
         self.0 * (180.0 / math::PI)
     }
 
-    /// The size of the turn, 0 to π.
+    /// Absolute value, 0 to π.
     #[inline]
     pub fn abs(self) -> f32 {
         self.0.abs()
     }
 
-    /// `(sin, cos)`.
+    /// Sine and cosine, `(sin, cos)`.
     #[inline]
     pub fn sin_cos(self) -> (f32, f32) {
         math::sin_cos(self.0)

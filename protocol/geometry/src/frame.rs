@@ -1,8 +1,8 @@
-//! `frame`: coordinate frames as type parameters, so that a point of the field is never taken for a point of
+//! `frame`: coordinate frames as type parameters, so that a point of the field is never used as a point of
 //! the robot.
 //!
-//! Thin over nalgebra's `Point2` and `Vector2`; its `norm` and `distance` are avoided (they reach for libm's √).
-//! Metres, or metres per second where a [`Vector`] is a velocity.
+//! Thin wrappers of nalgebra's `Point2` and `Vector2`; its `norm` and `distance` are avoided (they call
+//! libm's √). Metres, or metres per second where a [`Vector`] is a velocity.
 
 use core::marker::PhantomData;
 use core::ops::{Add, AddAssign, Mul, Neg, Sub};
@@ -68,7 +68,7 @@ macro_rules! common {
             }
         }
         impl<F> $name<F> {
-            /// From its two coordinates.
+            /// Vector from its two coordinates.
             #[inline]
             pub const fn new(x: f32, y: f32) -> Self {
                 Self($inner::new(x, y), PhantomData)
@@ -83,7 +83,7 @@ macro_rules! common {
             pub fn y(self) -> f32 {
                 self.0.y
             }
-            /// Neither coordinate is NaN or infinite.
+            /// Whether neither coordinate is NaN or infinite.
             pub fn is_finite(self) -> bool {
                 self.0.x.is_finite() && self.0.y.is_finite()
             }
@@ -100,7 +100,7 @@ impl<F> Point<F> {
         (self - other).norm()
     }
 
-    /// The direction in which `other` lies, seen from here.
+    /// The direction from here to `other`.
     #[inline]
     pub fn direction_to(self, other: Self) -> Angle {
         (other - self).angle()
@@ -115,19 +115,19 @@ impl<F> Vector<F> {
         Self::new(length * c, length * s)
     }
 
-    /// Scalar product.
+    /// Scalar product with `other`.
     #[inline]
     pub fn dot(self, other: Self) -> f32 {
         self.0.x * other.0.x + self.0.y * other.0.y
     }
 
-    /// z of the cross product: positive when `other` lies to the left.
+    /// z of the cross product: positive when `other` points to the left.
     #[inline]
     pub fn cross(self, other: Self) -> f32 {
         self.0.x * other.0.y - self.0.y * other.0.x
     }
 
-    /// Length.
+    /// Euclidean length.
     #[inline]
     pub fn norm(self) -> f32 {
         math::sqrt(self.dot(self))
@@ -158,14 +158,14 @@ impl<F> Vector<F> {
         (length > 1e-6).then(|| self * (1.0 / length))
     }
 
-    /// The same numbers read in another frame; for the one place that turns or shifts between the two.
+    /// The same numbers in another frame; only for the one place that turns or shifts between the two.
     #[inline]
     pub(crate) fn reframed<G>(self) -> Vector<G> {
         Vector::new(self.0.x, self.0.y)
     }
 }
 
-// Written by coordinates: nalgebra's operators go through memory on a Cortex-M4, and cost twice as much there.
+// Written by coordinates: nalgebra's operators use memory on a Cortex-M4, and cost twice as much there.
 impl<F> Sub for Point<F> {
     type Output = Vector<F>;
     #[inline]

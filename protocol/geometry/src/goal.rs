@@ -1,19 +1,19 @@
-//! `goal`: the two goals. The one at this end of the field; the paper's words for the two, and who attacks
-//! where (docs/architecture.md §2.1).
+//! `goal`: the two goals: at which end of the field they are, the paper's names for them, and which team
+//! attacks where (docs/architecture.md §2.1).
 
 use serde::{Deserialize, Serialize};
 
 /// A goal, by the end of the field it stands at. Cases, problems and robots name the goal they defend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum GoalEnd {
-    /// At −x, the paper's "yellow": who defends it attacks towards +x.
+    /// At −x, the paper's "yellow": its defenders attack towards +x.
     Negative,
-    /// At +x, the paper's "cyan": who defends it attacks towards −x.
+    /// At +x, the paper's "cyan": its defenders attack towards −x.
     Positive,
 }
 
 impl GoalEnd {
-    /// The paper's word, as files and problems have it.
+    /// The paper's name, as in files and problems.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Negative => "yellow",
@@ -21,7 +21,7 @@ impl GoalEnd {
         }
     }
 
-    /// From the paper's word.
+    /// From the paper's name.
     pub fn from_word(word: &str) -> Option<Self> {
         match word {
             "yellow" => Some(Self::Negative),

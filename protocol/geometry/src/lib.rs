@@ -1,6 +1,6 @@
 //! `geometry`: frames, axes and units (docs/architecture.md §2.1).
 //!
-//! | frame | origin | axes | who thinks in it |
+//! | frame | origin | axes | used by |
 //! |---|---|---|---|
 //! | [`Field`] | centre of the field | +x along the length, +y to the left of +x | cases, robots, wire, simulator |
 //! | [`Attack`] | centre of the field | +x towards the goal we attack | the host's strategy only |
@@ -16,8 +16,9 @@
 //! let _ = ball - mouth;
 //! ```
 //!
-//! **Invariants.** No I/O, no clock, no allocation. Everything beyond `+ − × ÷` goes through [`math`], so that the
-//! same program gives the same bits on a PC and on a Cortex-M (a golden hash watches it, see [`math::golden_hash`]).
+//! **Invariants.** No I/O, no clock, no allocation. Everything beyond `+ − × ÷` goes through [`math`], so
+//! that the same program gives the same bits on a PC and on a Cortex-M (checked by a golden hash, see
+//! [`math::golden_hash`]).
 // On the robot one function is assembly.
 #![cfg_attr(not(target_arch = "arm"), forbid(unsafe_code))]
 #![no_std]

@@ -1,9 +1,9 @@
 //! `math`: elementary functions with equal bits on PC and Cortex-M (docs/architecture.md §2.4).
 //!
-//! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and cosine are
-//! single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer); the rest is libm,
-//! rounding is micromath's (exact). Never call `f32`'s own methods of these names in shared code: on the host they
-//! are the C library's, whose bits differ.
+//! √ is one `vsqrt.f32` on the target and libm on the host (both correctly rounded, so equal); sine and
+//! cosine are single-precision polynomials (libm's use doubles: soft-float on an M4F, about 50 times dearer);
+//! all other functions are libm's, rounding is micromath's (exact). Never call `f32`'s own methods of these
+//! names in shared code: on the host they are the C library's, whose bits differ.
 
 pub use core::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -20,14 +20,14 @@ pub fn sqrt(x: f32) -> f32 {
     }
 }
 
-/// √(x² + y²), without care for overflow (lengths of a field, not of a galaxy).
+/// √(x² + y²), without protection against overflow (unlikely for lengths of a field).
 #[inline]
 pub fn hypot(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
 
-/// The larger of two numbers, as `f32::max`: a NaN gives way to the other. On an M4F that one is a call; this is two
-/// comparisons, and one where the second is a known number.
+/// The larger of two numbers, as `f32::max`: of a NaN and a number it is the number. On an M4F that one is a
+/// call; this is two comparisons, and one where the second is a known number.
 #[inline]
 pub fn max(a: f32, b: f32) -> f32 {
     if a > b || b.is_nan() { a } else { b }
@@ -39,7 +39,7 @@ pub fn min(a: f32, b: f32) -> f32 {
     if a < b || b.is_nan() { a } else { b }
 }
 
-/// `(sin x, cos x)`; absolute error below 2e-7 for |x| < 1,000 rad (tested), rubbish beyond 10,000.
+/// `(sin x, cos x)`; absolute error below 2e-7 for |x| < 1,000 rad (tested), invalid beyond 10,000.
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let (r, quadrant) = reduce(x);
     let (s, c) = (sin_core(r), cos_core(r));
@@ -53,7 +53,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
 }
 
-/// eˣ.
+/// Exponential function, eˣ.
 #[inline]
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
@@ -71,8 +71,8 @@ pub fn floor(x: f32) -> f32 {
     micromath::F32(x).floor().0
 }
 
-/// `x` within `[low, high]`; NaN stays NaN. Never panics, unlike `f32::clamp`: bounds that contradict each other, or are NaN,
-/// give `high`, or are no bounds.
+/// `x` within `[low, high]`; NaN stays NaN. Never panics, unlike `f32::clamp`: bounds that contradict each
+/// other, or are NaN, give `high`, or are no bounds.
 #[inline]
 pub fn clamp(x: f32, low: f32, high: f32) -> f32 {
     let x = if x < low { low } else { x };
@@ -118,7 +118,8 @@ pub fn golden_hash(rounds: u32) -> u64 {
 
 /// Rounds of [`golden_hash`] that [`GOLDEN_HASH`] was taken with.
 pub const GOLDEN_ROUNDS: u32 = 10_000;
-/// What [`golden_hash`] gives everywhere; a new value means that shared mathematics changed its bits.
+/// The value of [`golden_hash`] on every platform; a new value means that shared mathematics changed its
+/// bits.
 pub const GOLDEN_HASH: u64 = 0x1c00e65377661807;
 
 /// Cody–Waite reduction by π/2 in three pieces: the remainder in about ±π/4 and the quadrant.

@@ -10,17 +10,17 @@ use crate::{Angle, Body, Field, Point, Vector};
 pub struct Pose<F> {
     /// The robot's centre, m.
     pub position: Point<F>,
-    /// Where it faces.
+    /// Direction it faces.
     pub heading: Angle,
 }
 
-/// Velocity and turning rate, as seen in frame `F`.
+/// Velocity and turning rate in frame `F`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Twist<F> {
-    /// m/s.
+    /// Linear velocity, m/s.
     pub linear: Vector<F>,
-    /// rad/s, counter-clockwise.
+    /// Turning rate, rad/s, counter-clockwise.
     pub angular: f32,
 }
 
@@ -37,28 +37,28 @@ impl<F> Default for Twist<F> {
 }
 
 impl Pose<Field> {
-    /// From millimetres and degrees, as files have them.
+    /// Pose from millimetres and degrees, the units of case files.
     pub fn from_mm_deg(x: f32, y: f32, heading: f32) -> Self {
         Self { position: Point::new(x * 0.001, y * 0.001), heading: Angle::degrees(heading) }
     }
 
-    /// A point of the field as this robot sees it.
+    /// A point of the field in this robot's frame.
     pub fn to_body(self, point: Point<Field>) -> Point<Body> {
         let v = self.vector_to_body(point - self.position);
         Point::new(v.x(), v.y())
     }
 
-    /// A point of the body, on the field.
+    /// A point of the body, in the field frame.
     pub fn to_field(self, point: Point<Body>) -> Point<Field> {
         self.position + self.vector_to_field(Vector::new(point.x(), point.y()))
     }
 
-    /// A displacement or velocity of the field as this robot sees it.
+    /// A displacement or velocity of the field in this robot's frame.
     pub fn vector_to_body(self, v: Vector<Field>) -> Vector<Body> {
         v.rotated(-self.heading).reframed()
     }
 
-    /// A displacement or velocity of the body, on the field.
+    /// A displacement or velocity of the body, in the field frame.
     pub fn vector_to_field(self, v: Vector<Body>) -> Vector<Field> {
         v.reframed::<Field>().rotated(self.heading)
     }

@@ -1,28 +1,28 @@
-//! `segment`: distance between a point and a segment. Obstacles, goal lines and ball legs ask this.
+//! `segment`: distance between a point and a segment, for obstacles, goal lines and ball legs.
 
 use crate::{Point, Vector};
 
 /// The straight stretch from `from` to `to`, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<F> {
-    /// Where it begins.
+    /// Its start.
     pub from: Point<F>,
-    /// Where it ends.
+    /// Its end.
     pub to: Point<F>,
 }
 
 impl<F: Copy> Segment<F> {
-    /// From its two ends.
+    /// Segment between its two ends.
     pub fn new(from: Point<F>, to: Point<F>) -> Self {
         Self { from, to }
     }
 
-    /// From `from` to `to`.
+    /// Vector from `from` to `to`.
     pub fn vector(self) -> Vector<F> {
         self.to - self.from
     }
 
-    /// How far along the segment the foot of `point` lies, as a share: 0 at `from`, 1 at `to`, not clamped.
+    /// Position of the foot of `point` along the segment, as a share: 0 at `from`, 1 at `to`, not clamped.
     pub fn share_of(self, point: Point<F>) -> f32 {
         let v = self.vector();
         let squared = v.dot(v);

@@ -1,4 +1,4 @@
-//! `shape`: discs, boxes along the axes and capsules: what robots keep out of. Metres.
+//! `shape`: discs, boxes along the axes and capsules, used as keep-out regions. Metres.
 
 use crate::{Point, Segment, Vector, math};
 
@@ -7,9 +7,9 @@ use crate::{Point, Segment, Vector, math};
 pub enum Shape<F> {
     /// All points within `radius` of `center`.
     Disc {
-        /// Its middle.
+        /// Centre of the disc.
         center: Point<F>,
-        /// m, ≥ 0.
+        /// Radius, m, ≥ 0.
         radius: f32,
     },
     /// All points between two corners, sides along the axes.
@@ -21,9 +21,9 @@ pub enum Shape<F> {
     },
     /// All points within `radius` of a segment (the rules' "stadium").
     Capsule {
-        /// Its spine.
+        /// Centre line.
         spine: Segment<F>,
-        /// m, ≥ 0.
+        /// Radius, m, ≥ 0.
         radius: f32,
     },
 }

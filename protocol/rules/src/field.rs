@@ -1,34 +1,35 @@
 //! `field`: dimensions of the field. All lengths in metres, points in the field frame.
 //!
-//! Lines are measured between their centres (rules 2026, playing environment), so a line's outer edge lies half a line's
-//! width further out.
+//! Distances are measured between the lines' centres (rules 2026, playing environment), so a line's outer
+//! edge lies half a line's width further out.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, math};
 use heapless::Vec;
 
 use crate::limits::ROBOT_RADIUS;
 
-/// Shapes that one defence area is made of, at most.
+/// Most shapes of one defence area.
 pub const AREA_SHAPES_MAX: usize = 3;
 
-/// The lines of a field.
+/// Dimensions of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldSpec {
-    /// From goal line to goal line.
+    /// Distance from goal line to goal line.
     pub length: f32,
-    /// From touch line to touch line.
+    /// Distance from touch line to touch line.
     pub width: f32,
-    /// Carpet beyond the touch lines, up to the wall.
+    /// Field surface beyond the touch lines, up to the wall.
     pub margin: f32,
-    /// Carpet beyond the goal lines, up to the wall.
+    /// Field surface beyond the goal lines, up to the wall.
     pub goal_line_margin: f32,
-    /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is none.
+    /// Goal substitution area: from the wall behind the own goal line towards the field; 0 where there is
+    /// none.
     pub goal_substitution: f32,
     /// Between the goalposts.
     pub goal_width: f32,
-    /// From the goal line to the goal's back.
+    /// Distance from the goal line to the goal's back.
     pub goal_depth: f32,
-    /// From the carpet to the goal's upper edge.
+    /// Height of the goal's upper edge above the field surface.
     pub goal_height: f32,
     /// Thickness of the goal's walls.
     pub goal_wall: f32,
@@ -36,9 +37,9 @@ pub struct FieldSpec {
     pub penalty_depth: f32,
     /// Penalty (defence) area: along the goal line.
     pub penalty_width: f32,
-    /// Penalty (defence) area: what its border looks like.
+    /// Penalty (defence) area: form of its border.
     pub penalty_form: AreaForm,
-    /// From the attacked goal's centre to the mark that penalties are taken from.
+    /// Distance from the attacked goal's centre to the penalty mark.
     pub penalty_mark: f32,
     /// Radius of the centre circle.
     pub center_radius: f32,
@@ -55,16 +56,16 @@ pub enum AreaForm {
     QuarterCircles,
 }
 
-/// A number that no field can have.
+/// An invalid dimension of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldFault {
-    /// Which number, by its field in [`FieldSpec`].
+    /// Name of the number's field in [`FieldSpec`].
     pub field: &'static str,
-    /// What it was, m.
+    /// Its value, m.
     pub value: f32,
-    /// The least it may be, m.
+    /// Smallest valid value, m.
     pub least: f32,
-    /// The most it may be, m; some limits follow from other numbers of the same field.
+    /// Largest valid value, m; some limits follow from other numbers of the same field.
     pub most: f32,
 }
 
@@ -77,16 +78,16 @@ impl core::fmt::Display for FieldFault {
 
 impl core::error::Error for FieldFault {}
 
-/// Shortest and longest field that is believed, m: a table top, and twice division A's length.
+/// Shortest and longest valid field, m: a table top, and twice division A's length.
 const LENGTH: [f32; 2] = [1.0, 24.0];
-/// The widest margin that is believed, m: more than any hall leaves around a field.
+/// The widest margin that is accepted, m: more than any venue leaves around a field.
 const MARGIN_MAX: f32 = 3.0;
-/// The deepest goal and the thickest line that are believed, m.
+/// The deepest valid goal and the thickest valid line, m.
 const GOAL_DEPTH_MAX: f32 = 1.0;
 const LINE_WIDTH_MAX: f32 = 0.1;
 
 impl FieldSpec {
-    /// The same field, if its numbers can be those of a field; for numbers from outside.
+    /// The same field, if its numbers are valid; for numbers from outside.
     pub fn checked(self) -> Result<Self, FieldFault> {
         let half = self.length * 0.5;
         let checks = [
@@ -124,12 +125,12 @@ impl FieldSpec {
         goal.sign() as f32 * self.length * 0.5
     }
 
-    /// Middle of the goal mouth at that end.
+    /// Middle of the goal opening at that end.
     pub fn goal_center(&self, goal: GoalEnd) -> Point<Field> {
         Point::new(self.goal_line(goal), 0.0)
     }
 
-    /// The goal mouth at that end, from its post at −y to its post at +y.
+    /// The goal opening at that end, from its post at −y to its post at +y.
     pub fn goal_mouth(&self, goal: GoalEnd) -> Segment<Field> {
         let (x, y) = (self.goal_line(goal), self.goal_width * 0.5);
         Segment::new(Point::new(x, -y), Point::new(x, y))
@@ -140,17 +141,18 @@ impl FieldSpec {
         p.x().abs() <= self.length * 0.5 && p.y().abs() <= self.width * 0.5
     }
 
-    /// All the carpet within the walls.
+    /// The whole field surface within the walls.
     pub fn carpet(&self) -> Shape<Field> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         Shape::Box { low: Point::new(-x, -y), high: Point::new(x, y) }
     }
 
-    /// Where the centre of a robot that defends `goal` lies while the robot does not count as being on the field: all of it in
-    /// the goal substitution area. None where that area is narrower than a robot.
+    /// Region of the centre of a robot that defends `goal` and does not count as being on the field: the
+    /// whole robot in the goal substitution area. `None` where that area is narrower than a robot.
     ///
-    /// The league's game controller counts every robot outside this box (its `NumTeamRobotsExcludingSubstitutionZone`), in
-    /// both divisions; the centre substitution area does not stop it from counting.
+    /// The league's game controller counts every robot outside this box (its
+    /// `NumTeamRobotsExcludingSubstitutionZone`), in both divisions; the centre substitution area does not
+    /// stop it from counting.
     pub fn goal_substitution_area(&self, goal: GoalEnd) -> Option<Shape<Field>> {
         let (x, y) = (self.length * 0.5 + self.goal_line_margin, self.width * 0.5 + self.margin);
         let edge = x - self.goal_substitution + ROBOT_RADIUS;
@@ -190,13 +192,13 @@ impl FieldSpec {
         self.defence_area(goal).iter().map(|shape| shape.distance_to(p)).fold(f32::INFINITY, f32::min)
     }
 
-    /// In the penalty area at that end, lines included.
+    /// Whether the point is in the penalty area at that end, lines included.
     pub fn in_penalty_area(&self, goal: GoalEnd, p: Point<Field>) -> bool {
         let depth = self.length * 0.5 - p.x() * goal.sign() as f32;
         depth >= 0.0 && self.defence_area(goal).iter().any(|shape| shape.contains(p))
     }
 
-    /// Where a penalty at that goal is taken from.
+    /// Penalty mark for that goal.
     pub fn penalty_spot(&self, attacked: GoalEnd) -> Point<Field> {
         Point::new(self.goal_line(attacked) - attacked.sign() as f32 * self.penalty_mark, 0.0)
     }
@@ -235,21 +237,23 @@ mod tests {
     fn the_round_area_of_2013_has_no_corners() {
         let field = League::Ssl2013.field();
         let goal = GoalEnd::Negative;
-        // The middle of the front, the start of the curve, 45° along it (0.8 / √2 = 0.566), and the square's corner.
+        // The middle of the front, the start of the curve, 45° along it (0.8 / √2 = 0.566), and the square's
+        // corner.
         assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.0)));
         assert!(field.in_penalty_area(goal, Point::new(-2.201, 0.175)));
         assert!(field.in_penalty_area(goal, Point::new(-3.0 + 0.565, 0.175 + 0.565)));
         assert!(!field.in_penalty_area(goal, Point::new(-3.0 + 0.567, 0.175 + 0.567)));
         assert!(!field.in_penalty_area(goal, Point::new(-2.25, 0.95)));
         assert!(!field.in_penalty_area(goal, Point::new(-3.01, 0.0)));
-        // From the front, straight; from beside the curve, along its radius.
+        // Straight from the front; along its radius beside the curve.
         assert!((field.distance_to_area(goal, Point::new(-1.2, 0.0)) - 1.0).abs() < 1e-6);
         assert!((field.distance_to_area(goal, Point::new(-3.0, 1.475)) - 0.5).abs() < 1e-6);
     }
 
     #[test]
     fn a_robot_behind_its_own_goal_line_does_not_count_where_the_area_takes_all_of_it() {
-        // The game controller's own numbers: 6 + 0.6 − 0.3 + 0.09 = 6.39 m, up to the wall at 6.6 m, across all of the carpet.
+        // The game controller's own numbers: 6 + 0.6 − 0.3 + 0.09 = 6.39 m, up to the wall at 6.6 m, across
+        // the whole field surface.
         let field = League::DivisionA.field();
         for (x, counts) in [(6.385, true), (6.395, false), (6.595, false), (6.605, true)] {
             assert_eq!(field.counts(GoalEnd::Positive, Point::new(x, 4.75)), counts, "{x}");
@@ -257,7 +261,8 @@ mod tests {
             assert!(field.counts(GoalEnd::Negative, Point::new(x, 0.0)), "behind their goal it counts");
         }
         assert!(field.counts(GoalEnd::Positive, Point::new(6.45, 4.85)), "beyond the wall");
-        // Division B has no such area by the rules; where vision tells of one all the same, the controller goes by that.
+        // Division B has no such area by the rules; where vision reports one all the same, the controller
+        // uses it.
         let field = League::DivisionB.field();
         assert!(field.counts(GoalEnd::Positive, Point::new(4.65, 1.5)));
         let field = FieldSpec { goal_substitution: 0.3, ..field };

@@ -1,9 +1,9 @@
-//! `game`: phases of the game. The phase of the game, as robots, host, referee and simulator name it (rules
-//! 2026, chapter on referee commands).
+//! `game`: phases of the game, common to robots, host, referee and simulator (rules 2026, chapter on referee
+//! commands).
 
 use serde::{Deserialize, Serialize};
 
-/// A team by its colour; not to be taken for the goals that case files call "yellow" and "cyan".
+/// A team by its colour; not to be confused with the goals that case files call "yellow" and "cyan".
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Colour {
     /// Yellow centre dots.
@@ -21,7 +21,7 @@ impl Colour {
         }
     }
 
-    /// The colour's name, as options and files have it.
+    /// The colour's name in options and files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Yellow => "yellow",
@@ -30,43 +30,43 @@ impl Colour {
     }
 }
 
-/// A team as seen from one of them.
+/// A team from the side of one of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Side {
-    /// The speaker's.
+    /// The own team's.
     Ours,
-    /// The opponents'.
+    /// The opponents' team's.
     Theirs,
 }
 
-/// What the rules allow a robot beyond others.
+/// A robot's role under the rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Duty {
-    /// Nothing more.
+    /// Field player without special rights.
     #[default]
     Player,
-    /// The one that may be in the own defence area.
+    /// The robot that may be in the own defence area.
     Keeper,
-    /// The one that takes our restart: it may come near the ball before it is in play.
+    /// The robot that kicks our restart: it may come near the ball before it is in play.
     Taker,
 }
 
-/// A node of the league's state graph; `Who` is [`Colour`] for those who look from outside and [`Side`] for a team.
+/// A node of the league's state graph; `Who` is [`Colour`] for an outside observer and [`Side`] for a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Phase<Who> {
-    /// Nobody moves.
+    /// No robot moves.
     Halt,
-    /// Slow, away from the ball, nobody touches it.
+    /// Slow, away from the ball, no robot touches it.
     Stop,
-    /// A team has taken a time-out: as halt, but people may work on robots.
+    /// A team has taken a time-out: as halt, but team members may work on robots.
     Timeout(Who),
     /// This team brings the ball to the designated position.
     BallPlacement(Who),
-    /// Taking places for this team's kick-off.
+    /// Preparation of this team's kick-off.
     PrepareKickoff(Who),
     /// This team may kick off.
     Kickoff(Who),
-    /// Taking places for this team's penalty.
+    /// Preparation of this team's penalty.
     PreparePenalty(Who),
     /// This team may shoot its penalty.
     Penalty(Who),
@@ -77,14 +77,14 @@ pub enum Phase<Who> {
 }
 
 impl Phase<Colour> {
-    /// The same phase in the words of the team of that colour.
+    /// The same phase from the side of the team of that colour.
     pub fn seen_by(self, us: Colour) -> Phase<Side> {
         self.map(|colour| if colour == us { Side::Ours } else { Side::Theirs })
     }
 }
 
 impl<Who> Phase<Who> {
-    /// The same phase with the team named in another way.
+    /// The same phase with the team named by another type.
     pub fn map<Other>(self, name: impl FnOnce(Who) -> Other) -> Phase<Other> {
         match self {
             Self::Halt => Phase::Halt,

@@ -1,8 +1,9 @@
 //! `keep_out`: the rules of 2026 as shapes: forbidden regions, speed limits and touch bans for a robot.
 //!
-//! Robots' skills, host and referee ask here, so that there is one truth. Shapes are for the robot's *body*: who plans for its
-//! centre grows them by its radius, and by what it takes for its own noise ([`KeepOut::offence`] does the former).
-//! Lines belong to the areas they bound. Field frame, m. Nothing here remembers: double touches, graces and counts are the caller's.
+//! Robots' skills, host and referee call these functions, so that there is one definition. Shapes are for the
+//! robot's *body*: a planner for its centre grows them by its radius, and by its own noise
+//! ([`KeepOut::offence`] does the former). Lines belong to the areas they bound. Field frame, m. No state is
+//! kept here: double touches, grace times and counts are the caller's.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape};
 use heapless::Vec;
@@ -13,25 +14,26 @@ use crate::limits::{
 };
 use crate::{Duty, FieldSpec, Phase, Side};
 
-/// The longest list of shapes: a keeper at a penalty, with room to spare.
+/// Most shapes in a list: a keeper at a penalty, with a reserve.
 pub const FORBIDDEN_MAX: usize = 12;
 
-/// What decides where a robot may be. `Side` is as its own team sees it.
+/// Inputs that decide where a robot may be. `Side` is from its own team's side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation<'a> {
-    /// The field.
+    /// Dimensions of the field.
     pub field: &'a FieldSpec,
     /// The goal its team defends.
     pub own: GoalEnd,
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// What it is in its team.
+    /// Its role in the team.
     pub duty: Duty,
-    /// Where the ball is; unknown: nothing around it is forbidden.
+    /// Position of the ball; `None`: nothing around it is forbidden.
     pub ball: Option<Point<Field>>,
-    /// Where the ball is to be placed; only asked in ball placement.
+    /// Placement target of the ball; only used in ball placement.
     pub placement: Option<Point<Field>>,
-    /// Whether the ball has left its place since NORMAL_START; only asked of a penalty's keeper, who then may move.
+    /// Whether the ball has left its place since NORMAL_START; only used for a penalty's keeper, who then may
+    /// move.
     pub ball_in_play: bool,
 }
 
@@ -42,13 +44,13 @@ pub enum Why {
     BallDistance,
     /// On the ball before NORMAL_START.
     BallTouch,
-    /// In the own defence area without being the keeper.
+    /// In the own defence area, except for the keeper.
     OwnArea,
     /// In the opponents' defence area, or within 0.2 m of it on STOP and at free kicks.
     OpponentArea,
     /// In the other half at a kick-off.
     OtherHalf,
-    /// In the centre circle at a kick-off without being the kicker.
+    /// In the centre circle at a kick-off, except for the kicker.
     CentreCircle,
     /// Less than 1 m behind the ball at a penalty.
     BehindBall,
@@ -56,15 +58,17 @@ pub enum Why {
     KeeperLine,
     /// Within 0.5 m of the line from ball to target while opponents place.
     Stadium,
-    /// Within 0.5 m of the target while a mate places: a force start may follow, and it would not count as placed.
+    /// Within 0.5 m of the target while a teammate places: a force start may follow, and it would not count
+    /// as placed.
     Target,
-    /// Beyond the carpet.
+    /// Beyond the field surface.
     Border,
 }
 
 impl Why {
-    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because nothing good can be
-    /// done there: in the opponents' area the ball may not be touched, at the target mates are in the way.
+    /// Whether being there is an offence or a failure by itself. Where it is not, robots keep out because
+    /// being there is useless: in the opponents' area the ball may not be touched, at the target teammates
+    /// are on the path.
     pub const fn offends(self, phase: Phase<Side>) -> bool {
         match self {
             Self::Target | Self::Border => false,
@@ -77,23 +81,24 @@ impl Why {
 /// A region and the reason to keep out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forbidden {
-    /// No part of the body in here.
+    /// No part of the body may be in here.
     pub shape: Shape<Field>,
-    /// Because.
+    /// Reason for the region.
     pub why: Why,
 }
 
-/// Where a robot must not be.
+/// Regions where a robot must not be, and the one it must stay in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeepOut {
-    /// No part of the body in any of these.
+    /// No part of the body may be in any of these.
     pub forbidden: Vec<Forbidden, FORBIDDEN_MAX>,
-    /// The whole body in here: the carpet within the walls.
+    /// The whole body must be in here: the field surface within the walls.
     pub within: Shape<Field>,
 }
 
 impl KeepOut {
-    /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed), if any.
+    /// The first region that a disc-shaped body at this place reaches into (to touch its border is allowed),
+    /// if any.
     pub fn offence(&self, center: Point<Field>, radius: f32) -> Option<Why> {
         let hit = self.forbidden.iter().find(|region| region.shape.distance_to(center) < radius);
         let out = self.within.distance_to(center) > -radius;
@@ -101,7 +106,7 @@ impl KeepOut {
     }
 }
 
-/// Where this robot must not be.
+/// Keep-out regions of this robot.
 pub fn keep_out(s: &Situation) -> KeepOut {
     let mut list = List(Vec::new());
     let keeper = s.duty == Duty::Keeper;
@@ -156,7 +161,7 @@ pub fn keep_out(s: &Situation) -> KeepOut {
     KeepOut { forbidden: list.0, within: s.field.carpet() }
 }
 
-/// How fast a robot may go, m/s; none: as fast as it can.
+/// Speed limit of a robot, m/s; `None`: no limit.
 pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
     match phase {
         Phase::Halt | Phase::Timeout(_) => Some(0.0),
@@ -168,9 +173,9 @@ pub const fn speed_limit<Who>(phase: &Phase<Who>) -> Option<f32> {
 /// Whether a robot may touch the ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// It may.
+    /// It may touch the ball.
     Allowed,
-    /// The phase lets nobody, not its team, or only its team's taker (or keeper).
+    /// The phase allows no robot, not its team, or only its team's kicker (or keeper).
     NotNow,
     /// It is at least partly in the opponents' defence area.
     InOpponentArea,
@@ -178,8 +183,7 @@ pub enum Touch {
     InOwnArea,
 }
 
-/// Whether a robot with its centre here may touch the ball now. That a taker must not touch it twice is for the caller to
-/// remember.
+/// Whether a robot with its centre here may touch the ball now. The caller keeps track of double touches.
 pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     let may = match s.phase {
         Phase::Run => true,
@@ -205,7 +209,7 @@ pub fn may_touch_ball(s: &Situation, center: Point<Field>) -> Touch {
     }
 }
 
-/// The list while it is made. It never overflows: a test counts every situation.
+/// The list under construction. It never overflows: a test counts every situation.
 struct List(Vec<Forbidden, FORBIDDEN_MAX>);
 
 impl List {
@@ -234,7 +238,7 @@ impl List {
         }
     }
 
-    /// All the carpet from x = `from` to the wall behind this goal.
+    /// The whole field surface from x = `from` to the wall behind this goal.
     fn half_plane(&mut self, s: &Situation, why: Why, from: f32, towards: GoalEnd) {
         let wall = s.field.goal_line(towards) + towards.sign() as f32 * s.field.goal_line_margin;
         let y = s.field.width * 0.5 + s.field.margin;
@@ -242,8 +246,8 @@ impl List {
         self.add(why, Shape::Box { low: Point::new(low, -y), high: Point::new(high, y) });
     }
 
-    /// The kicker may be in the whole circle, of whose far half a box cannot tell; what is left open is the largest
-    /// upright square in it.
+    /// The kicker may be in the whole circle, whose far half a box cannot describe; the largest upright
+    /// square in it is left open.
     fn kicker(&mut self, s: &Situation) {
         let side = s.field.center_radius * core::f32::consts::FRAC_1_SQRT_2;
         let other = s.own.opposite();
@@ -268,7 +272,7 @@ impl List {
             let on = ball.map(|center| Shape::Disc { center, radius: BALL_RADIUS });
             self.add_some(Why::BallTouch, on);
         } else {
-            // A ball that lies elsewhere is not yet where the kick is taken from: people carry it there.
+            // A ball that lies elsewhere is not yet where the kick is taken from: it is placed there by hand.
             let mark = s.field.penalty_spot(attacked);
             let ball = s.ball.filter(|ball| ball.distance(mark) < NEAR_MARK).unwrap_or(mark);
             let from = ball.x() - attacked.sign() as f32 * PENALTY_BEHIND;
@@ -276,8 +280,8 @@ impl List {
         }
     }
 
-    /// The body touches the goal line as long as all of it is within its own width of the line, on either side; and it is
-    /// between the posts.
+    /// The body touches the goal line as long as all of it is within its own width of the line, on either
+    /// side; and it is between the posts.
     fn keeper_line(&mut self, s: &Situation) {
         let (line, sign) = (s.field.goal_line(s.own), s.own.sign() as f32);
         let strip = 2.0 * ROBOT_RADIUS;

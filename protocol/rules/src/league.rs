@@ -1,21 +1,22 @@
 //! `league`: the leagues: field, robots and ball.
 //!
-//! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; carpet 6 × 4 m
-//! as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their fields; goals 0.3 m high and
-//! the penalty mark are estimates that nothing depends on.
+//! Four-legged 2007: field and robot from the measures that ThinkingCapSim gives for the rules of 2007; field
+//! surface 6 × 4 m as in Ros et al. 2009 §6.1; lines 25 mm wide, as the league's teams described their
+//! fields; goals 0.3 m high and the penalty mark are estimates that nothing depends on.
 //!
-//! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those that the league's programs carried for the single-size
-//! field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75 m, 0.25 m of margin within
-//! the referee's walk.
+//! SSL 2013: 6 × 4 m as Biswas et al. 2014 play; the markings are those of the league's programs for the
+//! single-size field of 2013 and 2014: defence area of radius 0.8 m and stretch 0.35 m, penalty mark at 0.75
+//! m, 0.25 m of margin within the referee's walk.
 //!
-//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines since 2026, of which
-//! the 0.3 m at the wall are the goal substitution area; division B has none (chapter on substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
+//! Divisions: rules of 2026, chapter on the playing environment. Division A has 0.6 m behind its goal lines
+//! since 2026, of which the 0.3 m at the wall are the goal substitution area; division B has none (chapter on
+//! substitution); the goal walls are 0.02 m thick, all lines 0.01 m.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{AreaForm, FieldSpec};
 
-/// A league's world.
+/// A league.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum League {
     /// RoboCup Four-Legged League, 2007: AIBO ERS-7 on 5.4 × 3.6 m.
@@ -31,21 +32,21 @@ pub enum League {
 /// A robot's footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotSpec {
-    /// Radius of the disc that stands for it, m.
+    /// Radius of the disc that models it, m.
     pub radius: f32,
 }
 
-/// The ball.
+/// Properties of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallSpec {
-    /// m.
+    /// Radius, m.
     pub radius: f32,
-    /// How fast a rolling ball slows down, m/s².
+    /// Deceleration of a rolling ball, m/s².
     pub rolling_deceleration: f32,
 }
 
 impl League {
-    /// The name used in folders, files and options.
+    /// The name used in directories, files and options.
     pub const fn name(self) -> &'static str {
         match self {
             Self::FourLegged => "four-legged",
@@ -55,7 +56,7 @@ impl League {
         }
     }
 
-    /// Its field.
+    /// Field of the league.
     pub const fn field(self) -> FieldSpec {
         match self {
             Self::FourLegged => FieldSpec {
@@ -129,7 +130,7 @@ impl League {
         }
     }
 
-    /// Its robots.
+    /// Robots of the league.
     pub const fn robot(self) -> RobotSpec {
         match self {
             Self::FourLegged => RobotSpec { radius: 0.12 },
@@ -138,12 +139,14 @@ impl League {
         }
     }
 
-    /// Its ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls on carpet, rounded up;
-    /// radius: the league's orange ball of about 85 mm across, from memory, no source found.
+    /// Its ball. Deceleration: middle of the 0.30–0.35 m/s² of SimRobot's 2-D model for such balls on the
+    /// field surface, rounded up; radius: the league's orange ball of about 85 mm across, from memory, no
+    /// source found.
     pub const fn ball(self) -> BallSpec {
         match self {
             Self::FourLegged => BallSpec { radius: 0.0425, rolling_deceleration: 0.35 },
-            // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured (0.26–0.5).
+            // A golf ball, 43 mm across; ER-Force's rolling deceleration, the middle of what teams measured
+            // (0.26–0.5).
             Self::Ssl2013 | Self::DivisionB | Self::DivisionA => {
                 BallSpec { radius: 0.0215, rolling_deceleration: 0.35 }
             }

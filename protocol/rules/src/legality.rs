@@ -1,8 +1,8 @@
-//! `legality`: predicates of offences. The predicates an automatic referee needs, each with its rule (2026);
-//! none of them remembers anything.
+//! `legality`: predicates of offences for an automatic referee, each with its rule (2026), without state.
 //!
-//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong to the areas and the
-//! field that they bound, so those are left over a line's outer edge. Field frame, m, m/s.
+//! Distances from a robot are measured from its nearest side with an assumed radius of 0.09 m. Lines belong
+//! to the areas and the field that they bound, so those are left over a line's outer edge. Field frame, m,
+//! m/s.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 
@@ -17,7 +17,7 @@ use crate::{FieldSpec, Limits};
 pub enum Line {
     /// A touch line: the one at +y, or the one at −y.
     Touch {
-        /// At +y.
+        /// Whether it is the line at +y.
         positive: bool,
     },
     /// A goal line beside the goal.
@@ -26,16 +26,16 @@ pub enum Line {
     Mouth(GoalEnd),
 }
 
-/// Where a ball left the field.
+/// Position and line where a ball left the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Which line.
+    /// Line that was crossed.
     pub line: Line,
-    /// The point of that line where the ball's centre went over it.
+    /// The point of that line where the ball's centre crossed it.
     pub at: Point<Field>,
 }
 
-/// How far beyond a line's centre the ball's centre is when the whole ball is over the whole line, m.
+/// Distance of the ball's centre beyond a line's centre when the whole ball is over the whole line, m.
 fn beyond(field: &FieldSpec) -> f32 {
     BALL_RADIUS + field.line_width * 0.5
 }
@@ -46,10 +46,11 @@ pub fn ball_is_out(field: &FieldSpec, ball: Point<Field>) -> bool {
     ball.x().abs() > field.length * 0.5 + over || ball.y().abs() > field.width * 0.5 + over
 }
 
-/// The line that the ball crossed between two sightings, the second of which is out; `None` while it is in.
+/// The line that the ball crossed between two observations, the second of which is out; `None` while it is
+/// in.
 ///
-/// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line, straight: at most a
-/// ball's radius off.
+/// A ball whose centre was beyond a line's centre before is taken to have come over the nearest line,
+/// straight: at most a ball's radius off.
 pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> Option<Crossing> {
     if !ball_is_out(field, now) {
         return None;
@@ -57,7 +58,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     let (x, y) = (field.length * 0.5, field.width * 0.5);
     let from = if field.contains(before) { before } else { field.clamp(now, 0.0) };
     let (dx, dy) = (now.x() - from.x(), now.y() - from.y());
-    // Share of the way at which the centre crosses a line's centre; only the lines that it goes beyond count.
+    // Share of the path at which the centre crosses a line's centre; only the lines that it goes beyond
+    // count.
     let share = |start: f32, way: f32, end: f32, limit: f32| {
         let crossed = end.abs() > limit && way != 0.0;
         crossed.then(|| (((if end < 0.0 { -limit } else { limit }) - start) / way).clamp(0.0, 1.0))
@@ -81,7 +83,8 @@ pub fn crossing(field: &FieldSpec, before: Point<Field>, now: Point<Field>) -> O
     }
 }
 
-/// Whether all of the ball is in this goal: over the line, between the posts, under the upper edge of the walls.
+/// Whether all of the ball is in this goal: over the line, between the posts, under the upper edge of the
+/// walls.
 pub fn ball_in_goal(field: &FieldSpec, goal: GoalEnd, ball: Point<Field>, height: f32) -> bool {
     let depth = (ball.x() - field.goal_line(goal)) * goal.sign() as f32;
     depth > beyond(field)
@@ -101,8 +104,9 @@ pub enum NoGoal {
     Foul,
 }
 
-/// Whether a ball in the goal counts: `height` is the greatest since the scorers' last touch, m (the ball's lower side
-/// where it is known, else its centre), `since_foul` the time since their last foul that did not stop the game, s.
+/// Whether a ball in the goal counts: `height` is the greatest since the scorers' last touch, m (the ball's
+/// lower side where it is known, else its centre), `since_foul` the time since their last foul that did not
+/// stop the game, s.
 pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option<f32>) -> Option<NoGoal> {
     if robots > robots_allowed {
         Some(NoGoal::TooManyRobots)
@@ -113,19 +117,19 @@ pub fn no_goal(robots: u32, robots_allowed: u32, height: f32, since_foul: Option
     }
 }
 
-/// How much of a robot is in a defence area.
+/// Share of a robot in a defence area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum InArea {
-    /// Nothing.
+    /// No part of it.
     Out,
-    /// Some of it.
+    /// A part of the robot.
     Partly,
-    /// All of it.
+    /// The whole robot.
     Entirely,
 }
 
-/// How much of a robot with its centre here is in the defence area at that end, lines included; a robot behind the goal line is
-/// out.
+/// Share of a robot with its centre here that is in the defence area at that end, lines included; a robot
+/// behind the goal line is out.
 pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea {
     let behind = (robot.x() - field.goal_line(goal)) * goal.sign() as f32;
     let edge = field.line_width * 0.5;
@@ -135,7 +139,8 @@ pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea 
     } else if behind <= -ROBOT_RADIUS + edge && distance <= -ROBOT_RADIUS {
         InArea::Entirely
     } else {
-        // Within a robot's width of the goal line a robot hangs over it, but the part on the field may all be inside.
+        // Within a robot's width of the goal line a robot may extend beyond it, but the part on the field may
+        // all be inside.
         let on_field = Point::new(
             math::clamp(robot.x(), -field.length * 0.5 + ROBOT_RADIUS, field.length * 0.5 - ROBOT_RADIUS),
             robot.y(),
@@ -145,7 +150,7 @@ pub fn in_area(field: &FieldSpec, goal: GoalEnd, robot: Point<Field>) -> InArea 
     }
 }
 
-/// How far the robot's side is from the ball's centre, m.
+/// Distance from the robot's edge to the ball's centre, m.
 pub fn ball_distance(robot: Point<Field>, ball: Point<Field>) -> f32 {
     robot.distance(ball) - ROBOT_RADIUS
 }
@@ -161,7 +166,7 @@ pub fn too_close_to_area(field: &FieldSpec, opponents: GoalEnd, robot: Point<Fie
     field.distance_to_area(opponents, robot) - edge - ROBOT_RADIUS < OPPONENT_AREA_DISTANCE
 }
 
-/// In the way of the opponents' placement: within 0.5 m of the line from the ball to its target.
+/// Interferes with the opponents' placement: within 0.5 m of the line from the ball to its target.
 pub fn interferes(robot: Point<Field>, ball: Point<Field>, target: Point<Field>) -> bool {
     Segment::new(ball, target).distance_to(robot) - ROBOT_RADIUS < BALL_DISTANCE
 }
@@ -176,17 +181,18 @@ pub fn kicked_too_fast(limits: &Limits, speed: f32) -> bool {
     speed > limits.ball_speed
 }
 
-/// The ball was dribbled too far from where the contact began.
+/// The ball was dribbled too far from where the contact started.
 pub fn dribbled_too_far(limits: &Limits, from: Point<Field>, ball: Point<Field>) -> bool {
     from.distance(ball) > limits.dribble
 }
 
-/// The taker touches the ball a second time: nobody else has touched it since, and it had moved 0.05 m from its place.
+/// The kicker touches the ball a second time: no other robot has touched it since, and it had moved 0.05 m
+/// from its place.
 pub fn double_touch(place: Point<Field>, ball: Point<Field>, touched_by_other: bool) -> bool {
     !touched_by_other && place.distance(ball) >= IN_PLAY_DISTANCE
 }
 
-/// Who is to blame for a collision.
+/// Team that is responsible for a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
     /// The first robot.
@@ -197,10 +203,10 @@ pub enum Blame {
     Both,
 }
 
-/// A collision that was too hard.
+/// A collision that was too fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crash {
-    /// Whose foul.
+    /// Team that commits the foul.
     pub blame: Blame,
     /// Speed difference along the line between the robots, m/s.
     pub speed: f32,
@@ -226,8 +232,8 @@ pub fn crash(first: (Point<Field>, Vector<Field>), second: (Point<Field>, Vector
     Some(Crash { blame, speed, difference })
 }
 
-/// The keeper has turned a penalty's ball by at least 90° (where the scalar product changes its sign), which ends it without
-/// a goal.
+/// The keeper has turned a penalty's ball by at least 90° (where the scalar product changes its sign), which
+/// ends it without a goal.
 pub fn turned_back(before: Vector<Field>, after: Vector<Field>) -> bool {
     before.dot(after) <= 0.0 && before.norm() > 0.0
 }

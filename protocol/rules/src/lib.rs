@@ -1,11 +1,12 @@
 //! `rules`: rules of the leagues. Dimensions, limits, keep-out areas, restarts, offences and the state of a
 //! game, SI, field frame.
 //!
-//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`keep_out`] says where a robot must not be,
-//! [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a referee's command means.
+//! [`FieldSpec`] and [`League`] are data; [`limits`] are the rules' numbers; [`keep_out`] computes where a
+//! robot must not be, [`restart`] where the ball goes, [`legality`] what is an offence, [`state`] what a
+//! referee's command means.
 //!
-//! **Invariants.** No I/O, no clock, no allocation. One truth per fact: physics, brains, referee and pictures read the
-//! dimensions here.
+//! **Invariants.** No I/O, no clock, no allocation. One source per fact: physics, brains, referee and
+//! renderings read the dimensions here.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,16 +1,19 @@
 //! `limits`: limits of the rules. Every number of the rules that players and referee need: m, m/s, s.
 //!
-//! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a robot are
-//! measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the ball's centre.
+//! Rules of 2026 (chapter in brackets); where a league differs the number is in [`Limits`]. Distances from a
+//! robot are measured from its nearest side with an assumed radius of 0.09 m (playing environment), to the
+//! ball's centre.
 
 use crate::League;
 
-/// Robots on STOP are slower than this, m/s (referee commands, stop). Not asked for in ball placement (offenses).
+/// Robots on STOP are slower than this, m/s (referee commands, stop). Not required in ball placement
+/// (offenses).
 pub const STOP_SPEED: f32 = 1.5;
-/// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line between ball and
-/// target while opponents place, m (referee commands; offenses).
+/// Robots keep this far from the ball on STOP, at the opponents' kick-off and free kick, and from the line
+/// between ball and target while opponents place, m (referee commands; offenses).
 pub const BALL_DISTANCE: f32 = 0.5;
-/// Time to brake after HALT, to slow down after STOP, to leave the opponents' defence area or the placement stadium, s.
+/// Time to brake after HALT, to slow down after STOP, to leave the opponents' defence area or the placement
+/// stadium, s.
 pub const GRACE: f32 = 2.0;
 /// On STOP and at free kicks robots keep this far from the opponents' defence area, m (offenses).
 pub const OPPONENT_AREA_DISTANCE: f32 = 0.2;
@@ -22,33 +25,36 @@ pub const KICKOFF_TIME: f32 = 10.0;
 pub const PENALTY_TIME: f32 = 10.0;
 /// All but keeper and shooter are this far behind the ball at a penalty, m (same).
 pub const PENALTY_BEHIND: f32 = 1.0;
-/// A ball this near its mark lies for a kick-off or a penalty, m (ours: the game controller starts it within 0.15 m).
+/// A ball this near its mark lies for a kick-off or a penalty, m (ours: the game controller starts it within
+/// 0.15 m).
 pub const NEAR_MARK: f32 = 0.3;
 /// Placing the ball may take this long, s (referee commands, ball placement).
 pub const PLACEMENT_TIME: f32 = 30.0;
-/// What an interference adds to it, s (offenses).
+/// Time that an interference adds to it, s (offenses).
 pub const PLACEMENT_EXTRA_TIME: f32 = 10.0;
 /// A placed ball is this near its target, m (referee commands, ball placement).
 pub const PLACEMENT_TOLERANCE: f32 = 0.15;
 /// Robots are this far from a placed ball where the placing team's free kick follows, m (same).
 pub const PLACEMENT_CLEARANCE: f32 = 0.05;
-/// The game goes on no earlier than this after the command to place, s (same).
+/// Play continues no earlier than this after the command to place, s (same).
 pub const PLACEMENT_TIME_MIN: f32 = 2.0;
-/// A team that failed so often places no more in this half (same).
+/// Failures after which a team places no more in this half (same).
 pub const PLACEMENT_FAILURES_MAX: u32 = 5;
 /// No placement is needed nearer than this to the target, m (same).
 pub const PLACEMENT_SKIP_DISTANCE: f32 = 1.0;
 /// … and farther than this from both defence areas, m (same).
 pub const PLACEMENT_SKIP_AREA_DISTANCE: f32 = 0.7;
-/// A ball slower than this lies still, m/s. The rules name no number; trackers' noise on a lying ball stays below it.
+/// A ball slower than this is stationary, m/s. The rules give no number; trackers' noise on a stationary ball
+/// stays below it.
 pub const BALL_STILL: f32 = 0.05;
 /// A goal counts up to this height of the ball after the scorers' last touch, m (scoring goals).
 pub const GOAL_BALL_HEIGHT: f32 = 0.15;
 /// No goal this soon after a foul that did not stop the game, s (scoring goals).
 pub const GOAL_AFTER_FOUL: f32 = 2.0;
-/// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses, crashing).
+/// A collision with a greater speed difference along the line between the robots is a foul, m/s (offenses,
+/// crashing).
 pub const CRASH_SPEED: f32 = 1.5;
-/// … of both where their speeds differ by less than this, m/s (same).
+/// … both teams' foul where their speeds differ by less than this, m/s (same).
 pub const CRASH_DRAWN: f32 = 0.3;
 /// The same foul that does not stop the game counts again after this, s (non stopping fouls).
 pub const FOUL_REPEAT: f32 = 2.0;
@@ -68,11 +74,11 @@ pub const HALF_TIME: f32 = 300.0;
 pub const OVERTIME_HALF_TIME: f32 = 150.0;
 /// Goals that end a game with a lead of two or more (game structure).
 pub const GOALS_MAX: u32 = 10;
-/// … and the lead that it takes (game structure).
+/// … and the lead required (game structure).
 pub const GOALS_LEAD: u32 = 2;
 /// Time-outs of a team (game structure).
 pub const TIMEOUTS: u32 = 4;
-/// Their time in all, s (game structure).
+/// Total time of a team's time-outs, s (game structure).
 pub const TIMEOUT_TIME: f32 = 300.0;
 /// Substitutions a half that are free (substitution).
 pub const SUBSTITUTIONS: u32 = 5;
@@ -80,11 +86,11 @@ pub const SUBSTITUTIONS: u32 = 5;
 pub const SUBSTITUTION_TIME: f32 = 20.0;
 /// The centre substitution area reaches this far from the halfway line, in the margin, m (substitution).
 pub const SUBSTITUTION_REACH: f32 = 1.0;
-/// A robot changes only this far from the ball, m (substitution).
+/// Least distance from the ball of a robot that is substituted, m (substitution).
 pub const SUBSTITUTION_BALL_DISTANCE: f32 = 0.5;
-/// Division A's goal substitution area begins this far behind the own goal line, m (substitution).
+/// Division A's goal substitution area starts this far behind the own goal line, m (substitution).
 pub const GOAL_SUBSTITUTION_DISTANCE: f32 = 0.3;
-/// The radius that the rules take every robot to have, m (playing environment).
+/// The radius that the rules assume for every robot, m (playing environment).
 pub const ROBOT_RADIUS: f32 = 0.09;
 /// The greatest height of a robot, m (robots).
 pub const ROBOT_HEIGHT: f32 = 0.15;
@@ -96,25 +102,26 @@ pub const BALL_MASS: f32 = 0.046;
 pub const BALL_COVERED: f32 = 0.2;
 /// Teams have this long to take their places for a kick-off or penalty, s (the game controller's setting).
 pub const PREPARE_TIME: f32 = 10.0;
-/// Numbers that a robot can have: 0 to 15 (robots).
+/// Number of valid robot numbers: 0 to 15 (robots).
 pub const ROBOT_IDS: u32 = 16;
-/// Robots of a team on any field of these leagues, at most.
+/// Most robots of a team on any field of these leagues.
 pub const ROBOTS_MAX: usize = 11;
 
-/// What differs between the leagues with a referee of the Small Size League.
+/// Limits that differ between the leagues with a referee of the Small Size League.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Robots of a team, keeper included (robots).
+    /// Number of robots of a team, keeper included (robots).
     pub robots: u32,
-    /// Nobody kicks faster than this, m/s, in three dimensions (offenses, ball speed).
+    /// No robot may kick faster than this, m/s, in three dimensions (offenses, ball speed).
     pub ball_speed: f32,
-    /// Nobody dribbles farther than this, m, straight from the first contact (offenses, excessive dribbling).
+    /// No robot may dribble farther than this, m, straight from the first contact (offenses, excessive
+    /// dribbling).
     pub dribble: f32,
     /// A free kick is in play after this, s (referee commands, ball in and out of play).
     pub free_kick_time: f32,
     /// The keeper's team holds the ball in its area for at most this, s (offenses).
     pub keeper_hold: f32,
-    /// Play that gets nowhere for this long is stopped, s (offenses, no progress).
+    /// Play without progress for this time is stopped, s (offenses, no progress).
     pub no_progress: f32,
     /// Whether a kick from the own half over their goal line is "aimless" (ball leaves the field).
     pub aimless_kick: bool,
@@ -144,14 +151,16 @@ const DIVISION_B: Limits = Limits {
 };
 
 impl League {
-    /// Its limits; none for the four-legged league, whose rules are in the scenarios of the first paper.
+    /// Limits of the league; `None` for the four-legged league, whose rules are in the scenarios of the first
+    /// paper.
     pub const fn limits(self) -> Option<Limits> {
         match self {
             Self::FourLegged => None,
-            // Biswas et al. 2014: shots at 8 m/s (§1), dribbling at most 0.5 m (§3), free kicks within 10 s and defenders 0.5 m away
-            // (§4). From defence areas 0.2 m, as the league's programs of 2013 and 2014 carried it. What neither tells
-            // (lines, goal kick, keeper, no progress) is division B's; on a field of 4 m the goal kick moves to half a metre,
-            // so that it stays out of reach of the area.
+            // Biswas et al. 2014: shots at 8 m/s (§1), dribbling at most 0.5 m (§3), free kicks within 10 s
+            // and defenders 0.5 m away (§4). From defence areas 0.2 m, as the league's programs of 2013 and
+            // 2014 carried it. What neither states (lines, goal kick, keeper, no progress) is division B's;
+            // on a field of 4 m the goal kick moves to half a metre, so that it stays out of reach of the
+            // area.
             Self::Ssl2013 => Some(Limits {
                 ball_speed: 8.0,
                 dribble: 0.5,

@@ -1,5 +1,5 @@
-//! `restart`: restart positions of ball and robots. Rules of 2026, chapters "referee commands" and "ball
-//! leaves the field". Field frame, m.
+//! `restart`: restart positions of ball and robots, by the rules of 2026, chapters "referee commands" and
+//! "ball leaves the field". Field frame, m.
 
 use geometry::{Field, GoalEnd, Point, math};
 use heapless::Vec;
@@ -13,31 +13,31 @@ use crate::{FieldSpec, Limits};
 
 /// Throw-in and corner lie this far from their lines, m.
 const FROM_LINE: f32 = 0.2;
-/// A spot that is this little off counts as valid, m: the wire's places are whole millimetres.
+/// A spot that is invalid by at most this counts as valid, m: places on the wire are whole millimetres.
 const SPOT_TOLERANCE: f32 = 1e-3;
 /// Steps along the border of the valid places, m, before the search halves them.
 const SPOT_STEP: f32 = 0.01;
-/// Halvings of the last step: 10 mm / 2¹⁰ is a hundredth of a millimetre.
+/// Number of halvings of the last step: 10 mm / 2¹⁰ is a hundredth of a millimetre.
 const SPOT_HALVINGS: usize = 10;
 
-/// Why no free kick is taken here.
+/// Why a spot is invalid for a free kick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpotFault {
     /// Too near to a touch line or goal line, or beyond it.
     Line {
-        /// How far inside the nearest line, m.
+        /// Distance inside the nearest line, m.
         distance: f32,
     },
     /// Too near to this end's defence area.
     Area {
-        /// Whose.
+        /// Goal whose area it is.
         goal: GoalEnd,
-        /// How far from it, m.
+        /// Distance from it, m.
         distance: f32,
     },
 }
 
-/// Whether a free kick may be taken here.
+/// Why a free kick may not be taken here; `None` if it may.
 pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -> Option<SpotFault> {
     let inside = (field.length * 0.5 - spot.x().abs()).min(field.width * 0.5 - spot.y().abs());
     if inside < limits.spot_line_distance - SPOT_TOLERANCE {
@@ -50,12 +50,13 @@ pub fn free_kick_fault(field: &FieldSpec, limits: &Limits, spot: Point<Field>) -
     })
 }
 
-/// The valid place for a free kick nearest to where it should be. On a field with no valid place at all: the nearest one
-/// inside the lines.
+/// The valid place for a free kick nearest to its intended spot. On a field with no valid place at all: the
+/// nearest one inside the lines.
 pub fn nearest_free_kick_spot(field: &FieldSpec, limits: &Limits, wanted: Point<Field>) -> Point<Field> {
     let inside = field.clamp(wanted, limits.spot_line_distance);
     let valid = |spot: &Point<Field>| free_kick_fault(field, limits, *spot).is_none();
-    // Valid places are a rectangle with two bites out of it. The nearest one lies inside, on the rectangle's border or on a bite's.
+    // Valid places are a rectangle with two cut-outs. The nearest one is inside, on the rectangle's border or
+    // on a cut-out's.
     let on_bites = [GoalEnd::Negative, GoalEnd::Positive]
         .into_iter()
         .flat_map(|goal| pushed_out(field, goal, limits.spot_area_distance, wanted));
@@ -103,7 +104,8 @@ fn pushed_out(
     spots.into_iter()
 }
 
-/// On each side of the rectangle `inside` the lines, and each way from the point next to `from`: the first valid place.
+/// On each side of the rectangle `inside` the lines, and in each direction from the point next to `from`: the
+/// first valid place.
 fn border_spots(
     field: &FieldSpec,
     inside: f32,
@@ -131,30 +133,30 @@ fn border_spots(
     spots.into_iter()
 }
 
-/// How play goes on after the ball has left the field without a goal.
+/// Restart after the ball has left the field without a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AfterOut {
-    /// Which restart; each is a free kick for who did not touch the ball last.
+    /// Kind of restart; each is a free kick for the team that did not touch the ball last.
     pub kind: OutKind,
-    /// Where.
+    /// Spot of the restart, m.
     pub spot: Point<Field>,
 }
 
-/// Which restart follows a ball that left the field.
+/// Kind of restart after a ball that left the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutKind {
     /// Over a touch line.
     ThrowIn,
-    /// Over the goal line of those who did not touch it last.
+    /// Over the goal line of the team that did not touch it last.
     GoalKick,
-    /// Over the goal line of those who touched it last.
+    /// Over the goal line of the team that touched it last.
     Corner,
     /// Over the other goal line from the own half, without another touch (division B).
     AimlessKick,
 }
 
-/// Where play goes on after the ball crossed a line; `own` is the goal that those who touched it last defend, `kicked_from` the
-/// place of that touch, `from_kickoff` whether it was the kick-off itself.
+/// Where play continues after the ball crossed a line; `own` is the goal of the team that touched it last,
+/// `kicked_from` the place of that touch, `from_kickoff` whether it was the kick-off itself.
 pub fn after_out(
     field: &FieldSpec,
     limits: &Limits,
@@ -176,7 +178,8 @@ pub fn after_out(
         }
         Line::Goal(goal) | Line::Mouth(goal) => {
             let aimless = kicked_from.filter(|from| {
-                // Where it was touched last decides: from the own half it has crossed the halfway line since.
+                // The place of the last touch decides: from the own half it has crossed the halfway line
+                // since.
                 limits.aimless_kick && !from_kickoff && from.x() * own.sign() as f32 > 0.0
             });
             if let Some(from) = aimless {
@@ -189,7 +192,7 @@ pub fn after_out(
     }
 }
 
-/// What follows the placement of a ball.
+/// Continuation after the placement of a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AfterPlacement {
     /// The placing team's free kick.
@@ -199,7 +202,7 @@ pub enum AfterPlacement {
 }
 
 impl AfterPlacement {
-    /// How far robots' sides are from the placed ball, m.
+    /// Distance of robots' edges from the placed ball, m.
     pub const fn clearance(self) -> f32 {
         match self {
             Self::FreeKick => PLACEMENT_CLEARANCE,
@@ -208,7 +211,7 @@ impl AfterPlacement {
     }
 }
 
-/// What a placement still lacks.
+/// Condition that a placement does not meet yet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlacementLack {
     /// The ball is this far from its target, m.
@@ -238,7 +241,7 @@ pub fn placement_lack(
     nearest.filter(|near| *near < next.clearance()).map(PlacementLack::Robot)
 }
 
-/// Whether the ball lies well enough that nobody needs to place it.
+/// Whether the ball lies well enough that no placement is needed.
 pub fn placement_needless(field: &FieldSpec, ball: Point<Field>, speed: f32, target: Point<Field>) -> bool {
     let areas = [GoalEnd::Negative, GoalEnd::Positive].map(|goal| field.distance_to_area(goal, ball));
     ball.distance(target) < PLACEMENT_SKIP_DISTANCE
@@ -247,12 +250,14 @@ pub fn placement_needless(field: &FieldSpec, ball: Point<Field>, speed: f32, tar
         && speed <= BALL_STILL
 }
 
-/// Lawful places for a team's kick-off: the keeper in its goal, then the robot nearest to the ball (the kicker, behind it, if the
-/// kick-off is ours), then the others behind it, the nearest to the ball first.
+/// Rule-compliant places for a team's kick-off: the keeper in its goal, then the robot nearest to the ball
+/// (the kicker, behind it, if the kick-off is ours), then the others behind it, the nearest to the ball
+/// first.
 pub fn kickoff_places(field: &FieldSpec, own: GoalEnd, ours: bool) -> Vec<Point<Field>, ROBOTS_MAX> {
     let back = own.sign() as f32;
     let (half, side) = (field.length * 0.5, field.width * 0.5);
-    // Shares of the way from the centre to the own goal line, and of the way to the touch line; nobody in the circle or the area.
+    // Shares of the distance from the centre to the own goal line, and of that to the touch line; no robot in
+    // the circle or the area.
     const SHARES: [(f32, f32); ROBOTS_MAX - 2] = [
         (0.15, 0.5),
         (0.15, -0.5),

@@ -1,18 +1,22 @@
 //! `state`: state machine of the referee's commands. The league's state graph as a value (rules 2026,
 //! appendix "game states").
 //!
-//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both say what came of it. Times are µs of
-//! one clock, the caller's. Three things are decided here, because the rules leave them open:
+//! [`GameState::hear`] takes the commands, [`GameState::tick`] the time and the ball; both return the
+//! resulting change. Times are µs of one clock, the caller's. Three points that the rules leave open are
+//! decided here:
 //!
-//! - **The newest command counts.** The referee repeats its current command many times a second, so a command that does not
-//!   follow from the one before means that some were missed; it is followed and said ([`Heard::OffGraph`]).
-//! - **Nobody starts off a standstill by surprise.** People may be on the field in HALT and time-outs, which STOP alone
-//!   ends. Any other command is read as STOP for [`GRACE`] first ([`Heard::AsStop`]). NORMAL_START with nothing
-//!   prepared (somebody joins in the middle of a game) is read as STOP until the longest kick-off or penalty is
-//!   over, counted from when the command was given: then the ball is in play, whatever it was.
-//! - **The same command again is no new command**, though its counter rises (operators and automatic continuation issue
-//!   some twice). It only restarts the clock of a restart that is not yet in play. A free kick that comes again after the
-//!   ball was in play is a new one: a ball that rolls is back in play at once, and one that lies may not be approached.
+//! - **The newest command counts.** The referee repeats its current command many times a second, so a command
+//!   that does not follow from the one before means that some were missed; it is followed and reported
+//!   ([`Heard::OffGraph`]).
+//! - **No robot starts from a standstill without warning.** Team members may be on the field in HALT and
+//!   time-outs, which STOP alone ends. Any other command is read as STOP for [`GRACE`] first
+//!   ([`Heard::AsStop`]). NORMAL_START with nothing prepared (a program joins in the middle of a game) is
+//!   read as STOP until the longest kick-off or penalty is over, counted from when the command was given:
+//!   then the ball is in play in either case.
+//! - **The same command again is no new command**, though its counter rises (operators and automatic
+//!   continuation issue some twice). It only restarts the clock of a restart that is not yet in play. A free
+//!   kick that comes again after the ball was in play is a new one: a ball that rolls is back in play at
+//!   once, and a stationary one may not be approached.
 
 use geometry::{Field, Point};
 
@@ -22,13 +26,13 @@ use crate::{Colour, Limits, Phase};
 /// A command of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
-    /// Nobody moves.
+    /// No robot moves.
     Halt,
     /// Slow, away from the ball.
     Stop,
-    /// Take the kick-off or penalty that was prepared.
+    /// Kick the prepared kick-off or penalty.
     NormalStart,
-    /// Play on, both.
+    /// Play continues for both teams.
     ForceStart,
     /// Take places for this team's kick-off.
     PrepareKickoff(Colour),
@@ -43,7 +47,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The phase that it leads to; none for NORMAL_START where nothing is prepared.
+    /// The phase that it leads to; `None` for NORMAL_START without a preparation.
     pub const fn leads_to(self, from: Phase<Colour>) -> Option<Phase<Colour>> {
         Some(match self {
             Self::Halt => Phase::Halt,
@@ -63,7 +67,7 @@ impl Command {
     }
 }
 
-/// The part of a match.
+/// The stage of a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Stage {
     /// Before the first half.
@@ -90,14 +94,14 @@ pub enum Stage {
     ExtraSecondHalf,
     /// The break before the shoot-out.
     ShootOutBreak,
-    /// Penalties decide.
+    /// The penalty shoot-out.
     ShootOut,
     /// The match is over.
     PostGame,
 }
 
 impl Stage {
-    /// All, in the order of a match.
+    /// All stages, in the order of a match.
     pub const ALL: [Self; 14] = [
         Self::FirstHalfPre,
         Self::FirstHalf,
@@ -115,7 +119,7 @@ impl Stage {
         Self::PostGame,
     ];
 
-    /// Whether the clock of the match can run in it.
+    /// Whether the clock of the match can run in this stage.
     pub const fn is_played(self) -> bool {
         matches!(
             self,
@@ -127,7 +131,7 @@ impl Stage {
         )
     }
 
-    /// Whether teams rest and people may do as they like.
+    /// Whether teams pause and team members may enter the field.
     pub const fn is_break(self) -> bool {
         matches!(
             self,
@@ -140,14 +144,14 @@ impl Stage {
     }
 }
 
-/// What came of a command.
+/// Effect of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heard {
     /// It follows from the phase before.
     Followed,
-    /// It is what stands already.
+    /// The command that holds already.
     Repeated,
-    /// It does not follow from this phase, but counts.
+    /// It does not follow from this phase, but is accepted.
     OffGraph {
         /// The phase before.
         from: Phase<Colour>,
@@ -156,38 +160,38 @@ pub enum Heard {
     AsStop {
         /// The phase before.
         from: Phase<Colour>,
-        /// What it becomes.
+        /// Next phase.
         then: Phase<Colour>,
-        /// When, µs.
+        /// Time of the change, µs.
         at: u64,
     },
 }
 
-/// What came of time and ball.
+/// Effect of time and ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ticked {
-    /// Nothing.
+    /// No change.
     Same,
     /// The ball has moved [`IN_PLAY_DISTANCE`] from its place: in play.
     BallMoved,
     /// The time for the restart is over: in play, or for a penalty stopped.
     TimeUp,
-    /// What was read as STOP is followed now.
+    /// A command that was read as STOP is followed now.
     Released,
 }
 
-/// Where a game stands, as its commands, clock and ball tell.
+/// State of a game, derived from its commands, clock and ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GameState {
     phase: Phase<Colour>,
     command: Option<Command>,
-    /// When the phase began, µs.
+    /// When the phase started, µs.
     since: u64,
-    /// Where the ball lay when the restart began.
+    /// Where the ball lay when the restart started.
     ball_at: Option<Point<Field>>,
     penalty_in_play: bool,
     later: Option<(Phase<Colour>, u64)>,
-    /// Nobody starts off before, µs: a standstill was left without a STOP.
+    /// No robot starts before, µs: a standstill was left without a STOP.
     still_until: u64,
 }
 
@@ -198,29 +202,30 @@ impl Default for GameState {
 }
 
 impl GameState {
-    /// Nothing heard yet: nobody moves.
+    /// Nothing received yet: no robot moves.
     pub const fn new() -> Self {
         let phase = Phase::Halt;
         let (ball_at, later) = (None, None);
         Self { phase, command: None, since: 0, ball_at, penalty_in_play: false, later, still_until: 0 }
     }
 
-    /// The phase now.
+    /// The present phase.
     pub const fn phase(&self) -> Phase<Colour> {
         self.phase
     }
 
-    /// The newest command; none: nothing heard yet.
+    /// The newest command; none: nothing received yet.
     pub const fn command(&self) -> Option<Command> {
         self.command
     }
 
-    /// When this phase began or its clock was restarted, µs.
+    /// When this phase started or its clock was restarted, µs.
     pub const fn since(&self) -> u64 {
         self.since
     }
 
-    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the ball is in play.
+    /// Whether a penalty's ball has left its place, which frees the keeper; in every other phase whether the
+    /// ball is in play.
     pub const fn ball_in_play(&self) -> bool {
         match self.phase {
             Phase::Run => true,
@@ -255,7 +260,7 @@ impl GameState {
         if first || follows(from, to) { Heard::Followed } else { Heard::OffGraph { from } }
     }
 
-    /// The time is `now`, µs, and the ball is seen here.
+    /// Handles the time `now`, µs, and the observed position of the ball.
     pub fn tick(&mut self, now: u64, ball: Option<Point<Field>>, limits: &Limits) -> Ticked {
         if let Some((phase, at)) = self.later
             && now >= at
@@ -332,7 +337,7 @@ pub fn follows(from: Phase<Colour>, to: Phase<Colour>) -> bool {
     }
 }
 
-/// s → µs.
+/// Converts s to µs.
 const fn micros(seconds: f32) -> u64 {
     (seconds * 1e6) as u64
 }

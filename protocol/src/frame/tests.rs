@@ -1,4 +1,4 @@
-//! `frame`'s tests: bytes of the specification, flipped bits, refusals in order, counters and epochs.
+//! Tests of `frame`: bytes of the specification, flipped bits, refusals in order, counters and epochs.
 
 use super::*;
 
@@ -40,7 +40,7 @@ fn a_frame_to_several_has_a_tag_for_each_and_every_flipped_bit_is_noticed_by_tho
     for reader in RobotId::all() {
         let addressed = [0, 4, 15].contains(&reader.number());
         assert_eq!(sent.is_genuine(&out[..n], keys.of(reader), reader), addressed, "{reader}");
-        // No other robot's key opens it in this one's place.
+        // No other robot's key opens it in this robot's place.
         let others = RobotId::all().filter(|other| *other != reader);
         assert_eq!(others.filter(|other| sent.is_genuine(&out[..n], keys.of(*other), reader)).count(), 0);
     }

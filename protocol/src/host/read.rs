@@ -1,9 +1,9 @@
-//! `read`: fast decoder of the host's messages. Parts of pictures robot by robot, the rest as `postcard`
-//! does.
+//! `read`: fast decoder of the host's messages. Parts of snapshots robot by robot, other messages by
+//! `postcard`.
 //!
-//! Two parts come with every picture and are the longest frames there are. What stands before the robots is `postcard`'s; each
-//! robot is eleven fixed bytes, taken as they lie: 30 instructions of a Cortex-M4 instead of 170. The tests hold it to
-//! `postcard`, byte by byte.
+//! Two parts come with every snapshot and are the longest frames there are. The fields before the robots are
+//! read by `postcard`; each robot is eleven fixed bytes, read directly: 30 instructions of a Cortex-M4
+//! instead of 170. The tests hold it to `postcard`, byte by byte.
 
 use rules::{Phase, Side};
 use serde::Deserialize;
@@ -13,7 +13,7 @@ use crate::link::decode;
 use crate::quantized::{WirePoint, WirePose};
 
 impl HostMessage {
-    /// The message, if the payload is one to its last byte.
+    /// Decodes a message that ends with the payload's last byte.
     pub(crate) fn read(payload: &[u8]) -> Option<Self> {
         match payload.split_first() {
             Some((0, part)) => WorldPart::read(part).map(Self::World),
@@ -33,14 +33,14 @@ impl WorldPart {
         }
         let mut world = Self { picture, part, parts, phase, placement, ball, robots: heapless::Vec::new() };
         for robot in robots {
-            // There is room: counted above.
+            // The capacity suffices: counted above.
             let _ = world.robots.push(WireRobot::read(robot)?);
         }
         Some(world)
     }
 }
 
-/// What stands before the robots in a part of a picture.
+/// The fields before the robots in a part of a snapshot.
 #[derive(Deserialize)]
 struct Head {
     picture: u8,

@@ -1,4 +1,4 @@
-//! The host believes a robot that lives now, and no recording of one.
+//! The host trusts a robot of the present boot epoch, and no recording of one.
 
 extern crate std;
 
@@ -89,7 +89,7 @@ fn a_fresh_host_believes_no_recording() {
         );
     }
     assert_eq!(fresh.life(id(2)), None);
-    // The robot itself is welcomed, and believed.
+    // The robot itself is welcomed, and trusted.
     meet(&mut fresh, &mut link, 2, ms(400));
     // From then on its recordings are refused outright.
     for packet in &recorded {
@@ -99,7 +99,7 @@ fn a_fresh_host_believes_no_recording() {
 
 #[test]
 fn a_recording_of_a_greater_boot_epoch_does_not_lock_the_robot_out() {
-    // Its ledger was erased, or its number given to a spare.
+    // Its counter of starts was erased, or its number given to a spare.
     let (mut host, mut link) = (HostLink::new(TEAM, KEY, 70), robot(2, 9));
     let mut before = robot(2, 50);
     let recorded = tell(&mut before, ms(0));
@@ -116,7 +116,8 @@ fn a_stolen_robot_cannot_speak_for_another_to_the_host() {
     let stolen = KEY.of_robot(id(3));
     let mut thief = Link::new(TEAM, id(2), stolen, u32::MAX);
     assert_eq!(host.open(ms(3), &tell(&mut thief, ms(3))), Err(Refusal::Tag));
-    // A beacon of robot 2 it can make, for all robots hold that key; telemetry of the genuine one is heard all the same.
+    // A forged beacon of robot 2 is possible, because all robots hold that key; telemetry of the genuine one
+    // is received all the same.
     let mut thief = Link::new(TEAM, id(2), stolen, 9);
     (0..100).for_each(|_| drop(beacon(&mut thief)));
     assert!(host.open(ms(4), &beacon(&mut thief)).is_ok());

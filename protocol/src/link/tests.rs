@@ -1,4 +1,4 @@
-//! A robot believes what its teammates and its host say, and nothing else.
+//! A robot trusts the messages of its authenticated teammates and host, and nothing else.
 
 extern crate std;
 
@@ -59,14 +59,14 @@ fn welcome(to: u8, life: u32) -> HostMessage {
     HostMessage::Welcome(Welcome { to: robot(to), life, offset: 0 })
 }
 
-/// Its telemetry.
+/// Telemetry of the robot.
 fn tell(link: &mut Link) -> Packet {
     let mut telemetry = Telemetry::default();
     link.tell(NOW, &mut telemetry);
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// A robot and its host that know each other.
+/// A robot and its host after their handshake.
 fn acquainted() -> (Link, HostLink) {
     let (mut link, mut host) = (link(2, 9), host(70));
     assert!(matches!(host.open(NOW, &tell(&mut link)), Ok(Opened::Stranger(..))));
@@ -78,7 +78,7 @@ fn acquainted() -> (Link, HostLink) {
     (link, host)
 }
 
-/// Both hear a first frame of each other, greet, and believe from then on.
+/// Both receive a first frame of each other, exchange handshakes, and trust from then on.
 fn acquaint(a: &mut Link, b: &mut Link) {
     let (from_a, from_b) = (a.seal(&beacon(0)), b.seal(&beacon(0)));
     assert!(matches!(b.open(NOW, &from_a), Err(Refusal::Stranger { .. })));
@@ -94,7 +94,7 @@ fn what_one_seals_another_opens_once() {
     acquaint(&mut a, &mut b);
     let packet = a.seal(&beacon(7));
     assert_eq!(b.open(NOW, &packet), Ok(Heard::Mate(robot(1), beacon(7))));
-    // After a first frame and a greeting.
+    // After a first frame and a handshake.
     assert_eq!(b.open(NOW, &packet), Err(Refusal::Counter { seen: 3, last: 3 }));
     assert_eq!(b.refused()[5], 1);
 }
@@ -193,7 +193,8 @@ fn a_part_that_cannot_be_is_no_message() {
 #[test]
 fn what_is_lost_of_pictures_is_counted_by_their_numbers() {
     let (mut a, mut host) = acquainted();
-    // Of pictures 254, 255, 0, 1, 2 with two parts each: all of 254, half of 255, nothing of 0 and 1, all of 2.
+    // Of snapshots 254, 255, 0, 1, 2 with two parts each: all of 254, half of 255, nothing of 0 and 1, all
+    // of 2.
     for (picture, part) in [(254, 0), (254, 1), (255, 1), (2, 0), (2, 1)] {
         assert!(a.open(NOW, &host.seal(NOW, &world(picture, part, 2))).is_ok());
     }
@@ -233,13 +234,15 @@ fn refusals_of_every_kind_reach_the_hosts_telemetry_each_in_its_place() {
         }
         for _ in 0..=times {
             let refusal = a.open(NOW, &packet).unwrap_err();
-            // The unreadable one is news only once; one from the future makes the host a stranger until its next welcome.
+            // The unreadable one is new only once; one from the future makes the host unauthenticated until
+            // its next welcome.
             let kind = if matches!(refusal.kind(), 5 | 8) { refusal.kind() } else { kind };
             assert_eq!(refusal.kind(), kind);
             expected[kind] += 1;
         }
     }
-    // No such sender; and our own messages, which a base station that sends to all gives us back: no sign of trouble.
+    // An invalid sender; and our own messages, echoed by a base station that sends to all: no sign of an
+    // attack.
     let mut nobody = good.clone();
     nobody[2] = 18;
     assert_eq!(a.open(NOW, &nobody), Err(Refusal::Sender(18)));
@@ -283,7 +286,7 @@ fn a_withheld_welcome_of_a_dead_host_does_not_lead_a_robot() {
 #[test]
 fn a_robot_whose_clock_stood_still_asks_for_a_welcome_instead_of_taking_old_frames_for_fresh() {
     let (mut a, mut host) = acquainted();
-    // The host's clock has gone on by ten seconds, the robot's has not.
+    // The host's clock has advanced by ten seconds, the robot's has not.
     let later = NOW + Duration::millis(10_000);
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stale));
     assert_eq!(a.open(NOW, &host.seal(later, &stand(2))), Err(Refusal::Stranger { epoch: 70 }));
@@ -315,7 +318,7 @@ fn another_robots_keys_make_no_frame_of_the_host_that_this_robot_believes() {
         bytes[tags..].copy_from_slice(&[x, y, z, x, y, z]);
         assert_eq!(a.open(NOW, &bytes), Err(Refusal::Tag));
     }
-    // Nor a command that only a short tag would protect.
+    // Also refused: a command that only a short tag would protect.
     let mut payload = [0; 64];
     let payload = &*postcard::to_slice(&stand(2), &mut payload).unwrap();
     let smuggled = Frame { payload, ..forged };

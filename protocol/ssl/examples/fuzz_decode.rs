@@ -1,6 +1,6 @@
 //! `fuzz_decode`: fuzzing of the decoders. `cargo run -p ssl --example fuzz_decode -- --count 1000000`
 //!
-//! Prints what was read and refused; a panic is a finding, told with the seed that repeats it.
+//! Prints counts of read and refused packets; a panic is a finding, reported with the seed that repeats it.
 
 #[path = "../tests/support/messages.rs"]
 mod messages;

@@ -1,12 +1,12 @@
 //! `common`: types shared by several of the league's messages. Teams, points, robot ids, and the two messages
 //! of protobuf itself.
 //!
-//! Units of the game controller, the tracker and the simulation protocol: metres in the field frame (origin at the
-//! centre, +x along the length, +y to the left, angles counter-clockwise).
+//! Units of the game controller, the tracker and the simulation protocol: metres in the field frame (origin
+//! at the centre, +x along the length, +y to the left, angles counter-clockwise).
 
 use prost::{Enumeration, Message};
 
-/// Which team: the colour of its centre markers.
+/// Team, by the colour of its centre markers.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -16,7 +16,7 @@ pub enum Team {
     Blue = 2,
 }
 
-/// Which of the league's two divisions.
+/// Division of the league.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -32,7 +32,7 @@ pub struct Vector2 {
     /// Along the field's length, m (m/s).
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, m (m/s).
+    /// Coordinate to the left of +x, m (m/s).
     #[prost(float, required, tag = "2")]
     pub y: f32,
 }
@@ -43,7 +43,7 @@ pub struct Vector3 {
     /// Along the field's length, m (m/s).
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, m (m/s).
+    /// Coordinate to the left of +x, m (m/s).
     #[prost(float, required, tag = "2")]
     pub y: f32,
     /// Up from the ground, m (m/s).
@@ -57,7 +57,7 @@ pub struct RobotId {
     /// Shell number, 0–15.
     #[prost(uint32, optional, tag = "1")]
     pub id: Option<u32>,
-    /// Its team, [`Team`].
+    /// Team of the robot, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "2")]
     pub team: Option<i32>,
 }
@@ -79,7 +79,7 @@ pub struct Duration {
     /// Whole seconds.
     #[prost(int64, optional, tag = "1")]
     pub seconds: Option<i64>,
-    /// The rest, ns, of the same sign.
+    /// Remaining nanoseconds, of the same sign.
     #[prost(int32, optional, tag = "2")]
     pub nanos: Option<i32>,
 }

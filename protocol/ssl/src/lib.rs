@@ -1,11 +1,11 @@
 //! `ssl`: the Small Size League's messages, sockets and log files. Runs on the PC.
 //!
-//! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the league's
-//! without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does not. Enums are kept
-//! as the number on the wire, so that unknown ones survive; the accessor of the field's name reads an unknown number as
-//! the enum's first value, `Enum::try_from(number)` tells it apart.
+//! One module a protobuf package, as hand-written `prost` structs: no protoc, no build script. Names are the
+//! league's without `SSL_`; a field is a plain value where the league requires it, an `Option` where it does
+//! not. Enums are kept as the number on the wire, so that unknown ones survive; the accessor of the field's
+//! name reads an unknown number as the enum's first value, `Enum::try_from(number)` distinguishes it.
 //!
-//! | module | message on the wire | where |
+//! | module | message on the wire | address |
 //! |---|---|---|
 //! | [`vision`] | [`vision::WrapperPacket`] | UDP 224.5.23.2:10006, simulators 10020 |
 //! | [`vision::legacy`] | [`vision::legacy::WrapperPacket`] | UDP 224.5.23.2:10005, until 2014 |
@@ -13,12 +13,12 @@
 //! | [`tracker`] | [`tracker::TrackerWrapperPacket`] | UDP 224.5.23.2:10010 |
 //! | [`simulation`] | [`simulation::SimulatorCommand`], [`simulation::RobotControl`] | UDP, 10300; 10301 blue, 10302 yellow |
 //! | [`simulation`] | [`simulation::GrsimPacket`], [`simulation::RobotsStatus`] | UDP, grSim's own: 20011; 30011 blue, 30012 yellow |
-//! | [`controller`] | [`controller::TeamToController`] and its kin | TCP 10007–10011, length-delimited |
+//! | [`controller`] | [`controller::TeamToController`] and related ones | TCP 10007–10011, length-delimited |
 //! | [`radio`] | [`radio::RadioProtocolWrapper`] | a proposal of 2015 |
 //!
-//! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the files matches are kept in.
+//! [`net`] has the sockets, [`stream`] the framing on TCP, [`log`] the log files of matches.
 //!
-//! Hearing vision, for example:
+//! Receiving vision, for example:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -37,8 +37,8 @@
 //! # Ok::<(), ssl::net::NetError>(())
 //! ```
 //!
-//! **Units differ**: vision speaks of mm, everything else of m; the referee of µs, vision and trackers of s. Each module
-//! and each field says its own. The README has the traps of the league's programs and which test holds each.
+//! **Units differ**: vision uses mm, all others m; the referee µs, vision and trackers s. Each module and
+//! each field states its own. The README lists the traps of the league's programs and which test holds each.
 #![forbid(unsafe_code)]
 
 pub mod common;

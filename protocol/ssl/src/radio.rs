@@ -1,4 +1,4 @@
-//! `radio`: the radio protocol proposed in 2015. Commands over UDP; no current team uses it.
+//! `radio`: the radio protocol proposed in 2015: commands over UDP; no current team uses it.
 //!
 //! Units: m/s, rad/s in the robot's frame.
 
@@ -12,25 +12,25 @@ pub struct RadioProtocolWrapper {
     pub command: Vec<RadioProtocolCommand>,
 }
 
-/// What one robot shall do.
+/// Command to one robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RadioProtocolCommand {
     /// Shell number.
     #[prost(int32, required, tag = "1")]
     pub robot_id: i32,
-    /// Forward, m/s.
+    /// Velocity forward, m/s.
     #[prost(float, required, tag = "2")]
     pub velocity_x: f32,
-    /// To the left, m/s.
+    /// Velocity to the left, m/s.
     #[prost(float, required, tag = "3")]
     pub velocity_y: f32,
-    /// Counter-clockwise, rad/s.
+    /// Turning rate, counter-clockwise, rad/s.
     #[prost(float, required, tag = "4")]
     pub velocity_r: f32,
-    /// Kick flat at this speed, m/s; wins over `chip_kick`.
+    /// Kick flat at this speed, m/s; overrides `chip_kick`.
     #[prost(float, optional, tag = "5")]
     pub flat_kick: Option<f32>,
-    /// Kick so far through the air, **m**.
+    /// Distance of a chip kick, **m**.
     #[prost(float, optional, tag = "6")]
     pub chip_kick: Option<f32>,
     /// Dribbler, −1 (out) to +1 (in).

@@ -1,7 +1,7 @@
 //! `referee`: referee packets. One [`Referee`] a datagram from the game controller, to 224.5.23.1:10003,
 //! about 38 a second.
 //!
-//! Units: all times in µs; `designated_position` in **mm**; what game events tell in **m**; field frame.
+//! Units: all times in µs; `designated_position` in **mm**; positions in game events in **m**; field frame.
 
 use prost::{Enumeration, Message};
 
@@ -19,7 +19,7 @@ pub struct Referee {
     /// Playing time left in the stage, µs; negative when it ran over.
     #[prost(sint64, optional, tag = "3")]
     pub stage_time_left: Option<i64>,
-    /// What holds now, [`Command`].
+    /// Command in force, [`Command`].
     #[prost(enumeration = "Command", required, tag = "4")]
     pub command: i32,
     /// Rises with each command; the same command may come again with a new count (README, trap 4).
@@ -34,45 +34,45 @@ pub struct Referee {
     /// The blue team.
     #[prost(message, required, tag = "8")]
     pub blue: TeamInfo,
-    /// Where the ball is to be placed, mm. Only to be read in ball placement (README, trap 3).
+    /// Target of a ball placement, mm. Only valid in ball placement (README, trap 3).
     #[prost(message, optional, tag = "9")]
     pub designated_position: Option<Point>,
     /// True: blue's own goal is at +x.
     #[prost(bool, optional, tag = "10")]
     pub blue_team_on_positive_half: Option<bool>,
-    /// What will follow the current stop, [`Command`].
+    /// Command that will follow the current stop, [`Command`].
     #[prost(enumeration = "Command", optional, tag = "12")]
     pub next_command: Option<i32>,
     /// Time left for placement, free kick, kickoff or penalty, µs; negative when it ran over.
     #[prost(int64, optional, tag = "15")]
     pub current_action_time_remaining: Option<i64>,
-    /// What was decided since the last command that let the ball move.
+    /// Events decided since the last command that let the ball move.
     #[prost(message, repeated, tag = "16")]
     pub game_events: Vec<GameEvent>,
-    /// What automatic referees proposed and nobody decided yet.
+    /// Events that automatic referees proposed and that are not decided yet.
     #[prost(message, repeated, tag = "17")]
     pub game_event_proposals: Vec<GameEventProposalGroup>,
-    /// Which program sends, the same through a session.
+    /// Identifier of the sending program, the same through a session.
     #[prost(string, optional, tag = "18")]
     pub source_identifier: Option<String>,
-    /// What kind of match, [`MatchType`].
+    /// Kind of match, [`MatchType`].
     #[prost(enumeration = "MatchType", optional, tag = "19")]
     pub match_type: Option<i32>,
-    /// What the controller waits for, in words.
+    /// What the controller waits for, as text.
     #[prost(string, optional, tag = "20")]
     pub status_message: Option<String>,
 }
 
-/// One team's account.
+/// State of one team.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamInfo {
     /// The team's name; empty while unknown.
     #[prost(string, required, tag = "1")]
     pub name: String,
-    /// Goals.
+    /// Number of goals.
     #[prost(uint32, required, tag = "2")]
     pub score: u32,
-    /// Red cards.
+    /// Number of red cards.
     #[prost(uint32, required, tag = "3")]
     pub red_cards: u32,
     /// Time left of each active yellow card, µs.
@@ -81,7 +81,7 @@ pub struct TeamInfo {
     /// Yellow cards ever given.
     #[prost(uint32, required, tag = "5")]
     pub yellow_cards: u32,
-    /// Time-outs left.
+    /// Number of time-outs left.
     #[prost(uint32, required, tag = "6")]
     pub timeouts: u32,
     /// Time left for time-outs, µs.
@@ -90,25 +90,25 @@ pub struct TeamInfo {
     /// Shell number of the keeper.
     #[prost(uint32, required, tag = "8")]
     pub goalkeeper: u32,
-    /// Fouls that count towards a yellow card.
+    /// Number of fouls that count towards a yellow card.
     #[prost(uint32, optional, tag = "9")]
     pub foul_counter: Option<u32>,
-    /// Failed placements in a row.
+    /// Number of failed placements in a row.
     #[prost(uint32, optional, tag = "10")]
     pub ball_placement_failures: Option<u32>,
-    /// Can the team place the ball?
+    /// Whether the team can place the ball.
     #[prost(bool, optional, tag = "12")]
     pub can_place_ball: Option<bool>,
-    /// Robots it may have on the field now.
+    /// Number of robots it may have on the field now.
     #[prost(uint32, optional, tag = "13")]
     pub max_allowed_bots: Option<u32>,
-    /// It asked to substitute a robot at the next chance.
+    /// It requested to substitute a robot at the next opportunity.
     #[prost(bool, optional, tag = "14")]
     pub bot_substitution_intent: Option<bool>,
-    /// It failed so often that it no longer may place the ball.
+    /// Whether it failed so often that it may no longer place the ball.
     #[prost(bool, optional, tag = "15")]
     pub ball_placement_failures_reached: Option<bool>,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     #[prost(bool, optional, tag = "16")]
     pub bot_substitution_allowed: Option<bool>,
     /// Substitutions left in this half.
@@ -128,21 +128,21 @@ pub struct Point {
     /// Along the field's length, mm.
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "2")]
     pub y: f32,
 }
 
-/// The same event as several automatic referees saw it.
+/// The same event as reported by several automatic referees.
 #[derive(Clone, PartialEq, Message)]
 pub struct GameEventProposalGroup {
-    /// Each one's account.
+    /// Events as reported by each referee.
     #[prost(message, repeated, tag = "1")]
     pub game_events: Vec<GameEvent>,
-    /// Was it accepted? Absent while open.
+    /// Whether it was accepted; absent while open.
     #[prost(bool, optional, tag = "2")]
     pub accepted: Option<bool>,
-    /// Which group.
+    /// Id of the group.
     #[prost(string, optional, tag = "3")]
     pub id: Option<String>,
 }
@@ -168,7 +168,8 @@ pub enum Stage {
     PostGame = 13,
 }
 
-/// What the referee orders. Unknown numbers read as [`Command::Halt`] through the accessor, which is the safe one.
+/// Commands of the referee. Unknown numbers read as [`Command::Halt`] through the accessor, which is the safe
+/// one.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

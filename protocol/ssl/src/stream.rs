@@ -1,14 +1,15 @@
-//! `stream`: message framing on TCP. On TCP a varint length stands before each; a datagram is one message.
+//! `stream`: message framing on TCP. On TCP a varint length precedes each message; a datagram is one message.
 //!
-//! Sans-IO: whoever owns the socket pushes what it read, however torn, and takes whole messages out. The league's own
-//! code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.
+//! Sans-IO: the owner of the socket pushes the bytes it read, however split, and takes whole messages out.
+//! The league's own code calls it "4 byte big endian" in a comment; on the wire it is an unsigned varint.
 
 use prost::Message;
 
 use crate::wire::VARINT_MAX;
 
-/// Most bytes of a message on TCP that are accepted, length excluded. The largest that is needed, a [`CiInput`] with a
-/// tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its bytes.
+/// Most bytes of a message on TCP that are accepted, length excluded. The largest one needed, a [`CiInput`]
+/// with a tracker's frame and the geometry, has about 5 kB; a decoded message may need a hundred times its
+/// bytes.
 ///
 /// [`CiInput`]: crate::controller::CiInput
 pub const MESSAGE_MAX: usize = 256 * 1024;
@@ -16,22 +17,23 @@ pub const MESSAGE_MAX: usize = 256 * 1024;
 /// Most bytes of a UDP datagram over IPv4: 65,535 less the headers.
 pub const DATAGRAM_MAX: usize = 65_507;
 
-/// Most bytes of a datagram the league's own programs can hear (ssl-game-controller, ssl-go-tools: 8192).
+/// Most bytes of a datagram that the league's own programs can receive (ssl-game-controller, ssl-go-tools:
+/// 8192).
 pub const LEAGUE_DATAGRAM_MAX: usize = 8192;
 
-/// The message as it goes over TCP: its length, then its bytes.
+/// The message encoded for TCP: its length, then its bytes.
 pub fn delimited(message: &impl Message) -> Vec<u8> {
     message.encode_length_delimited_to_vec()
 }
 
-/// Takes whole messages out of what a stream brings in pieces.
+/// Extracts whole messages from the pieces of a stream.
 ///
-/// Holds at most the limit and one push more, if every push is followed by [`next_message`](Self::next_message) until it
-/// has none.
+/// Holds at most the limit and one push more, if every push is followed by
+/// [`next_message`](Self::next_message) until it has none.
 #[derive(Debug)]
 pub struct FrameReader {
     buffer: Vec<u8>,
-    /// Bytes of `buffer` that were taken out already.
+    /// Number of bytes of `buffer` that were consumed already.
     taken: usize,
     limit: usize,
     lost: Option<StreamError>,
@@ -43,7 +45,7 @@ impl FrameReader {
         Self { buffer: Vec::new(), taken: 0, limit, lost: None }
     }
 
-    /// What was read from the stream, in any pieces.
+    /// Takes bytes read from the stream, in pieces of any size.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.lost.is_none() {
             self.buffer.drain(..self.taken);
@@ -54,8 +56,8 @@ impl FrameReader {
 
     /// The next whole message, or `None` until more is pushed.
     ///
-    /// After an error there is no telling where a message begins: the error comes again, and the connection is to be
-    /// opened anew.
+    /// After an error the start of the next message is unknown: the error is returned again, and the
+    /// connection must be reopened.
     pub fn next_message(&mut self) -> Result<Option<&[u8]>, StreamError> {
         if let Some(error) = self.lost {
             return Err(error);
@@ -77,23 +79,23 @@ impl FrameReader {
         }
     }
 
-    /// Bytes of a message that is not whole yet. Not 0 when the peer closes: it was cut.
+    /// Bytes of an incomplete message. Not 0 when the peer closes: the message was truncated.
     pub fn pending(&self) -> usize {
         self.buffer.len() - self.taken
     }
 }
 
-/// A stream whose messages cannot be told apart any more.
+/// A stream whose messages cannot be separated any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamError {
     /// A message is longer than is accepted.
     TooLong {
-        /// Its length, bytes.
+        /// Length of the message, bytes.
         length: u64,
-        /// What is accepted, bytes.
+        /// Accepted length, bytes.
         limit: usize,
     },
-    /// Ten bytes and no end of the length.
+    /// The length has ten bytes without an end.
     EndlessLength,
 }
 
@@ -116,7 +118,7 @@ impl std::fmt::Display for StreamError {
 
 impl std::error::Error for StreamError {}
 
-/// Bytes of the length itself and the length, once it is whole.
+/// Number of bytes of the length itself and the length, once it is complete.
 fn length(bytes: &[u8], limit: usize) -> Result<Option<(usize, usize)>, StreamError> {
     let mut length = 0u64;
     for (at, byte) in bytes.iter().take(VARINT_MAX).enumerate() {

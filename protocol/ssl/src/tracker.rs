@@ -1,21 +1,22 @@
 //! `tracker`: tracker packets. One [`TrackerWrapperPacket`] a datagram, to 224.5.23.2:10010.
 //!
-//! Units: m, m/s, rad, rad/s, s in the field frame. Several sources may share the port: keep them apart by `uuid`.
+//! Units: m, m/s, rad, rad/s, s in the field frame. Several sources may share the port: they are
+//! distinguished by `uuid`.
 
 use prost::{Enumeration, Message};
 
 use crate::common::{Vector2, Vector3};
 
-/// A frame with who made it.
+/// A frame with its source.
 #[derive(Clone, PartialEq, Message)]
 pub struct TrackerWrapperPacket {
-    /// Names the source, the same through a session.
+    /// Id of the source, the same through a session.
     #[prost(string, required, tag = "1")]
     pub uuid: String,
-    /// The source in words.
+    /// Name of the source.
     #[prost(string, optional, tag = "2")]
     pub source_name: Option<String>,
-    /// What it believes.
+    /// The tracked frame.
     #[prost(message, optional, tag = "3")]
     pub tracked_frame: Option<TrackedFrame>,
 }
@@ -26,7 +27,7 @@ pub struct TrackedFrame {
     /// Counts this source's frames.
     #[prost(uint32, required, tag = "1")]
     pub frame_number: u32,
-    /// The moment, s, on the clock of vision's `t_capture`.
+    /// Time of the frame, s, on the clock of vision's `t_capture`.
     #[prost(double, required, tag = "2")]
     pub timestamp: f64,
     /// Balls; the first is the one in play.
@@ -35,32 +36,32 @@ pub struct TrackedFrame {
     /// Robots of both teams.
     #[prost(message, repeated, tag = "4")]
     pub robots: Vec<TrackedRobot>,
-    /// The last kick while it lasts.
+    /// The last kick while its ball moves.
     #[prost(message, optional, tag = "5")]
     pub kicked_ball: Option<KickedBall>,
-    /// What this source can do, [`Capability`].
+    /// Abilities of this source, [`Capability`].
     #[prost(enumeration = "Capability", repeated, packed = "false", tag = "6")]
     pub capabilities: Vec<i32>,
 }
 
-/// A ball.
+/// State of a ball.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedBall {
-    /// Where, m.
+    /// Position, m.
     #[prost(message, required, tag = "1")]
     pub pos: Vector3,
-    /// How fast, m/s.
+    /// Velocity, m/s.
     #[prost(message, optional, tag = "2")]
     pub vel: Option<Vector3>,
-    /// How well it was seen of late, 0–1.
+    /// Recent visibility, 0–1.
     #[prost(float, optional, tag = "3")]
     pub visibility: Option<f32>,
 }
 
-/// A ball that was kicked, and where it will end if nobody touches it.
+/// A ball that was kicked, and where it will end if it is not touched.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KickedBall {
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, required, tag = "1")]
     pub pos: Vector2,
     /// Its velocity after the kick, m/s.
@@ -69,41 +70,41 @@ pub struct KickedBall {
     /// When it was kicked, s.
     #[prost(double, required, tag = "3")]
     pub start_timestamp: f64,
-    /// When it will be at rest, s.
+    /// When it will stop, s.
     #[prost(double, optional, tag = "4")]
     pub stop_timestamp: Option<f64>,
-    /// Where it will be at rest, m.
+    /// Stop position, m.
     #[prost(message, optional, tag = "5")]
     pub stop_pos: Option<Vector2>,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(message, optional, tag = "6")]
     pub robot_id: Option<TrackedRobotId>,
 }
 
-/// A robot.
+/// State of a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedRobot {
-    /// Which.
+    /// Identity of the robot.
     #[prost(message, required, tag = "1")]
     pub robot_id: TrackedRobotId,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, required, tag = "2")]
     pub pos: Vector2,
     /// Heading, rad, counter-clockwise from +x.
     #[prost(float, required, tag = "3")]
     pub orientation: f32,
-    /// How fast, m/s, field frame.
+    /// Velocity, m/s, field frame.
     #[prost(message, optional, tag = "4")]
     pub vel: Option<Vector2>,
-    /// How fast it turns, rad/s, counter-clockwise.
+    /// Turning rate, rad/s, counter-clockwise.
     #[prost(float, optional, tag = "5")]
     pub vel_angular: Option<f32>,
-    /// How well it was seen of late, 0–1.
+    /// Recent visibility, 0–1.
     #[prost(float, optional, tag = "6")]
     pub visibility: Option<f32>,
 }
 
-/// A robot by shell number and team, as trackers name it.
+/// A robot by shell number and team, as in tracker packets.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TrackedRobotId {
     /// Shell number, 0–15.
@@ -114,7 +115,7 @@ pub struct TrackedRobotId {
     pub team_color: i32,
 }
 
-/// Which team, with the numbers of [`crate::common::Team`].
+/// Team, with the numbers of [`crate::common::Team`].
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -124,7 +125,7 @@ pub enum TeamColor {
     Blue = 2,
 }
 
-/// What a tracker can do.
+/// Abilities of a tracker.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

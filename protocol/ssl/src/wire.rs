@@ -39,14 +39,14 @@ pub(crate) const FIXED32: u8 = 5;
 /// A varint of 64 bits has at most this many bytes; the last has one bit.
 pub(crate) const VARINT_MAX: usize = 10;
 
-/// A message's fields, outermost level. `Some(Err(_))` once, where the bytes are no message or hold a group, which none
-/// of the league's messages does.
+/// A message's fields, outermost level. `Some(Err(_))` once, where the bytes are no message or hold a group,
+/// which none of the league's messages does.
 #[derive(Clone, Debug)]
 pub(crate) struct Fields<'a> {
     rest: &'a [u8],
 }
 
-/// Not a field.
+/// Error of bytes that are no field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NoField;
 
@@ -117,7 +117,7 @@ mod tests {
             0x11, 0, 0, 0, 0, 0, 0, 0, 0, // 2: eight bytes
             0x1a, 2, 7, 8, // 3: two bytes of content
             0x25, 0, 0, 0, 0,    // 4: four bytes
-            0x2b, // 5: a group begins
+            0x2b, // 5: start of a group
         ];
         let fields: Vec<_> = Fields::of(&bytes).collect();
         let field = |number, value| Ok(Field { number, value });

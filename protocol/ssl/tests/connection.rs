@@ -13,7 +13,7 @@ const NOW: Duration = Duration::ZERO;
 #[test]
 fn a_team_registers_and_hears_the_reply() {
     let (mut team, mut controller) = pair();
-    // The controller speaks first, and twice in one packet is two messages.
+    // The controller sends first, and twice in one packet is two messages.
     controller.send(&reply("token 1")).expect("sent");
     controller.send(&reply("token 2")).expect("sent");
     for token in ["token 1", "token 2"] {
@@ -69,7 +69,7 @@ fn what_is_no_message_is_told() {
     stream.write_all(&[2, 0x0a, 9]).expect("sent");
     let error = controller.receive::<ControllerToTeam>(SOON).expect_err("no message");
     assert!(matches!(error, NetError::NotDecoded { .. }), "{error}");
-    // The next one is heard all the same.
+    // The next one is received all the same.
     stream.write_all(&ssl::stream::delimited(&reply("token"))).expect("sent");
     assert_eq!(controller.receive(SOON).expect("no error"), Some(reply("token")));
 }

@@ -51,8 +51,8 @@ fn a_long_file_cut_beside_any_message_and_anywhere_gives_all_whole_messages() {
     let records = recordings::records(GRSIM_NOISY);
     let (file, begins) = file_of(&records);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-    // Beside and within each message, in a file of that message and its neighbours: what stands further before plays no
-    // part.
+    // Beside and within each message, in a file of that message and its neighbours: earlier content has no
+    // effect.
     for window in records.windows(3) {
         let (file, begins) = file_of(window);
         let beside = begins[1..].iter().flat_map(|begin| [begin - 1, *begin, begin + 1]);
@@ -112,7 +112,7 @@ fn an_impossible_size_ends_the_file_and_takes_no_memory() {
         let Some(End::Size { at, size: told }) = reader.end() else { panic!("{:?}", reader.end()) };
         assert_eq!((*at, *told), (begins[2] as u64, size));
     }
-    // The largest that is possible: there are not so many bytes.
+    // The largest possible size: the file has fewer bytes.
     let (mut file, begins) = file_of(&recordings::records(GRSIM)[..3]);
     file[begins[2] + 12..begins[2] + 16].copy_from_slice(&(PAYLOAD_MAX as i32).to_be_bytes());
     let mut reader = LogReader::new(&file[..]).expect("a header");
@@ -218,7 +218,7 @@ fn write_all<W: Write>(writer: &mut LogWriter<W>, records: &[Record]) {
     }
 }
 
-/// The file of these messages, made here by hand, and where each begins; last, where it ends.
+/// The file of these messages, made here by hand, and the start of each; last, where it ends.
 fn file_of(records: &[Record]) -> (Vec<u8>, Vec<usize>) {
     let mut file = b"SSL_LOG_FILE\0\0\0\x01".to_vec();
     let mut begins = vec![file.len()];

@@ -88,7 +88,7 @@ fn a_broken_index_is_told_and_the_headers_are_read_instead() {
 fn an_index_of_another_file_is_found_out() {
     let records = recordings::records(GRSIM);
     let scratch = Scratch::new("other");
-    // All offsets shifted by three bytes: they rise, and lead nowhere.
+    // All offsets shifted by three bytes: they rise, and are wrong.
     let mut file = std::fs::read(recordings::path(GRSIM_INDEXED)).expect("the recording");
     let index = without_index(&file).len();
     for bytes in file[index + 16..].as_chunks_mut::<8>().0.iter_mut().take(7903) {
@@ -132,7 +132,7 @@ fn without_index(file: &[u8]) -> Vec<u8> {
     file[..file.len() - back as usize].to_vec()
 }
 
-/// A folder of one test's own, gone when it ends.
+/// A directory of one test's own, removed when it ends.
 struct Scratch {
     folder: PathBuf,
 }
@@ -153,7 +153,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // A folder that stays behind harms nobody.
+        // A directory that is left over is harmless.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

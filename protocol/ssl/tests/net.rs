@@ -1,4 +1,4 @@
-//! `net`: tests of the sockets on loopback, and that each error says how to fix it.
+//! `net`: tests of the sockets on loopback, and that each error names the fix.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::{Duration, Instant};
@@ -72,7 +72,7 @@ fn a_client_gets_its_answer() {
     server.send(asked, b"answer").expect("sent");
     let answer = client.receive(SOON).expect("no error").expect("an answer");
     assert_eq!((answer.bytes, answer.from), (&b"answer"[..], server.address()));
-    // Nobody there: not an error, there is just no answer.
+    // No receiver: not an error, there is just no answer.
     drop(server);
     client.send(asked, b"ask").expect("sent");
     Sender::unicast(localhost(9)).expect("a sender").send(b"nobody").expect("sent");
@@ -130,7 +130,7 @@ fn no_way_to_a_group_is_told_with_the_command_that_makes_one() {
         words.contains("sudo ip link set lo multicast on && sudo ip route add 224.0.0.0/4 dev lo"),
         "{words}"
     );
-    // What the system says of this machine is one of two answers, and ours is made of it.
+    // The system's answer about this machine is one of two, and ours is made of it.
     match route(SocketAddrV4::new(GROUP, 10006)) {
         Ok(by) => assert!(interfaces().expect("interfaces").iter().any(|one| one.address == by), "{by}"),
         Err(error) => assert!(matches!(error, NetError::NoRoute { .. }), "{error}"),
@@ -150,7 +150,7 @@ fn localhost(port: u16) -> SocketAddr {
     (Ipv4Addr::LOCALHOST, port).into()
 }
 
-/// The league's group on a port nobody has: the system gave it a moment ago.
+/// The league's group on an unused port: the system gave it a moment ago.
 fn free_group() -> SocketAddrV4 {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a free port");
     SocketAddrV4::new(GROUP, socket.local_addr().expect("bound").port())

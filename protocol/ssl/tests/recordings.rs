@@ -35,7 +35,8 @@ fn single_packets_agree_field_by_field_with_an_independent_decoder() {
             _ => panic!("{name}: which message is it?"),
         };
         shown::agree(&shown, &json).unwrap_or_else(|error| panic!("{name}: {error}"));
-        // Nothing is lost: no field is left out. (Go writes a oneof behind the other fields, so the order may differ.)
+        // Nothing is lost: no field is left out. (Go writes a oneof behind the other fields, so the order may
+        // differ.)
         assert_eq!(sorted(&again), sorted(&bytes), "{name}");
         compared += 1;
     }
@@ -59,7 +60,8 @@ fn every_packet_of_every_recording_decodes_and_encodes_without_loss() {
 
 #[test]
 fn the_summary_counts_what_another_program_counted() {
-    // Counted by a Python program that reads the format alone: referee, vision, tracker, back steps, span in ns.
+    // Counted by a Python program that reads the format alone: referee, vision, tracker, back steps, span in
+    // ns.
     let counted = [
         (GRSIM, [858, 5076, 1969], 1, 23_217_376_926),
         (GRSIM_INDEXED, [858, 5076, 1969], 1, 23_217_376_926),
@@ -89,7 +91,7 @@ fn both<M: Message + Default + std::fmt::Debug>(bytes: &[u8]) -> (String, Vec<u8
     (format!("{message:?}"), message.encode_to_vec())
 }
 
-/// The same bytes in whatever order of fields.
+/// The same bytes independent of the order of fields.
 fn sorted(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     bytes.sort_unstable();

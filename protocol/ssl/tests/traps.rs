@@ -1,5 +1,5 @@
 //! `traps`: tests of the league's surprises on the wire. Each trap of the README as a fact of a recording,
-//! told by our own structs: who relies on the opposite finds it here.
+//! read by our own structs: code that relies on the opposite fails here.
 
 #[path = "support/recordings.rs"]
 mod recordings;
@@ -41,7 +41,7 @@ fn trap_02_grsim_sends_four_frames_a_tick_each_counted_by_its_own_camera() {
             assert!(before.is_none_or(|before| before + 1 == frame.frame_number));
         }
     }
-    // The number tells a camera's images apart, not the tick's: four packets have the same one.
+    // The number counts a camera's frames, not ticks: four packets have the same one.
     assert_eq!(counts.values().collect::<BTreeSet<_>>().len(), 1);
     assert_eq!(frames.len(), 5076);
 }
@@ -98,7 +98,7 @@ fn trap_03_a_place_for_the_ball_is_told_where_none_is_to_be_placed() {
         .collect();
     let beside = [Command::Halt, Command::Stop, Command::NormalStart, Command::PrepareKickoffYellow];
     assert!(beside.iter().all(|command| told.contains(command)), "{told:?}");
-    // In mm, where everything else of the referee's is in m.
+    // In mm, where all other values of the referee are in m.
     let place = packets.iter().find(|(_, packet)| packet.command() == Command::BallPlacementBlue);
     let place = place.and_then(|(_, packet)| packet.designated_position).expect("a placement");
     assert_eq!((place.x, place.y), (1200.0, 2800.0));
@@ -152,7 +152,8 @@ fn trap_07_unicast_to_shared_listeners_reaches_one_of_them_and_multicast_all() {
     to_all.send(b"to all").expect("sent");
     let mut heard = Vec::new();
     for listener in &mut listeners {
-        // On one machine's loopback the order holds: whoever has the second has had the first, or never gets it.
+        // On one machine's loopback the order holds: a receiver that has the second has had the first, or
+        // never gets it.
         loop {
             let datagram = listener.receive(Duration::from_secs(5)).expect("no error").expect("the group's");
             heard.push(datagram.bytes.to_vec());
@@ -296,7 +297,7 @@ fn responses(name: &str) -> Vec<(u16, RobotControlResponse)> {
     text.lines().map(line).collect()
 }
 
-/// A port nobody has, kept from others by nothing but chance.
+/// An unused port, not reserved against other programs.
 fn free_port() -> u16 {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a free port");
     socket.local_addr().expect("bound").port()

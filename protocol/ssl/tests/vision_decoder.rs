@@ -45,7 +45,7 @@ fn broken_packets_are_refused_as_a_plain_decode_refuses_them_and_leave_nothing_b
         let (_, whole) = &sound[round % sound.len()];
         for bytes in [&broken, whole] {
             match (decoder.decode(bytes), WrapperPacket::decode(&bytes[..])) {
-                // Bytes tell NaN from NaN.
+                // Compared by bytes, so that NaNs differ.
                 (Ok(packet), Ok(alone)) => {
                     assert_eq!(packet.encode_to_vec(), alone.encode_to_vec(), "round {round}");
                 }
@@ -71,7 +71,7 @@ fn in_the_steady_state_a_packet_takes_no_memory() {
         for bytes in rest {
             let at = taken();
             let packet = decoder.decode(bytes).expect("sound");
-            // grSim tells another camera with each field: that is not the steady state.
+            // grSim sends another camera with each field: that is not the steady state.
             let another_field = name == GRSIM_NOISY && packet.geometry.is_some();
             if taken() > at && !another_field {
                 grown += 1;
@@ -87,7 +87,7 @@ fn vision(name: &str) -> Vec<Vec<u8>> {
     records.map(|record| record.payload).collect()
 }
 
-/// How often this thread took memory.
+/// Number of allocations of this thread.
 fn taken() -> u64 {
     TAKEN.get()
 }

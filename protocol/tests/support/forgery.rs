@@ -1,5 +1,5 @@
-//! Tries at making a robot or its host believe something without the key, or with no more than recordings; of earlier boot epochs
-//! too: robots and hosts start again all the while.
+//! Tries at making a robot or its host accept a frame without the key, or with no more than recordings; of
+//! earlier boot epochs too: robots and hosts restart repeatedly.
 
 use geometry::GoalEnd;
 use protocol::frame::{Audience, Frame, Sender, TeamKey};
@@ -15,16 +15,16 @@ use rules::Phase;
 
 const TEAM: TeamId = TeamId(1);
 const KEY: TeamKey = TeamKey([0x5a; 16]);
-/// Of the robot.
+/// First boot epoch of the robot.
 const FIRST_LIFE: u32 = 9;
-/// Of the host.
+/// First epoch of the host.
 const FIRST_HOST: u32 = 70;
 
 fn robot(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-/// The welcome first: without it the robot believes no host.
+/// The welcome first: without it the robot trusts no host.
 fn messages(n: u32, welcome: Welcome) -> [HostMessage; 3] {
     let (phase, directive) = (Phase::Run, Directive::GetBall { face: None });
     let robots = heapless::Vec::new();
@@ -68,7 +68,8 @@ fn telemetry(link: &mut Link, now: Instant) -> Packet {
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// The team: robot 2, its teammate 3, their host, all genuine and acquainted; and all they have said so far.
+/// The team: robot 2, its teammate 3, their host, all genuine and after their handshakes; and all their
+/// messages so far.
 struct Team {
     robot: Link,
     mate: Link,
@@ -77,7 +78,7 @@ struct Team {
     /// The robot's boot epoch, and the host's.
     life: u32,
     host_life: u32,
-    /// Their clock.
+    /// Clock of the team.
     now: Instant,
 }
 
@@ -101,7 +102,7 @@ impl Team {
         team
     }
 
-    /// Robots believe a host once it has welcomed them, and it believes them once they name it.
+    /// Robots trust a host once it has welcomed them, and it trusts them once they name it.
     fn meet_host(&mut self) {
         self.now.0 += 100_000;
         for (link, id) in [(&mut self.robot, robot(2)), (&mut self.mate, robot(3))] {
@@ -116,19 +117,20 @@ impl Team {
         }
     }
 
-    /// Teammates believe each other once they have greeted.
+    /// Teammates trust each other after their handshakes.
     fn greet(&mut self) {
         self.now.0 += 100_000;
         let (first, second) = (self.robot.seal(&beacon(0)), self.mate.seal(&beacon(0)));
         assert!(self.robot.open(self.now, &second).is_err() && self.host.open(self.now, &second).is_ok());
-        // To the teammate a new epoch is a stranger, and it greets it.
+        // To the teammate a new epoch is an unauthenticated peer, and it sends a handshake.
         assert!(self.mate.open(self.now, &first).is_err() && self.host.open(self.now, &first).is_ok());
         let greeting = self.mate.poll_greeting(self.now).unwrap();
         assert!(self.robot.open(self.now, &greeting).is_ok() && self.host.open(self.now, &greeting).is_ok());
         self.recorded.extend([first, second, greeting]);
     }
 
-    /// The robot boots, then the host starts again: each time every recording is tried, then the team makes acquaintance.
+    /// The robot boots, then the host restarts: each time every recording is tried, then the handshakes are
+    /// made.
     fn boot(&mut self, tally: &mut Tally) {
         (self.life, self.host_life) = (self.life + 1, self.host_life + 1);
         self.robot = Link::new(TEAM, robot(2), KEY.of_robot(robot(2)), self.life);
@@ -148,7 +150,7 @@ impl Team {
         self.meet_host();
     }
 
-    /// Everybody says something, and everybody else believes it.
+    /// Each sends a message, and all others accept it.
     fn speak(&mut self, n: u32) {
         self.now.0 += 10_000;
         let now = self.now;
@@ -178,20 +180,21 @@ fn host(epoch: u32) -> HostLink {
     host
 }
 
-/// What was tried.
+/// Counters of the tries.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
-    /// By kind: as it was said; flipped bits; a newer counter; a newer epoch; another length; another name; made from nothing.
+    /// By kind: as it was sent; flipped bits; a newer counter; a newer epoch; another length; another name;
+    /// made from nothing.
     pub kinds: [u64; 7],
-    /// Recordings heard by a robot that had just booted, and how often it booted.
+    /// Recordings received by a robot that had just booted.
     pub after_boots: u64,
-    /// See there.
+    /// Number of its boots.
     pub boots: u32,
-    /// Recordings heard by a host that had just started.
+    /// Recordings received by a host that had just started.
     pub to_fresh_hosts: u64,
 }
 
-/// So many tries; panics with the first frame that is believed.
+/// Runs `count` tries; panics with the first frame that is accepted.
 pub(crate) fn tries(count: u64, seed: u64) -> Tally {
     let mut tally = Tally::default();
     let mut team = Team::new();
@@ -203,22 +206,22 @@ pub(crate) fn tries(count: u64, seed: u64) -> Tally {
         let kind = draw(tally.kinds.len());
         tally.kinds[kind] += 1;
         match kind {
-            // As it was said.
+            // As it was sent.
             0 => {}
             // A bit or a few, anywhere.
             1 => (0..=draw(3)).for_each(|_| bytes[draw(recorded.len())] ^= 1 << draw(8)),
-            // A counter or epoch that would be news.
+            // A counter or epoch that would be new.
             2 => bytes[7..11].copy_from_slice(&u32::MAX.to_le_bytes()),
             3 => bytes[3..7].copy_from_slice(&u32::MAX.to_le_bytes()),
             // Shorter, or longer.
             4 if draw(2) == 0 => bytes.truncate(draw(recorded.len())),
             4 => bytes.resize(recorded.len() + 1 + draw(30), 0),
-            // Somebody else's name, news too.
+            // The name of another sender, new too.
             5 => {
                 bytes[2] = (bytes[2] + 1 + draw(17) as u8) % 18;
                 bytes[7..11].copy_from_slice(&(1_u32 << 30).to_le_bytes());
             }
-            // A frame made from nothing with a guessed key and a guessed tag.
+            // A frame made with a guessed key and a guessed tag.
             _ => bytes = forged(&mut draw),
         }
         if bytes[..] == recorded[..] && kind != 0 {

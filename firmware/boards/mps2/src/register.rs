@@ -1,7 +1,6 @@
-//! `register`: access to a memory-mapped device register. At its address, 32 bits wide, never merged or left
-//! out.
+//! `register`: access to a memory-mapped device register, 32 bits wide, never merged or omitted.
 
-/// A register of the board's.
+/// A register of the board.
 #[derive(Clone, Copy)]
 pub(crate) struct Register(usize);
 
@@ -10,13 +9,13 @@ impl Register {
     ///
     /// # Safety
     ///
-    /// A device's register of 32 bits is there on every board the image runs on (MPS2 AN386).
+    /// A device's register of 32 bits is there on every board the firmware runs on (MPS2 AN386).
     pub(crate) const unsafe fn at(address: usize) -> Self {
         Self(address)
     }
 
     pub(crate) fn read(self) -> u32 {
-        // SAFETY: whoever made it promised that a register is there.
+        // SAFETY: the caller of `at` promised that a register is there.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
 

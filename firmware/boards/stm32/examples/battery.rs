@@ -1,8 +1,9 @@
 //! `battery`: bench test of the battery voltage.
 //!
-//! Connect: the battery, or a supply in its place; motors and kicker unplugged.
-//! See: its voltage, within 2 % of a meter's. It differs: the divider is another (`src/analog.rs`). The governor brakes a robot whose
-//! battery is low for a while (`firmware/brain/src/governor.rs`), so a wrong divider keeps it from driving at all.
+//! Connect: the battery, or a supply in its place; motors and kicker unplugged. See: its voltage, within 2 %
+//! of a meter's. If it differs, the divider is another (`src/analog.rs`). The governor brakes a robot whose
+//! battery is low for a while (`firmware/brain/src/governor.rs`), so a wrong divider keeps it from driving at
+//! all.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,12 +1,12 @@
 //! `charge`: bench test of the kicker's capacitor: it charges, its voltage is right, and it discharges.
 //! Nothing is fired.
 //!
-//! **Up to 60 V on the kicker's board: touch nothing, one hand in the pocket; both coils unplugged, and a voltmeter on the capacitor
-//! that you trust.** Set the charger's own limit first.
-//! Connect: the kicker's board and its supply.
-//! See: the voltage rises to 50 V within some tenths of a second, in the log as on the meter, then falls to under 30 V, and again,
-//! three times. Log and meter differ: the divider is another (`src/analog.rs`). Does not fall: the resistor or its wire `hold` is not
-//! connected, **do not go on**. Does not rise: it gives up after two seconds.
+//! **Up to 60 V on the kicker's board: touch nothing, one hand in the pocket; both coils unplugged, and a
+//! voltmeter on the capacitor that you trust.** Set the charger's own limit first. Connect: the kicker's
+//! board and its supply. See: the voltage rises to 50 V within some tenths of a second, in the log as on the
+//! meter, then falls to under 30 V, and again, three times. If log and meter differ, the divider is another
+//! (`src/analog.rs`). If it does not fall, the resistor or its wire `hold` is not connected, **do not go
+//! on**. If it does not rise, the test gives up after two seconds.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -18,7 +18,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     use runtime::kicker::KickerAct;
     use runtime::ports::Kicker as _;
 
-    /// Below extra-low voltage's 60 V.
+    /// Voltage to charge to, V: below extra-low voltage's 60 V.
     const ENOUGH: f32 = 50.0;
     const EMPTY: f32 = 30.0;
 

@@ -1,9 +1,9 @@
 //! `encoders`: bench test of the encoders: each counts, in the right direction. Turned by hand.
 //!
-//! Connect: the encoders and their supply; motors without current.
-//! See: four counts and four rim speeds, five times a second. Turn each wheel so that it would turn the robot counter-clockwise: its
-//! count rises, by 4,096 a turn (`src/encoders.rs` says how many yours has), and its speed is positive. Falls: swap A and B. Goes one
-//! up and one down: A or B is not connected.
+//! Connect: the encoders and their supply; motors without current. See: four counts and four rim speeds, five
+//! times a second. Turn each wheel so that it would turn the robot counter-clockwise: its count rises, by
+//! 4,096 a turn (`src/encoders.rs` holds the number of your encoders), and its speed is positive. If it
+//! falls, swap A and B. If it alternates up and down: A or B is not connected.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,8 +1,9 @@
 //! `led`: bench test of chip and log. The first thing to try on a new board.
 //!
-//! Connect: the probe and the board's supply, nothing else.
-//! See: green and red take turns, a second each, and the log counts them. A second must be one: otherwise the quartz is another
-//! (`src/clocks.rs`, feature `crystal`). Nothing at all: the quartz does not run, or the probe does not reach the chip.
+//! Connect: the probe and the board's supply, nothing else. See: green and red take turns, a second each, and
+//! the log counts them. Check the second against a clock: if it differs, the quartz is another
+//! (`src/clocks.rs`, feature `crystal`). If nothing happens, the quartz does not run, or the probe does not
+//! reach the chip.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

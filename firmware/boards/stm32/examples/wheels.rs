@@ -1,11 +1,12 @@
 //! `wheels`: bench test of the motors: each turns, in the right place and direction. One at a time, at a
 //! sixth of the battery's voltage.
 //!
-//! **The robot on a stand, wheels off the ground, nobody's fingers near them; the kicker's board unplugged.**
-//! Connect: motor drivers and battery, or a supply limited to 2 A.
-//! See: front right, back right, back left, front left, then the dribbler; each wheel two seconds so that it would turn the robot
-//! counter-clockwise (its rim runs to the left when seen from the robot's centre), then two seconds back. Wrong wheel: pins swapped.
-//! Wrong way: swap two phases, or the direction's wire. `a driver has switched itself off`: its fault wire is low.
+//! **The robot on a stand, wheels off the ground, no fingers near them; the kicker's board unplugged.**
+//! Connect: motor drivers and battery, or a supply limited to 2 A. See: front right, back right, back left,
+//! front left, then the dribbler; each wheel two seconds so that it would turn the robot counter-clockwise
+//! (its rim runs to the left when seen from the robot's centre), then two seconds back. Wrong wheel: pins
+//! swapped. Wrong direction: swap two phases, or the direction's wire. `a driver has switched itself off`:
+//! its fault wire is low.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -15,7 +16,7 @@ async fn main(spawner: embassy_executor::Spawner) {
     use embassy_time::Timer;
 
     const NAMES: [&str; 4] = ["front right", "back right", "back left", "front left"];
-    /// Of the battery's voltage: a wheel without load runs 1 m/s at the rim.
+    /// Duty cycle, share of the battery's voltage: a wheel without load runs 1 m/s at the rim.
     const DUTY: f32 = 0.16;
 
     // One task is enough.

@@ -28,37 +28,38 @@ impl Analog {
         }
     }
 
-    /// The battery, V.
+    /// Battery voltage, V.
     pub fn battery(&mut self) -> f32 {
         share(self.converter.blocking_read(&mut self.battery, TIME)) * SUPPLY * BATTERY_DIVIDER
     }
 
-    /// The kicker's capacitor, V.
+    /// Voltage of the kicker's capacitor, V.
     pub fn capacitor(&mut self) -> f32 {
         share(self.converter.blocking_read(&mut self.capacitor, TIME)) * SUPPLY * CAPACITOR_DIVIDER
     }
 
-    /// What the light barrier's receiver sees, 0 to 1.
+    /// Light at the receiver of the break-beam sensor, 0 to 1.
     pub fn barrier(&mut self) -> f32 {
         share(self.converter.blocking_read(&mut self.barrier, TIME))
     }
 
-    /// Lights the barrier, or not; it is seen with the next step, for a receiver needs some 100 µs.
+    /// Switches the lamp of the break-beam sensor; visible with the next step, because a receiver needs some
+    /// 100 µs.
     pub fn light(&mut self, lit: bool) {
         self.lamp.set_level(if lit { Level::High } else { Level::Low });
     }
 }
 
-/// Of full range, 16 bits.
+/// Share of full range, 16 bits.
 fn share(raw: u16) -> f32 {
     f32::from(raw) * (1.0 / 65_535.0)
 }
 
-/// For dividers of some 10 kΩ.
+/// Sampling time for dividers of some 10 kΩ.
 const TIME: SampleTime = SampleTime::CYCLES64_5;
-/// The chip's own supply is the converter's measure, V.
+/// Reference of the converter, the chip's own supply, V.
 const SUPPLY: f32 = 3.3;
-/// 100 kΩ over 10 kΩ: 36 V is full range.
+/// Ratio of 100 kΩ over 10 kΩ: 36 V is full range.
 const BATTERY_DIVIDER: f32 = 11.0;
-/// 1 MΩ over 10 kΩ: 333 V is full range.
+/// Ratio of 1 MΩ over 10 kΩ: 333 V is full range.
 const CAPACITOR_DIVIDER: f32 = 101.0;

@@ -1,5 +1,5 @@
-//! `clocks`: clock tree. 400 MHz from a quartz of 8 MHz: what every revision of the chip bears (480 MHz is
-//! for later ones).
+//! `clocks`: clock tree. 400 MHz from a quartz of 8 MHz: the maximum for every revision of the chip (480 MHz
+//! is for later ones).
 
 use embassy_stm32::Config;
 use embassy_stm32::rcc::{
@@ -33,11 +33,12 @@ pub fn config() -> Config {
     rcc.apb4_pre = APBPrescaler::DIV2;
     // The analogue converters by the chip's own 64 MHz.
     rcc.mux.adcsel = mux::Adcsel::PER;
-    // No calendar; its registers keep the record of the last life (`fault`), and the watchdog starts its own oscillator.
+    // No calendar; its registers keep the record of the last boot epoch (`fault`), and the watchdog starts
+    // its own oscillator.
     rcc.ls = LsConfig::off();
     config
 }
 
-/// On a NUCLEO-H743ZI2 as on most robots' boards.
+/// Frequency of the quartz on a NUCLEO-H743ZI2, as on most robots' boards.
 const QUARTZ: Hertz = Hertz(8_000_000);
 const QUARTZ_MODE: HseMode = if cfg!(feature = "crystal") { HseMode::Oscillator } else { HseMode::Bypass };

@@ -10,7 +10,7 @@ use runtime::ports::Dog;
 pub struct Watchdog(IndependentWatchdog<'static, IWDG1>);
 
 impl Watchdog {
-    /// Starts it; from now on it wants to be fed, and only a reset ends it.
+    /// Starts it; from now on it must be fed, and only a reset ends it.
     pub fn start(watchdog: Peri<'static, IWDG1>) -> Self {
         let mut dog = IndependentWatchdog::new(watchdog, PATIENCE.0 as u32);
         dog.unleash();
@@ -26,5 +26,5 @@ impl Dog for Watchdog {
     }
 }
 
-/// As on the emulated board: ten steps of the brain. Its oscillator is right within 6 %.
+/// Time-out as on the emulated board: ten steps of the brain. Its oscillator is right within 6 %.
 const PATIENCE: Duration = Duration::millis(100);

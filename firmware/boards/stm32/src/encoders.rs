@@ -8,7 +8,7 @@ use runtime::wheel::WHEELS;
 
 use crate::pins;
 
-/// The four counters, and what their counts mean.
+/// The four counters, and the conversion of their counts.
 pub struct Encoders {
     front_right: Qei<'static, TIM2>,
     back_right: Qei<'static, TIM3>,
@@ -18,7 +18,7 @@ pub struct Encoders {
 }
 
 impl Encoders {
-    /// Counting from now on.
+    /// Starts counting.
     pub fn new(parts: pins::Encoders) -> Self {
         let config = Config::default();
         Self {
@@ -30,12 +30,12 @@ impl Encoders {
         }
     }
 
-    /// The counters, in the order of the wire; they wrap.
+    /// Counts of the encoders, in the order of the wheels on the wire; they wrap.
     pub fn counts(&self) -> [u16; WHEELS] {
         [self.front_right.count(), self.back_right.count(), self.back_left.count(), self.front_left.count()]
     }
 
-    /// Rim speeds, m/s; NaN for one that is broken, judged from the duty its motor had.
+    /// Rim speeds, m/s; NaN for one that is broken, judged from its motor's duty cycle.
     pub fn rims(&mut self, now: Instant, duty: [f32; WHEELS]) -> [f32; WHEELS] {
         let mut rims = [0.0; WHEELS];
         let counts = self.counts();
@@ -46,10 +46,10 @@ impl Encoders {
     }
 }
 
-/// Of a wheel, m: 27 mm, as most robots' (to be set for yours).
+/// Radius of a wheel, m: 27 mm, as most robots' (to be set for yours).
 const WHEEL_RADIUS: f32 = 0.027;
-/// Edges a turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours; negative where it counts down
-/// when the wheel turns the robot counter-clockwise).
+/// Counts per turn of the wheel: an encoder of 1,024 lines on the wheel's own shaft (to be set for yours;
+/// negative where it counts down when the wheel turns the robot counter-clockwise).
 const COUNTS_A_TURN: f32 = 4096.0;
-/// Way of the rim for a count, m.
+/// Distance of the rim for a count, m.
 pub const RIM_A_COUNT: f32 = 2.0 * core::f32::consts::PI * WHEEL_RADIUS / COUNTS_A_TURN;

@@ -1,8 +1,8 @@
 //! `fault`: fault handler: everything off, crash record kept and reported, restart
 //! (docs/architecture.md §6.2).
 //!
-//! The record lies in the calendar's backup registers: a reset leaves them alone, and unlike memory they have no check bits that a
-//! power-up would leave wrong.
+//! The record is kept in the calendar's backup registers: a reset leaves them alone, and unlike memory they
+//! have no check bits that a power-up would leave wrong.
 
 use core::panic::PanicInfo;
 
@@ -13,28 +13,28 @@ use runtime::ending::Ending;
 
 use crate::off;
 
-/// What is known of the lives before this one, since power came.
+/// Record of the boot epochs before this one, since power-on.
 #[derive(Clone, Copy, Debug)]
 pub struct Life {
-    /// Starts since power came, this one included.
+    /// Starts since power-on, this one included.
     pub boots: u32,
     /// Panics and faults since then.
     pub panics: u32,
-    /// Whether the watchdog ended the last life.
+    /// Whether the watchdog ended the last boot epoch.
     pub bitten: bool,
     place: [u8; PLACE_LEN],
     place_len: usize,
 }
 
 impl Life {
-    /// Where the last panic was: file and line.
+    /// File and line of the last panic.
     pub fn place(&self) -> &str {
         let place = self.place.get(..self.place_len).unwrap_or_default();
         core::str::from_utf8(place).unwrap_or("an unreadable place")
     }
 }
 
-/// Counts this start; call once, after the clocks are started.
+/// Counts this start; must be called once, after the clocks are started.
 pub fn life() -> Life {
     let reset = pac::RCC.rsr().read();
     pac::RCC.rsr().modify(|flags| flags.set_rmvf(true));
@@ -72,7 +72,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     ended(Ending::Fault(frame.pc()))
 }
 
-/// Keeps and tells the place, then starts anew.
+/// Keeps and prints the place, then restarts.
 fn ended(how: Ending<'_>) -> ! {
     open();
     write(PANICS_AT, read(PANICS_AT).wrapping_add(1));
@@ -83,14 +83,14 @@ fn ended(how: Ending<'_>) -> ! {
         write(register, u32::from_le_bytes(*word));
     }
     cortex_m::asm::dsb();
-    // Last: the log itself may be what failed.
+    // Last, because the log itself may be what failed.
     if let Ok(text) = core::str::from_utf8(place.get(..len).unwrap_or_default()) {
         defmt::error!("panic at {=str}; everything off, starting anew", text);
     }
     SCB::sys_reset()
 }
 
-/// Lets the registers be written.
+/// Enables writing of the registers.
 fn open() {
     pac::PWR.cr1().modify(|power| power.set_dbp(true));
 }

@@ -1,10 +1,10 @@
-//! `flash`: flash storage besides the image. The key page, which only a probe writes, and the ledger of
+//! `flash`: flash storage besides the firmware: the key page, which only a probe writes, and the counter of
 //! starts.
 //!
 //! | address | what |
 //! |---|---|
-//! | 0x0800_0000 | the image |
-//! | 0x081a_0000, 0x081c_0000 | the ledger's halves (`runtime::ledger`), a sector each |
+//! | 0x0800_0000 | the firmware |
+//! | 0x081a_0000, 0x081c_0000 | the two halves that count starts (`runtime::ledger`), a sector each |
 //! | 0x081e_0000 | the key page (`protocol::provision`), the last sector |
 
 use embassy_stm32::Peri;
@@ -13,23 +13,23 @@ use embassy_stm32::peripherals::FLASH;
 use protocol::provision::PAGE_LEN;
 use runtime::ledger::{self, CELL_LEN, Cell, Place};
 
-/// What provisioning wrote.
+/// The provisioned page.
 pub fn page() -> &'static [u8] {
-    // SAFETY: flash behind the image (memory.x), of a sector that this program never writes.
+    // SAFETY: flash behind the firmware (memory.x), of a sector that this program never writes.
     unsafe { core::slice::from_raw_parts((START + PAGE) as *const u8, PAGE_LEN) }
 }
 
-/// Why there is no epoch to start with.
+/// Why no epoch is available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum LedgerError {
-    /// There were 2³² starts.
+    /// All 2³² epochs are used.
     Full,
-    /// The flash does not keep what is written, three times over.
+    /// The flash did not keep the written value in three attempts.
     Worn,
 }
 
-/// Writes this start into the ledger: its epoch, larger than all before. Up to two seconds where a half has to be erased, once in
-/// 4,096 starts.
+/// Records this start: its epoch, larger than all before. Up to two seconds where a half has to be erased,
+/// once in 4,096 starts.
 pub fn begin(flash: Peri<'static, FLASH>) -> Result<u32, LedgerError> {
     let mut flash = Flash::new_blocking(flash);
     for _ in 0..TRIES {
@@ -56,25 +56,26 @@ fn write(
     flash.blocking_write(offset(at), &ledger::cell(epoch))
 }
 
-/// A cell as it is. One that was written while the power went may have wrong check bits, and reading it is a fault: such a fault is
-/// let pass here, and what comes instead is no cell.
+/// The content of a cell. A cell that was written while the power went may have wrong check bits, and reading
+/// it is a fault: such a fault is tolerated here, and the bytes read are no valid cell.
 fn read(at: Place) -> Cell {
     let mut bytes = [0; CELL_LEN];
     let address = START + offset(at);
     unfaulted(|| {
         for (byte, address) in bytes.iter_mut().zip(address..) {
-            // SAFETY: flash behind the image (memory.x), that is written by `begin` alone.
+            // SAFETY: flash behind the firmware (memory.x), written only by `begin`.
             *byte = unsafe { (address as *const u8).read_volatile() };
         }
     });
     Cell::of(&bytes)
 }
 
-/// Runs `work` with faults of data accesses let pass (Armv7-M, B3.2.8: BFHFNMIGN at the priority that FAULTMASK gives).
+/// Runs `work` with faults of data accesses ignored (Armv7-M, B3.2.8: BFHFNMIGN at the priority that
+/// FAULTMASK gives).
 fn unfaulted(work: impl FnOnce()) {
     const BFHFNMIGN: u32 = 1 << 8;
-    // SAFETY: one bit of the core's own register, which nobody else changes, and no interrupt comes between: FAULTMASK holds all
-    // of them back. Both are put back at once.
+    // SAFETY: one bit of the core's own register, which no other code changes, and no interrupt comes
+    // between: FAULTMASK holds all of them back. Both are put back at once.
     unsafe {
         core::arch::asm!("cpsid f");
         (*cortex_m::peripheral::SCB::PTR).ccr.modify(|ccr| ccr | BFHFNMIGN);
@@ -90,17 +91,17 @@ fn unfaulted(work: impl FnOnce()) {
     }
 }
 
-/// From the flash's start.
+/// Offset of a cell from the flash's start, bytes.
 fn offset(at: Place) -> u32 {
     HALVES + SECTOR * at.half as u32 + (CELL_LEN * at.index) as u32
 }
 
-/// The flash's start (RM0433, 2.3.2), the ledger's and the key page's from there.
+/// The flash's start (RM0433, 2.3.2), then the offsets of the counter of starts and of the key page.
 const START: u32 = 0x0800_0000;
 const HALVES: u32 = 0x001a_0000;
 const PAGE: u32 = 0x001e_0000;
 const SECTOR: u32 = 0x0002_0000;
-/// Of a half.
+/// Number of cells in a half.
 const CELLS: usize = SECTOR as usize / CELL_LEN;
-/// A cell that does not keep what is written is skipped.
+/// Number of attempts: a cell that does not keep its value is skipped.
 const TRIES: usize = 3;

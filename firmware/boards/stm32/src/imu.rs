@@ -9,20 +9,20 @@ use embassy_time::Timer;
 
 use crate::pins;
 
-/// The sensor.
+/// The IMU on its bus.
 pub struct Imu {
     bus: Spi<'static, Blocking, Master>,
     select: Output<'static>,
 }
 
-/// Why there is no reading.
+/// Why a reading is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum ImuError {
     /// The bus failed.
     Bus,
-    /// Somebody else answers, or nobody (0x00, 0xff): this instead of 0x47.
+    /// Another chip answers, or none (0x00, 0xff): this value instead of 0x47.
     Stranger(u8),
-    /// A line that never moves: the sensor is pulled out, or without supply.
+    /// The data line never changes: the sensor is unplugged, or without supply.
     Silent,
 }
 
@@ -35,14 +35,14 @@ impl From<Error> for ImuError {
 /// A reading, in the sensor's axes.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Reading {
-    /// g.
+    /// Acceleration, g.
     pub acceleration: [f32; 3],
-    /// rad/s.
+    /// Turning rate, rad/s.
     pub rate: [f32; 3],
 }
 
 impl Imu {
-    /// Not asked for anything yet.
+    /// A sensor without any transfer yet.
     pub fn new(parts: pins::Imu) -> Self {
         let mut config = Config::default();
         config.mode = MODE_3;
@@ -51,7 +51,7 @@ impl Imu {
         Self { bus, select: Output::new(parts.select, Level::High, Speed::Low) }
     }
 
-    /// Asks for its name and starts it: 2,000 degrees a second, 16 g, 1,000 readings a second.
+    /// Reads its identification and starts it: 2,000 degrees a second, 16 g, 1,000 readings a second.
     pub async fn start(&mut self) -> Result<(), ImuError> {
         self.write(DEVICE_CONFIG, 1)?;
         // After a reset it needs a millisecond.
@@ -63,7 +63,7 @@ impl Imu {
         self.write(GYRO_CONFIG0, RATE_1_KHZ)?;
         self.write(ACCEL_CONFIG0, RATE_1_KHZ)?;
         self.write(PWR_MGMT0, BOTH_LOW_NOISE)?;
-        // No register may be written for 200 µs; the gyroscope needs 45 ms to be of use.
+        // No register may be written for 200 µs; the gyroscope is valid after 45 ms.
         Timer::after_millis(45).await;
         Ok(())
     }
@@ -71,7 +71,7 @@ impl Imu {
     /// The newest reading: 13 bytes at 6 MHz, some 20 µs.
     pub fn reading(&mut self) -> Result<Reading, ImuError> {
         let raw: [u8; 12] = self.read(ACCEL_DATA)?;
-        // Six numbers of a sensor that works are never all alike: it weighs itself.
+        // Six numbers of a working sensor are never all equal: it measures gravity.
         if raw.iter().all(|byte| *byte == raw[0]) {
             return Err(ImuError::Silent);
         }
@@ -102,7 +102,7 @@ impl Imu {
     }
 }
 
-/// High byte first.
+/// Decodes 16-bit values, high byte first.
 fn words(raw: [u8; 12]) -> [i16; 6] {
     let mut words = [0; 6];
     for (word, pair) in words.iter_mut().zip(raw.as_chunks().0) {
@@ -111,7 +111,7 @@ fn words(raw: [u8; 12]) -> [i16; 6] {
     words
 }
 
-/// The sensor takes 24 MHz.
+/// SPI clock; the sensor allows 24 MHz.
 const CLOCK: Hertz = Hertz(8_000_000);
 const READ: u8 = 0x80;
 const DEVICE_CONFIG: u8 = 0x11;

@@ -1,5 +1,5 @@
 //! `kicker`: driver of the kicker board: charger and coils by timers that end by themselves; the capacitor
-//! stays off its discharge resistor only as long as that is requested anew.
+//! stays off its discharge resistor only as long as that is requested again.
 
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_time::{Duration, Timer};
@@ -19,7 +19,7 @@ pub struct Kicker {
 }
 
 impl Kicker {
-    /// Running empty.
+    /// A kicker that discharges.
     pub fn new(parts: pins::Kicker) -> Self {
         let (coils, charger, hold) = pulse::of(parts);
         Self { coils, charger, hold: Output::new(hold, Level::Low, Speed::Low) }

@@ -1,18 +1,19 @@
 //! `board_stm32`: board support for the STM32H743: pins, clocks and drivers only; the logic is `runtime`'s
 //! and `brain`'s (docs/architecture.md §1). README.md has the wiring.
 //!
-//! The robot is the program `onetwo-stm32` (`src/main.rs`), its parts are tried one by one by `examples/`. Empty on the PC.
+//! The robot is the program `onetwo-stm32` (`src/main.rs`), its parts are tried one by one by `examples/`.
+//! Empty on the PC.
 //!
 //! | part | module |
-//! |---|---|
+//! | assignment of pins | [`pins`] |
 //! | which pin does what | [`pins`] |
 //! | clocks | [`clocks`] |
 //! | motors, dribbler, encoders | [`wheels`], [`encoders`] |
 //! | pulses that end by themselves, kicker | [`pulse`], [`kicker`] |
 //! | gyroscope and accelerometer | [`imu`] |
-//! | what is read a thousand times a second | [`sampling`], [`analog`] |
+//! | readings taken a thousand times a second | [`sampling`], [`analog`] |
 //! | radio | [`radio`] |
-//! | key page and ledger of starts | [`flash`] |
+//! | key page and counter of starts | [`flash`] |
 //! | watchdog, panics, everything off | [`dog`], [`fault`], [`off`](fn@off::everything) |
 #![cfg(target_os = "none")]
 #![no_std]
@@ -32,7 +33,7 @@ pub mod radio;
 pub mod sampling;
 pub mod wheels;
 
-// The log's way to the probe.
+// Transport of the log to the probe.
 use defmt_rtt as _;
 
 use pins::Parts;

@@ -1,7 +1,7 @@
-//! `board-stm32`: start-up of the robot. Clocks, record of the last life, provisioned page, ledger, tasks,
-//! and what it says of all that.
+//! `board-stm32`: start-up of the robot: clocks, record of the last boot epoch, provisioned page, counter of
+//! starts, tasks, and their log.
 //!
-//! Without a page, an epoch or a radio it drives nothing and says nothing on the air; its red lamp is lit.
+//! Without a page, an epoch or a radio it drives nothing and sends nothing; its red lamp is lit.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

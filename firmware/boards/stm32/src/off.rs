@@ -1,4 +1,5 @@
-//! `off`: emergency stop of everything that moves. It bypasses all drivers, because a panic cannot ask them.
+//! `off`: emergency stop of everything that moves. It bypasses all drivers, because they are not accessible
+//! in a panic.
 
 use embassy_stm32::pac;
 
@@ -12,7 +13,7 @@ pub fn everything() {
         reset.set_tim16rst(true);
     });
     pac::RCC.apb1lrstr().modify(|reset| reset.set_tim5rst(true));
-    // PE0 lets current into the motors, PE4 keeps the capacitor's charge.
+    // PE0 enables the motors' current, PE4 keeps the capacitor's charge.
     pac::GPIOE.bsrr().write(|pins| {
         pins.set_br(0, true);
         pins.set_br(4, true);

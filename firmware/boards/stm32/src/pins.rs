@@ -1,8 +1,8 @@
-//! `pins`: pin assignment. This table is the only place that says it; README.md shows it as wiring, and a
-//! test holds both equal.
+//! `pins`: pin assignment. This table is the only source; README.md lists it as wiring, and a test holds both
+//! equal.
 //!
-//! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left as they are. A line
-//! `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
+//! All pins are reachable on a NUCLEO-H743ZI2 and free there, Ethernet, USB and the virtual serial line left
+//! as they are. A line `name: PIN, "what";` is a wire, `name: TIM1, "what";` a part of the chip.
 
 use embassy_stm32::{Peri, Peripherals, peripherals};
 
@@ -16,14 +16,14 @@ macro_rules! parts {
             }
         )*
 
-        /// All that is on the board.
+        /// All parts of the board.
         #[allow(missing_debug_implementations, reason = "pins have none")]
         pub struct Parts {
             $(#[doc = concat!("[`", stringify!($part), "`].")] pub $field: $part,)*
         }
 
         impl Parts {
-            /// Deals out the chip's peripherals.
+            /// Distributes the chip's peripherals.
             pub fn of(all: Peripherals) -> Self {
                 Self { $($field: $part { $($name: all.$pin,)* },)* }
             }
@@ -32,7 +32,8 @@ macro_rules! parts {
 }
 
 parts! {
-    /// Four motor drivers, and the one of the dribbler. Wheels in the order of the wire: front right, back right, back left, front left.
+    /// Four motor drivers, and the one of the dribbler. Wheels in the order of the wire: front right, back
+    /// right, back left, front left.
     Motors motors {
         timer: TIM1, "the wheels' PWM";
         pwm_front_right: PE9, "out: PWM of the front right wheel";
@@ -84,7 +85,7 @@ parts! {
         select: PD2, "out: low selects the IMU";
     }
 
-    /// What is measured as a voltage, 0 to 3.3 V, and the lamp of the light barrier.
+    /// Inputs measured as a voltage, 0 to 3.3 V, and the lamp of the break-beam sensor.
     Analog analog {
         converter: ADC1, "reads them";
         battery: PA3, "in: battery, divided by 11";
@@ -102,13 +103,13 @@ parts! {
         rx_dma: DMA1_CH1, "carries what comes";
     }
 
-    /// What people look at.
+    /// Indicator lamps.
     Lamps lamps {
         alive: PB0, "out: green, blinks as long as the robot runs";
         alarm: PB14, "out: red, lit when nobody can command the robot";
     }
 
-    /// What keeps the robot in order.
+    /// Watchdog and backup registers.
     Keeper keeper {
         watchdog: IWDG1, "resets the chip";
         flash: FLASH, "keeps the ledger of starts";

@@ -1,8 +1,8 @@
-//! `pulse`: one-shot hardware pulses of exact length, whatever becomes of the program. A timer that counts
-//! once to its end and stops (RM0433, 39.3.15: one-pulse mode).
+//! `pulse`: one-shot hardware pulses of exact length, even if the program stops. A timer that counts once to
+//! its end and stops (RM0433, 39.3.15: one-pulse mode).
 //!
-//! The driver of embassy-stm32 starts such a pulse from a pin only, and knows no timers of one or two channels; these start by the
-//! program and end by themselves. A microsecond is a tick.
+//! The driver of embassy-stm32 starts such a pulse from a pin only, and supports no timers of one or two
+//! channels; these are started by the program and end by themselves. A microsecond is a tick.
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::{AfType, Flex, OutputType, Pin, Speed};
@@ -14,7 +14,7 @@ use protocol::Duration;
 
 use crate::pins;
 
-/// Which coil.
+/// Coil to fire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coil {
     /// The flat kicker's.
@@ -30,7 +30,7 @@ pub struct Coils {
 }
 
 impl Coils {
-    /// Both without current.
+    /// Both coils without current.
     fn new(timer: Peri<'static, TIM15>, flat: Flex<'static>, chip: Flex<'static>) -> Self {
         let mut timer = Timer::new(timer);
         timer.set_tick_freq(Hertz::mhz(1));
@@ -39,7 +39,8 @@ impl Coils {
             control.set_opm(true);
             control.set_arpe(false);
         });
-        // Low until the count reaches the compare value, then high to the end. A compare value that is never reached is silence.
+        // Low until the count reaches the compare value, then high to the end. With a compare value that is
+        // never reached there is no pulse.
         registers.ccmr_output().modify(|mode| {
             mode.set_ocm(0, Ocm::PWM_MODE2);
             mode.set_ocm(1, Ocm::PWM_MODE2);
@@ -48,13 +49,14 @@ impl Coils {
             registers.ccr(channel).write(|compare| compare.set_ccr(NEVER));
             registers.ccer().modify(|enable| enable.set_cce(channel, true));
         }
-        // Takes the new speed over.
+        // Applies the new prescaler.
         timer.generate_update_event();
         registers.bdtr().modify(|outputs| outputs.set_moe(true));
         Self { timer, _pins: [flat, chip] }
     }
 
-    /// Current into that coil for so long, at most [`PULSE_MAX`]; `false` and nothing while a pulse is under way.
+    /// Current into that coil for the time `long`, at most [`PULSE_MAX`]; `false` and nothing while a pulse
+    /// runs.
     pub fn fire(&mut self, coil: Coil, long: Duration) -> bool {
         let registers = self.timer.regs_2ch_cmp();
         if registers.cr1().read().cen() {
@@ -75,14 +77,14 @@ impl Coils {
     }
 }
 
-/// The charger, that runs on for three milliseconds each time it is told to.
+/// The charger, which runs on for three milliseconds after each request.
 pub struct Charger {
     timer: Timer<'static, TIM16>,
     _pin: Flex<'static>,
 }
 
 impl Charger {
-    /// Off.
+    /// Charger switched off.
     fn new(timer: Peri<'static, TIM16>, pin: Flex<'static>) -> Self {
         let mut timer = Timer::new(timer);
         timer.set_tick_freq(Hertz::mhz(1));
@@ -107,7 +109,7 @@ impl Charger {
         registers.cr1().modify(|control| control.set_cen(true));
     }
 
-    /// Off now.
+    /// Switches off at once.
     pub fn stop(&mut self) {
         let registers = self.timer.regs_1ch_cmp();
         registers.cr1().modify(|control| control.set_cen(false));
@@ -128,9 +130,9 @@ fn wire(pin: Peri<'static, impl Pin>, function: u8) -> Flex<'static> {
     pin
 }
 
-/// No pulse is longer, however it is asked for; the kicker's own table ends there.
+/// No pulse is longer, for any request; the kicker's own table ends there.
 pub const PULSE_MAX: Duration = Duration::millis(6);
-/// How long the charger runs on when nobody tells it anything more: three steps of the kicker.
+/// How long the charger runs on without another request: three steps of the kicker.
 pub const CHARGE_RUNS_ON: Duration = Duration::millis(3);
 /// A count that no pulse reaches.
 const NEVER: u16 = u16::MAX;

@@ -1,5 +1,5 @@
-//! `radio`: UART driver of the radio. Stuffed bytes (`protocol::serial`), carried by the DMA: a ring for what
-//! comes, so that the brain's longest step loses nothing, one line at a time for what goes.
+//! `radio`: UART driver of the radio. COBS bytes (`protocol::serial`), carried by the DMA: a ring for
+//! received bytes, so that none are lost during the brain's longest step, one line at a time for sending.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -21,13 +21,13 @@ bind_interrupts!(struct Interrupts {
     DMA1_STREAM1 => dma::InterruptHandler<peripherals::DMA1_CH1>;
 });
 
-/// Both directions; `None` where the line cannot have this rate. Call once.
+/// Both directions of the line; `None` where the line cannot have this rate. Call once.
 pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
     static RING: StaticCell<[u8; RING_LEN]> = StaticCell::new();
     static LINE: StaticCell<[u8; LINE_LEN_MAX]> = StaticCell::new();
     let mut config = usart::Config::default();
     config.baudrate = BAUD;
-    // Where no radio is plugged in, the line is at rest.
+    // Where no radio is plugged in, the line is idle.
     config.rx_pull = Pull::Up;
     let line =
         Uart::new(parts.line, parts.rx, parts.tx, parts.tx_dma, parts.rx_dma, Interrupts, config).ok()?;
@@ -36,12 +36,12 @@ pub fn open(parts: pins::Radio) -> Option<(Mouth, Ear)> {
     Some((Mouth { tx, line: LINE.init([0; LINE_LEN_MAX]) }, Ear::new(rx)))
 }
 
-/// Hears frames.
+/// Receives frames.
 pub struct Ear {
     rx: RingBufferedUartRx<'static>,
     lines: Lines,
     came: [u8; CHUNK],
-    /// Of `came`, what is not looked at yet.
+    /// Range of `came` that is not yet decoded.
     rest: (usize, usize),
 }
 
@@ -50,14 +50,14 @@ impl Ear {
         Self { rx, lines: Lines::new(), came: [0; CHUNK], rest: (0, 0) }
     }
 
-    /// Some bytes, as they come.
+    /// Received bytes, as they arrive.
     pub async fn bytes(&mut self) -> &[u8] {
         let len = loop {
             if let Ok(len) = self.rx.read(&mut self.came).await {
                 break len;
             }
-            // A line that is pulled out or set to another rate. It goes on with the next read, but noise without end must not take
-            // the other tasks' time.
+            // An error of a line that is unplugged or set to another rate. Reception continues with the next
+            // read, but endless noise must not take the other tasks' time.
             NOISE.store(noise().wrapping_add(1), Ordering::Relaxed);
             Timer::after(REST).await;
         };
@@ -81,15 +81,15 @@ impl RadioReceiver for Ear {
     }
 }
 
-/// Speaks frames.
+/// Sends frames.
 pub struct Mouth {
     tx: UartTx<'static, Async>,
-    /// Where the DMA takes them from.
+    /// Buffer from which the DMA sends.
     line: &'static mut [u8; LINE_LEN_MAX],
 }
 
 impl Mouth {
-    /// Bytes as they are, as many as a line has.
+    /// Sends bytes unchanged, at most a line's capacity.
     pub async fn say(&mut self, bytes: &[u8]) {
         let len = bytes.len().min(LINE_LEN_MAX);
         self.line.iter_mut().zip(bytes).for_each(|(to, from)| *to = *from);
@@ -108,7 +108,7 @@ impl RadioSender for Mouth {
     }
 }
 
-/// How often the line failed: framing, overrun, noise.
+/// Number of line errors: framing, overrun, noise.
 pub fn noise() -> u32 {
     NOISE.load(Ordering::Relaxed)
 }
@@ -116,9 +116,10 @@ pub fn noise() -> u32 {
 static NOISE: AtomicU32 = AtomicU32::new(0);
 /// The host's usual rate for serial links (`host::config`).
 const BAUD: u32 = 1_000_000;
-/// What comes in 5 ms; the half of it rings. The brain's longest step takes a fifth of a millisecond.
+/// Bytes received in 5 ms; half of it raises the interrupt. The brain's longest step takes a fifth of a
+/// millisecond.
 const RING_LEN: usize = 512;
-/// After an error, before it listens again: shorter than the pause between two of the host's pictures.
+/// After an error, before it listens again: shorter than the pause between two of the host's snapshots.
 const REST: Duration = Duration::from_millis(1);
-/// Looked at in one go.
+/// Bytes read in one call.
 const CHUNK: usize = 64;

@@ -1,7 +1,8 @@
-//! `sampling`: sensor sampling at 1 kHz. One task reads gyroscope, battery, capacitor and light barrier;
+//! `sampling`: sensor sampling at 1 kHz. One task reads gyroscope, battery, capacitor and break-beam sensor;
 //! kicker and brain take the newest.
 //!
-//! What is older than ten steps is no reading: then the kicker neither charges nor fires, and nobody turns by an old gyroscope.
+//! A reading older than ten steps is invalid: then the kicker neither charges nor fires, and the gyroscope is
+//! not used.
 
 use core::cell::Cell;
 
@@ -14,18 +15,18 @@ use runtime::sense::{Barrier, Tilt, Turn};
 use crate::analog::Analog;
 use crate::imu::Imu;
 
-/// What was read last.
+/// The last reading of all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Sample {
-    /// How fast the body turns, rad/s, counter-clockwise.
+    /// Turning rate of the body, rad/s, counter-clockwise.
     pub turn: Option<f32>,
-    /// It lies on its side.
+    /// The robot lies on its side.
     pub tipped: bool,
-    /// The light barrier is broken.
+    /// The beam is interrupted.
     pub ball: bool,
-    /// V.
+    /// Battery voltage, V.
     pub battery: f32,
-    /// V.
+    /// Capacitor voltage, V.
     pub capacitor: f32,
 }
 
@@ -34,14 +35,15 @@ impl Sample {
         Self { turn: None, tipped: false, ball: false, battery: f32::NAN, capacitor: f32::NAN };
 }
 
-/// The newest sample, as long as it is young; else nothing is known, and a battery of which nothing is known brakes the robot.
+/// The newest sample, if it is recent enough; else all readings are unknown, and an unknown battery brakes
+/// the robot.
 pub fn newest() -> Sample {
     let (at, sample) = NEWEST.lock(Cell::get);
     if at.elapsed() < STALE { sample } else { Sample::NONE }
 }
 
-/// Reads everything, for ever. A sensor that does not answer is told and tried again each second; until then the wheels tell how
-/// the robot turns.
+/// Reads everything, for ever. A sensor that does not answer is reported and tried again each second; until
+/// then the turning rate comes from the wheels.
 pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
     let (mut turn, mut tilt, mut barrier) = (Turn::new(), Tilt::new(), Barrier::new());
     let mut answers = false;
@@ -80,7 +82,7 @@ pub async fn run(mut imu: Imu, mut analog: Analog) -> ! {
     }
 }
 
-/// What the brain asks for.
+/// The probes that the brain reads.
 pub struct Probes;
 
 impl ports::Probes for Probes {
@@ -92,11 +94,11 @@ impl ports::Probes for Probes {
 
 static NEWEST: CriticalSectionMutex<Cell<(Instant, Sample)>> =
     CriticalSectionMutex::new(Cell::new((Instant::MIN, Sample::NONE)));
-/// As the control loop.
+/// Sampling period, that of the control loop.
 const STEP: Duration = Duration::from_millis(1);
-/// Ten steps.
+/// Maximum age of a sample: ten steps.
 const STALE: Duration = Duration::from_millis(10);
-/// How often a sensor that is silent is asked again.
+/// Period in which a silent sensor is tried again.
 const ASKED_AGAIN: Duration = Duration::from_secs(1);
-/// The sensor's axis that points up when it lies flat on the board.
+/// Index of the sensor's axis that points up when it lies flat on the board.
 const UP: usize = 2;

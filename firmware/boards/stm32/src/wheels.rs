@@ -24,7 +24,7 @@ pub struct Drivers {
 }
 
 impl Drivers {
-    /// All without current.
+    /// Drivers with all motors without current.
     pub fn new(parts: pins::Motors) -> Self {
         let low = Speed::Low;
         let mut pwm = SimplePwm::new(
@@ -66,8 +66,8 @@ impl Drivers {
         }
     }
 
-    /// These shares of the battery's voltage, −1 to 1, and 0 to 1 for the dribbler. Nothing where a driver has switched itself off:
-    /// three wheels alone would turn the robot.
+    /// Sets shares of the battery's voltage, −1 to 1, and 0 to 1 for the dribbler. All off where a driver has
+    /// switched itself off: three wheels alone would turn the robot.
     pub fn drive(&mut self, duty: [f32; WHEELS], dribbler: f32) {
         if self.fault.is_low() {
             self.release();
@@ -98,7 +98,7 @@ impl Drivers {
     }
 }
 
-/// Motors with their encoders: what the control loop leads.
+/// Motors with their encoders, as the control loop drives them.
 pub struct Wheels {
     drivers: Drivers,
     encoders: Encoders,
@@ -106,7 +106,7 @@ pub struct Wheels {
 }
 
 impl Wheels {
-    /// All without current.
+    /// Wheels with all motors without current.
     pub fn new(drivers: Drivers, encoders: Encoders) -> Self {
         Self { drivers, encoders, duty: [0.0; WHEELS] }
     }
@@ -128,13 +128,13 @@ impl ports::Wheels for Wheels {
     }
 }
 
-/// A share of full duty; none for a number that is none.
+/// A share of full duty cycle; none for NaN.
 fn share(duty: f32, full: u32) -> u32 {
-    // The cast takes what is out of range to the range's end, and NaN to 0.
+    // The cast saturates, and turns NaN into 0.
     ((duty * full as f32) as u32).min(full)
 }
 
-/// In the order of the wire.
+/// Timer channels in the order of the wheels on the wire.
 const CHANNELS: [Channel; WHEELS] = [Channel::Ch1, Channel::Ch2, Channel::Ch3, Channel::Ch4];
-/// Above what people hear; motor drivers with current control take 20 to 50 kHz.
+/// Above the audible range; motor drivers with current control take 20 to 50 kHz.
 const PWM: Hertz = Hertz(25_000);

@@ -1,5 +1,5 @@
 //! `wiring`: tests: the README's wiring equals the pins, and the flashed profile equals the measured one.
-//! README.md's table against `src/pins.rs`, no pin for two things, this folder's `release` against the
+//! README.md's table against `src/pins.rs`, no pin for two things, this directory's `release` against the
 //! workspace's `firmware`.
 
 use std::collections::BTreeSet;

@@ -1,9 +1,10 @@
 //! `shown`: belief of a wheeled robot, from the host's snapshot, its break-beam sensor and its wheels
 //! (docs/architecture.md §3.2).
 //!
-//! Field frame, SI. The ball in its grip: the light barrier, bridged for a moment where the host shows the ball before the
-//! mouth, as a rolling ball flickers. How far the ball was carried counts from the first touch until there is a gap that
-//! everybody can see (rules 2026: dribbling).
+//! Field frame, SI. The ball is held while the break-beam sensor sees it; gaps of the sensor signal, as a
+//! rolling ball flickers, are bridged while the host's snapshot has the ball at the dribbler opening. The
+//! distance carried counts from the first touch until there is a visible gap between ball and opening (rules
+//! 2026: dribbling).
 
 use geometry::{Field, Point, Pose, Vector};
 use motion::ball::BallModel;
@@ -15,29 +16,29 @@ use crate::belief::{Ball, Belief, Other};
 use crate::body::omni::{BALL_AT, FRONT};
 use crate::picture::{IN_THE_AIR, Picture};
 
-/// The ball's time at this robot.
+/// Contact of this robot with the ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Handling {
-    /// When the light barrier saw it last.
+    /// Last time the break-beam sensor saw the ball.
     touched: Option<Instant>,
-    /// Where this touch began: where the ball was then.
+    /// Ball position at the start of this touch.
     from: Option<Point<Field>>,
-    /// How high the ball is, m.
+    /// Height of the ball, m.
     height: f32,
-    /// The light barrier, this very moment.
+    /// Break-beam sensor in the present step.
     contact: bool,
-    /// When this touch began.
+    /// Start time of this touch.
     since: Option<Instant>,
-    /// How long it has lasted, s.
+    /// Duration of this touch, s.
     held: f32,
     /// Since when this robot and an opponent have both been at the ball.
     disputed: Option<Instant>,
-    /// For how long they have, s.
+    /// Duration of the dispute, s.
     dispute: f32,
 }
 
 impl Belief {
-    /// Takes over what the host shows and what the wheels measure.
+    /// Takes over the host's snapshot and what the wheels measure.
     pub fn show(&mut self, now: Instant, picture: &Picture, sensors: &SensorFrame) {
         if let Some(pose) = picture.own(now) {
             self.pose = pose;
@@ -54,7 +55,7 @@ impl Belief {
         for shown in picture.others(now) {
             let other =
                 Other { side: shown.who.side, id: shown.who.id, pose: shown.pose, velocity: shown.velocity };
-            // Sixteen a side can be shown, eleven play: those over the capacity are not there by the rules.
+            // Sixteen robots per team can be received, eleven play: robots over the capacity are dropped.
             let _ = self.others.push(other);
             if other.side == Side::Theirs {
                 let _ = self.opponents.push(other.pose.position);
@@ -68,17 +69,17 @@ impl Belief {
         self.handle(now, sensors.ball_contact);
     }
 
-    /// The light barrier sees the ball this very moment.
+    /// Whether the break-beam sensor sees the ball in the present step.
     pub fn contact(&self) -> bool {
         self.handling.contact
     }
 
-    /// The ball flies.
+    /// Whether the ball flies.
     pub fn ball_flies(&self) -> bool {
         self.handling.height > IN_THE_AIR
     }
 
-    /// How far the ball has been carried since it was touched first, m.
+    /// Distance over which the ball has been carried since the first touch, m.
     pub fn carried(&self) -> f32 {
         match (self.handling.from, self.holds_ball) {
             (Some(from), true) => from.distance(self.mouth()),
@@ -86,22 +87,23 @@ impl Belief {
         }
     }
 
-    /// For how long the ball has been at its front, s: until there is a visible gap.
+    /// Time for which the ball has been at its front, s: until there is a visible gap.
     pub fn held(&self) -> f32 {
         self.handling.held
     }
 
-    /// The ball is being placed by us: there is time to do it carefully.
+    /// Whether our team places the ball: there is time to do it carefully.
     pub fn is_placing(&self) -> bool {
         self.game.phase == Phase::BallPlacement(Side::Ours)
     }
 
-    /// For how long this robot and an opponent have both been at a slow ball, s: however often it changes hands meanwhile.
+    /// Time for which this robot and an opponent have both been at a slow ball, s, regardless of changes of
+    /// possession.
     pub fn disputed(&self) -> f32 {
         self.handling.dispute
     }
 
-    /// Where a ball in its grip is.
+    /// Position of a held ball: at the dribbler opening.
     pub fn mouth(&self) -> Point<Field> {
         self.pose.position + Vector::polar(BALL_AT, self.pose.heading)
     }
@@ -130,7 +132,7 @@ impl Belief {
             self.handling.from.get_or_insert(mouth);
             let since = *self.handling.since.get_or_insert(now);
             self.handling.held = now.since(since).as_secs_f32();
-            // What the light barrier sees is where the ball is, sooner than any camera says so.
+            // A ball that the break-beam sensor sees is at the opening; cameras report it later.
             if contact {
                 self.ball = Some(Ball { position: mouth, velocity: self.velocity, rest: mouth });
             }
@@ -141,11 +143,11 @@ impl Belief {
     }
 }
 
-/// A ball that goes on as rolling balls do, until just beyond the lines; whether it still slides nobody says.
+/// A ball that rolls freely, its path cut just beyond the lines; whether it still slides is unknown.
 fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -> Ball {
     let rest = BallModel::default().rolling(position, velocity).rest();
     let way = rest - position;
-    // The share of the way that stays between two lines; all of it for a ball that is outside already.
+    // The share of the path that stays between two lines; 1 for a ball that is outside already.
     let share = |at: f32, by: f32, line: f32| {
         let (line, at) = (line + BEYOND, if by < 0.0 { -at } else { at });
         if at < line && at + by.abs() > line { (line - at) / by.abs() } else { 1.0 }
@@ -155,25 +157,25 @@ fn rolling(position: Point<Field>, velocity: Vector<Field>, field: &FieldSpec) -
     Ball { position, velocity, rest: position + way * inside }
 }
 
-/// Before the flat front, as far as noise lets say.
+/// Whether the ball is in front of the flat front, within the noise of the snapshot.
 fn is_at_mouth(pose: Pose<Field>, ball: Point<Field>) -> bool {
     let seen = pose.to_body(ball);
     (FRONT - 0.01..BALL_AT + AT_MOUTH_AHEAD).contains(&seen.x()) && seen.y().abs() < AT_MOUTH_BESIDE
 }
 
-/// A ball's way is of interest until so far beyond the lines, m: what lies on them is still on it.
+/// The ball's path is cut this far beyond the lines, m: a ball on the line is still in the field.
 const BEYOND: f32 = 0.1;
-/// The light barrier may miss the ball for so long: a few of its turns on the roller.
+/// The break-beam sensor may miss the ball for at most this time: a few turns of the ball on the roller.
 const BRIDGED: Duration = Duration::millis(60);
-/// A robot whose centre is so near to the ball is at it, m: half a body more than where it touches.
+/// A robot whose centre is this near the ball is at it, m: half a body more than where it touches.
 const AT_BALL: f32 = 0.2;
 /// A faster ball is not stuck between two robots, m/s.
 const SLOW: f32 = 0.5;
-/// A gap between ball and mouth that the rules call visible, m.
+/// A gap between ball and dribbler opening that counts as visible by the rules, m.
 const VISIBLE_GAP: f32 = 0.05;
 /// How far before the roller the host may show a ball that is held, m: noise, and 30 ms of its delay.
 const AT_MOUTH_AHEAD: f32 = 0.03;
-/// How far beside the middle, m: half a mouth's width.
+/// How far beside the middle, m: half the width of the opening.
 const AT_MOUTH_BESIDE: f32 = 0.05;
 
 #[cfg(test)]

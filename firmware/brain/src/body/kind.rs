@@ -1,8 +1,9 @@
-//! `kind`: robot bodies that this build supports. An image carries the one body its robot has (features
-//! `legged` and `omni`); on the PC both are there.
+//! `kind`: robot bodies that this build supports. A firmware image contains the one body of its robot
+//! (features `legged` and `omni`); on the PC both are built in.
 //!
-//! Everything that depends on the body asks [`Kind::of`] once and keeps its answer, with the proof that the body is built
-//! in. Without the feature there is no such proof, so the compiler drops whatever would be done with it.
+//! Everything that depends on the body asks [`Kind::of`] once and keeps its answer, with the proof that the
+//! body is built in. Without the feature there is no such proof, so the compiler drops the code that needs
+//! it.
 
 #[cfg(not(all(feature = "legged", feature = "omni")))]
 use core::convert::Infallible;
@@ -12,7 +13,7 @@ use rules::League;
 /// A kind of body that is built in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Four legs.
+    /// A body with four legs.
     Legged(Legs),
     /// Four omnidirectional wheels.
     Wheeled(Wheels),
@@ -30,8 +31,8 @@ pub struct Wheels(#[cfg(not(feature = "omni"))] Infallible);
 compile_error!("a brain needs a body: turn on the feature `legged` or `omni`");
 
 impl Kind {
-    /// The kind of that league's robots. Where it is not built in ([`Kind::is_built`]), the one that is: whoever takes a
-    /// configuration from outside asks first.
+    /// The body kind of that league's robots. If it is not built in ([`Kind::is_built`]), the kind that is: a
+    /// caller that takes a configuration from outside must check first.
     pub fn of(league: League) -> Self {
         match league {
             #[cfg(feature = "legged")]
@@ -45,7 +46,7 @@ impl Kind {
         }
     }
 
-    /// Whether this build can lead that league's robots.
+    /// Whether this build supports that league's robots.
     pub fn is_built(league: League) -> bool {
         match league {
             League::FourLegged => cfg!(feature = "legged"),

@@ -15,17 +15,17 @@ use crate::governor::{Circumstances, Governor, Reasons, Ruling, Why};
 use crate::hosted::Hosted;
 use crate::mates::Mates;
 
-/// A body's limbs and what they remember.
+/// Actuation of one body, with its state.
 #[allow(clippy::large_enum_variant, reason = "one value a robot, and no heap to box it on")]
 #[derive(Clone, Debug)]
 pub enum Limbs {
-    /// Four legs.
+    /// Actuation of four legs.
     Legs(kind::Legs),
-    /// Four wheels.
+    /// Actuation of four wheels.
     Wheels(kind::Wheels, Wheels),
 }
 
-/// Wheels and who watches over them.
+/// Drivetrain of the wheels with the governor that limits it.
 #[derive(Clone, Debug)]
 pub struct Wheels {
     drivetrain: Drivetrain,
@@ -35,7 +35,7 @@ pub struct Wheels {
 }
 
 impl Limbs {
-    /// Of that league's robots.
+    /// Actuation for that league's robots.
     pub fn of(league: League) -> Self {
         match Kind::of(league) {
             Kind::Legged(built) => Self::Legs(built),
@@ -51,20 +51,19 @@ impl Limbs {
         }
     }
 
-    /// A frame of the host counts as heard at that time.
+    /// Counts a frame of the host as received at `heard`.
     pub fn hear_host(&mut self, heard: Instant) {
         if let Self::Wheels(_, wheels) = self {
             wheels.governor.hear_host(heard);
         }
     }
 
-    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that not everything need happen in
-    /// each.
+    /// Whether its steps are short (10 ms, docs/architecture.md §2.3), so that work is spread over several.
     pub fn has_short_steps(&self) -> bool {
         matches!(self, Self::Wheels(..))
     }
 
-    /// On wheels: whether the last way led around something.
+    /// On wheels: whether the last path led around something.
     pub fn winds(&self) -> bool {
         match self {
             Self::Legs(_) => false,
@@ -72,7 +71,7 @@ impl Limbs {
         }
     }
 
-    /// Every how many steps this body's robots tell their mates of themselves (docs/architecture.md §5.1).
+    /// Number of steps between two beacons of this body's robots (docs/architecture.md §5.1).
     pub fn beacon_steps(&self) -> u8 {
         match self {
             Self::Legs(_) => 1,
@@ -80,7 +79,7 @@ impl Limbs {
         }
     }
 
-    /// What the governor made of the last step's wish.
+    /// The governor's decision on the motion wanted in the last step.
     pub fn ruling(&self) -> Ruling {
         match self {
             Self::Legs(_) => Ruling::Allowed,
@@ -96,12 +95,12 @@ impl Limbs {
         }
     }
 
-    /// Whether the battery keeps it from playing.
+    /// Whether the battery is too low to play.
     pub fn is_battery_low(&self) -> bool {
         self.reasons().has(Why::Battery)
     }
 
-    /// The order that makes the body do `intent`, as far as it may.
+    /// The order that makes the body do `intent`, within its limits.
     pub fn act(
         &mut self,
         now: Instant,
@@ -142,5 +141,5 @@ impl Limbs {
 
 /// 20 beacons a second, in steps of 10 ms (docs/architecture.md §2.3, §5.1).
 const BEACON_STEPS: u8 = 5;
-/// No rim is asked to run faster, m/s: below what wheels run free (the simulator's 6).
+/// Largest rim speed ordered, m/s: below what wheels run free (the simulator's 6).
 const RIM_MAX: f32 = 5.0;

@@ -18,17 +18,17 @@ use crate::skills::{Reception, Step};
 pub use kind::Kind;
 pub use limbs::Limbs;
 
-/// What the robot wants of its body for the coming step. Points and angles of the field.
+/// Motion or primitive wanted for the coming step. Points and angles of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Intent {
     /// Stay, turning to this heading if one is given.
     Stand {
-        /// Where to look.
+        /// Heading to turn to; `None`: no turn.
         face: Option<Angle>,
     },
     /// Go to a place, around robots, and end facing `face`.
     Walk {
-        /// Where to.
+        /// Target position.
         to: Point<Field>,
         /// Heading at the end.
         face: Angle,
@@ -37,31 +37,31 @@ pub enum Intent {
     },
     /// Turn on the spot, with the ball or without.
     Turn {
-        /// To this heading.
+        /// Heading to turn to.
         heading: Angle,
     },
     /// On legs: walk with the ball held.
     Carry {
-        /// Where to.
+        /// Target position.
         to: Point<Field>,
     },
     /// On legs: take the ball.
     Grab,
     /// On legs: kick the ball held.
     Kick(LeggedKick),
-    /// On wheels: a way to go, with dribbler and kicker.
+    /// On wheels: a target to drive to, with dribbler and kicker.
     Drive(omni::Drive),
-    /// On wheels: the way of the step before, once more.
+    /// On wheels: reuse of the previous step's path.
     Onwards,
 }
 
 impl Intent {
-    /// Whether the ball leaves by this.
+    /// Whether the ball is released by this intent.
     pub fn lets_go(&self) -> bool {
         match self {
             Self::Kick(_) => true,
             Self::Drive(drive) => drive.armed && matches!(drive.kick, OmniKick::Flat(_) | OmniKick::Chip(_)),
-            // What it wanted before was told before.
+            // The previous intent was reported in its own step.
             Self::Onwards => false,
             Self::Stand { .. } | Self::Walk { .. } | Self::Turn { .. } | Self::Carry { .. } | Self::Grab => {
                 false
@@ -70,18 +70,18 @@ impl Intent {
     }
 }
 
-/// What those who plan with a body need to know of it.
+/// Properties of a body that planning depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodySpec {
-    /// How fast it goes from place to place, m/s.
+    /// Average speed from place to place, m/s.
     pub speed: f32,
-    /// How fast it goes with the ball, m/s.
+    /// Average speed with the ball, m/s.
     pub carry_speed: f32,
-    /// A quarter turn with the ball, s.
+    /// Duration of a quarter turn with the ball, s.
     pub turn: f32,
-    /// The last steps to a ball and taking it, s.
+    /// Duration of the last steps to a ball and of taking it, s.
     pub grab: f32,
-    /// A kick, s.
+    /// Duration of a kick, s.
     pub kick: f32,
     /// No fetch is expected to take longer, s.
     pub longest_fetch: f32,
@@ -89,29 +89,29 @@ pub struct BodySpec {
     pub arrived_within: f32,
     /// "Next to the ball" of the robot that gets it (paper §4.2), centre to ball, m.
     pub next_to_ball: f32,
-    /// Of the way a receiver could go while the ball rolls, this share is counted on.
+    /// Share of the distance a receiver could cover while the ball rolls that plans count on.
     pub receiver_haste: f32,
-    /// A receiver this near its place is there for the passer, m.
+    /// A receiver this near its place counts as arrived for the passer, m.
     pub receiver_near: f32,
-    /// How long a robot looks for a gap before it shoots at the goal, whatever stands there.
+    /// How long a robot looks for a gap before it shoots at the goal even without one.
     pub shot_patience: Duration,
     /// An opponent whose centre is this near the ball touches it, m.
     pub opponent_holds_within: f32,
-    /// One of us this near the ball disputes it, m.
+    /// A teammate or this robot this near the ball disputes it, m.
     pub disputed_within: f32,
-    /// Steps a doubt about the case must last to abort it: a fifth of a second.
+    /// Steps for which a doubt about the case must last to abort it: a fifth of a second.
     pub doubt_steps: u8,
 }
 
 /// A kind of body: its numbers and its skills in the case language.
 pub trait Body: Sync {
-    /// Its numbers.
+    /// Properties of this body.
     fn spec(&self) -> &'static BodySpec;
 
-    /// Goes for the ball and takes it; facing `onwards` afterwards if that costs nothing that matters.
+    /// Moves to the ball and takes it; faces `onwards` afterwards unless that loses a race.
     fn get_ball(&self, belief: &Belief, onwards: Option<Angle>) -> Step;
 
-    /// Goes for a ball that has been passed to this robot.
+    /// Receives a ball that has been passed to this robot.
     fn receive(&self, belief: &Belief, onwards: Option<Angle>) -> Reception;
 
     /// Brings the ball held to a place.
@@ -120,7 +120,7 @@ pub trait Body: Sync {
     /// Passes the ball held to a place.
     fn pass(&self, belief: &Belief, place: Point<Field>) -> Intent;
 
-    /// Kicks the ball held in the way of the library's `kind`, to `end`.
+    /// Kicks the held ball with the library's kick `kind`, to `end`.
     fn kick(&self, belief: &Belief, kind: &Kick, along: Angle, end: Point<Field>) -> Intent;
 
     /// Shoots the ball held at the goal, where it is open, or brings it to where that is easier.

@@ -1,4 +1,4 @@
-//! What the body shall do: the host's directive, this robot's part in a case, or what it does by itself.
+//! Choice of the intent: the host's directive, this robot's part in a case, or the reactive behaviour.
 
 use protocol::Instant;
 use protocol::team::{AbortReason, Closure, Decision, Progress, Status};
@@ -14,10 +14,10 @@ use crate::team::reuse::{self, Wish};
 use crate::timer::Timer;
 
 impl Brain<'_> {
-    /// What the body shall do in this step.
+    /// The intent of this step.
     pub(super) fn act(&mut self, now: Instant) -> Intent {
         let intent = self.choose(now);
-        // Placing a ball is no play: it may be held and carried as long as it takes.
+        // Placing a ball is not play: the ball may be held and carried without a limit.
         if cfg!(feature = "omni") && self.host.is_some() && self.belief.game.phase == Phase::Run {
             wheels::let_go_in_time(&mut self.belief, intent)
         } else {
@@ -25,7 +25,7 @@ impl Brain<'_> {
         }
     }
 
-    /// What the host's directive, a case or its own behaviour wants.
+    /// The intent of the host's directive, the case or the reactive behaviour.
     fn choose(&mut self, now: Instant) -> Intent {
         if cfg!(feature = "omni")
             && let Some(host) = &self.host
@@ -36,14 +36,14 @@ impl Brain<'_> {
                 return intent;
             }
             if !self.was_available {
-                // Between gameplays it stays where it is, out of where it must not be.
+                // Between gameplays it stays in place, outside of forbidden regions.
                 return wheels::go_to(self.belief.pose);
             }
         }
         self.play(now)
     }
 
-    /// Cases, or what it does by itself.
+    /// The intent of the case, or of the reactive behaviour.
     fn play(&mut self, now: Instant) -> Intent {
         if !self.awake {
             return Intent::Stand { face: None };
@@ -61,7 +61,7 @@ impl Brain<'_> {
                     self.adopt(now, &state);
                 }
                 if self.has_short_steps() {
-                    // As in every step in which a gameplay ends: it brakes, and this was that step.
+                    // This step ends a gameplay, so the robot brakes as in every such step.
                     self.since.turned = false;
                     return Intent::Stand { face: None };
                 }

@@ -1,4 +1,4 @@
-//! What concerns the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
+//! Coordination of the team: being present, proposing, deciding, closing and aborting cycles (paper §4;
 //! docs/architecture.md §5).
 
 use casebase::CaseRobot;
@@ -17,7 +17,7 @@ use protocol::host::{Directive, Hint};
 use rules::Phase;
 
 impl Brain<'_> {
-    /// Takes over what is newer, and sets this robot's own part accordingly.
+    /// Adopts a newer state, and sets this robot's own part accordingly.
     pub(super) fn adopt(&mut self, now: Instant, state: &CycleState) {
         let news = self.cycle.adopt(state, self.awake);
         if news == News::Known {
@@ -30,7 +30,7 @@ impl Brain<'_> {
         match &state.decision {
             Decision::Undecided => self.timers.set(Timer::NoDecision, now + DECISION_PATIENCE),
             Decision::NoCase => self.timers.set(Timer::Retry, now + RETRY_AFTER),
-            // Where no case was found nothing was played that there is to stop after.
+            // Without a case no gameplay was run that robots would pause after.
             Decision::Closed(closure)
                 if *closure != Closure::NoCase && self.config.pause_after_cycle > Duration(0) =>
             {
@@ -44,7 +44,7 @@ impl Brain<'_> {
         }
     }
 
-    /// A gameplay has begun or ended: forget the old part, prepare the new one.
+    /// A gameplay has started or ended: drops the old part, prepares the new one.
     fn begin_part(&mut self, now: Instant) {
         self.execution = None;
         self.monitor.reset();
@@ -58,7 +58,7 @@ impl Brain<'_> {
         self.timers.set(Timer::Reuse, now + estimate::limit(expected));
     }
 
-    /// Everything that concerns the team: being present, proposing, deciding, closing, aborting.
+    /// Coordination of the team: being present, proposing, deciding, closing, aborting.
     pub(super) fn coordinate(&mut self, now: Instant) {
         if !self.awake {
             if !self.timers.has_fired(Timer::Boot) {
@@ -70,7 +70,7 @@ impl Brain<'_> {
         }
         let available = self.is_available(now);
         if self.was_available && !available && self.takes_part() {
-            // Led elsewhere: mates must not wait for it.
+            // The host leads this robot elsewhere: teammates must not wait for it.
             if let Some(state) = self.cycle.aborted(AbortReason::RobotLost) {
                 self.adopt(now, &state);
             }
@@ -81,7 +81,7 @@ impl Brain<'_> {
             return;
         }
         if let Some(reason) = self.reason_to_stop(now) {
-            // Whoever takes part aborts; an elector that does not, supersedes.
+            // A robot that takes part aborts; an elector that does not supersedes.
             let next = if self.takes_part() { self.cycle.aborted(reason) } else { self.propose(now) };
             if let Some(state) = next {
                 self.adopt(now, &state);
@@ -89,14 +89,15 @@ impl Brain<'_> {
         }
         if let Some(state) = self.next_state(now) {
             self.adopt(now, &state);
-            // A cycle of one's own is decided at once.
+            // A cycle of its own is decided at once.
             if let Some(state) = self.next_state(now) {
                 self.adopt(now, &state);
             }
         }
     }
 
-    /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in play.
+    /// Present for election and retrieval: without a host always, else under `Gameplay` while the ball is in
+    /// play.
     fn is_available(&self, now: Instant) -> bool {
         self.host.as_ref().is_none_or(|host| {
             let plays = matches!(host.directive(now), Some(Directive::Gameplay { .. }));
@@ -104,7 +105,7 @@ impl Brain<'_> {
         })
     }
 
-    /// Proposal, decision or end of the cycle, where it is this robot's to say.
+    /// Proposal, decision or end of the cycle, where it is this robot's to announce.
     fn next_state(&mut self, now: Instant) -> Option<CycleState> {
         let me = self.config.robot;
         let elects = election::elector(now, me, &self.mates) == me;
@@ -154,7 +155,8 @@ impl Brain<'_> {
         }
     }
 
-    /// Led by both, and the reactive behaviour is expected to shoot sooner than this gameplay.
+    /// Whether both approaches are active, and the reactive behaviour is expected to shoot sooner than this
+    /// gameplay.
     fn shoots_sooner_without(&self, now: Instant, play: &Play) -> bool {
         if self.config.approach != Approach::Hybrid {
             return false;
@@ -165,7 +167,7 @@ impl Brain<'_> {
         hybrid::reactive_shoots_sooner(&scene)
     }
 
-    /// The robot of ours that has the ball in its grip, as far as this one knows.
+    /// The robot of ours that holds the ball, as far as this one knows.
     fn holder(&self, now: Instant) -> Option<RobotId> {
         if self.belief.holds_ball {
             return Some(self.config.robot);
@@ -174,7 +176,8 @@ impl Brain<'_> {
         self.mates.present(now).find(|(_, mate)| holds(&mate.beacon)).map(|(id, _)| id)
     }
 
-    /// On wheels: the ball is on its way and somebody will meet it before its rest, so that no case can be known by that place.
+    /// On wheels: the ball rolls and a robot will intercept it before it stops, so that no case can be
+    /// retrieved by its stop position.
     fn ball_is_nobodys(&self, holder: Option<RobotId>) -> bool {
         self.host.is_some()
             && holder.is_none()
@@ -195,7 +198,8 @@ impl Brain<'_> {
         })
     }
 
-    /// Why the open cycle cannot go on, as far as presence, time and the case base tell; asked by those who may stop it.
+    /// Why the open cycle cannot go on, as far as presence, time and the case base show; called by robots
+    /// that may stop it.
     fn reason_to_stop(&self, now: Instant) -> Option<AbortReason> {
         let me = self.config.robot;
         let state = self.cycle.state().filter(|_| self.cycle.closure().is_none())?;
@@ -204,7 +208,7 @@ impl Brain<'_> {
         if !(elects || takes_part) {
             return None;
         }
-        // Reborn since: this life does not know what the earlier one did.
+        // Restarted since: this boot epoch does not know what the earlier one did.
         let lost = |id: RobotId| {
             if id == me { self.cycle.is_of_an_earlier_life() } else { self.mates.get(now, id).is_none() }
         };
@@ -238,12 +242,12 @@ impl Brain<'_> {
     }
 }
 
-/// Between being present and proposing: three steps of a walking robot, in which those who booted at the same moment
-/// hear of each other.
+/// Between being present and proposing: three steps of a walking robot, in which robots that booted at the
+/// same moment receive each other's beacons.
 const SETTLE_FOR: Duration = Duration::millis(120);
-/// How long the coordinator may keep its decision to itself: one lease.
+/// Maximum delay of the coordinator's decision: one lease.
 const DECISION_PATIENCE: Duration = PRESENCE_LEASE;
-/// How soon the coordinator tries again after "no case": six steps of a walking robot.
+/// Delay before the coordinator tries again after "no case": six steps of a walking robot.
 const RETRY_AFTER: Duration = Duration::millis(240);
-/// A faster ball is met by somebody before it rests, m/s: it rolls 1.4 m and 2.9 s (v²/0.7, v/0.35).
+/// A faster ball is intercepted before it stops, m/s: it rolls 1.4 m and 2.9 s (v²/0.7, v/0.35).
 const ON_ITS_WAY: f32 = 1.0;

@@ -1,4 +1,4 @@
-//! `tell`: what the robot sends of itself: beacons (docs/architecture.md §5.1) and, where a host leads,
+//! `tell`: what the robot sends about itself: beacons (docs/architecture.md §5.1) and, where a host leads,
 //! telemetry (docs/architecture.md §6.1).
 
 use protocol::host::{Condition, Telemetry};
@@ -10,16 +10,16 @@ use protocol::{Duration, Instant, RobotId};
 use super::Brain;
 use crate::governor::{Ruling, Why};
 
-/// When it said what last.
+/// What was sent last, and when.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spoken {
     beacon: Option<Instant>,
-    /// Steps, counted round: see [`Spoken::has_turn`].
+    /// Step counter, wrapping: see [`Spoken::has_turn`].
     steps: u8,
     telemetry: Option<(Instant, Condition)>,
-    /// The host that leads has not been told yet that it does.
+    /// The host that leads has not yet received telemetry that names it.
     new_host: bool,
-    /// What the body said of itself last.
+    /// What the body reported last.
     battery: Option<f32>,
     contact: bool,
     kicker_ready: bool,
@@ -34,14 +34,15 @@ impl Spoken {
         self.tipped = sensors.health.tipped;
     }
 
-    /// Another step: whether it is this robot's turn, which comes round every so many steps. Mates have different turns by their
-    /// numbers: who speaks when all speak is not heard, and five beacons in one step are long to open.
+    /// Counts a step; returns whether it is this robot's turn, which comes every `every` steps. Teammates
+    /// have different turns by their numbers: simultaneous frames collide, and five beacons in one step take
+    /// long to open.
     pub(super) fn has_turn(&mut self, robot: RobotId, every: u8) -> bool {
         self.steps = (self.steps + 1) % every;
         usize::from(self.steps) == robot.index() % usize::from(every)
     }
 
-    /// A host has welcomed this robot: it waits for telemetry that names it.
+    /// Requests telemetry that names the host which has welcomed this robot.
     pub(super) fn owes_telemetry(&mut self) {
         self.new_host = true;
     }
@@ -77,7 +78,7 @@ impl Brain<'_> {
         }
     }
 
-    /// What the host shall know, if it is time to say it: ten times a second, and at once when something changes.
+    /// Telemetry for the host, if due: ten times a second, and at once when something changes.
     pub(super) fn telemetry(&mut self, now: Instant) -> Option<Telemetry> {
         let arrived = self.host.as_ref()?.arrived();
         let reasons = self.limbs.reasons();
@@ -92,7 +93,7 @@ impl Brain<'_> {
         ];
         let set = |all: Condition, (holds, bit): (bool, Condition)| if holds { all.with(bit) } else { all };
         let condition = condition.into_iter().fold(Condition::default(), set);
-        // One message a step: sealing costs, and the next step is near.
+        // One message a step: sealing costs time, and the next step comes soon.
         let spoke_now = spoken.beacon == Some(now);
         let due = !spoke_now
             && spoken.telemetry.is_none_or(|(last, said)| {
@@ -104,20 +105,20 @@ impl Brain<'_> {
             return None;
         }
         (self.spoken.telemetry, self.spoken.new_host) = (Some((now, condition)), false);
-        // In 0.1 ms: the host takes its round trips from it.
+        // In 0.1 ms: the host computes its round trips from it.
         let silence = arrived.map_or(u64::MAX, |last| now.since(last).0 / 100);
         let battery = self.spoken.battery.map_or(0.0, |volts| volts * 100.0);
         Some(Telemetry {
             condition,
             battery: battery.clamp(0.0, f32::from(u16::MAX)) as u16,
             silence: silence.min(u64::from(u16::MAX)) as u16,
-            // What the link knows, the link fills in.
+            // The link fills in its own counters.
             ..Telemetry::default()
         })
     }
 }
 
-/// Ten times a second.
+/// Period of the telemetry: ten times a second.
 const TELEMETRY_PERIOD: Duration = Duration::millis(100);
-/// But not in every step where something changes to and fro, as a light barrier does.
+/// But not in every step while something toggles, as a break-beam sensor does.
 const TELEMETRY_LEAST: Duration = Duration::millis(20);

@@ -25,7 +25,7 @@ fn at(ms: u64, phase: Phase<Side>) -> Circumstances<'static> {
     }
 }
 
-/// A robot that has heard the host every 10 ms up to `ms`, and drives with 3 m/s.
+/// A robot that has received the host every 10 ms up to `ms`, and drives with 3 m/s.
 fn driving(ms: u64, phase: Phase<Side>) -> Governor {
     let mut governor = Governor::new(League::DivisionB);
     for t in (0..=ms).step_by(10) {
@@ -109,7 +109,7 @@ fn braking_from_3_m_per_s_at_the_limit_takes_0_6_s_and_then_it_stands() {
     let mut steps = 0;
     loop {
         let t = 610 + steps * 10;
-        // Wheels that obey at once.
+        // Wheels that follow their orders at once.
         let odometry = governor.last();
         let (given, _) = governor.rule(&Circumstances { odometry, ..at(t, Phase::Halt) }, &go(3.0));
         steps += 1;
@@ -117,7 +117,7 @@ fn braking_from_3_m_per_s_at_the_limit_takes_0_6_s_and_then_it_stands() {
             break;
         }
     }
-    // Sixty steps of 50 mm/s, and one for what rounding leaves.
+    // Sixty steps of 50 mm/s, and one for rounding.
     assert!((60..=61).contains(&steps), "{steps}");
 }
 
@@ -150,7 +150,7 @@ fn from_50_to_100_ms_of_silence_the_limit_shrinks_and_the_first_frame_after_a_ga
     assert_eq!(governor.rule(&at(770, Phase::Run), &go(1.0)).1, Ruling::Allowed);
 }
 
-/// After a silence of that many ms, ms from the first frame on until it may move again.
+/// Time from the first frame after a silence of `silence` ms until it may move again, ms.
 fn moves_again_after(silence: u64) -> Option<u64> {
     let mut governor = driving(600, Phase::Run);
     let heard = Instant(600_000);
@@ -180,7 +180,7 @@ fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps
     let mut governor = Governor::new(League::DivisionB);
     let (mut armed, mut frame) = (None, None);
     for t in (0..2000_u64).step_by(10) {
-        // Heard for 60 ms, then not for 150 ms, again and again.
+        // Received for 60 ms, then not for 150 ms, again and again.
         if t % 210 < 60 {
             governor.hear_host(Instant(t * 1000));
             frame = Some(Instant(t * 1000));
@@ -191,7 +191,7 @@ fn a_robot_that_boots_is_armed_half_a_second_after_the_first_frame_whatever_gaps
             armed = Some(t);
         }
     }
-    // 500 ms after the first, the newest was heard 30 ms before.
+    // 500 ms after the first, the newest was received 30 ms before.
     assert_eq!(armed, Some(500));
 }
 
@@ -303,8 +303,8 @@ fn an_absurd_motion_is_cut_to_what_robots_do() {
     assert!((given.twist.linear.norm() - 4.0).abs() < 1e-5 && given.twist.angular == -20.0);
 }
 
-/// Steps of 10 ms from `from` ms on in which `at` holds and the wheels do as they are told, until the motors are released;
-/// `None` after 3 s.
+/// Steps of 10 ms from `from` ms on in which `at` holds and the wheels follow their orders, until the motors
+/// are released; `None` after 3 s.
 fn released_after(
     governor: &mut Governor,
     from: u64,
@@ -323,8 +323,8 @@ fn motors_are_released_half_a_second_after_a_silent_robot_stands_and_never_befor
     let silent =
         |t| Circumstances { host: Some(Hearing { frame: heard, command: heard }), ..at(t, Phase::Run) };
     let released = released_after(&mut driving(600, Phase::Run), 610, silent);
-    // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than the brake's 5 m/s²:
-    // 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
+    // 100 ms of silence, in whose second half the limit falls from 3 m/s with 80 m/s² but never faster than
+    // the brake's 5 m/s²: 3 m/s take 600 ms from 62.5 ms on, a turn of 1 rad/s less; then 500 ms.
     let after = released.expect("released in the end") - 600;
     assert!((1150..=1200).contains(&after), "{after} ms");
 }

@@ -55,10 +55,10 @@ fn the_parts_of_a_picture_may_come_in_any_order_and_twice() {
     assert_eq!(picture.handle_part(Instant(10_100), &b), Taken::Doubled);
     assert_eq!(picture.handle_part(Instant(10_200), &a), Taken::More);
     assert_eq!(ids(&picture, Instant(10_200)), [1, 0x82]);
-    // 0 follows 255; what comes of 255 after that is late.
+    // 0 follows 255; parts of 255 after that are late.
     assert_eq!(picture.handle_part(Instant(20_000), &part(0, 1, &[])), Taken::Begun);
     assert_eq!(picture.handle_part(Instant(20_100), &a), Taken::Late);
-    // A host that starts anew is heard after some silence.
+    // A host that restarts is received again after some silence.
     assert_eq!(picture.handle_part(Instant(400_000), &part(200, 0, &[])), Taken::Begun);
 }
 

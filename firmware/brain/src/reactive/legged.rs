@@ -1,14 +1,15 @@
 //! `legged`: reactive behaviour of walking robots without a case: that of the paper's comparison (§5).
 //!
-//! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others back up,
-//! off the line from ball to goal. An opponent is considered only when it blocks the way within 0.4 m: then dodge,
-//! turning with the ball and stepping diagonally, and kick as soon as the kick passes it. Short kicks advance, near the
-//! goal the robot turns to the clearest lane and shoots. No passes.
+//! The robot nearest the ball goes for it as fast as possible and alone towards the attacked goal; the others
+//! back up, off the line from ball to goal. An opponent is considered only when it blocks the path within 0.4
+//! m: then dodge, turning with the ball and stepping diagonally, and kick as soon as the kick passes it.
+//! Short kicks advance, near the goal the robot turns to the clearest lane and shoots. No passes.
 //!
-//! What it took to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalie): kicks out of a
-//! duel that pass the opponent and end where one of us is first, head kicks among them; shots by the open angle of the goal,
-//! from aside of its middle, where a goalie opposite the ball leaves the far post open; standing turned to that post until
-//! it opens; roles by who has the ball first where it will rest. `onetwo evaluate` says what it comes to.
+//! Needed to be as strong as the paper's (28 % to goal in scenario 1, 17 % in 3, defender and goalkeeper):
+//! kicks out of a duel that pass the opponent and end where one of us is first, head kicks among them; shots
+//! by the open angle of the goal, from aside of its middle, where a goalkeeper opposite the ball leaves the
+//! far post open; standing turned to that post until it opens; roles by who has the ball first at its stop
+//! position. `onetwo evaluate` measures it.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use protocol::robot_io::LeggedKick;
@@ -23,7 +24,7 @@ use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::legged as skills;
 
-/// The behaviour's small memory.
+/// State of the behaviour.
 #[derive(Clone, Debug, Default)]
 pub struct Reactive {
     role: Role,
@@ -32,17 +33,17 @@ pub struct Reactive {
 }
 
 impl Reactive {
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
     }
 
-    /// Bound by a case: forget roles and dodges.
+    /// While a case is played: resets roles and dodges.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,
@@ -77,7 +78,7 @@ impl Reactive {
         }
         let onwards = ball.position.direction_to(goal);
         match skills::get_ball(belief, Some(onwards)) {
-            // Between two gameplays a ball is taken only from under an opponent's nose.
+            // Between two gameplays a ball is taken only if an opponent is about to take it.
             Step::Running(Intent::Grab) if freedom != Freedom::Full && !disputed(belief, &ball) => {
                 Intent::Stand { face: None }
             }
@@ -107,7 +108,8 @@ impl Reactive {
             return intent;
         }
         let blocked = blocker(belief, ball, to_goal);
-        // A dodge once begun is ended by a kick: an opponent at the limit would else keep it turning to and fro.
+        // A dodge that has started is ended by a kick: otherwise an opponent at the limit would keep it
+        // turning to and fro.
         let opponent =
             blocked.or_else(|| self.dodge.and(belief.nearest_opponent(ball.position)).map(|(at, _)| at));
         let Some(opponent) = opponent else {
@@ -126,7 +128,8 @@ impl Reactive {
     }
 }
 
-/// The kick from where the robot stands now that passes everybody, ends in the field and is best for us there.
+/// The kick from where the robot stands now that passes every opponent, ends in the field and is best for us
+/// there.
 fn way_out(
     now: Instant,
     belief: &Belief,
@@ -156,12 +159,12 @@ fn way_out(
     best.map(|(_, kick)| kick)
 }
 
-/// Is an opponent about to be at the ball?
+/// Whether an opponent is about to be at the ball.
 fn disputed(belief: &Belief, ball: &Ball) -> bool {
     belief.nearest_opponent(ball.position).is_some_and(|(_, distance)| distance < DISPUTED_WITHIN)
 }
 
-/// The hard kick where it stays within the lines, else the soft one.
+/// The hard kick if it stays within the lines, else the soft one.
 fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
     let (_, length) = legged::nominal(LeggedKick::ForwardHard);
     let end = ball.position + Vector::polar(length, direction);
@@ -173,8 +176,8 @@ fn strength(belief: &Belief, ball: &Ball, direction: Angle) -> LeggedKick {
     }
 }
 
-/// Whether the ball is this robot's: it holds it, or nobody does and nobody is there earlier (the one who already goes for it
-/// keeps it unless beaten clearly).
+/// Whether the ball is this robot's: it holds it, or no robot holds it and no teammate is there earlier (the
+/// robot that already goes for it keeps it unless beaten clearly).
 fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
     if belief.holds_ball {
         return true;
@@ -197,12 +200,13 @@ fn beside(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
         let direction = to_goal + if left { SUPPORT_ANGLE } else { -SUPPORT_ANGLE };
         ball.position + Vector::polar(SUPPORT_DISTANCE, direction)
     };
-    // The other side where this one lies outside the field.
+    // The other side where this place is outside the field.
     let side = if field.contains(place(left)) || !field.contains(place(!left)) { left } else { !left };
     field.clamp(place(side), KEEP_INSIDE)
 }
 
-/// Beside a gameplay of others: across the field from where the ball will lie and ahead of it, for the next one's pass.
+/// Beside a gameplay of others: across the field from the ball's stop position and ahead of it, for the next
+/// one's pass.
 fn across(belief: &Belief, ball: &Ball, attacked: GoalEnd) -> Point<Field> {
     let goal = belief.league().field().goal_center(attacked);
     let me = belief.pose.position;
@@ -223,7 +227,7 @@ fn support(belief: &Belief, to: Point<Field>) -> Intent {
     Intent::Walk { to, face: face_ball(belief, to), shy_of_ball: true }
 }
 
-/// The opponent that is near the ball and in the way of a kick towards the goal.
+/// The opponent that is near the ball and on the path of a kick towards the goal.
 fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>> {
     belief.opponents.iter().copied().find(|&opponent| {
         let v = opponent - ball.position;
@@ -231,7 +235,7 @@ fn blocker(belief: &Belief, ball: &Ball, to_goal: Angle) -> Option<Point<Field>>
     })
 }
 
-/// How far every opponent stays from a kick's way, m.
+/// Smallest distance of any opponent from a kick's path, m.
 fn clearance(belief: &Belief, from: Point<Field>, direction: Angle, length: f32) -> f32 {
     let way = geometry::Segment::new(from, from + Vector::polar(length, direction));
     belief.opponents.iter().map(|&o| way.distance_to(o)).fold(f32::INFINITY, f32::min)
@@ -244,7 +248,8 @@ fn past(ball: &Ball, opponent: Point<Field>, left: bool) -> Angle {
     v.angle() + Angle::new(if left { off } else { -off })
 }
 
-/// On which side of the way to the goal a dodge is better: where a hard kick stays within the lines, else the clearer, else the inner.
+/// On which side of the line to the goal a dodge is better: where a hard kick stays within the lines, else
+/// the clearer, else the inner.
 fn left_is_clearer(belief: &Belief, ball: &Ball, to_goal: Angle) -> bool {
     let value = |direction: Angle| {
         let end = ball.position + Vector::polar(HARD_KICK, direction);
@@ -255,9 +260,10 @@ fn left_is_clearer(belief: &Belief, ball: &Ball, to_goal: Angle) -> bool {
     value(to_goal + DODGE_ANGLE) >= value(to_goal - DODGE_ANGLE)
 }
 
-/// The hard kick's nominal way, m: from here a clear shot reaches the goal. Also the way a dodge's kick should have within the lines.
+/// The hard kick's nominal distance, m: from here a clear shot reaches the goal. Also the distance that a
+/// dodge's kick should have within the lines.
 const HARD_KICK: f32 = 2.15;
-/// The soft kick's nominal way, m.
+/// The soft kick's nominal distance, m.
 const SOFT_KICK: f32 = 0.8;
 /// "Approximately 40 cm away at most" (paper §5.3.1): ball to the opponent's centre, m.
 const BLOCKED_WITHIN: f32 = 0.4;
@@ -265,33 +271,38 @@ const BLOCKED_WITHIN: f32 = 0.4;
 const DISPUTED_WITHIN: f32 = 0.5;
 /// An opponent in this half angle about the goal's direction blocks a forward kick.
 const BLOCKED_ANGLE: f32 = 0.8;
-/// Diagonally: 45°.
+/// Angle of a dodge: diagonally, 45°.
 const DODGE_ANGLE: Angle = Angle::const_new(core::f32::consts::FRAC_PI_4);
-/// Where the dodge leads, m ahead.
+/// Length of a dodge, m ahead.
 const DODGE_STEP: f32 = 0.5;
 /// A ball may be held for 3 s by the league's rule; dodge for half of it.
 const DODGE_FOR: Duration = Duration::millis(1500);
-/// Then it is kicked, wherever it will go.
+/// After this time the ball is kicked in any direction.
 const HOLD_FOR: Duration = Duration::millis(3000);
-/// A kick is free if it passes every opponent's centre at this distance, m: body and ball (0.1625) and its scatter of 10° over 0.4 m.
+/// A kick is free if it passes every opponent's centre at this distance, m: body and ball (0.1625) and its
+/// scatter of 10° over 0.4 m.
 const LANE: f32 = 0.24;
 /// A lane clearer than this is no better, m.
 const LANE_ENOUGH: f32 = 0.4;
-/// A dodge aims to pass the opponent at this distance, m: [`LANE`] and what the opponent walks sideways while the leg swings.
+/// A dodge aims to pass the opponent at this distance, m: [`LANE`] and what the opponent walks sideways while
+/// the leg swings.
 const PASS_BY: f32 = 0.3;
 /// A dodge's direction is at least and at most this far off the opponent's, rad: about 35° and 70°.
 const DODGE_OFF: [f32; 2] = [0.6, 1.2];
 /// Being nearer than every opponent by more than this is no better, m: time for a grab that fails once.
 const FIRST_BY: f32 = 0.5;
-/// Prefers the side towards the field's middle axis: small enough to decide between equally clear sides alone, per m off the axis.
+/// Prefers the side towards the field's middle axis: small enough to decide between equally clear sides
+/// alone, per m off the axis.
 const INNER_SIDE: f32 = 0.05;
 /// A hard kick should end this far within the lines, m: half of its scatter in distance.
 const KICK_INSIDE: f32 = 0.3;
-/// A ball this far off the field's long axis lies on one side, m.
+/// A ball this far off the field's long axis is on one side, m.
 const ACROSS_FROM: f32 = 0.3;
-/// Who waits across the field waits this far ahead of the ball, m: within one pass and one adaptation.
+/// A robot that waits across the field waits this far ahead of the ball, m: within one pass and one
+/// adaptation.
 const ACROSS_AHEAD: f32 = 0.6;
-/// And this far off the axis, m: half a penalty area's width, where a goalie opposite the ball leaves the far post open.
+/// And this far off the axis, m: half a penalty area's width, where a goalkeeper opposite the ball leaves the
+/// far post open.
 const ACROSS_OFF: f32 = 0.6;
 /// But no nearer the goal line than this, m: half a metre before the penalty area.
 const ACROSS_BEFORE_GOAL: f32 = 1.3;
@@ -337,7 +348,7 @@ mod tests {
         let mut b = belief((0.0, 0.0), (0.13, 0.0));
         b.holds_ball = true;
         let _ = b.opponents.push(Point::new(0.6, 0.0));
-        // Turned to where shots come from best: 0.5 m before the penalty area, opposite its corner.
+        // Turned to the best place for shots: 0.5 m before the penalty area, opposite its corner.
         b.pose.heading = Angle::new(math::atan2(0.65, 1.55));
         assert_eq!(step(&mut Reactive::default(), &b, 0), Intent::Kick(LeggedKick::ForwardSoft));
     }

@@ -1,4 +1,5 @@
-//! `reactive`: reactive behaviour of robots without a case. A behaviour per body, behind one face.
+//! `reactive`: reactive behaviour of robots without a case. One behaviour per body, behind a common
+//! interface.
 
 mod legged;
 mod wheels;
@@ -13,10 +14,10 @@ use crate::body::Intent;
 use crate::body::kind::{self, Kind};
 use crate::mates::Mates;
 
-/// How much of the behaviour is wanted.
+/// Extent of the behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// All of it.
+    /// The whole behaviour.
     Full,
     /// Keep near the ball, leave it to others: a robot that waits for the end of a gameplay.
     KeepNear,
@@ -24,17 +25,17 @@ pub enum Freedom {
     Approach,
 }
 
-/// The behaviour of a body, with its small memory.
+/// The behaviour of a body, with its state.
 #[derive(Clone, Debug)]
 pub enum Reactive {
-    /// The paper's, on legs.
+    /// The paper's behaviour, on legs.
     Legged(kind::Legs, legged::Reactive),
-    /// Simple and lawful, on wheels.
+    /// Simple and rule-compliant, on wheels.
     Wheels(kind::Wheels, wheels::Reactive),
 }
 
 impl Reactive {
-    /// The one of that league's robots.
+    /// The behaviour of that league's robots.
     pub fn of(league: League) -> Self {
         match Kind::of(league) {
             Kind::Legged(built) => Self::Legged(built, legged::Reactive::default()),
@@ -42,7 +43,7 @@ impl Reactive {
         }
     }
 
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         match self {
             Self::Legged(_, legs) => legs.role(),
@@ -50,7 +51,7 @@ impl Reactive {
         }
     }
 
-    /// Bound by a case: forget what it was about.
+    /// While a case is played: resets the state.
     pub fn rest(&mut self) {
         match self {
             Self::Legged(_, legs) => legs.rest(),
@@ -58,7 +59,7 @@ impl Reactive {
         }
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,

@@ -1,8 +1,8 @@
 //! `wheels`: reactive behaviour of wheeled robots without a case; simple and rule-compliant.
 //!
-//! Who has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on while there is room and the
-//! rules let it, else kicks it up the freer wing. The others take places ahead of the ball and behind it, one each. SI,
-//! field frame.
+//! The robot that has the ball soonest goes for it; with it, it shoots where the goal is open, carries it on
+//! while there is room and the rules allow it, else kicks it up the freer wing. The others take places ahead
+//! of the ball and behind it, one each. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -17,24 +17,24 @@ use crate::reactive::Freedom;
 use crate::skills::Step;
 use crate::skills::wheels as skills;
 
-/// The behaviour's small memory.
+/// State of the behaviour.
 #[derive(Clone, Debug, Default)]
 pub struct Reactive {
     role: Role,
 }
 
 impl Reactive {
-    /// What this robot presently is to its team.
+    /// This robot's present role in its team.
     pub fn role(&self) -> Role {
         self.role
     }
 
-    /// Bound by a case or a directive: forget the role.
+    /// While a case or a directive is executed: resets the role.
     pub fn rest(&mut self) {
         *self = Self::default();
     }
 
-    /// One step.
+    /// The intent of one step.
     pub fn step(
         &mut self,
         now: Instant,
@@ -60,7 +60,7 @@ impl Reactive {
         }
         let face = ball.position.direction_to(goal);
         if freedom == Freedom::Approach && !contested(belief, &ball) {
-            // Between two gameplays: near enough, but the ball lies as the next one will find it.
+            // Between two gameplays: near enough, but without moving the ball before the next one.
             let behind = ball.rest - Vector::polar(APPROACH, face);
             return Drive::shy(behind, face).into();
         }
@@ -89,7 +89,7 @@ fn advance(belief: &Belief, attacked: GoalEnd) -> Intent {
     skills::clear_or_shoot(belief, attacked)
 }
 
-/// Whether the ball is this robot's: it has it, or nobody else under the same directive has it sooner.
+/// Whether the ball is this robot's: it has it, or no other robot under the same directive has it sooner.
 fn is_attacker(now: Instant, me: RobotId, ball: &Ball, belief: &Belief, mates: &Mates, role: Role) -> bool {
     if belief.holds_ball {
         return true;
@@ -117,7 +117,7 @@ fn place(
     let field = belief.league().field();
     let sign = attacked.sign() as f32;
     let side = if ball.rest.y() > 0.0 { -1.0 } else { 1.0 };
-    // Attackers and those bound by a case are no supporters: places go by rank among the others.
+    // Attackers and robots that play a case are no supporters: places go by rank among the others.
     let before =
         mates.present(now).filter(|(id, mate)| *id < me && mate.beacon.role == Role::Supporter).count();
     let offsets =
@@ -135,23 +135,23 @@ fn contested(belief: &Belief, ball: &Ball) -> bool {
 
 /// Between gameplays a robot waits this far behind the ball, m.
 const APPROACH: f32 = 0.3;
-/// An opponent this near the ball is about to have it, m.
+/// An opponent this near the ball is about to take it, m.
 const CONTESTED: f32 = 0.6;
-/// From here the goal is shot at, m.
+/// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.5;
-/// A shot with that much room beside bodies' reach is taken, m.
+/// A shot with that much room beyond the reach of bodies is taken, m.
 const OPEN: f32 = 0.03;
-/// It looks this far for who is in its way, m.
+/// It checks this far ahead for opponents on its path, m.
 const LOOKS_AHEAD: f32 = 0.6;
-/// An opponent this near the way ahead blocks it, m: two bodies and a hand.
+/// An opponent this near the path ahead blocks it, m: two bodies and a hand.
 const BLOCKS: f32 = 0.25;
 /// A ball is carried no farther, m: the rules' metre, less what it takes to kick.
 const CARRIES: f32 = 0.55;
-/// Nearer to the goal's centre carrying on gains nothing, m.
+/// Nearer to the goal's centre carrying on has no benefit, m.
 const TOO_NEAR: f32 = 1.8;
-/// Who goes for the ball keeps that unless another is nearer by this, m.
+/// The robot that goes for the ball keeps it unless another is nearer by this, m.
 const KEEPS: f32 = 0.3;
-/// Where a rolling ball will be when somebody is there, s.
+/// Prediction time for the position of a rolling ball at which a robot arrives, s.
 const AHEAD: f32 = 0.6;
 /// Places keep this far before the area, m.
 const BEFORE_AREA: f32 = 0.5;

@@ -1,27 +1,27 @@
-//! `skills`: skills of the case language. A folder per body; belief in, intent and verdict out.
+//! `skills`: skills of the case language. A directory per body; belief in, intent and verdict out.
 //!
-//! A walking robot's skills remember nothing; what must be remembered between steps (a kick was commanded, the ball was
-//! held) is the [execution's](crate::execution) or the reactive behaviour's.
+//! A walking robot's skills keep no state; what must be kept between steps (a kick was commanded, the ball
+//! was held) is the [execution's](crate::execution) or the reactive behaviour's.
 
 pub mod legged;
 pub mod wheels;
 
 use crate::body::Intent;
 
-/// How a skill stands after a step.
+/// Result of a step of a skill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
-    /// Go on, wanting this.
+    /// The skill continues with this intent.
     Running(Intent),
-    /// It is done.
+    /// The skill is done.
     Done,
 }
 
-/// How a reception stands.
+/// Result of a step of a reception.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reception {
-    /// On the way to it, or to its end.
+    /// Moving to the ball, or to its stop position.
     Going(Step),
-    /// The ball has passed by, or came to rest too far away.
+    /// The ball has passed by, or stopped too far away.
     Missed,
 }

@@ -8,32 +8,33 @@ use protocol::{CycleId, RobotId};
 pub struct Cycle {
     me: RobotId,
     state: Option<CycleState>,
-    /// Learned of while still listening after a boot: what an earlier life of this robot did in it is unknown.
+    /// Learned of while still listening after a boot: what an earlier boot epoch of this robot did in it is
+    /// unknown.
     learned_asleep: bool,
-    /// Own progress in it.
+    /// Own progress in the cycle.
     pub progress: Progress,
-    /// Some robot of the case has had the ball.
+    /// Some robot of the case has touched the ball.
     pub touched: bool,
 }
 
-/// What adopting a state meant.
+/// Effect of adopting a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News {
-    /// Nothing new.
+    /// The state was known.
     Known,
-    /// More about the cycle, but no other gameplay.
+    /// More about the same cycle, without another gameplay.
     More,
-    /// A gameplay begins, or is replaced or ended.
+    /// A gameplay starts, or is replaced or ended.
     Gameplay,
 }
 
 impl Cycle {
-    /// Knows of none.
+    /// A robot that knows no cycle.
     pub fn new(me: RobotId) -> Self {
         Self { me, state: None, learned_asleep: false, progress: Progress::Idle, touched: false }
     }
 
-    /// What is known.
+    /// The newest cycle state known.
     pub fn state(&self) -> Option<&CycleState> {
         self.state.as_ref()
     }
@@ -48,7 +49,7 @@ impl Cycle {
         self.state.as_ref().and_then(CycleState::play)
     }
 
-    /// How the newest cycle ended, if it did.
+    /// The end of the newest cycle, if it has ended.
     pub fn closure(&self) -> Option<Closure> {
         match self.state.as_ref()?.decision {
             Decision::Closed(closure) => Some(closure),
@@ -56,17 +57,18 @@ impl Cycle {
         }
     }
 
-    /// Whether this robot is the coordinator of an open cycle that it has seen from its start in this life.
+    /// Whether this robot is the coordinator of an open cycle that it has received from its start in this
+    /// boot epoch.
     pub fn is_mine_to_decide(&self) -> bool {
         !self.learned_asleep && self.state.as_ref().is_some_and(|s| s.coordinator == self.me)
     }
 
-    /// Whether an earlier life of this robot took part in the running gameplay.
+    /// Whether an earlier boot epoch of this robot took part in the running gameplay.
     pub fn is_of_an_earlier_life(&self) -> bool {
         self.learned_asleep
     }
 
-    /// Takes over `state` if it is newer than what is known.
+    /// Adopts `state` if it is newer than the known one.
     pub fn adopt(&mut self, state: &CycleState, awake: bool) -> News {
         if !state.is_newer_than(self.state.as_ref()) {
             return News::Known;
@@ -103,7 +105,7 @@ impl Cycle {
         self.closed(Closure::Aborted { by: self.me, reason })
     }
 
-    /// The open cycle with the coordinator's word.
+    /// The open cycle with the coordinator's decision.
     #[must_use]
     pub fn decided(&self, decision: Decision) -> Option<CycleState> {
         self.state.as_ref().map(|state| CycleState { decision, ..state.clone() })

@@ -6,7 +6,7 @@ use protocol::{CycleId, Instant, RobotId};
 
 use crate::mates::Mates;
 
-/// The robot whose task it is to propose cycles.
+/// The robot that must propose cycles.
 pub fn elector(now: Instant, me: RobotId, mates: &Mates) -> RobotId {
     mates.present(now).map(|(id, _)| id).chain([me]).min().unwrap_or(me)
 }
@@ -23,8 +23,9 @@ pub fn coordinator(now: Instant, me: RobotId, own: &Beacon, mates: &Mates) -> Op
         .map(|(id, _)| id)
 }
 
-/// The next cycle, as proposed in that `life` of this robot. Each life counts in a residue class of its own: a robot that has
-/// booted cannot know which cycles its earlier lives proposed to mates it does not hear, and no cycle shall be two.
+/// The next cycle, as proposed in that boot epoch (`life`) of this robot. Each epoch counts in a residue
+/// class of its own: a robot that has booted cannot know which cycles its earlier epochs proposed to
+/// teammates it does not receive, and cycle ids must be unique.
 pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, life: u32) -> CycleState {
     let successor = known.map_or(0, |id| id.counter).saturating_add(1);
     let ahead = life.wrapping_sub(successor) % LIVES;
@@ -32,8 +33,8 @@ pub fn proposal(known: Option<CycleId>, me: RobotId, coordinator: RobotId, life:
     CycleState { id: CycleId { counter, proposer: me }, coordinator, decision: Decision::Undecided }
 }
 
-/// So many lives of a robot in a row never propose the same cycle. A power of two, so that residues hold over the wrap of the
-/// difference; at a cycle a second counters last for two years.
+/// Number of successive boot epochs of a robot that never propose the same cycle. A power of two, so that
+/// residues hold over the wrap of the difference; at a cycle a second counters last for two years.
 const LIVES: u32 = 64;
 
 #[cfg(test)]

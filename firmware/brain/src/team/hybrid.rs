@@ -1,9 +1,9 @@
 //! `hybrid`: combination of the deliberative and the reactive approach (Ros et al. 2009, §5.4 and §7).
 //!
-//! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting plays", elsewhere
-//! cooperation is better. So the reactive behaviour competes with the retrieved case by the time to its shot, as both are
-//! expected: the case's gameplay and what is left to the goal after it, against fetching the ball and kicking it on until
-//! the goal is in reach. SI units.
+//! The paper: "when the players are in front of the goal, there is no need of reasoning about interesting
+//! plays", elsewhere cooperation is better. So the reactive behaviour competes with the retrieved case by the
+//! time to its shot, as both are expected: the case's gameplay and what is left to the goal after it, against
+//! fetching the ball and kicking it on until the goal is in reach. SI units.
 
 use geometry::{Field, Point, Segment};
 
@@ -12,7 +12,7 @@ use casebase::{Action, KickAim};
 use crate::estimate;
 use crate::execution::Scene;
 
-/// Is the reactive behaviour expected to shoot sooner than the gameplay of `scene`?
+/// Whether the reactive behaviour is expected to shoot sooner than the gameplay of `scene`.
 pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
     let ball = Point::from(casebase::PointMm::from(scene.play.ball));
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
@@ -35,7 +35,8 @@ pub fn reactive_shoots_sooner(scene: &Scene<'_>) -> bool {
     alone + MARGIN < gameplay_until_shot(scene)
 }
 
-/// Expected seconds until the gameplay's shot, or until the one that could follow where it leaves the ball.
+/// Expected seconds until the gameplay's shot, or until the shot that could follow from its final ball
+/// position.
 fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
     let shoots = scene.case.robots().flat_map(|part| scene.case.gameplay(part)).any(|action| match action {
         Action::Kick(kind) => {
@@ -51,7 +52,8 @@ fn gameplay_until_shot(scene: &Scene<'_>) -> f32 {
     duration + left.map_or(0.0, |ball| until_shot(scene, ball))
 }
 
-/// Expected seconds from having come to a ball that lies at `ball` until a shot: grabs, and short kicks on until the goal is in reach.
+/// Expected seconds from reaching a ball at `ball` until a shot: grabs, and short kicks on until the goal is
+/// in reach.
 fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
     let goal = scene.belief.league().field().goal_center(scene.case.defending().opposite());
     let mut pushes = 0.0;
@@ -64,17 +66,19 @@ fn until_shot(scene: &Scene<'_>, ball: Point<Field>) -> f32 {
     spec.grab + pushes * (spec.kick + estimate::roll(scene, PUSH) + spec.grab) + spec.turn + spec.kick
 }
 
-/// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach, m.
+/// Elsewhere a deliberate gameplay is better (§5.4): a ball this far from the goal's centre is out of reach,
+/// m.
 const IN_REACH: f32 = 2.15;
-/// The reactive behaviour must win by this much, s: estimates of a gameplay's seconds are no better.
+/// Least lead of the reactive behaviour, s: the accuracy of a gameplay's estimate.
 const MARGIN: f32 = 1.0;
-/// An opponent this far ahead of the ball, and this far beside its way to the goal, will dispute it, m: what it walks in 3 s.
+/// An opponent this far ahead of the ball, and this far beside its path to the goal, will dispute it, m: what
+/// it walks in 3 s.
 const DUEL_AHEAD: f32 = 1.0;
-/// See [`DUEL_AHEAD`].
+/// Sideways limit, m; see [`DUEL_AHEAD`].
 const DUEL_BESIDE: f32 = 0.6;
-/// What a duel takes, s: a few grabs by either side.
+/// Duration of a duel, s: a few grabs by either side.
 const DUEL: f32 = 6.0;
-/// From this far shots have a chance, m: a hard kick (2.15 m) less its scatter in length.
+/// Distance up to which shots can reach the goal, m: a hard kick (2.15 m) less its scatter in length.
 const SHOT_FROM: f32 = 1.6;
-/// A short kick's nominal way, m.
+/// A short kick's nominal distance, m.
 const PUSH: f32 = 0.8;

@@ -1,9 +1,9 @@
-//! `monitor`: monitoring of a running case. What every robot involved watches while it plays
-//! (docs/architecture.md §5.3, docs/papers.md R27).
+//! `monitor`: monitoring of a running case by every robot involved (docs/architecture.md §5.3, docs/papers.md
+//! R27).
 //!
-//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the ball not at
-//! rest where nobody of the case expects it. A doubt must last a fifth of a second before it aborts: an opponent at the
-//! edge of a trapezoid shall not end a gameplay by swaying.
+//! Before the first touch: ball in the case's scope, path free. After it: no opponent on the ball, and the
+//! ball not stopped where no robot of the case expects it. A doubt must last a fifth of a second before it
+//! aborts: an opponent at the edge of a trapezoid shall not end a gameplay by swaying.
 
 use casebase::{PointMm, Settings};
 use geometry::Segment;
@@ -11,7 +11,7 @@ use protocol::team::AbortReason;
 
 use crate::execution::Scene;
 
-/// A doubt and how long it has lasted.
+/// A doubt about the case, and its duration.
 #[derive(Clone, Debug, Default)]
 pub struct Monitor {
     doubt: Option<AbortReason>,
@@ -19,7 +19,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// A new gameplay.
+    /// Resets it for a new gameplay.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
@@ -64,5 +64,5 @@ fn after_touch(scene: &Scene<'_>) -> Option<AbortReason> {
     (!expected && !at_start).then_some(AbortReason::BallAtRest)
 }
 
-/// How far outside a leg's trapezoid a resting ball is still where the case expects it, m.
+/// Distance outside a leg's trapezoid up to which a stationary ball is still where the case expects it, m.
 const STRAY: f32 = 0.3;

@@ -1,7 +1,7 @@
 //! `retrieval`: retrieval by the coordinator. Beliefs to a problem, a retrieval to a decision.
 //!
-//! The ball of the problem is where the ball will lie: robots that adapt to a place a rolling ball has left would only
-//! abort. For a ball at rest it is the paper's own ball position.
+//! The ball of the problem is at its stop position: robots that adapt to a place a rolling ball has left
+//! would only abort. For a stationary ball it is the paper's own ball position.
 
 use casebase::{CaseBase, GoalEnd, Problem, Settings};
 use protocol::host::Hint;
@@ -11,7 +11,7 @@ use protocol::{Instant, RobotId};
 use crate::belief::Belief;
 use crate::mates::Mates;
 
-/// The problem as this robot believes it; `None` while no ball is known.
+/// The problem from this robot's belief; `None` while no ball is known.
 pub fn problem(
     now: Instant,
     me: RobotId,
@@ -33,7 +33,7 @@ pub fn problem(
         .filter(|(_, mate)| mate.beacon.case_base == base.hash())
         .map(|(id, mate)| (id, mate.pose().position));
     for (id, position) in able.chain([(me, belief.pose.position)]) {
-        // A team larger than a problem holds is told to its limit.
+        // A team larger than a problem holds is cut at its limit.
         let _ = problem.teammates.push((id, position.into()));
     }
     for opponent in &belief.opponents {
@@ -42,7 +42,8 @@ pub fn problem(
     Some(problem)
 }
 
-/// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are present, each once.
+/// The host's proposal as a decision: its case exists, takes as many robots as it names, and all of them are
+/// present, each once.
 pub fn accept(
     base: &CaseBase<'_>,
     problem: &Problem,
@@ -60,10 +61,10 @@ pub fn accept(
     })
 }
 
-/// What the coordinator announces about `problem`.
+/// The coordinator's decision about `problem`.
 ///
-/// A robot that holds the ball can give it away only by a kick: a case that wants another robot to get the ball first
-/// cannot begin, and counts as none.
+/// A robot that holds the ball can give it away only by a kick: a case in which another robot must get the
+/// ball first cannot start, and counts as none.
 pub fn decide(
     base: &CaseBase<'_>,
     problem: &Problem,

@@ -8,14 +8,14 @@ use crate::config::Positioning;
 use crate::execution::{Execution, Outcome, Scene, face_ball};
 use crate::timer::TimerTable;
 
-/// What a step of reuse wants.
+/// Result of a step of reuse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Wish {
-    /// This of the body.
+    /// This intent for the body.
     Body(Intent),
-    /// Nothing: this robot's part is over, default behaviour.
+    /// This robot's part is over: default behaviour.
     Nothing,
-    /// The cycle's end.
+    /// Abort of the cycle.
     Abort(AbortReason),
 }
 
@@ -52,7 +52,7 @@ pub fn step(
     }
 }
 
-/// On the way to the adapted position, facing the ball at its end.
+/// Walks to the adapted position, facing the ball at its end.
 fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
     if scene.belief.holds_ball {
         return Intent::Stand { face: None };
@@ -61,7 +61,8 @@ fn adapt(scene: &Scene<'_>, execution: &Execution) -> Intent {
     Intent::Walk { to, face: face_ball(scene.belief, to), shy_of_ball: true }
 }
 
-/// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" will do (paper §4.2).
+/// At its adapted position, facing the ball. For the robot that gets the ball, "next to the ball" is enough
+/// (paper §4.2).
 fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     let pose = scene.belief.pose;
     if scene.belief.holds_ball {
@@ -79,7 +80,8 @@ fn has_arrived(scene: &Scene<'_>, execution: &Execution) -> bool {
     near && (face - pose.heading).abs() <= FACING_WITHIN
 }
 
-/// Dependent: the ball getter is there. Independent: all are. Either way a mate who executes has seen it so.
+/// Dependent: the ball getter is there. Independent: all are. In both, a teammate that executes has found it
+/// so.
 fn may_execute(scene: &Scene<'_>, positioning: Positioning, execution: &Execution, arrived: bool) -> bool {
     let there = |part| {
         if part == execution.part() {

@@ -1,25 +1,26 @@
-//! `budget`: size budget of an image. The budget of docs/architecture.md §9, and the computers it is compared
-//! with.
+//! `budget`: size budget of a firmware image: the budget of docs/architecture.md §9, and the computers it is
+//! compared with.
 
 use std::fmt;
 
 use super::Sizes;
 
-/// What an image may take, bytes.
+/// Limits of a firmware image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Flash.
+    /// Flash, bytes.
     pub flash: u64,
-    /// RAM that is taken before the program begins.
+    /// RAM that is taken before the program starts.
     pub ram: u64,
 }
 
 impl Budget {
-    /// Of a robot's image with its cases (docs/architecture.md §9).
+    /// Budget of a robot's firmware with its cases (docs/architecture.md §9).
     pub const IMAGE: Self = Self { flash: 160 * 1024, ram: 48 * 1024 };
 
-    /// Of the image for a real robot's board: the same robot, and 27 kB of drivers, clocks and log of its chip, which has 2 MiB. What
-    /// thinks is compiled as for the emulator, so that what is counted there is what is flashed.
+    /// Budget of the firmware for a real robot's board: the same robot, and 27 kB of drivers, clocks and log
+    /// of its chip, which has 2 MiB. The brain is compiled as for the emulator, so that what is counted there
+    /// is what is flashed.
     pub const BOARD: Self = Self { flash: 192 * 1024, ..Self::IMAGE };
 
     /// Whether `sizes` keep to it.
@@ -33,14 +34,14 @@ impl Budget {
     }
 }
 
-/// An image that takes more than it may.
+/// A firmware image that exceeds its budget.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverBudget {
-    /// What it may take.
+    /// The budget that is exceeded.
     pub budget: Budget,
-    /// What it takes of flash.
+    /// Flash used, bytes.
     pub flash: u64,
-    /// What it takes of RAM.
+    /// RAM used, bytes.
     pub ram: u64,
     /// Its largest symbols, and their bytes.
     pub largest: Vec<(String, u64)>,
@@ -59,18 +60,19 @@ impl std::error::Error for OverBudget {}
 /// A computer that a robot may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chip {
-    /// Its name.
+    /// Name of the computer.
     pub name: &'static str,
     /// Flash, bytes; `None` where programs are loaded into RAM.
     pub flash: Option<u64>,
     /// RAM, bytes.
     pub ram: u64,
-    /// Clock, Hz.
+    /// Clock frequency, Hz.
     pub clock: u64,
 }
 
 impl Chip {
-    /// What reports compare with: the first paper's robot, a credible floor, and what today's teams use.
+    /// Computers that reports compare with: the first paper's robot, a credible minimum, and those of today's
+    /// teams.
     pub const ALL: [Self; 3] = [
         // Sony AIBO ERS-7: MIPS R7000 at 576 MHz, 64 MB (its data sheet); programs run from RAM.
         Self { name: "AIBO ERS-7", flash: None, ram: 64 << 20, clock: 576_000_000 },
@@ -81,15 +83,16 @@ impl Chip {
     ];
 }
 
-/// Bytes of stack that a program may ever use, painted: with [`Budget::IMAGE`]'s RAM it leaves half of an STM32F405's 128 KiB free
-/// (docs/architecture.md §9 asks for a painted stack that is checked and names no number).
+/// Budget for the deepest stack use of a program, bytes, measured by painting: with [`Budget::IMAGE`]'s RAM
+/// it leaves half of an STM32F405's 128 KiB free (docs/architecture.md §9 asks for a painted stack that is
+/// checked and names no number).
 pub const STACK_BUDGET: u32 = 16 * 1024;
 
 /// Guest instructions of one brain step on its worst path (docs/architecture.md §9), the tasks around the
 /// brain included.
 pub const STEP_BUDGET: u32 = 40_000;
 
-/// Symbols named where a budget breaks.
+/// Number of symbols named where a budget is exceeded.
 const LARGEST: usize = 12;
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
-//! `inspect`: inspection of a firmware image. Its sections and symbols (ELF), and the source line behind
+//! `inspect`: inspection of a firmware image: its sections and symbols (ELF), and the source line behind
 //! every instruction (DWARF).
 //!
-//! Needs an image with debug information, as the profile `firmware` makes them. The bytes that are flashed do not change
-//! with it.
+//! Needs an ELF file with debug information, as the profile `firmware` makes them. The bytes that are flashed
+//! do not change with it.
 
 mod budget;
 mod panics;
@@ -17,7 +17,7 @@ pub use budget::{Budget, Chip, OverBudget, STACK_BUDGET, STEP_BUDGET};
 pub use panics::{Allowed, AllowedError, PanicSite, PanicVerdict, panic_sites};
 pub use size::{Part, Sizes};
 
-/// An image, taken apart.
+/// A firmware image, parsed.
 pub struct Image<'a> {
     sections: Vec<Section>,
     symbols: Vec<Symbol>,
@@ -27,12 +27,12 @@ pub struct Image<'a> {
 
 type Reader<'a> = EndianSlice<'a, RunTimeEndian>;
 
-/// A piece of memory.
+/// A section of memory.
 #[derive(Clone, Debug)]
 struct Section {
     address: u64,
     size: u64,
-    /// Empty where the image holds nothing for it (`.bss`).
+    /// Empty where the file holds no bytes for it (`.bss`).
     bytes: Vec<u8>,
     is_code: bool,
 }
@@ -47,13 +47,13 @@ impl Section {
 #[derive(Clone, Debug)]
 struct Symbol {
     name: String,
-    /// Without the bit that says "Thumb".
+    /// Without the bit that marks "Thumb".
     address: u64,
     size: u64,
     is_code: bool,
 }
 
-/// Why an image cannot be read.
+/// Why a firmware image cannot be read.
 #[derive(Debug)]
 pub enum ImageError {
     /// It is no ELF file.
@@ -109,7 +109,8 @@ impl<'a> Image<'a> {
             })
             .collect();
         symbols.sort_by(|a, b| (a.address, &a.name).cmp(&(b.address, &b.name)));
-        // Before aliases go: the run-time ABI's names stand beside the compiler's own for the same code.
+        // Before aliases are removed: the run-time ABI's names stand beside the compiler's own for the same
+        // code.
         let mut names = symbols.iter().map(|symbol| &symbol.name);
         let soft_double = names.find(|name| SOFT_DOUBLE.contains(&name.as_str())).cloned();
         symbols.dedup_by_key(|symbol| symbol.address);
@@ -121,8 +122,9 @@ impl<'a> Image<'a> {
         self.symbols.iter().map(|symbol| symbol.name.as_str())
     }
 
-    /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions an operation on a
-    /// processor that has single precision only (run-time ABI for the Arm architecture, §5.1.2).
+    /// The first function of double-precision arithmetic in software, if there is one: some 250 instructions
+    /// an operation on a processor that has single precision only (run-time ABI for the Arm architecture,
+    /// §5.1.2).
     pub fn soft_double(&self) -> Option<&str> {
         self.soft_double.as_deref()
     }
@@ -148,12 +150,12 @@ fn crate_of(path: &str) -> &str {
     {
         return segments.get(at + 1).copied().unwrap_or("core");
     }
-    // Of the registry: …/registry/src/HOST/name-version/src/…
+    // A crate of the registry: …/registry/src/HOST/name-version/src/…
     if let Some(at) = after("registry") {
         let name = segments.get(at + 3).copied().unwrap_or("?");
         return name.rsplit_once('-').map_or(name, |(name, _)| name);
     }
-    // Ours: the folder above `src`.
+    // Ours: the directory above `src`.
     let above = after("src").and_then(|at| segments.get(at.checked_sub(1)?).copied());
     match above {
         Some("library") => "case-library",
@@ -178,7 +180,7 @@ const SOFT_DOUBLE: [&str; 12] = [
     "__aeabi_f2d",
     "__aeabi_d2f",
 ];
-/// Where a Cortex-M has its RAM.
+/// Address range of a Cortex-M's RAM.
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x4000_0000;
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
-//! `panics`: panic locations of an image. Every call of a panic function, told by the line it was written in,
+//! `panics`: panic locations of a firmware image. Every call of a panic function, located by its source line,
 //! against a list of those that are known to be impossible or wanted (`panics.allow`).
 //!
-//! The list may only shrink without a word: a site that is gone has to be taken off it, and one of the crates that read what
-//! comes from outside, or think ([`NEVER`]), has no place on it.
+//! The list may only shrink: a site that is gone has to be removed from it, and one of the crates that read
+//! external input, or of the brain ([`NEVER`]), must not be on it.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
 use super::{Image, Section, crate_of};
 
-/// A call of a panic function, and how often the image has it.
+/// A call of a panic function, with its number of occurrences in the firmware.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PanicSite {
     /// The crate it is written in.
@@ -24,7 +24,7 @@ impl fmt::Display for PanicSite {
     }
 }
 
-/// All of an image, with a source line of each for people.
+/// All of a firmware image, each with a source line for the report.
 pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
     let mut sites: BTreeMap<PanicSite, Vec<String>> = BTreeMap::new();
     let callee = |address: u64| {
@@ -47,12 +47,12 @@ pub fn panic_sites(image: &Image<'_>) -> BTreeMap<PanicSite, Vec<String>> {
     sites
 }
 
-/// What the list says of an image.
+/// Comparison of a firmware image with the list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PanicVerdict {
-    /// Sites that are not allowed, with where they stand.
+    /// Sites that are not allowed, with their source lines.
     pub unknown: Vec<(PanicSite, Vec<String>)>,
-    /// Entries that no image has any more.
+    /// Entries that no firmware image has any more.
     pub gone: Vec<PanicSite>,
 }
 
@@ -60,7 +60,7 @@ pub struct PanicVerdict {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allowed(Vec<PanicSite>);
 
-/// What is wrong with the list.
+/// Errors of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AllowedError {
     /// A line that is not `crate function  # reason`.
@@ -101,7 +101,7 @@ impl Allowed {
         Ok(Self(sites))
     }
 
-    /// What the sites of all images together are by this list.
+    /// Compares the sites of all firmware images together with this list.
     pub fn judge(&self, sites: &BTreeMap<PanicSite, Vec<String>>) -> PanicVerdict {
         let unknown = sites.iter().filter(|(site, _)| !self.0.contains(site));
         PanicVerdict {
@@ -121,7 +121,8 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             let Some(file) = location.file else { continue };
             let name = frame.function.as_ref().and_then(|f| Some(demangled(f.raw_name().ok()?.as_ref())));
             let name = name.unwrap_or_else(|| symbol.to_owned());
-            // Line 0 is code that the compiler made; the file beside it is any that was merged with it, the name is right.
+            // Line 0 is code that the compiler made; the file beside it is any that was merged with it, the
+            // name is right.
             let crate_name = match (location.line, name.split_once("::")) {
                 (None | Some(0), Some((named, _))) if !named.contains('<') => named.replace('_', "-"),
                 _ => crate_of(file).to_owned(),
@@ -131,7 +132,7 @@ fn written_at(image: &Image<'_>, address: u64, symbol: &str) -> (PanicSite, Stri
             let is_std = STANDARD.contains(&site.crate_name.as_str());
             innermost.get_or_insert((site.clone(), line.clone()));
             match &mut found {
-                // Whoever it was inlined into may be the one to mend.
+                // The function it was inlined into may be the one to fix.
                 Some((_, lines)) => *lines = format!("{lines} in {}", plain(&name)),
                 None if is_std => {}
                 None => found = Some((site, line)),
@@ -146,7 +147,8 @@ fn demangled(name: &str) -> String {
     format!("{:#}", rustc_demangle::demangle(name))
 }
 
-/// A path without its generic arguments, so that it stays the same from build to build: the last two of its segments.
+/// A path without its generic arguments, so that it stays the same from build to build: the last two of its
+/// segments.
 fn plain(name: &str) -> String {
     let (mut depth, mut text) = (0_usize, String::new());
     for c in name.chars() {
@@ -162,7 +164,7 @@ fn plain(name: &str) -> String {
     segments[last..].join("::")
 }
 
-/// Whether the function does nothing but panic.
+/// Whether the function only panics.
 fn panics(name: &str) -> bool {
     let of_core = [
         "core::panicking::",
@@ -178,10 +180,10 @@ fn holds(section: &Section, address: u64) -> bool {
     (section.address..section.address + section.bytes.len() as u64).contains(&address)
 }
 
-/// Calls and jumps of 32 bits in a function (Armv7-M ARM, A7.7.18 BL and A7.7.12 B, T4): from where, and to where.
+/// Calls and jumps of 32 bits in a function (Armv7-M ARM, A7.7.18 BL and A7.7.12 B, T4): source and target.
 ///
-/// Tables of literals between instructions are read as instructions too; one that happens to look like a call of a panic
-/// function would be a finding too many, never one too few.
+/// Tables of literals between instructions are read as instructions too; a literal that equals a call of a
+/// panic function would be a false positive, never a missed one.
 fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     let half = |at: u64| {
         let index = usize::try_from(at - section.address).ok()?;
@@ -191,7 +193,7 @@ fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     let mut at = address;
     while at + 1 < address + size {
         let Some(first) = half(at) else { break };
-        // 0b111 and one of 01, 10, 11 next begin an instruction of 32 bits.
+        // 0b111 and one of 01, 10, 11 next start an instruction of 32 bits.
         if first >> 11 < 0b11101 {
             at += 2;
             continue;
@@ -207,7 +209,7 @@ fn calls(section: &Section, address: u64, size: u64) -> Vec<(u64, u64)> {
     found
 }
 
-/// Where a BL or B.W at `at` leads.
+/// Target address of a BL or B.W at `at`.
 fn target(at: u64, first: u16, second: u16) -> u64 {
     let bit = |half: u16, n: u32| u32::from(half >> n) & 1;
     let s = bit(first, 10);
@@ -219,9 +221,9 @@ fn target(at: u64, first: u16, second: u16) -> u64 {
     at.wrapping_add(4).wrapping_add_signed(offset)
 }
 
-/// Crates that may not panic at all: what reads the air, what computes, what thinks.
+/// Crates that may not panic at all: those that read the radio, compute, or decide.
 const NEVER: [&str; 6] = ["brain", "protocol", "casebase", "motion", "rules", "geometry"];
-/// A panic in one of these is the fault of whoever called it.
+/// A panic in one of these is the fault of its caller.
 const STANDARD: [&str; 5] = ["core", "alloc", "std", "compiler-builtins", "heapless"];
 
 #[cfg(test)]
@@ -234,7 +236,7 @@ mod tests {
 
     #[test]
     fn calls_are_decoded_as_the_manual_says() {
-        // From the image's own listing: 63d6 is bl to 2a120 in both directions, b.w likewise.
+        // From the firmware's own disassembly: 63d6 is bl to 2a120 in both directions, b.w likewise.
         for (at, first, second, to) in [
             (0x8e16_u64, 0xf001_u16, 0xf97f_u16, 0xa118_u64),
             (0x2000, 0xf7ff, 0xfffe, 0x2000),

@@ -1,37 +1,38 @@
 //! `size`: flash and RAM usage by crate and symbol.
 //!
-//! Crates by source line: an inlined instruction counts for the crate it was written in, whichever function it ended up in.
+//! Crates by source line: an inlined instruction counts for the crate it was written in, not for the function
+//! that contains it.
 
 use std::collections::BTreeMap;
 
 use super::{Image, crate_of};
 
-/// What an image takes, in bytes.
+/// Size of a firmware image, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// Flash: code, tables, and the starting values of RAM.
     pub flash: u64,
-    /// RAM that is taken before the program begins; the stack has what is left.
+    /// RAM that is taken before the program starts; the stack has what is left.
     pub ram: u64,
-    /// By crate, the largest first.
+    /// Sizes by crate, the largest first.
     pub crates: Vec<Part>,
-    /// By symbol, the largest first.
+    /// Sizes by symbol, the largest first.
     pub symbols: Vec<Part>,
 }
 
-/// What something takes, in bytes.
+/// Size of a crate or symbol, in bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// Its name.
+    /// Name of the crate or symbol.
     pub name: String,
-    /// Flash.
+    /// Flash, bytes.
     pub flash: u64,
-    /// RAM.
+    /// RAM, bytes.
     pub ram: u64,
 }
 
 impl Sizes {
-    /// Of that image.
+    /// Sizes of `image`.
     pub fn of(image: &Image<'_>) -> Self {
         let (mut flash, mut ram) = (0, 0);
         for section in &image.sections {
@@ -52,7 +53,7 @@ impl Sizes {
             let ram = if section.is_ram() { symbol.size } else { 0 };
             let entry = symbols.entry(&symbol.name).or_default();
             (entry.0, entry.1) = (entry.0 + flash, entry.1 + ram);
-            // Code is told by its lines below.
+            // Code is attributed by its lines below.
             if !section.is_code {
                 let entry = crates.entry(crate_of_symbol(&symbol.name)).or_default();
                 (entry.0, entry.1) = (entry.0 + flash, entry.1 + ram);
@@ -61,7 +62,7 @@ impl Sizes {
         let mut code = 0;
         for section in image.sections.iter().filter(|section| section.is_code) {
             let range = section.address..section.address + section.size;
-            // Without line information the rest is nobody's.
+            // Without line information the bytes are attributed to no crate.
             let Ok(lines) = image.lines.find_location_range(range.start, range.end) else { continue };
             for (at, len, line) in lines {
                 let Some(file) = line.file.filter(|_| range.contains(&at)) else { continue };
@@ -80,7 +81,7 @@ impl Sizes {
         Self { flash, ram, crates: sorted(crates), symbols: sorted(symbols) }
     }
 
-    /// What holds RAM for good: each static of that many bytes or more, the largest first, after the crate it belongs to.
+    /// Statics: each of that many bytes or more, the largest first, after the crate it belongs to.
     pub fn pools(&self, least: u64) -> Vec<(&str, &Part)> {
         let mut pools: Vec<_> = self
             .symbols
@@ -101,7 +102,8 @@ fn sorted(parts: BTreeMap<&str, (u64, u64)>) -> Vec<Part> {
     parts
 }
 
-/// The first word of a value's path, which is its crate: `case_library::TABLE`, `<brain::X as core::Y>::z`.
+/// The first segment of a value's path, which is its crate: `case_library::TABLE`, `<brain::X as
+/// core::Y>::z`.
 fn crate_of_symbol(name: &str) -> &str {
     let name = name.trim_start_matches(['<', '&']);
     let end = name.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(name.len());
@@ -111,7 +113,7 @@ fn crate_of_symbol(name: &str) -> &str {
     }
 }
 
-/// Instructions without a source line: assembly, and what the linker put between functions.
+/// Instructions without a source line: assembly, and the linker's padding between functions.
 const ASSEMBLY: &str = "(assembly, padding)";
 /// Values without a name: texts, tables of jumps, literals.
 const CONSTANTS: &str = "(constants without a name)";

@@ -1,7 +1,8 @@
 //! `motion_bench`: motion benchmark tasks. The same on a board and on the PC, to the last bit.
 //!
-//! Tasks are drawn from a seed, so nothing travels to the board; back come counts, and a hash of what was found. Runs in
-//! the bench's image (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`, which drives both. SI units.
+//! Tasks are drawn from a seed, so no task data goes to the board; counts and a hash of the results come
+//! back. Runs in the bench's firmware (`motion-bench` of the QEMU board) and in `cargo xtask bench motion`,
+//! which drives both. SI units.
 #![forbid(unsafe_code)]
 #![no_std]
 
@@ -15,31 +16,31 @@ use motion::trajectory::{CalcMotion, DragLimits, FreeLimits, Motion, State};
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
-/// What is measured.
+/// Functions that are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
-    /// `t*` without drag.
+    /// `t*` without drag: duration alone.
     FreeTime,
     /// The whole motion without drag.
     FreePlan,
-    /// Its state at one time.
+    /// State of a motion without drag at one time.
     FreeState,
-    /// `t*` with drag.
+    /// `t*` with drag: duration alone.
     DragTime,
     /// The whole motion with drag.
     DragPlan,
-    /// The soonest meeting with a ball.
+    /// The earliest interception of a ball.
     Soonest,
-    /// The one with most slack.
+    /// The interception with most slack.
     Safest,
-    /// A step among 12 discs and 4 shapes that stand.
+    /// A planner step among 12 discs and 4 shapes that stand.
     Avoid,
-    /// ... whose discs move.
+    /// The same with moving discs.
     AvoidMoving,
 }
 
 impl Work {
-    /// All, as they are told.
+    /// All tasks, in the order of the report.
     pub const ALL: [Self; 9] = [
         Self::FreeTime,
         Self::FreePlan,
@@ -52,7 +53,7 @@ impl Work {
         Self::AvoidMoving,
     ];
 
-    /// Its word.
+    /// Its name in reports and options.
     pub const fn word(self) -> &'static str {
         match self {
             Self::FreeTime => "free-time",
@@ -67,7 +68,7 @@ impl Work {
         }
     }
 
-    /// Does it; the bits of what was found, folded into one word.
+    /// Runs the task; returns the bits of the result, folded into 32 bits.
     pub fn run(self, task: &Task) -> u32 {
         let Task { from, velocity, to, .. } = *task;
         let (free, drag) = (FreeLimits::default(), DragLimits::default());
@@ -85,14 +86,14 @@ impl Work {
     }
 }
 
-/// What is to be done.
+/// Inputs of one task.
 #[derive(Clone, Debug)]
 pub struct Task {
-    /// A start, a velocity and an end on a field of 12 × 9 m; every second way is short.
+    /// A start, a velocity and an end on a field of 12 × 9 m; every second path is short.
     pub from: Point<Field>,
-    /// m/s.
+    /// Velocity at the start, m/s.
     pub velocity: Vector<Field>,
-    /// The end.
+    /// End of the motion, m.
     pub to: Point<Field>,
     motion: <FreeLimits as CalcMotion>::Motion<Field>,
     time: f32,
@@ -145,12 +146,12 @@ fn folded(state: &State<Field>) -> u32 {
 /// The worst case planned for (docs/architecture.md §9): 12 robots and 4 forbidden regions.
 const OBSTACLES: usize = 16;
 
-/// The tasks of a seed, for ever.
+/// The endless sequence of a seed's tasks.
 #[derive(Clone, Debug)]
 pub struct Tasks(Xoshiro128PlusPlus);
 
 impl Tasks {
-    /// From their beginning.
+    /// Tasks from the start of the seed's sequence.
     pub fn new(seed: u64) -> Self {
         Self(Xoshiro128PlusPlus::seed_from_u64(seed))
     }
@@ -216,17 +217,17 @@ impl Iterator for Tasks {
     }
 }
 
-/// What one task came to: instructions of each work, and a hash of all that was found.
+/// Result of one task: instructions of each work, and a hash of all results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counted {
-    /// In the order of [`Work::ALL`].
+    /// Instructions, in the order of [`Work::ALL`].
     pub instructions: [u32; Work::ALL.len()],
-    /// Of the bits.
+    /// Hash of the results' bits.
     pub found: u32,
 }
 
 impl Counted {
-    /// Does all works on a task. `count` does one, and counts.
+    /// Runs all works on a task. `count` runs one, and counts its instructions.
     pub fn of(task: &Task, mut count: impl FnMut(Work, &Task) -> (u32, u32)) -> Self {
         let mut found = 0_u32;
         let instructions = Work::ALL.map(|work| {
@@ -237,7 +238,7 @@ impl Counted {
         Self { instructions, found }
     }
 
-    /// From a line of numbers.
+    /// Reads a line of numbers.
     pub fn from_line(line: &str) -> Option<Self> {
         let mut words = line.split(' ').map_while(|word| word.parse().ok());
         let mut counted = Self { instructions: [0; _], found: words.next()? };
@@ -255,9 +256,9 @@ impl fmt::Display for Counted {
     }
 }
 
-/// Tasks that the board is given, from this seed on.
+/// Number of tasks for the board, from this seed on.
 pub const TASKS: usize = 500;
-/// Of the tasks.
+/// Seed of the tasks.
 pub const SEED: u64 = 2013;
 
 #[cfg(test)]

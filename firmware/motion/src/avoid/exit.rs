@@ -1,18 +1,20 @@
-//! `exit`: finds a free point near a covered one: out of overlapping obstacles and inside the region to stay in. m.
+//! `exit`: finds a free point near a covered one: out of overlapping obstacles and inside the region to stay
+//! in. m.
 //!
-//! A best-first search over candidates: on the sides of the box, or around the disc or capsule, that covers a point; a candidate
-//! that is covered itself is left the same way, the one nearest to the start first. Candidates outside the region to stay in are no
-//! exits: a half-plane that ends beyond a wall is left on the side that lies on the carpet. Where [`TRIES_MAX`] candidates were
-//! tried in vain, the nearest free point of a lattice over the region is taken. Deterministic, and bounded: a search looks at
-//! [`TRIES_MAX`] candidates and [`COLUMNS`] × [`ROWS`] points of the lattice at most.
+//! A best-first search over candidates: on the sides of the box, or around the disc or capsule, that covers a
+//! point; a candidate that is covered itself is left by the same method, the one nearest to the start first.
+//! Candidates outside the region to stay in are no exits: a half-plane that ends beyond a wall is left on the
+//! side that lies on the field surface. Where [`TRIES_MAX`] candidates were tried in vain, the nearest free
+//! point of a lattice over the region is taken. Deterministic, and bounded: a search looks at [`TRIES_MAX`]
+//! candidates and [`COLUMNS`] × [`ROWS`] points of the lattice at most.
 
 use geometry::{Point, Shape, Vector, math};
 
 use super::item::Scene;
 
 impl<F: Copy> Scene<'_, F> {
-    /// The point itself if it is free, else one nearby that is; the point brought inside where there is none. For a target, in
-    /// every step: few candidates, then the first free point on rings around it.
+    /// The point itself if it is free, else one nearby that is; without one, the point moved inside. For a
+    /// target, in every step: few candidates, then the first free point on rings around it.
     pub(super) fn nearest_free(&self, point: Point<F>) -> Point<F> {
         let start = self.within().map_or(point, |within| inside(&within, point));
         self.search(start, TRIES_TO_GOAL_MAX, |_| true)
@@ -20,7 +22,8 @@ impl<F: Copy> Scene<'_, F> {
             .unwrap_or(start)
     }
 
-    /// Where to leave what covers a robot: the nearest free point to which no body stands in the straight way, else the nearest.
+    /// Where to leave what covers a robot: the nearest free point with no body on the straight path to it,
+    /// else the nearest.
     pub(super) fn exit(&self, from: Point<F>, effort: u32) -> Point<F> {
         let start = self.within().map_or(from, |within| inside(&within, from));
         let tries = (effort / EFFORT_A_TRY).min(TRIES_MAX) as usize;
@@ -60,7 +63,7 @@ impl<F: Copy> Scene<'_, F> {
         self.nearer(point, FREE).map(|obstacle| obstacle.shape)
     }
 
-    /// The ways out of a shape from a point in it, as far as they end inside.
+    /// Exit points of a shape from a point in it, as far as they lie inside.
     fn add_exits(&self, exits: &mut Exits<F>, shape: &Shape<F>, at: Point<F>) {
         let same = if matches!(shape, Shape::Box { .. }) { SAME } else { SAME_AROUND };
         let mut add = |exit: Point<F>| {
@@ -78,7 +81,8 @@ impl<F: Copy> Scene<'_, F> {
             Shape::Disc { center, radius } => {
                 let out = (at - center).unit().unwrap_or(Vector::new(1.0, 0.0)) * (radius + OFF);
                 let left = Vector::new(-out.y(), out.x());
-                // Along both axes, as walls and boxes lie, first: of candidates that are nearly the same the first one counts.
+                // Along both axes first, parallel to walls and boxes: of nearly equal candidates the first
+                // one is used.
                 let off = at - center;
                 let reach =
                     |off: f32| math::sqrt(math::max((radius + OFF) * (radius + OFF) - off * off, 0.0));
@@ -140,8 +144,8 @@ struct Exit<F> {
 }
 
 impl<F: Copy> Exits<F> {
-    /// Notes a candidate that is farther than `least` from all others along an axis; where there is no room for more, those there
-    /// are must do.
+    /// Adds a candidate that is farther than `least` from all others along an axis; without capacity the
+    /// search continues with those there are.
     // Called from many places; a copy in each takes 2 kB of flash.
     #[inline(never)]
     fn add(&mut self, at: Point<F>, least: f32) {
@@ -184,21 +188,23 @@ fn inside<F: Copy>(shape: &Shape<F>, at: Point<F>) -> Point<F> {
     }
 }
 
-/// A free point is this far outside, m.
+/// Distance of a free point from a shape, m.
 const FREE: f32 = 0.002;
-/// Candidates are this far outside, m.
+/// Distance of candidates from a shape, m.
 const OFF: f32 = 2.0 * FREE;
-/// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may leave narrow gaps.
+/// Candidates nearer to each other than this along both axes are one, m: on the sides of boxes, which may
+/// leave narrow gaps.
 const SAME: f32 = 0.001;
 /// The same around discs and capsules, of which there would be too many.
 const SAME_AROUND: f32 = 0.03;
-/// Most candidates that are looked at: with 16, keepers do not find into a mouth in which another robot stands.
+/// Most candidates that are tested: with 16, keepers do not find into a goal opening in which another robot
+/// stands.
 const TRIES_MAX: u32 = 32;
-/// A candidate is looked at for so much of the effort that a way out may take.
+/// Effort for testing one candidate, out of what a route out may take.
 const EFFORT_A_TRY: u32 = 12;
-/// Most candidates for a target that is covered: whoever gets near it looks again.
+/// Most candidates for a target that is covered: a robot that gets near it searches again.
 const TRIES_TO_GOAL_MAX: usize = 2;
-/// Most candidates that are noted.
+/// Most candidates that are stored.
 const EXITS_MAX: usize = 64;
 /// Points of the lattice along the region's x and y.
 const COLUMNS: u8 = 6;

@@ -6,14 +6,15 @@ use geometry::{Point, Segment, Shape, Vector, math};
 
 use super::{FORESIGHT, OBSTACLES_MAX, Obstacle};
 
-/// An obstacle with the distance that is kept from it, and a circle around it: most are told by that alone.
+/// An obstacle with the distance that is kept from it, and a circle around it: most tests need the circle
+/// alone.
 #[derive(Clone, Copy)]
 pub(super) struct Item<F> {
     center: Point<F>,
     /// Squares of the circle's radius, with the margins of routes and of braking.
     route: f32,
     brake: f32,
-    /// What routes keep from the shape, m: [`SKIN`], or less where start or goal are nearer.
+    /// Distance that routes keep from the shape, m: [`SKIN`], or less where start or goal are nearer.
     pub(super) margin: f32,
     /// The circle is the shape.
     is_disc: bool,
@@ -26,18 +27,19 @@ pub(super) struct Scene<'o, F> {
     items: heapless::Vec<Item<F>, OBSTACLES_MAX>,
     moves: bool,
     within: Option<Shape<F>>,
-    /// What may still be spent on looking.
+    /// Effort that is left for tests.
     effort: Cell<u32>,
 }
 
 impl<'o, F: Copy> Scene<'o, F> {
-    /// Without its obstacles: [`Scene::look`] comes next, where it stands, for it is large to be handed around.
+    /// Without its obstacles: [`Scene::look`] fills them in place, because the value is too large to be moved
+    /// around.
     pub(super) fn new(obstacles: &'o [Obstacle<F>], within: Option<Shape<F>>, effort: u32) -> Self {
         let obstacles = obstacles.get(..OBSTACLES_MAX).unwrap_or(obstacles);
         Self { obstacles, items: heapless::Vec::new(), moves: false, within, effort: Cell::new(effort) }
     }
 
-    /// Takes in the obstacles.
+    /// Computes the items of all obstacles.
     pub(super) fn look(&mut self) {
         for obstacle in self.obstacles {
             let velocity = obstacle.velocity;
@@ -51,7 +53,7 @@ impl<'o, F: Copy> Scene<'o, F> {
             };
             self.moves |= item.moves;
             item.enclose(&obstacle.shape);
-            // There is room: the obstacles were counted above.
+            // The capacity suffices: the obstacles were counted above.
             let _ = self.items.push(item);
         }
     }
@@ -73,11 +75,12 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within
     }
 
-    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. Who leaves may go through all regions; a body that
-    /// holds the start is taken to end just before it, so that no way leads into it. One that moves with the robot, as a ball that
-    /// rolls on beside it, is left out where the exit leads away from it: to brake would keep them together; one that lies before it
-    /// would be pushed along, and stays. Walls meet: what is kept from the one that is nearest to the start is kept from all of them,
-    /// else none could be followed around to the next.
+    /// Routes keep [`SKIN`] from everything, but no more than start and goal do. A robot that leaves may go
+    /// through all regions; a body that holds the start is taken to end just before it, so that no path leads
+    /// into it. A body that moves with the robot, as a ball that rolls on beside it, is left out where the
+    /// exit leads away from it: braking would keep them together; a body that lies before the start would be
+    /// pushed along, and stays. Walls meet: the distance kept from the wall nearest to the start is kept from
+    /// all of them, else none could be followed around to the next.
     pub(super) fn keep_apart(&mut self, from: Point<F>, goal: Point<F>, leaves: bool) {
         let mut wall = SKIN;
         for (item, obstacle) in self.items.iter_mut().zip(self.obstacles) {
@@ -86,7 +89,7 @@ impl<'o, F: Copy> Scene<'o, F> {
                 item.leave_out();
                 continue;
             }
-            // Nearly all are far from both.
+            // Most obstacles are far from both.
             if item.may_hold(from) || item.may_hold(goal) {
                 let here = gap(&obstacle.shape, from);
                 let nearest = math::min(here, gap(&obstacle.shape, goal)) - TOUCH;
@@ -115,18 +118,18 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.all().find(|(item, obstacle)| near(item, obstacle)).map(|(_, obstacle)| obstacle)
     }
 
-    /// Notes that every obstacle was looked at, at so much for each three, and so much besides.
+    /// Spends `a_third` per three obstacles, as every obstacle was tested, and `besides` in addition.
     pub(super) fn spend(&self, a_third: u32, besides: u32) {
         let looked = self.items.len() as u32 * a_third / 3;
         self.effort.set(self.effort.get().saturating_sub(looked + besides));
     }
 
-    /// Sets what may be spent from now on.
+    /// Sets the effort available from now on.
     pub(super) fn allow(&self, effort: u32) {
         self.effort.set(effort);
     }
 
-    /// Whether a plan has had its share of a step.
+    /// Whether a plan has used its share of a step.
     pub(super) fn is_spent(&self) -> bool {
         self.effort.get() == 0
     }
@@ -139,12 +142,13 @@ impl<'o, F: Copy> Scene<'o, F> {
         self.within.is_none_or(|within| within.distance_to(point) <= 0.0)
     }
 
-    /// As [`Self::stays_within`]; who is outside already may come no farther out.
+    /// As [`Self::stays_within`]; a robot that is outside already may move no farther out.
     pub(super) fn stays_within_or_returns(&self, from: Point<F>, to: Point<F>) -> bool {
         self.within.is_none_or(|within| within.distance_to(to) <= math::max(within.distance_to(from), 0.0))
     }
 
-    /// The first obstacle that a piece of way touches, by its number, when it takes from `at` to `at + time` s.
+    /// The first obstacle that a piece of path touches, by its number, when it takes from `at` to `at + time`
+    /// s.
     pub(super) fn first_hit(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> Option<usize> {
         self.spend(3, PIECE);
         let mut first = None;
@@ -163,7 +167,8 @@ impl<'o, F: Copy> Scene<'o, F> {
         first
     }
 
-    /// Whether no body stands in the straight way; of one that covers the start, whether it does not lead deeper in.
+    /// Whether no body stands on the straight path; for a body that covers the start, whether the path does
+    /// not lead deeper in.
     pub(super) fn sees(&self, from: Point<F>, to: Point<F>) -> bool {
         let way = to - from;
         self.all().filter(|(_, obstacle)| obstacle.is_body).all(|(item, obstacle)| {
@@ -182,7 +187,7 @@ impl<'o, F: Copy> Scene<'o, F> {
         })
     }
 
-    /// Nothing is touched, with a smaller margin: what is left of braking.
+    /// Whether no obstacle is touched, with the smaller margin that braking keeps.
     pub(super) fn is_clear(&self, from: Point<F>, way: Vector<F>, at: f32, time: f32) -> bool {
         let seen =
             Seen { from, way, before: math::min(at, FORESIGHT), later: math::min(at + time, FORESIGHT) };
@@ -197,7 +202,7 @@ impl<'o, F: Copy> Scene<'o, F> {
 }
 
 impl<F: Copy> Item<F> {
-    /// Draws the circle around the shape, grown by the margins.
+    /// Computes the circle around the shape, grown by the margins.
     fn enclose(&mut self, shape: &Shape<F>) {
         let (center, radius, corner) = match *shape {
             Shape::Disc { center, radius } => (center, radius, 1.0),
@@ -212,25 +217,27 @@ impl<F: Copy> Item<F> {
         };
         self.is_disc = matches!(shape, Shape::Disc { .. });
         self.center = center;
-        // A box that shrinks keeps its circle: the corners of what is left of it may be farther out than a smaller one.
+        // A box that shrinks keeps its circle: the corners that remain may be farther out than a smaller
+        // circle.
         let margin = if corner > 1.0 { math::max(self.margin, 0.0) } else { self.margin };
         self.route = square(radius + corner * margin);
         self.brake = square(radius + corner * math::min(margin, BRAKE_SKIN));
     }
 
-    /// No way touches it any more.
+    /// Excludes it: no path touches it any more.
     fn leave_out(&mut self) {
         (self.route, self.brake) = (NOWHERE, NOWHERE);
     }
 
-    /// Whether the point is in the circle, or no number tells.
+    /// Whether the point is in the circle.
     #[inline]
     fn may_hold(&self, point: Point<F>) -> bool {
         let off = point - self.center;
         off.dot(off) <= self.route
     }
 
-    /// Whether a piece of way that touches the circle at `share` comes nearer than `margin`, and at which share about.
+    /// Whether a piece of path that touches the circle at `share` comes nearer than `margin`, and at about
+    /// which share.
     #[inline]
     fn hit(&self, shape: &Shape<F>, from: Point<F>, way: Vector<F>, margin: f32, share: f32) -> Option<f32> {
         match *shape {
@@ -242,7 +249,7 @@ impl<F: Copy> Item<F> {
     }
 }
 
-/// The obstacle's shape where it will be at a time.
+/// The obstacle's shape at a time.
 pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
     let by = obstacle.velocity * time.clamp(0.0, FORESIGHT);
     match obstacle.shape {
@@ -254,7 +261,7 @@ pub(super) fn at<F: Copy>(obstacle: &Obstacle<F>, time: f32) -> Shape<F> {
     }
 }
 
-/// A piece of way and when it is gone, s.
+/// A piece of path and when it is travelled, s.
 struct Seen<F> {
     from: Point<F>,
     way: Vector<F>,
@@ -263,7 +270,7 @@ struct Seen<F> {
 }
 
 impl<F: Copy> Seen<F> {
-    /// As an obstacle sees it that moves with `velocity`.
+    /// The piece of path relative to an obstacle that moves with `velocity`.
     #[inline]
     fn by(&self, velocity: Vector<F>) -> (Point<F>, Vector<F>) {
         (self.from - velocity * self.before, self.way + velocity * (self.before - self.later))
@@ -274,7 +281,7 @@ fn square(x: f32) -> f32 {
     x * x
 }
 
-/// By how much the shape may grow and not hold the point: corners of a box stay corners.
+/// Distance by which the shape may grow without holding the point: corners of a box stay corners.
 fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     match *shape {
         Shape::Box { low, high } => {
@@ -285,7 +292,8 @@ fn gap<F: Copy>(shape: &Shape<F>, point: Point<F>) -> f32 {
     }
 }
 
-/// The share of the way at which it is nearest to `center`, if that is nearer than the root of `radius_squared`.
+/// The share of the path at which it is nearest to `center`, if that is nearer than the root of
+/// `radius_squared`.
 #[inline]
 fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squared: f32) -> Option<f32> {
     let offset = center - from;
@@ -305,7 +313,7 @@ fn touches<F: Copy>(from: Point<F>, way: Vector<F>, center: Point<F>, radius_squ
 fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, radius: f32) -> Option<f32> {
     let bone = spine.vector();
     let offset = spine.from - from;
-    // Do they cross? from + s·way = spine.from + t·bone.
+    // Intersection test: from + s·way = spine.from + t·bone.
     let turn = way.cross(bone);
     if turn != 0.0 {
         let per_turn = 1.0 / turn;
@@ -321,7 +329,7 @@ fn hits_capsule<F: Copy>(from: Point<F>, way: Vector<F>, spine: &Segment<F>, rad
         .or_else(|| end(from + way, 1.0))
 }
 
-/// By slabs: the shares between which it is inside of each pair of sides.
+/// Slab test: the shares between which it is inside of each pair of sides.
 fn hits_box<F: Copy>(
     from: Point<F>,
     way: Vector<F>,
@@ -350,28 +358,29 @@ fn hits_box<F: Copy>(
 }
 
 impl<F: Copy> Obstacle<F> {
-    /// A body with straight sides.
+    /// Whether it is a body with straight sides.
     fn is_wall(&self) -> bool {
         self.is_body && matches!(self.shape, Shape::Box { .. })
     }
 }
 
-/// What routes keep from shapes, m: what a following controller may be off.
+/// Distance that routes keep from shapes, m: the error of a controller that follows them.
 pub(super) const SKIN: f32 = 0.02;
-/// What braking keeps, m.
+/// Distance that braking keeps, m.
 const BRAKE_SKIN: f32 = 0.005;
-/// A share of a way that tells where it leads.
+/// A share of a path long enough to give its direction.
 const A_LITTLE: f32 = 0.1;
-/// The square of no circle's radius: nothing comes nearer.
+/// Square radius of an empty circle: it is never touched.
 const NOWHERE: f32 = -1.0;
 /// Start and goal count as touching below this, m.
 const TOUCH: f32 = 0.000_5;
-/// Slower is standing, m/s.
+/// A slower obstacle counts as standing, m/s.
 const SPEED_MIN: f32 = 0.02;
-/// What a piece of way takes besides looking at obstacles: its corner and its place in the search.
+/// Effort for a piece of path besides testing obstacles: its corner and its place in the search.
 const PIECE: u32 = 12;
 
-/// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for `side` +1.
+/// The unit normal, from the middle of a disc, of its tangent through `from`: on the left seen from there for
+/// `side` +1.
 pub(super) fn tangent<F: Copy>(from: Point<F>, center: Point<F>, radius: f32, side: f32) -> Vector<F> {
     let out = from - center;
     let squared = out.dot(out);

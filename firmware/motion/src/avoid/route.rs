@@ -6,16 +6,16 @@ use super::item::{Item, Scene, at, tangent};
 use super::{CHECKS_LONG, Obstacle};
 use crate::trajectory::FreeLimits;
 
-/// What was found.
+/// Result of the search.
 #[derive(Clone, Copy)]
 pub(super) struct Route<F> {
     /// Whether it leads to the goal.
     pub(super) arrives: bool,
-    /// The first corner; none where it is straight.
+    /// The first corner; `None` where it is straight.
     pub(super) via: Option<Point<F>>,
-    /// What comes after the first corner.
+    /// Point after the first corner.
     pub(super) behind: Point<F>,
-    /// Where it ends.
+    /// End of the route.
     pub(super) end: Point<F>,
     pub(super) length: f32,
 }
@@ -26,10 +26,10 @@ struct Node<F> {
     at: Point<F>,
     /// Number of the corner before.
     parent: usize,
-    /// Length so far, and with what turning costs.
+    /// Length so far, without and with the cost of turning.
     length: f32,
     cost: f32,
-    /// Cost with the straight rest; infinite once looked at.
+    /// Cost including the straight line to the goal; infinite once tested.
     estimate: f32,
 }
 
@@ -39,9 +39,9 @@ struct Search<'s, F> {
     velocity: Vector<F>,
     limits: &'s FreeLimits,
     nodes: heapless::Vec<Node<F>, NODES_MAX>,
-    /// Pieces of way that may still be looked at.
+    /// Number of path pieces that may still be tested.
     checks: u32,
-    /// Towards the goal, m/s.
+    /// Speed towards the goal, m/s.
     speed: f32,
 }
 
@@ -77,7 +77,7 @@ impl<F: Copy> Search<'_, F> {
             let (number, node) = self.cheapest()?;
             self.nodes.get_mut(number)?.estimate = f32::INFINITY;
             let Some(hit) = self.first_hit(&node, self.goal) else { return Some(number) };
-            // What stands before a corner is gone around as well; each obstacle once on each side.
+            // Obstacles before a corner are avoided as well; each obstacle once on each side.
             let mut turns = Turns::new(hit, self.goal);
             while let Some(Turn { item: hit, side, to }) = turns.next() {
                 let Some((item, obstacle)) = self.scene.get(hit) else { continue };
@@ -117,7 +117,7 @@ impl<F: Copy> Search<'_, F> {
         self.scene.first_hit(node.at, way, at, time)
     }
 
-    /// About when the robot has gone so far: speeding up from its present speed to its limit, s.
+    /// Approximate time to travel this far: accelerating from its present speed to its limit, s.
     fn time_after(&self, length: f32) -> f32 {
         let peak = math::sqrt(self.speed * self.speed + 2.0 * self.limits.acceleration * length);
         let faster = self.speed + peak;
@@ -125,7 +125,7 @@ impl<F: Copy> Search<'_, F> {
         math::max(speeding, length / self.limits.speed)
     }
 
-    /// Adds a corner that can be reached from the node; else the number of what stands before it.
+    /// Adds a corner that can be reached from the node; else returns the number of the obstacle before it.
     fn reach(&mut self, number: usize, node: &Node<F>, at: Point<F>, extra: f32) -> Option<usize> {
         if !self.scene.stays_within(at) || self.checks == 0 || self.scene.is_spent() {
             return None;
@@ -139,14 +139,14 @@ impl<F: Copy> Search<'_, F> {
         let (length, cost) = (node.length + piece, node.cost + piece + turning + extra);
         if piece > PIECE_MIN {
             let estimate = cost + at.distance(self.goal);
-            // Where there is no room for more corners, those there are must do.
+            // Without capacity for more corners the search continues with those there are.
             let _ = self.nodes.push(Node { at, parent: number, length, cost, estimate });
         }
         None
     }
 
-    /// What it costs to turn the present velocity into this way, as a length: nothing straight on, twice the way of
-    /// braking to rest where it goes back.
+    /// Cost of turning the present velocity into this direction, as a length: nothing straight on, twice the
+    /// braking distance where it goes back.
     fn turning(&self, way: Vector<F>, piece: f32) -> f32 {
         if piece <= 0.0 {
             return 0.0;
@@ -155,7 +155,8 @@ impl<F: Copy> Search<'_, F> {
         0.5 * speed * (speed - self.velocity.dot(way) / piece) / self.limits.braking
     }
 
-    /// A corner of the way around an obstacle on the left (`side` +1) or right, from the node on towards `to`.
+    /// A corner of the path around an obstacle on the left (`side` +1) or right, from the node on towards
+    /// `to`.
     fn corner(
         &self,
         item: &Item<F>,
@@ -168,7 +169,7 @@ impl<F: Copy> Search<'_, F> {
         let mut gap = item.margin + CORNER_SKIN;
         let mut meeting = 0.0;
         if item.moves {
-            // Where it will be when the robot comes by, and room for being early or late there.
+            // The obstacle's position when the robot passes, with a margin for being early or late there.
             for _ in 0..2 {
                 let distance = math::max(at(obstacle, meeting).distance_to(from), 0.0);
                 meeting = self.time_after(node.length + distance);
@@ -178,7 +179,7 @@ impl<F: Copy> Search<'_, F> {
         match if item.moves { at(obstacle, meeting) } else { obstacle.shape } {
             Shape::Disc { center, radius } => around(center, radius + gap, from, to, side, None),
             Shape::Capsule { spine, radius } => {
-                // The end whose tangent leaves the other end on the inner side.
+                // The end of the spine whose tangent leaves the other end on the inner side.
                 let outer = |seen: Point<F>, side: f32| {
                     let normal = tangent(seen, spine.from, radius + gap, side);
                     if normal.dot(spine.vector()) > 0.0 { spine.to } else { spine.from }
@@ -193,7 +194,8 @@ impl<F: Copy> Search<'_, F> {
                 around(first, radius + gap, from, to, side, flank)
             }
             Shape::Box { low, high } => {
-                // The outermost corner as seen over what routes keep; a robot may be within the skin of corners.
+                // The outermost corner, measured at the routes' distance; a robot may be within the skin of
+                // corners.
                 let off = |sx: f32, sy: f32, by: f32| {
                     let (x, y) = (
                         if sx < 0.0 { low.x() } else { high.x() },
@@ -213,8 +215,8 @@ impl<F: Copy> Search<'_, F> {
         }
     }
 
-    /// Where to go when no way was found: the corner nearest to the goal; where that is the start, the cheapest that was not looked
-    /// at any more, for to stay would repeat the same search in the next step.
+    /// Target when no path was found: the corner nearest to the goal; where that is the start, the cheapest
+    /// that was not tested any more, because staying would repeat the same search in the next step.
     fn most_promising(&self) -> usize {
         let mut best = (0, f32::INFINITY);
         for (i, node) in self.nodes.iter().enumerate() {
@@ -248,7 +250,7 @@ impl<F: Copy> Search<'_, F> {
     }
 }
 
-/// What it costs to pass in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
+/// Cost of passing in front of a moving obstacle, as a length: being late there is a crash, behind it is not.
 fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straight: Vector<F>) -> f32 {
     if !moves {
         return 0.0;
@@ -257,7 +259,7 @@ fn ahead_of<F: Copy>(moves: bool, velocity: Vector<F>, corner: Vector<F>, straig
     if side * across <= 0.0 { 0.0 } else { LATENESS * across.abs() / math::max(straight.norm(), PIECE_MIN) }
 }
 
-/// To go around this obstacle on this side, on the way to there.
+/// A turn around this obstacle on this side, on the path to that point.
 #[derive(Clone, Copy)]
 struct Turn<F> {
     item: usize,
@@ -265,7 +267,7 @@ struct Turn<F> {
     to: Point<F>,
 }
 
-/// What is still to be tried from a corner, first come, first served.
+/// Turns still to be tried from a corner, in order of arrival.
 struct Turns<F> {
     list: heapless::Vec<Turn<F>, TURNS_MAX>,
     begin: usize,
@@ -296,8 +298,9 @@ impl<F: Copy> Turns<F> {
     }
 }
 
-/// Where the tangents of a disc from both points meet on one side; where they meet far out or not at all, a corner half
-/// the way round. With `flank`, the tangent along it takes the place of the one from `to`.
+/// The intersection of the tangents of a disc from both points on one side; where they intersect far out or
+/// not at all, a corner half-way round. With `flank`, the tangent along it takes the place of the one from
+/// `to`.
 fn around<F: Copy>(
     center: Point<F>,
     radius: f32,
@@ -312,7 +315,7 @@ fn around<F: Copy>(
     let outwards = Vector::new(-along.y(), along.x()) * side;
     let both = first + last;
     let opening = 1.0 + first.dot(last);
-    // Beyond 120°, or the long way round.
+    // Beyond 120°, or the longer side.
     if opening > OPENING_MIN && both.dot(outwards) > 0.0 {
         return center + both * (radius / opening);
     }
@@ -326,13 +329,13 @@ fn around<F: Copy>(
 const TURNS_MAX: usize = 12;
 /// Most corners of a search: one a piece, and the start.
 const NODES_MAX: usize = CHECKS_LONG as usize + 1;
-/// Corners stand this far outside of what routes keep to, m, so that rounding does not put the next piece inside.
+/// Distance of corners outside of the routes' margin, m, so that rounding does not put the next piece inside.
 const CORNER_SKIN: f32 = 0.002;
-/// What passing in front costs, by the obstacle's speed across the way, s: a robot may be late by as much.
+/// What passing in front costs, by the obstacle's speed across the path, s: a robot may be late by as much.
 const LATENESS: f32 = 0.5;
 /// Room for a moving obstacle around corners, by its speed, s.
 const EARLY_OR_LATE: f32 = 0.15;
-/// A nearer corner is no corner, m.
+/// Least length of a piece, m.
 const PIECE_MIN: f32 = 0.001;
-/// 1 + cos 120°.
+/// Limit of the opening, 1 + cos 120°.
 const OPENING_MIN: f32 = 0.5;

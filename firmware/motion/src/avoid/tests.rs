@@ -1,4 +1,4 @@
-//! Tests: a robot that follows its plan arrives and touches nothing.
+//! Tests: a robot that follows its plan arrives without a contact.
 
 extern crate std;
 
@@ -33,16 +33,16 @@ fn course(from: Point<Field>, to: Point<Field>, obstacles: &[Obstacle<Field>]) -
     }
 }
 
-/// What came of driving it.
+/// Result of a drive.
 struct Drive {
     time: f32,
     arrived: bool,
-    /// Deepest that it was in anything, m; negative: it stayed away so far.
+    /// Deepest penetration of an obstacle, m; negative: smallest distance kept.
     deepest: f32,
     left: f32,
 }
 
-/// Drives what it is told, exactly, until it rests at the goal, or a time has passed.
+/// Follows the planned steps exactly, until it stands at the goal, or a time has passed.
 fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     let mut course = start;
     let mut drive = Drive { time: 0.0, arrived: false, deepest: f32::NEG_INFINITY, left: f32::NEG_INFINITY };
@@ -68,7 +68,8 @@ fn drive(start: Course<'_, Field>, patience: f32) -> Drive {
     drive
 }
 
-/// A field of division B with 12 robots on it, both defence areas, a stadium and a box forbidden, for a robot's centre.
+/// A field of division B with 12 robots on it, both defence areas, a stadium and a box forbidden, for a
+/// robot's centre.
 fn scene(rng: &mut Dice) -> Vec<Obstacle<Field>> {
     let mut scene: Vec<_> =
         (0..12).map(|_| disc(rng.within(4.2), rng.within(2.8), 0.25 + rng.within(0.05))).collect();
@@ -100,7 +101,7 @@ impl Dice {
         ((self.0.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range
     }
 
-    /// A point that is in nothing.
+    /// A point outside all obstacles.
     fn free(&mut self, scene: &[Obstacle<Field>]) -> Point<Field> {
         loop {
             let point = at(self.within(4.6), self.within(3.1));
@@ -111,7 +112,7 @@ impl Dice {
     }
 }
 
-/// Is there any way, by a grid of 4 cm? With what is within `gap` m of an obstacle counted as closed.
+/// Whether any path exists, by a grid of 4 cm, with what is within `gap` m of an obstacle counted as closed.
 fn is_reachable(from: Point<Field>, to: Point<Field>, scene: &[Obstacle<Field>], gap: f32) -> bool {
     const CELL: f32 = 0.04;
     let (columns, rows) = (235_i32, 160_i32);
@@ -146,7 +147,7 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
         let scene = scene(&mut dice);
         let (from, to) = (dice.free(&scene), dice.free(&scene));
         let mut course = Course { within: Some(CARPET), ..course(from, to, &scene) };
-        // Moving already, where it could still brake.
+        // Already moving, with room to brake.
         let velocity = Vector::polar(1.5 + dice.within(1.5), Angle::new(dice.within(3.0)));
         let stop = velocity * (0.5 * velocity.norm() / course.limits.braking);
         let (mut free, way) = (Scene::new(&scene, None, EFFORT_MAX), Segment::new(from, from + stop));
@@ -167,7 +168,8 @@ fn in_a_thousand_scenes_it_enters_nothing_and_arrives_where_there_is_a_way() {
             closed += 1;
         }
     }
-    // What was measured, with a little room: 992 arrive, 16 % later than straight through everything would.
+    // Measured values, with a small tolerance: 992 arrive, 16 % later than on straight lines through the
+    // obstacles.
     assert!(arrived >= 988 && missed <= 12, "arrived {arrived}, no way {closed}, missed {missed}");
     assert!(time < 1.2 * straight, "{time} s; {straight} s straight through everything");
 }
@@ -191,7 +193,7 @@ fn a_disc_in_the_way_is_passed_on_its_nearer_side_at_its_tangent() {
         let gap = piece.distance_to(at(1.0, 0.1)) - 0.3;
         assert!(gap > 0.02 && gap < 0.024, "{gap}");
     }
-    // Two tangents of 0.32 m: each √(1.01 − 0.104) long, and the rest of them.
+    // Two tangents of 0.32 m: each √(1.01 − 0.104) long, and the remaining path.
     assert!(way.length > 2.0 && way.length < 2.1, "{}", way.length);
 }
 
@@ -248,7 +250,7 @@ fn every_place_of_overlapping_shapes_has_a_way_out() {
     let mut dice = Dice::new(5);
     for number in 0..2_000 {
         let mut scene = scene(&mut dice);
-        // Half of the carpet is closed, up to a wall, in one of four directions.
+        // Half of the field surface is closed, up to a wall, in one of four directions.
         let half = match number % 4 {
             0 => Shape::Box { low: at(0.5, -3.5), high: at(5.0, 3.5) },
             1 => Shape::Box { low: at(-5.0, -3.5), high: at(-0.5, 3.5) },
@@ -270,7 +272,7 @@ fn a_target_inside_becomes_the_nearest_point_outside() {
     let obstacles = [disc(1.0, 0.0, 0.5)];
     let way = plan(&course(at(0.0, 0.0), at(0.9, 0.0), &obstacles));
     assert!(way.goal.distance(at(0.5, 0.0)) < 0.01 && way.verdict == Verdict::Direct);
-    // In the overlap of two, and out of the carpet.
+    // In the overlap of two, and off the field surface.
     let obstacles = [disc(1.0, 0.0, 0.5), disc(1.3, 0.0, 0.5)];
     let way = plan(&course(at(0.0, 0.0), at(1.2, 0.05), &obstacles));
     assert!(
@@ -316,7 +318,7 @@ fn a_robot_that_crosses_is_let_by() {
     assert!(course.from.distance(at(3.0, 0.0)) < 0.005);
 }
 
-/// In how many of 300 drives through four robots that cross as they like, and see nothing, it is touched.
+/// Number of contacts in 300 drives through four robots that cross without avoiding it.
 fn touched(knows_their_velocity: bool) -> u32 {
     let mut dice = Dice::new(3);
     let mut touched = 0;

@@ -7,12 +7,12 @@ use super::BallModel;
 use crate::rolling::RollingBall;
 use crate::trajectory::State;
 
-/// What a bounce takes.
+/// Share of its speed that a bounce leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipModel {
     /// Share of the speed along the ground that the first touch leaves, 0 to 1.
     pub first: f32,
-    /// ... that every other touch leaves.
+    /// Share that every other touch leaves.
     pub other: f32,
     /// Share of the speed downwards that a touch turns upwards, 0 to below 1.
     pub rise: f32,
@@ -26,7 +26,8 @@ impl Default for ChipModel {
 }
 
 impl ChipModel {
-    /// From `BallModelChipFixedLoss` of the league's geometry packets. `None` where no ball could behave like that.
+    /// From `BallModelChipFixedLoss` of the league's geometry packets. `None` where the numbers are not
+    /// physical.
     pub fn from_wire(damping_xy_first_hop: f64, damping_xy_other_hops: f64, damping_z: f64) -> Option<Self> {
         let model = Self {
             first: damping_xy_first_hop as f32,
@@ -37,8 +38,8 @@ impl ChipModel {
         (share(model.first) && share(model.other) && (0.0..1.0).contains(&model.rise)).then_some(model)
     }
 
-    /// The path of a ball chipped at `at` with `velocity` along the ground and `rise` m/s upwards. After the last hop it
-    /// rolls as `ball` says.
+    /// The path of a ball chipped at `at` with `velocity` along the ground and `rise` m/s upwards. After the
+    /// last hop it rolls by `ball`.
     pub fn chipped<F: Copy>(
         &self,
         at: Point<F>,
@@ -79,8 +80,8 @@ impl ChipModel {
     }
 }
 
-/// The speeds along the ground and upwards that land a ball `distance` m away at its first touch, kicked upwards with this
-/// `slope` (rise over run: 1 for 45°), m/s.
+/// The speeds along the ground and upwards that land a ball `distance` m away at its first touch, kicked
+/// upwards with this `slope` (rise over run: 1 for 45°), m/s.
 pub fn launch(distance: f32, slope: f32) -> (f32, f32) {
     if distance > 0.0 && slope > 0.0 {
         let speed = math::sqrt(0.5 * GRAVITY * distance / slope);
@@ -90,7 +91,7 @@ pub fn launch(distance: f32, slope: f32) -> (f32, f32) {
     }
 }
 
-/// A chipped ball's way until it rests.
+/// A chipped ball's path until it stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipPath<F> {
     from: Point<F>,
@@ -105,7 +106,7 @@ pub struct ChipPath<F> {
 
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 struct Hop {
-    /// Its beginning.
+    /// Start of the hop, s.
     time: f32,
     distance: f32,
     speed: f32,
@@ -121,11 +122,11 @@ impl Hop {
 /// A chipped ball at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipState<F> {
-    /// Along the ground.
+    /// State along the ground.
     pub ground: State<F>,
-    /// Of the ball above where it lies on the carpet, m.
+    /// Height of the ball above its position on the field surface, m.
     pub height: f32,
-    /// Upwards, m/s.
+    /// Vertical velocity, upwards, m/s.
     pub rise: f32,
 }
 
@@ -134,22 +135,22 @@ impl<F: Copy> ChipPath<F> {
         self.hops.get(..self.hop_count).unwrap_or(&[])
     }
 
-    /// Until it rests, s.
+    /// Time until it stops, s.
     pub fn duration(&self) -> f32 {
         self.roll_time + self.roll_speed / self.roll.deceleration
     }
 
-    /// When it rolls, s: from then on a robot may stop it.
+    /// Time from which it rolls, s: from then on a robot may stop it.
     pub fn roll_time(&self) -> f32 {
         self.roll_time
     }
 
-    /// Where it rolls from.
+    /// Point from which it rolls.
     pub fn roll_point(&self) -> Point<F> {
         self.from + self.along * self.roll_distance
     }
 
-    /// Where it comes to rest.
+    /// Stop position.
     pub fn rest(&self) -> Point<F> {
         self.from + self.along * (self.roll_distance + self.roll.rest_distance(self.roll_speed))
     }
@@ -178,7 +179,7 @@ impl<F: Copy> ChipPath<F> {
         ChipState { ground: state(rest - 0.5 * speed * left, speed, deceleration), height: 0.0, rise: 0.0 }
     }
 
-    /// When it has gone `distance` m along the ground, s; `None` where it rests before.
+    /// When it has gone `distance` m along the ground, s; `None` where it stops before.
     pub fn time_to(&self, distance: f32) -> Option<f32> {
         if distance < 0.0 {
             return None;
@@ -191,8 +192,8 @@ impl<F: Copy> ChipPath<F> {
         Some(hop.time + (distance - hop.distance) / hop.speed)
     }
 
-    /// Between which distances from the kick it flies higher than `height` m in its first hop: a robot of that height in
-    /// between does not touch it. `None` where it never does.
+    /// Range of distances from the kick in which it flies higher than `height` m in its first hop: a robot of
+    /// that height in between does not touch it. `None` where it never does.
     pub fn over(&self, height: f32) -> Option<(f32, f32)> {
         let hop = self.hops().first()?;
         let squared = hop.rise * hop.rise - 2.0 * GRAVITY * height;
@@ -201,11 +202,11 @@ impl<F: Copy> ChipPath<F> {
     }
 }
 
-/// m/s².
+/// Acceleration of gravity, m/s².
 const GRAVITY: f32 = 9.81;
 /// A hop lower than this is rolling, m (TIGERs).
 const HOP_MIN: f32 = 0.01;
-/// Most hops of a path: a chip of 8 m/s at 45° has 5 on the liveliest published ball.
+/// Most hops of a path: a chip of 8 m/s at 45° has 5 on the published ball that bounces most.
 const HOPS_MAX: usize = 8;
 
 #[cfg(test)]

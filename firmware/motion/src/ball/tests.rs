@@ -67,7 +67,7 @@ fn a_kick_for_an_arrival_arrives_so_fast_sliding_or_rolling() {
     for (distance, arrival) in [(3.0, 1.0), (6.0, 2.0), (0.2, 3.0), (0.5, 0.0), (1.0, 5.0)] {
         let kick = model.kick_speed(distance, arrival);
         let path = model.kicked(Point::<Field>::new(0.0, 0.0), Vector::new(kick, 0.0));
-        // The inverse loses digits where the ball all but rests.
+        // The inverse loses digits where the ball is nearly stationary.
         let (_, _, v) = stepped(model, f64::from(kick), |_, d, _| d >= f64::from(distance));
         assert!((v - arrival as f64).abs() < 0.02, "{distance} m, {arrival} m/s: {kick} m/s gives {v}");
         assert!(path.rest_distance() >= distance - 1e-3);
@@ -80,7 +80,7 @@ fn a_ball_seen_late_rolls_and_one_whose_kick_was_seen_slides_to_its_switch() {
     let model = BallModel::default();
     let (at, v) = (Point::<Field>::new(0.0, 0.0), Vector::new(2.0, 0.0));
     assert!((model.rolling(at, v).rest_distance() - 4.0 / 0.7).abs() < 1e-4);
-    // From 4 m/s the switch is at 20/7 m/s: the ball that was kicked so fast rolls, at 2 m/s.
+    // From 4 m/s the switch is at 20/7 m/s: a ball kicked at that speed rolls at 2 m/s.
     assert_eq!(model.moving(at, v, 20.0 / 7.0), model.rolling(at, v).clone());
     // At 3 m/s it slides on for (3 − 20/7) / 3.9 s.
     let sliding = model.moving(at, Vector::new(3.0, 0.0), 20.0 / 7.0);
@@ -98,7 +98,7 @@ fn what_is_no_number_rests() {
 
 #[test]
 fn models_of_the_wire_are_taken_with_either_sign_and_refused_where_no_ball_is_like_that() {
-    // grSim, ER-Force.
+    // Values of grSim and of ER-Force.
     assert_eq!(
         BallModel::from_wire(-14.0, -0.7, 0.7),
         Some(BallModel { slide: 14.0, roll: 0.7, switch: 0.7 })

@@ -1,18 +1,19 @@
 //! `axis`: one axis of a trajectory. Trapezoid or triangle; m or rad, s.
 //!
-//! Phases, any of which may be empty: brake (the wrong way, or above the speed limit), speed up, cruise, brake.
+//! Phases, any of which may be empty: brake (moving in the wrong direction, or above the speed limit), speed
+//! up, cruise, brake.
 
 use geometry::math;
 
 use super::FreeLimits;
 
-/// Limits of an axis with what every evaluation needs of them.
+/// Limits of an axis with the values that every evaluation needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AxisLimits {
     speed: f32,
     acceleration: f32,
     braking: f32,
-    /// 1 / acceleration, 1 / braking, 1 / speed.
+    /// Reciprocals: 1 / acceleration, 1 / braking, 1 / speed.
     per_acceleration: f32,
     per_braking: f32,
     per_speed: f32,
@@ -22,14 +23,14 @@ pub(super) struct AxisLimits {
     speed_squared: f32,
 }
 
-/// What a direction of an axis has to do, turned so that the way after braking is never negative.
+/// What a direction of an axis has to do, turned so that the distance after braking is never negative.
 #[derive(Clone, Copy)]
 struct Ahead {
     /// +1, or −1 where the axis was turned round.
     sign: f32,
     distance: f32,
     speed: f32,
-    /// Time and way of braking from the wrong direction.
+    /// Time and distance of braking from the wrong direction.
     first: f32,
 }
 
@@ -50,12 +51,13 @@ impl AxisLimits {
         }
     }
 
-    /// Time to rest at `distance` ahead, moving with `speed` now, s.
+    /// Time to standstill at `distance` ahead, moving with `speed` now, s.
     #[inline]
     pub(super) fn time(&self, distance: f32, speed: f32) -> f32 {
         let Ahead { distance, speed, first, .. } = self.ahead(distance, speed);
         if speed > self.speed {
-            // Brake to the limit, cruise, brake: the two brakings together are one from `speed` to rest.
+            // Brake to the limit, cruise, brake: the two brakings together are one from `speed` to
+            // standstill.
             let cruise = (distance - 0.5 * speed * speed * self.per_braking) * self.per_speed;
             return first + speed * self.per_braking + cruise;
         }
@@ -72,7 +74,7 @@ impl AxisLimits {
             + (distance - up - down) * self.per_speed
     }
 
-    /// About how much there is to do, for a first guess of an axis's share; exact between two rests.
+    /// Approximate duration, for a first guess of an axis's share; exact between two standstills.
     #[inline]
     pub(super) fn effort(&self, distance: f32, speed: f32) -> f32 {
         let stop = 0.5 * speed * speed * self.per_braking;
@@ -93,7 +95,8 @@ impl AxisLimits {
         }
     }
 
-    /// The phases of the motion by `distance`, moving with `speed` now, when `share` of the limits is the axis's own.
+    /// The phases of the motion by `distance`, moving with `speed` now, when `share` of the limits is the
+    /// axis's own.
     pub(super) fn phases(&self, distance: f32, speed: f32, share: f32) -> Phases {
         let per_share = 1.0 / share;
         let scaled = self.ahead(distance * per_share, speed * per_share);
@@ -135,14 +138,14 @@ impl AxisLimits {
 /// One axis's motion from 0 to `end`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Phases {
-    /// Speed at the start.
+    /// Speed at the start, m/s or rad/s.
     start: f32,
-    /// Where it ends, counted from the start.
+    /// Distance of its end from the start, m or rad.
     pub(super) end: f32,
     /// Size and direction of both brakings; of the speeding up, or of the slowing down to the limit.
     brake: f32,
     rate: f32,
-    /// Speed before the last braking.
+    /// Speed before the last braking, m/s or rad/s.
     peak: f32,
     /// Ends of braking from the wrong direction, of speeding up, of cruising, of it all, s.
     turned: f32,
@@ -152,7 +155,8 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    /// Place, speed and acceleration at a time. The last two phases are told from the end backwards, so that it arrives.
+    /// Place, speed and acceleration at a time. The last two phases are computed from the end backwards, so
+    /// that it arrives.
     pub(super) fn at(&self, time: f32) -> (f32, f32, f32) {
         if time >= self.duration {
             return (self.end, 0.0, 0.0);

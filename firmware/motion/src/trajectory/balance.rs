@@ -1,9 +1,9 @@
 //! `balance`: shares of the limits with which both axes arrive together (one angle α: cos α for x, sin α for
 //! y).
 //!
-//! The more an axis gets, the sooner it arrives; so the times cross, and the crossing is the least of their larger one. It
-//! is sought between bounds: false position with halved weights ("Illinois"), on (tx − ty) / (tx + ty), which is −1 and +1
-//! at the ends however long an axis takes without a share.
+//! The more an axis gets, the sooner it arrives; so the times cross, and the crossing is the least of their
+//! larger one. It is searched for between bounds: false position with halved weights ("Illinois"), on (tx −
+//! ty) / (tx + ty), which is −1 and +1 at the ends however long an axis takes without a share.
 
 use geometry::math;
 
@@ -15,8 +15,9 @@ pub(super) struct Balance {
     pub(super) time: f32,
 }
 
-/// Seeks the shares. `times(x, y)` are both axes' times with these shares; `first` is where to begin, 0 (all for x) to 1
-/// (all for y). Ends early, with what it has by then, once it is clear that the time is over `within`.
+/// Seeks the shares. `times(x, y)` are both axes' times with these shares; `first` is where to start, 0 (all
+/// for x) to 1 (all for y). Ends early, with the shares found by then, once it is clear that the time is over
+/// `within`.
 #[inline]
 pub(super) fn balance(
     first: f32,
@@ -30,7 +31,7 @@ pub(super) fn balance(
     let mut at = first.clamp(EDGE, 1.0 - EDGE);
     let mut best = Balance { x: 1.0, y: 1.0, time: f32::INFINITY };
     let mut side = 0;
-    // Where x takes too long at least, and y at most: only places between could be in time.
+    // Bounds at which x takes too long at least, and y at most: only places between could be in time.
     let (mut x_late_from, mut y_late_to) = (f32::INFINITY, f32::NEG_INFINITY);
     for _ in 0..rounds {
         let scale = 1.0 / math::hypot(1.0 - at, at);
@@ -73,5 +74,6 @@ pub(super) fn balance(
     best
 }
 
-/// The least share an axis gets, so that nothing is divided by 0: a ten-thousandth, which takes less than 10⁻⁸ from the other.
+/// The least share an axis gets, which avoids a division by 0: a ten-thousandth, which takes less than 10⁻⁸
+/// from the other.
 const EDGE: f32 = 1e-4;

@@ -1,20 +1,22 @@
 //! Near-time-optimal motion of a robot whose motors weaken with speed (Kalmár-Nagy, D'Andrea, Ganguly 2004).
 //!
-//! In units of `speed`, `speed` / `acceleration` (time) and `speed²` / `acceleration` (way): z″ + z′ = u, |u| ≤ 1. Each
-//! axis pushes with one size of u, first one way, then the other; z + z′ grows by u a time unit, and that gives both times
-//! in closed form. The share of u between the axes is sought, as without drag.
+//! In units of `speed`, `speed` / `acceleration` (time) and `speed²` / `acceleration` (distance): z″ + z′ =
+//! u, |u| ≤ 1. Each axis pushes with one size of u, first in one direction, then in the other; z + z′ grows
+//! by u a time unit, and that gives both times in closed form. The share of u between the axes is searched
+//! for, as without drag.
 
 use geometry::{Point, Vector, math};
 
 use super::balance::{Balance, balance};
 use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
-/// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v / `speed`).
+/// Limits of a robot with drag. Braking is stronger than speeding up, as drag helps: `acceleration` · (1 + v
+/// / `speed`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DragLimits {
-    /// Where push and drag are equal: approached, never reached, m/s, > 0.
+    /// Speed at which push and drag are equal: approached, never reached, m/s, > 0.
     pub speed: f32,
-    /// From standing, m/s², > 0.
+    /// Acceleration from standstill, m/s², > 0.
     pub acceleration: f32,
 }
 
@@ -31,7 +33,7 @@ impl DragLimits {
         positive(self.speed) && positive(self.acceleration)
     }
 
-    /// s.
+    /// Unit of time, s.
     fn time_unit(self) -> f32 {
         self.speed / self.acceleration
     }
@@ -39,7 +41,7 @@ impl DragLimits {
     fn shares<F>(self, offset: Vector<F>, velocity: Vector<F>, within: f32) -> Balance {
         let (v, d) =
             (velocity * (1.0 / self.speed), offset * (self.acceleration / (self.speed * self.speed)));
-        // From where coasting would stop: about how much each axis has to do.
+        // Distance from where coasting would stop: approximately the work of each axis.
         let (x, y) = ((d.x() - v.x()).abs(), (d.y() - v.y()).abs());
         let sum = x + y;
         let first = if sum > 0.0 { y / sum } else { 0.5 };
@@ -144,7 +146,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// Place, speed and acceleration; the second push is told from the end backwards, so that it arrives.
+    /// Place, speed and acceleration; the second push is computed from the end backwards, so that it arrives.
     fn at(&self, time: f32) -> (f32, f32, f32) {
         let Pushes { push, first, second } = self.pushes;
         let left = first + second - time;
@@ -162,7 +164,7 @@ impl Axis {
     }
 }
 
-/// u and how long it lasts, then −u and how long.
+/// u and its duration, then −u and its duration.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 struct Pushes {
     push: f32,
@@ -171,18 +173,18 @@ struct Pushes {
 }
 
 impl Pushes {
-    /// To rest at `distance`, moving with `speed`, pushing with `size` > 0.
+    /// Pushes to standstill at `distance`, moving with `speed`, pushing with `size` > 0.
     #[inline]
     fn new(distance: f32, speed: f32, size: f32) -> Self {
         if distance == 0.0 && speed == 0.0 {
             return Self::default();
         }
-        // z + z′ seen from the end; coasting would stop this far beyond it.
+        // z + z′ relative to the end; coasting would stop this far beyond it.
         let beyond = speed - distance;
         let per_size = 1.0 / size;
         let sign = if beyond < 0.0 { -1.0 } else { 1.0 };
         let (x, v) = (beyond.abs() * per_size, sign * speed * per_size);
-        // e^x may be infinite; then its inverse is 0 and all goes on.
+        // e^x may be infinite; then its inverse is 0 and the result is still right.
         let grown = math::exp(x);
         // Towards the end, against `beyond`; or with it, where one already moves away from `beyond` too fast.
         let (push, run, root) = if v - (grown - 1.0) > 0.0 {
@@ -202,6 +204,6 @@ impl Pushes {
 
 const LIMIT_MIN: f32 = 1e-3;
 const LIMIT_MAX: f32 = 1e3;
-/// Times of the axes are evaluated at most so often, as without drag or a little oftener.
+/// Most evaluations of the axes' times, as without drag or slightly more.
 const ROUNDS: u32 = 8;
 const TOLERANCE: f32 = 0.005;

@@ -1,4 +1,5 @@
-//! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other; SI.
+//! Near-time-optimal motion with limits of speed, acceleration and braking that do not depend on each other;
+//! SI.
 
 use geometry::{Point, Vector, math};
 
@@ -8,21 +9,21 @@ use super::{CalcMotion, Motion, State, Utmost, out_of_reach, somewhere, usable};
 
 /// Limits of a robot without drag.
 ///
-/// On the way acceleration never exceeds `acceleration`, or `braking` where an axis brakes; speed never exceeds
-/// √(`speed`² + |v₀|²), and `speed` itself where it starts at rest or along its way.
+/// During the motion acceleration never exceeds `acceleration`, or `braking` where an axis brakes; speed
+/// never exceeds √(`speed`² + |v₀|²), and `speed` itself where it starts at standstill or along its path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeLimits {
-    /// m/s, > 0.
+    /// Speed, m/s, > 0.
     pub speed: f32,
-    /// m/s², > 0.
+    /// Acceleration, m/s², > 0.
     pub acceleration: f32,
-    /// m/s², > 0.
+    /// Braking, m/s², > 0.
     pub braking: f32,
 }
 
 impl Default for FreeLimits {
-    /// 3.0 m/s and 3.5 m/s² both ways: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper prints accelerations,
-    /// 3.5 m/s² lies between published teams' 2 and 4.5.
+    /// 3.0 m/s and 3.5 m/s² in both directions: the league's 2013 robots exceed 3 m/s (paper 2 §1); no paper
+    /// prints accelerations, 3.5 m/s² lies between published teams' 2 and 4.5.
     fn default() -> Self {
         Self { speed: 3.0, acceleration: 3.5, braking: 3.5 }
     }
@@ -120,7 +121,7 @@ impl<F> FreeMotion<F> {
 }
 
 impl<F: Copy> FreeMotion<F> {
-    /// Where it ends, at rest.
+    /// Its end, at standstill.
     pub fn to(&self) -> Point<F> {
         self.to
     }
@@ -145,9 +146,9 @@ impl<F: Copy> Motion<F> for FreeMotion<F> {
     }
 }
 
-/// The smallest limit that is still one: below a micrometre a second nothing moves.
+/// The smallest valid limit: slower than a micrometre a second counts as standing.
 const LIMIT_MIN: f32 = 1e-6;
-/// Times of the axes are evaluated at most so often; see firmware/motion/README.md for what more would win.
+/// Most evaluations of the axes' times; firmware/motion/README.md has the gain of more.
 const ROUNDS: u32 = 5;
-/// Times that differ by less than 2 × this share are together.
+/// Relative tolerance: times that differ by less than 2 × this share are equal.
 const TOLERANCE: f32 = 0.005;

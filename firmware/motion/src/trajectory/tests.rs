@@ -13,7 +13,7 @@ use super::*;
 /// A start, a velocity and an end.
 type Task = (Point<Field>, Vector<Field>, Point<Field>);
 
-/// Tasks of a large field; each second one is a short way, each fifth begins at rest.
+/// Tasks of a large field; each second one is short, each fifth starts at standstill.
 fn tasks(count: usize) -> impl Iterator<Item = Task> {
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(5);
     let mut within = move |range: f32| ((rng.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range;
@@ -25,7 +25,8 @@ fn tasks(count: usize) -> impl Iterator<Item = Task> {
     })
 }
 
-/// It starts as it shall, ends at rest where it shall, and its states are each other's derivatives.
+/// It starts at the given state, ends at standstill at the given place, and its states are each other's
+/// derivatives.
 fn holds_together<M: Motion<Field> + Debug>(motion: &M, (from, velocity, to): Task) {
     let duration = motion.duration();
     assert!(duration.is_finite() && duration >= 0.0, "{motion:?}");
@@ -46,7 +47,7 @@ fn holds_together<M: Motion<Field> + Debug>(motion: &M, (from, velocity, to): Ta
     for step in 1..=steps {
         let now = motion.at(dt * step as f32);
         let middle = motion.at(dt * (step as f32 - 0.5));
-        // Simpson's rule.
+        // Integral by Simpson's rule.
         place += (before.velocity + middle.velocity * 4.0 + now.velocity) * (dt / 6.0);
         speed += middle.acceleration * dt;
         before = now;
@@ -98,7 +99,7 @@ fn with_drag_push_and_speed_hold_as_they_are_told() {
         let fastest = math::sqrt(9.0 + velocity.dot(velocity));
         for step in 0..200 {
             let state = motion.at(motion.duration() * step as f32 / 200.0);
-            // What the motors push is what moves it and what drag takes.
+            // The motors' push equals acceleration plus drag.
             let push = state.acceleration + state.velocity * (3.5 / 3.0);
             assert!(push.norm() <= 3.5 * 1.001 && state.velocity.norm() <= fastest * 1.001);
         }
@@ -146,7 +147,8 @@ fn the_time_of_one_axis_is_that_of_driving_it_by_small_steps() {
 
 #[test]
 fn with_drag_a_straight_way_takes_as_long_as_its_two_pushes_by_hand() {
-    // From rest by d = 1 to rest: e^t2 = 1 + √(1 − e^−d), t1 = t2 + d (Kalmár-Nagy's formulas with v0 = 0, u = 1).
+    // From standstill by d = 1 to standstill: e^t2 = 1 + √(1 − e^−d), t1 = t2 + d (Kalmár-Nagy's formulas
+    // with v0 = 0, u = 1).
     let limits = DragLimits { speed: 1.0, acceleration: 1.0 };
     let time = limits.time(Point::<Field>::new(0.0, 0.0), Vector::default(), Point::new(1.0, 0.0));
     let second = (1.0 + (1.0 - (-1.0_f64).exp()).sqrt()).ln();
@@ -268,7 +270,7 @@ fn a_hundred_thousand_tasks_are_all_solved() {
     let (free, drag) = (FreeLimits::default(), DragLimits::default());
     for (from, velocity, to) in tasks(100_000) {
         for time in [free.time(from, velocity, to), drag.time(from, velocity, to)] {
-            // The longest way at 3 m/s a little above its axis' share, turning round first.
+            // The longest path at 3 m/s a little above its axis' share, turning round first.
             assert!((0.0..20.0).contains(&time), "{from:?} {velocity:?} {to:?}: {time}");
         }
     }
@@ -278,7 +280,7 @@ fn a_hundred_thousand_tasks_are_all_solved() {
 fn a_turn_takes_the_way_round_that_is_sooner_there() {
     use geometry::Angle;
     let limits = TurnLimits { rate: 6.0, acceleration: 30.0 };
-    // A quarter turn from rest reaches the limit: d/v + v/a.
+    // A quarter turn from standstill reaches the limit: d/v + v/a.
     let quarter = limits.plan(Angle::ZERO, 0.0, Angle::degrees(90.0));
     assert!((quarter.duration() - (math::FRAC_PI_2 / 6.0 + 6.0 / 30.0)).abs() < 1e-5);
     let (_, rate, _) = quarter.at(0.05);

@@ -8,24 +8,26 @@ use super::axis::{AxisLimits, Phases};
 /// Limits of turning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurnLimits {
-    /// rad/s, > 0.
+    /// Turning rate, rad/s, > 0.
     pub rate: f32,
-    /// Speeding up and braking, rad/s², > 0.
+    /// Acceleration and braking, rad/s², > 0.
     pub acceleration: f32,
 }
 
 impl Default for TurnLimits {
-    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which no wheel on carpet keeps.
+    /// 6 rad/s of ER-Force's simulated robot (its generation of 2020), and half its 60 rad/s², which wheels
+    /// on a field surface cannot keep.
     fn default() -> Self {
         Self { rate: 6.0, acceleration: 30.0 }
     }
 }
 
 impl TurnLimits {
-    /// From `from`, turning with `rate` rad/s, to rest at `to`: the way round that is sooner there.
+    /// Plans from `from`, turning with `rate` rad/s, to standstill at `to`: in the direction that is sooner
+    /// there.
     pub fn plan(&self, from: Angle, rate: f32, to: Angle) -> Turn {
         let (speed, braking) = (self.rate, self.acceleration);
-        // NaN is not above anything.
+        // False for NaN.
         let usable = speed > 0.0 && braking > 0.0 && rate.abs() <= RATE_MAX;
         if !usable {
             return Turn { from, phases: Phases::default() };
@@ -46,7 +48,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Until it rests, s.
+    /// Time until it stands, s.
     pub fn duration(&self) -> f32 {
         self.phases.duration
     }
@@ -58,5 +60,5 @@ impl Turn {
     }
 }
 
-/// Beyond this a gyroscope is broken, rad/s.
+/// Above this rate a gyroscope is broken, rad/s.
 const RATE_MAX: f32 = 1_000.0;

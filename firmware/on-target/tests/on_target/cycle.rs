@@ -1,5 +1,5 @@
-//! `cycle`: tests: a robot goes through its cycle as the paper's Fig. 10 has it. A walking robot alone with
-//! the ball, its senses made up here.
+//! `cycle`: tests: a robot goes through its cycle as in the paper's Fig. 10. A walking robot alone with the
+//! ball, with synthetic sensor frames.
 
 #[embedded_test::tests]
 mod tests {
@@ -18,7 +18,7 @@ mod tests {
         let mut robot = Robot::new();
         let mut told = Vec::<Progress, 8>::new();
         let mut first_at = None;
-        // Behind the ball, which lies before the goal; the robot has yet to come to it.
+        // Behind the ball, which lies before the goal; the robot has not reached it yet.
         for _ in 0..75 {
             let before = robot.now;
             if let Some(progress) = robot.step(Point::new(1.2, 0.0), Point::new(1.6, 0.0))
@@ -42,7 +42,7 @@ mod tests {
             }
         }
         assert_eq!(robot.progress.map(kind), Some(2), "{:?}", robot.progress);
-        // Somebody takes the ball away, to the other end of the field.
+        // The ball is taken away, to the other end of the field.
         for _ in 0..25 {
             robot.step(Point::new(1.45, 0.0), Point::new(-2.2, 1.0));
         }
@@ -74,7 +74,7 @@ mod tests {
             Self { brain, now: Instant(0), progress: None, playing: false, ends: Vec::new() }
         }
 
-        /// One step of thought; what it told of its progress, if it said anything.
+        /// One step of the brain; the progress it reported, if any.
         fn step(&mut self, at: Point<geometry::Field>, ball: Point<geometry::Field>) -> Option<Progress> {
             self.now = Instant(self.now.0 + STEP.0);
             while let Some(due) = self.brain.poll_timeout().filter(|due| *due <= self.now) {

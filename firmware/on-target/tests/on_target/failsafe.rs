@@ -9,7 +9,7 @@ mod tests {
     use protocol::robot_io::{Health, OmniKick};
     use rules::{League, Phase};
 
-    /// Asks a governor of a robot that drives with 3 m/s, every millisecond up to `until`.
+    /// Steps a governor of a robot that drives with 3 m/s, every millisecond up to `until`.
     struct Drive {
         governor: Governor,
         heard: Option<Instant>,
@@ -65,7 +65,7 @@ mod tests {
         for ms in 1_001..1_100 {
             drive.step(ms, false, WELL, 3.0);
             assert!(!drive.brakes(), "{ms}");
-            // The limit, 4 m/s at 50 ms and nothing at 100, passes 3 m/s after 62.5 ms.
+            // The limit, 4 m/s at 50 ms and 0 at 100, passes 3 m/s after 62.5 ms.
             assert_eq!(matches!(drive.last.1, Ruling::Limited(_)), ms >= 1_063, "{ms}");
         }
         drive.step(1_100, false, WELL, 3.0);
@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// That a failed test is told as failed.
+    /// That a failed test is reported as failed.
     #[test]
     #[should_panic]
     fn a_panic_ends_the_test() {

@@ -1,8 +1,9 @@
-//! `on_target`: tests of the robot's logic on its own processor. Tests that run there.
+//! `on_target`: tests of the robot's logic on its own processor.
 //!
-//! `cargo xtask on-target` builds this as an image of its own and gives every test an emulator of its own; the same image runs on
-//! hardware with `probe-rs run`. Not what the PC's tests say again, but a little of each part: retrieval, a robot's cycle, frames,
-//! timers, what the governor does when something breaks. On the PC this is empty.
+//! `cargo xtask on-target` builds this as a program of its own and gives every test an emulator of its own;
+//! the same program runs on hardware with `probe-rs run`. It does not repeat the PC's tests, but covers a
+//! little of each part: retrieval, a robot's cycle, frames, timers, what the governor does when something
+//! breaks. On the PC this is empty.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -19,10 +20,10 @@ mod retrieval;
 #[cfg(target_os = "none")]
 mod timers;
 
-// A panic tells its place and ends the emulator with exit code 1.
+// A panic prints its place and ends the emulator with exit code 1.
 #[cfg(target_os = "none")]
 use panic_semihosting as _;
-// For its functions of the run-time ABI.
+// Links its functions of the run-time ABI.
 #[cfg(target_os = "none")]
 use runtime as _;
 

@@ -7,10 +7,10 @@ mod tests {
     use protocol::RobotId;
     use retrieval_bench::{Found, scan};
 
-    /// So far from the ball is a robot that may take part.
+    /// Largest distance from the ball of a robot that may take part, mm.
     const NEAR: i32 = 1_200;
 
-    /// The problem of docs/case-format.md §5.1: the ball at the centre, a mate, an opponent in the way.
+    /// The problem of docs/case-format.md §5.1: the ball at the centre, a teammate, an opponent on the path.
     #[test]
     fn the_example_of_the_design_finds_a_case_with_both_robots_and_the_opponent() {
         let problem = Problem {
@@ -36,11 +36,11 @@ mod tests {
                 with_a_case += u32::from(agrees(&base, &problem, &settings));
             }
         }
-        // Else the comparison would say little.
+        // With fewer the comparison would be weak.
         assert!(with_a_case > 100, "only {with_a_case} of 200 have a case");
     }
 
-    /// Whether there is a case; both ways must find the same one.
+    /// Whether there is a case; both methods must find the same one.
     fn agrees(base: &CaseBase<'_>, problem: &Problem, settings: &Settings) -> bool {
         let (best, all, plain) =
             (retrieve_best(base, problem, settings), retrieve(base, problem, settings), scan(base, problem));
@@ -66,7 +66,7 @@ mod tests {
     /// Marsaglia's xorshift (2003), 64 bits.
     struct Dice(u64);
     impl Dice {
-        /// From −most to most.
+        /// A number from −`most` to `most`.
         fn within(&mut self, most: i32) -> i32 {
             self.0 ^= self.0 << 13;
             self.0 ^= self.0 >> 7;

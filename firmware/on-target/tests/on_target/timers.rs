@@ -5,7 +5,7 @@ use embassy_executor::Spawner;
 
 use crate::clock;
 
-/// The board's executor, as tests want it.
+/// The board's executor for tests.
 struct Executor;
 
 impl Executor {
@@ -31,7 +31,8 @@ mod tests {
             let begun = Instant::now();
             Timer::after(Duration::from_millis(wanted)).await;
             let waited = begun.elapsed().as_micros();
-            // The clock looks for alarms every millisecond; an emulator that is held up may be late, never early.
+            // The clock looks for alarms every millisecond; an emulator that is held up may be late, never
+            // early.
             assert!(waited >= 1_000 * wanted, "{wanted} ms took {waited} us");
         }
     }

@@ -1,4 +1,4 @@
-//! Tests: orders become the commands that every simulator understands, and answers become senses.
+//! Tests: orders become the commands that every simulator understands, and answers become sensor frames.
 
 use super::*;
 use prost::Message as _;
@@ -94,7 +94,7 @@ fn trap_09_ours_counts_among_all_configured_robots_and_a_dropped_answer_does_not
     assert!(!feels(&body, 0));
     body.handle_response(ms(10), &response(&[(0, Some(true)), (1, Some(false)), (2, Some(true)), (5, None)]));
     assert!(feels(&body, 10));
-    // Left out, or without a word on it, four times.
+    // Response left out, or without ball contact, four times.
     for n in 2..6 {
         body.handle_response(ms(10 * n), &response(&[(0, Some(false)), (1, Some(false))]));
         body.handle_response(ms(10 * n), &response(&[(2, None)]));

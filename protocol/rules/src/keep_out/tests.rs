@@ -48,7 +48,7 @@ fn on_stop_a_robots_side_is_half_a_metre_from_the_ball() {
 #[test]
 fn on_stop_and_at_free_kicks_attackers_are_two_tenths_from_the_area_and_in_play_out_of_it() {
     let field = League::DivisionB.field();
-    // The area begins at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
+    // The area starts at x = 3.495, its line's outer edge; with the body's 0.09: 3.205 and 3.405.
     let at = |phase, x| why(&field, phase, Duty::Player, (x, 0.0));
     for phase in [Phase::Stop, Phase::FreeKick(Side::Ours), Phase::FreeKick(Side::Theirs)] {
         assert_eq!((at(phase, 3.22), at(phase, 3.20)), (Some(Why::OpponentArea), None), "{phase:?}");
@@ -107,7 +107,7 @@ fn at_a_penalty_all_others_are_a_metre_behind_the_ball() {
         // The ball is at x = −1.6, 0.1 m behind its mark, and we attack +x: the body ends at x = −2.6.
         let player = |x| why_with_ball(&field, phase, Duty::Player, (-1.6, 0.0), (x, 2.0));
         assert_eq!((player(-2.68), player(-2.70)), (Some(Why::BehindBall), None));
-        // A ball that was carried elsewhere: the mark, at x = −1.5, counts.
+        // A ball that was carried elsewhere: the mark, at x = −1.5, is used.
         let carried = |x| why(&field, phase, Duty::Player, (x, 2.0));
         assert_eq!((carried(-2.58), carried(-2.60)), (Some(Why::BehindBall), None));
         assert_eq!(why(&field, phase, Duty::Keeper, (-4.4, 0.0)), None);
@@ -170,7 +170,7 @@ fn no_situation_has_more_regions_than_the_list_holds() {
             for duty in DUTIES {
                 for own in [GoalEnd::Negative, GoalEnd::Positive] {
                     let s = Situation { field, own, phase, duty, ball, placement, ball_in_play: false };
-                    // `List::add` asserts in tests; here: room is left.
+                    // `List::add` asserts in tests; here: capacity is left.
                     assert!(keep_out(&s).forbidden.len() < FORBIDDEN_MAX, "{s:?}");
                 }
             }
@@ -242,7 +242,7 @@ fn the_ball_is_touched_by_who_may() {
             assert_eq!(touch(phase, duty, 0.0), expected, "{phase:?} {duty:?}");
         }
     }
-    // Areas begin at 3.495: partly in theirs from 3.405, entirely in ours from −3.585.
+    // Areas start at 3.495: partly in theirs from 3.405, entirely in ours from −3.585.
     assert_eq!(touch(Phase::Run, Duty::Player, 3.42), Touch::InOpponentArea);
     assert_eq!(touch(Phase::Run, Duty::Player, 3.40), Touch::Allowed);
     assert_eq!(touch(Phase::Run, Duty::Player, -3.60), Touch::InOwnArea);
@@ -274,7 +274,7 @@ fn what_keep_out_forbids_is_what_the_referee_whistles() {
             (found(Phase::Run, Why::OwnArea), in_area(field, GoalEnd::Negative, at) != InArea::Out),
         ];
         for (forbidden, whistled) in both {
-            // Corners of grown boxes stay corners: more is forbidden there than is whistled, never less.
+            // Corners of grown boxes stay corners: more is forbidden there than is penalised, never less.
             assert!(forbidden || !whistled, "{at:?}: {both:?}");
             offences += u32::from(whistled);
         }

@@ -30,14 +30,14 @@ fn the_crossing_is_on_the_line_that_was_crossed_first() {
     let got = crossing(&field, p(1.0, 2.9), p(1.2, 3.1)).unwrap();
     assert_eq!(got.line, Line::Touch { positive: true });
     assert!(got.at.distance(p(1.1, 3.0)) < 1e-5);
-    // Past the corner: from (4.4, 2.8) to (4.6, 3.1) x reaches 4.5 half-way, y reaches 3 at two thirds.
+    // Past the corner: from (4.4, 2.8) to (4.6, 3.1) x reaches 4.5 at half, y reaches 3 at two thirds.
     let got = crossing(&field, p(4.4, 2.8), p(4.6, 3.1)).unwrap();
     assert_eq!(got.line, Line::Goal(P));
     assert!(got.at.distance(p(4.5, 2.95)) < 1e-5);
     let got = crossing(&field, p(-4.4, 0.2), p(-4.6, 0.3)).unwrap();
     assert_eq!(got.line, Line::Mouth(N));
     assert!(got.at.distance(p(-4.5, 0.25)) < 1e-5);
-    // First seen outside: straight over the nearest line.
+    // First observed outside: straight over the nearest line.
     let got = crossing(&field, p(9.0, -3.2), p(2.0, -3.2)).unwrap();
     assert_eq!((got.line, got.at), (Line::Touch { positive: false }, p(2.0, -3.0)));
 }
@@ -122,7 +122,7 @@ fn the_faster_robot_of_a_crash_is_to_blame_and_both_if_about_equal() {
     assert_eq!(both.blame, Blame::Both);
     assert!((both.speed - 1.8).abs() < 1e-6 && (both.difference - 0.2).abs() < 1e-6);
     assert_eq!(hit((1.0, 0.0), (-0.6, 0.0)).unwrap().blame, Blame::First);
-    // Fast, but past each other: nothing along the line between them.
+    // Fast, but past each other: no speed along the line between them.
     assert_eq!(hit((0.0, 3.0), (0.0, -3.0)), None);
 }
 

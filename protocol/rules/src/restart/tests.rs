@@ -80,7 +80,8 @@ fn a_ball_out_comes_back_at_its_throw_in_goal_kick_or_corner() {
     let (kind, spot) = out(Line::Touch { positive: false }, -4.45, -3.0, N);
     assert_eq!(kind, OutKind::ThrowIn);
     near(spot, -4.3, -2.8);
-    // Last touched by who defends −x, over the goal line at +x: their goal kick; at −x: a corner against them.
+    // Last touched by the team that defends −x, over the goal line at +x: their goal kick; at −x: a corner
+    // against them.
     let (kind, spot) = out(Line::Goal(P), 4.5, -0.9, N);
     assert_eq!(kind, OutKind::GoalKick);
     near(spot, 3.5, -2.8);

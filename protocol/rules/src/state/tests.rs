@@ -45,7 +45,7 @@ fn commands() -> Vec<Command> {
     plain.into_iter().chain(with).collect()
 }
 
-/// For every phase a way that leads to it, over edges of the graph only.
+/// For every phase a path that leads to it, over edges of the graph only.
 fn ways() -> Vec<(Phase<Colour>, Vec<Command>)> {
     let stop = Command::Stop;
     let mut ways = vec![
@@ -81,7 +81,7 @@ fn every_phase_is_reached_over_edges_of_the_graph() {
     }
 }
 
-/// How much a phase lets robots do, 0 the least: what "safe" means in the next test.
+/// Freedom of robots in a phase, 0 the least: the measure of "safe" in the next test.
 fn freedom(phase: Phase<Colour>) -> u32 {
     match phase {
         Phase::Halt | Phase::Timeout(_) => 0,
@@ -122,7 +122,7 @@ fn every_command_in_every_phase_has_a_safe_reading() {
                     counts[3] += 1;
                 }
             }
-            // Whatever came before, HALT and STOP work at once.
+            // After any command, HALT and STOP work at once.
             assert_eq!(
                 state.hear(Command::Halt, now + 2 * S, None) == Heard::Repeated,
                 command == Command::Halt
@@ -189,7 +189,7 @@ fn a_start_out_of_halt_is_read_as_stop_for_two_seconds() {
     assert_eq!(state.tick(now + 2 * S - 1, None, &limits()), Ticked::Same);
     assert_eq!(state.tick(now + 2 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
-    // A HALT in between wins.
+    // A HALT in between takes precedence.
     let (mut state, now) = after(&[Command::Stop, Command::Halt, Command::ForceStart, Command::Halt]);
     assert_eq!(state.tick(now + 20 * S, None, &limits()), Ticked::Same);
     assert_eq!(state.phase(), Phase::Halt);
@@ -213,12 +213,12 @@ fn who_joins_a_game_after_normal_start_waits_until_the_ball_must_be_in_play() {
     assert_eq!(heard, Heard::AsStop { from: Phase::Halt, then: Phase::Run, at: 110 * S });
     assert_eq!(state.tick(109 * S, None, &limits()), Ticked::Same);
     assert_eq!((state.phase(), state.tick(111 * S, None, &limits())), (Phase::Stop, Ticked::Released));
-    // A command that is a minute old leaves nothing to wait for.
+    // A command that is a minute old requires no wait.
     let mut state = GameState::new();
     state.hear(Command::NormalStart, 40 * S, None);
     assert_eq!(state.tick(100 * S, None, &limits()), Ticked::Released);
     assert_eq!(state.phase(), Phase::Run);
-    // And whoever joins in a standing phase takes it as it is.
+    // A program that joins in a standing phase takes it as it is.
     let mut state = GameState::new();
     assert_eq!(state.hear(Command::FreeKick(B), S, None), Heard::Followed);
     assert_eq!(state.phase(), Phase::FreeKick(B));
@@ -278,7 +278,7 @@ fn whatever_is_said_nobody_starts_from_a_standstill_within_two_seconds_without_s
         bits % below
     };
     let (all, mut state, mut now) = (commands(), GameState::new(), 0);
-    // The time of the first command that would have us move out of HALT or a time-out.
+    // Time of the first command that would let robots move out of HALT or a time-out.
     let (mut stands, mut called) = (false, None);
     let (mut held, mut moved) = (0, 0);
     for _ in 0..100_000 {

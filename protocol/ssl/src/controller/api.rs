@@ -1,8 +1,8 @@
 //! `api`: messages that drive the game controller. [`CiInput`] on port 10009; [`Input`] also as JSON text
 //! over its web socket.
 //!
-//! The controller's inner state, settings and changes are its own; they stay encoded here (`Vec<u8>`), so that they can
-//! be carried and stored.
+//! The controller's inner state, settings and changes are its own; they stay encoded here (`Vec<u8>`), so
+//! that they can be carried and stored.
 
 use prost::Message;
 
@@ -17,21 +17,21 @@ pub struct CiInput {
     /// The time now, ns, Unix time.
     #[prost(int64, optional, tag = "1")]
     pub timestamp: Option<i64>,
-    /// What a tracker believes.
+    /// Frame of a tracker.
     #[prost(message, optional, tag = "2")]
     pub tracker_packet: Option<TrackerWrapperPacket>,
-    /// Buttons pressed.
+    /// Buttons pressed in the interface.
     #[prost(message, repeated, tag = "3")]
     pub api_inputs: Vec<Input>,
-    /// The field.
+    /// Field geometry.
     #[prost(message, optional, tag = "4")]
     pub geometry: Option<GeometryData>,
 }
 
-/// What the step brought: none, one or several a step.
+/// Output of the step: none, one or several a step.
 #[derive(Clone, PartialEq, Message)]
 pub struct CiOutput {
-    /// What the referee says.
+    /// The referee's message.
     #[prost(message, optional, tag = "1")]
     pub referee_msg: Option<Referee>,
 }
@@ -42,58 +42,58 @@ pub struct Input {
     /// A change of the match, encoded.
     #[prost(bytes = "vec", optional, tag = "1")]
     pub change: Option<Vec<u8>>,
-    /// Begin anew.
+    /// Restart the match.
     #[prost(bool, optional, tag = "2")]
     pub reset_match: Option<bool>,
     /// Changed settings, encoded.
     #[prost(bytes = "vec", optional, tag = "3")]
     pub config_delta: Option<Vec<u8>>,
-    /// A way to go on, encoded.
+    /// A continue action, encoded.
     #[prost(bytes = "vec", optional, tag = "4")]
     pub continue_action: Option<Vec<u8>>,
 }
 
-/// What the controller's interface shows; absent parts did not change.
+/// State for the controller's interface; absent parts did not change.
 #[derive(Clone, PartialEq, Message)]
 pub struct Output {
-    /// Score, cards and all else of the match, encoded.
+    /// Score, cards and further state of the match, encoded.
     #[prost(bytes = "vec", optional, tag = "1")]
     pub match_state: Option<Vec<u8>>,
-    /// Who is connected and how to go on, encoded.
+    /// Connected programs and continue actions, encoded.
     #[prost(bytes = "vec", optional, tag = "2")]
     pub gc_state: Option<Vec<u8>>,
-    /// What happened so far.
+    /// Protocol of the match so far.
     #[prost(message, optional, tag = "3")]
     pub protocol: Option<Protocol>,
-    /// Settings, encoded.
+    /// Settings of the controller, encoded.
     #[prost(bytes = "vec", optional, tag = "4")]
     pub config: Option<Vec<u8>>,
 }
 
-/// What happened so far.
+/// Protocol of the match so far.
 #[derive(Clone, PartialEq, Message)]
 pub struct Protocol {
-    /// True: only what is new.
+    /// True: only new entries.
     #[prost(bool, optional, tag = "1")]
     pub delta: Option<bool>,
-    /// Newest first.
+    /// Entries, newest first.
     #[prost(message, repeated, tag = "2")]
     pub entry: Vec<ProtocolEntry>,
 }
 
-/// One change.
+/// Entry of one change.
 #[derive(Clone, PartialEq, Message)]
 pub struct ProtocolEntry {
-    /// Counts changes.
+    /// Number of the change.
     #[prost(int32, optional, tag = "1")]
     pub id: Option<i32>,
     /// The change, encoded.
     #[prost(bytes = "vec", optional, tag = "2")]
     pub change: Option<Vec<u8>>,
-    /// Since the match began.
+    /// Since the start of the match.
     #[prost(message, optional, tag = "3")]
     pub match_time_elapsed: Option<Duration>,
-    /// Since the stage began.
+    /// Since the start of the stage.
     #[prost(message, optional, tag = "4")]
     pub stage_time_elapsed: Option<Duration>,
 }

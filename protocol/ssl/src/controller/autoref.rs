@@ -1,5 +1,5 @@
-//! `autoref`: messages between automatic referee and game controller. Port 10007; under somebody's clock port
-//! 10013.
+//! `autoref`: messages between automatic referee and game controller. Port 10007; under an external clock
+//! port 10013.
 
 use prost::Message;
 
@@ -12,26 +12,26 @@ use crate::vision::{DetectionFrame, GeometryData};
 /// An automatic referee's first message.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefRegistration {
-    /// Its name.
+    /// Name of the automatic referee.
     #[prost(string, required, tag = "1")]
     pub identifier: String,
-    /// Proof, where the controller has its key.
+    /// Signature, where the controller has its key.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
 }
 
-/// What it saw.
+/// Report of an automatic referee.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefToController {
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The event.
+    /// The event reported.
     #[prost(message, optional, tag = "2")]
     pub game_event: Option<GameEvent>,
 }
 
-/// What it hears.
+/// Messages from the controller to an automatic referee.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToAutoRef {
     /// The answer to its last message.
@@ -42,24 +42,24 @@ pub struct ControllerToAutoRef {
 /// One step of an automatic referee whose clock the sender drives.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefCiInput {
-    /// What the referee says.
+    /// The referee's message.
     #[prost(message, optional, tag = "1")]
     pub referee_message: Option<Referee>,
-    /// What a tracker believes.
+    /// Frame of a tracker.
     #[prost(message, optional, tag = "2")]
     pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
-    /// What cameras saw.
+    /// Detections of the cameras.
     #[prost(message, repeated, tag = "3")]
     pub detection: Vec<DetectionFrame>,
-    /// The field.
+    /// Field geometry.
     #[prost(message, optional, tag = "4")]
     pub geometry: Option<GeometryData>,
 }
 
-/// What the step brought.
+/// Output of the step.
 #[derive(Clone, PartialEq, Message)]
 pub struct AutoRefCiOutput {
-    /// What its own tracker believes.
+    /// Frame of its own tracker.
     #[prost(message, optional, tag = "1")]
     pub tracker_wrapper_packet: Option<TrackerWrapperPacket>,
 }

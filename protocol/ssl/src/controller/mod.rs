@@ -1,7 +1,8 @@
 //! `controller`: messages of the game controller's ports. Length-delimited over TCP ([`crate::stream`]), the
 //! controller first.
 //!
-//! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature` out.
+//! Teams: port 10008. It sends a [`ControllerReply`] with `next_token`; unsigned clients leave `signature`
+//! out.
 
 mod api;
 mod autoref;
@@ -20,24 +21,24 @@ pub use remote::{
     RemoteControlRequestType, RemoteControlTeamState, RemoteControlToController,
 };
 
-/// The controller's answer to whatever was sent.
+/// The controller's answer to any message.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerReply {
-    /// Accepted or not, [`StatusCode`].
+    /// Result, [`StatusCode`].
     #[prost(enumeration = "StatusCode", optional, tag = "1")]
     pub status_code: Option<i32>,
-    /// Why not.
+    /// Reason of a refusal.
     #[prost(string, optional, tag = "2")]
     pub reason: Option<String>,
-    /// What the next signature must be over.
+    /// Token that the next signature must sign.
     #[prost(string, optional, tag = "3")]
     pub next_token: Option<String>,
-    /// Was the signature checked? [`Verification`].
+    /// Result of the signature check, [`Verification`].
     #[prost(enumeration = "Verification", optional, tag = "4")]
     pub verification: Option<i32>,
 }
 
-/// Accepted or not.
+/// Result of a request.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -47,7 +48,7 @@ pub enum StatusCode {
     Rejected = 2,
 }
 
-/// Was the sender's signature checked?
+/// Whether the sender's signature was checked.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -57,7 +58,7 @@ pub enum Verification {
     Unverified = 2,
 }
 
-/// Proof of who sends.
+/// Proof of the sender's identity.
 #[derive(Clone, PartialEq, Message)]
 pub struct Signature {
     /// The controller's last `next_token`.
@@ -71,46 +72,46 @@ pub struct Signature {
 /// A team's first message.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamRegistration {
-    /// Must be the name the controller shows.
+    /// Must be the team's name in the controller.
     #[prost(string, required, tag = "1")]
     pub team_name: String,
-    /// Proof, where the controller has the team's key.
+    /// Signature, where the controller has the team's key.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
-    /// Which side, where both teams have one name, [`Team`].
+    /// Team colour, where both teams have one name, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "3")]
     pub team: Option<i32>,
 }
 
-/// A team's wish; with `msg` absent it does nothing.
+/// A team's request; with `msg` absent it does nothing.
 #[derive(Clone, PartialEq, Message)]
 pub struct TeamToController {
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The wish.
+    /// The request.
     #[prost(oneof = "TeamRequest", tags = "2, 3, 4, 5")]
     pub msg: Option<TeamRequest>,
 }
 
-/// What a team may ask for.
+/// Requests of a team.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum TeamRequest {
     /// Make this robot the keeper.
     #[prost(int32, tag = "2")]
     DesiredKeeper(i32),
-    /// Stop or go on after a foul against us, [`AdvantageChoice`].
+    /// Stop or continue after a foul against us, [`AdvantageChoice`].
     #[prost(enumeration = "AdvantageChoice", tag = "3")]
     AdvantageChoice(i32),
-    /// Ask for, or take back, a substitution.
+    /// Request, or withdraw, a substitution.
     #[prost(bool, tag = "4")]
     SubstituteBot(bool),
-    /// Is anybody there? The answer is a reply.
+    /// Requests a reply as a sign of life.
     #[prost(bool, tag = "5")]
     Ping(bool),
 }
 
-/// What a team hears.
+/// Messages from the controller to a team.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToTeam {
     /// The answer to its last message.
@@ -118,7 +119,7 @@ pub struct ControllerToTeam {
     pub controller_reply: Option<ControllerReply>,
 }
 
-/// Stop or go on after a foul against us.
+/// Stop or continue after a foul against us.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

@@ -8,10 +8,10 @@ use crate::common::Team;
 /// A remote control's first message.
 #[derive(Clone, PartialEq, Message)]
 pub struct RemoteControlRegistration {
-    /// Which side, [`Team`].
+    /// Team colour, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub team: i32,
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "2")]
     pub signature: Option<Signature>,
 }
@@ -19,15 +19,15 @@ pub struct RemoteControlRegistration {
 /// A press of a button.
 #[derive(Clone, PartialEq, Message)]
 pub struct RemoteControlToController {
-    /// Proof.
+    /// Signature of the sender.
     #[prost(message, optional, tag = "1")]
     pub signature: Option<Signature>,
-    /// The button.
+    /// The button pressed.
     #[prost(oneof = "RemoteControlMessage", tags = "2, 3, 4, 5, 6")]
     pub msg: Option<RemoteControlMessage>,
 }
 
-/// What a remote control may ask for.
+/// Requests of a remote control.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum RemoteControlMessage {
     /// A request without a value, [`RemoteControlRequest`].
@@ -36,13 +36,13 @@ pub enum RemoteControlMessage {
     /// Make this robot the keeper.
     #[prost(int32, tag = "3")]
     DesiredKeeper(i32),
-    /// Ask for, or take back, a substitution.
+    /// Request, or withdraw, a substitution.
     #[prost(bool, tag = "4")]
     RequestRobotSubstitution(bool),
-    /// Ask for, or take back, a time-out.
+    /// Request, or withdraw, a time-out.
     #[prost(bool, tag = "5")]
     RequestTimeout(bool),
-    /// Ask for, or take back, an emergency stop.
+    /// Request, or withdraw, an emergency stop.
     #[prost(bool, tag = "6")]
     RequestEmergencyStop(bool),
 }
@@ -59,24 +59,24 @@ pub enum RemoteControlRequest {
     FailBallplacement = 4,
 }
 
-/// What a remote control hears.
+/// Messages from the controller to a remote control.
 #[derive(Clone, PartialEq, Message)]
 pub struct ControllerToRemoteControl {
     /// The answer to its last message.
     #[prost(message, optional, tag = "1")]
     pub controller_reply: Option<ControllerReply>,
-    /// What its buttons shall show.
+    /// State to display on its buttons.
     #[prost(message, optional, tag = "2")]
     pub state: Option<RemoteControlTeamState>,
 }
 
-/// What a remote control shows.
+/// State of a team for display on a remote control.
 #[derive(Clone, PartialEq, Message)]
 pub struct RemoteControlTeamState {
-    /// What may be asked for now, [`RemoteControlRequestType`].
+    /// Requests available now, [`RemoteControlRequestType`].
     #[prost(enumeration = "RemoteControlRequestType", repeated, packed = "false", tag = "1")]
     pub available_requests: Vec<i32>,
-    /// What was asked for and still waits, [`RemoteControlRequestType`].
+    /// Requests that were made and still wait, [`RemoteControlRequestType`].
     #[prost(enumeration = "RemoteControlRequestType", repeated, packed = "false", tag = "2")]
     pub active_requests: Vec<i32>,
     /// Shell number of the keeper.
@@ -85,28 +85,28 @@ pub struct RemoteControlTeamState {
     /// Time until the emergency stop comes, s.
     #[prost(float, optional, tag = "4")]
     pub emergency_stop_in: Option<f32>,
-    /// Time-outs left.
+    /// Number of time-outs left.
     #[prost(int32, optional, tag = "5")]
     pub timeouts_left: Option<i32>,
-    /// Challenges left.
+    /// Number of challenges left.
     #[prost(int32, optional, tag = "6")]
     pub challenge_flags_left: Option<i32>,
-    /// Robots it may have on the field.
+    /// Number of robots it may have on the field.
     #[prost(int32, optional, tag = "7")]
     pub max_robots: Option<i32>,
     /// Time left of each yellow card, s.
     #[prost(float, repeated, packed = "false", tag = "8")]
     pub yellow_cards_due: Vec<f32>,
-    /// Robots it has on the field.
+    /// Number of robots it has on the field.
     #[prost(int32, optional, tag = "9")]
     pub robots_on_field: Option<i32>,
     /// Time left for time-outs, s.
     #[prost(float, optional, tag = "10")]
     pub timeout_time_left: Option<f32>,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     #[prost(bool, optional, tag = "11")]
     pub can_substitute_robot: Option<bool>,
-    /// Which side, [`Team`].
+    /// Team colour, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "12")]
     pub team: Option<i32>,
     /// Substitutions left in this half.

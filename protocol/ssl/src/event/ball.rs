@@ -1,4 +1,5 @@
-//! What happened to the ball: it left, went in, was kicked wrongly, was held or placed. Units: m, m/s, s; field frame.
+//! Events of the ball: it left, went in, was kicked wrongly, was held or placed. Units: m, m/s, s; field
+//! frame.
 
 use prost::Message;
 
@@ -7,13 +8,13 @@ use crate::common::{Team, Vector2};
 /// The ball left the field.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BallLeftField {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that touched it last.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -21,16 +22,16 @@ pub struct BallLeftField {
 /// The ball was kicked over the opponent's goal line from the own half.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AimlessKick {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
 }
@@ -41,13 +42,13 @@ pub struct Goal {
     /// The team that scores.
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub kicking_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
     /// Its greatest height between kick and goal, m.
@@ -56,13 +57,13 @@ pub struct Goal {
     /// The team that kicked: not `by_team` where it is an own goal, [`Team`].
     #[prost(enumeration = "Team", optional, tag = "6")]
     pub kicking_team: Option<i32>,
-    /// Robots `by_team` had on the field.
+    /// Number of robots that `by_team` had on the field.
     #[prost(uint32, optional, tag = "7")]
     pub num_robots_by_team: Option<u32>,
     /// When `by_team` touched it last, µs, Unix time.
     #[prost(uint64, optional, tag = "8")]
     pub last_touch_by_team: Option<u64>,
-    /// Why it counts or does not.
+    /// Reason why it counts or does not.
     #[prost(string, optional, tag = "9")]
     pub message: Option<String>,
 }
@@ -70,16 +71,16 @@ pub struct Goal {
 /// A goal straight from an indirect free kick (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct IndirectGoal {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
 }
@@ -87,16 +88,16 @@ pub struct IndirectGoal {
 /// A goal by a ball that was too high (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct ChippedGoal {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who kicked.
+    /// The robot that kicked.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it crossed the line, m.
+    /// Point at which it crossed the line, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "4")]
     pub kick_location: Option<Vector2>,
     /// Its greatest height, m.
@@ -107,19 +108,19 @@ pub struct ChippedGoal {
 /// A kick over the speed limit.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotKickedBallTooFast {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where it was kicked, m.
+    /// Position of the kick, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// The ball's speed after the kick, in space, m/s.
     #[prost(float, optional, tag = "4")]
     pub initial_ball_speed: Option<f32>,
-    /// Did it fly?
+    /// Whether it was chipped.
     #[prost(bool, optional, tag = "5")]
     pub chipped: Option<bool>,
 }
@@ -127,13 +128,13 @@ pub struct BotKickedBallTooFast {
 /// A dribble over the limit.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotDribbledBallTooFar {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where the contact began, m.
+    /// Where the contact started, m.
     #[prost(message, optional, tag = "3")]
     pub start: Option<Vector2>,
     /// Where the distance was over the limit, m.
@@ -144,16 +145,16 @@ pub struct BotDribbledBallTooFar {
 /// An attacker touched the ball in the opponent's defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTouchedBallInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How deep it was in, m.
+    /// Depth inside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -161,13 +162,13 @@ pub struct AttackerTouchedBallInDefenseArea {
 /// The kicker touched the ball again before another robot did.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerDoubleTouchedBall {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -175,16 +176,16 @@ pub struct AttackerDoubleTouchedBall {
 /// A robot held the ball.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotHeldBallDeliberately {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "4")]
     pub duration: Option<f32>,
 }
@@ -192,13 +193,13 @@ pub struct BotHeldBallDeliberately {
 /// The keeper held the ball in its defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KeeperHeldBall {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "3")]
     pub duration: Option<f32>,
 }
@@ -206,24 +207,24 @@ pub struct KeeperHeldBall {
 /// The kick was not taken in time (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct KickTimeout {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where the ball lay, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// How long was waited, s.
+    /// Waiting time, s.
     #[prost(float, optional, tag = "3")]
     pub time: Option<f32>,
 }
 
-/// Nobody got the ball going.
+/// No team got the ball moving.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct NoProgressInGame {
-    /// Where the ball lay, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "1")]
     pub location: Option<Vector2>,
-    /// How long, s.
+    /// Duration, s.
     #[prost(float, optional, tag = "2")]
     pub time: Option<f32>,
 }
@@ -231,10 +232,10 @@ pub struct NoProgressInGame {
 /// The ball was not placed in time.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct PlacementFailed {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Ball to its target, m.
+    /// Distance from the ball to its target, m.
     #[prost(float, optional, tag = "2")]
     pub remaining_distance: Option<f32>,
     /// The nearest robot of the placing team to the ball, m.
@@ -245,16 +246,16 @@ pub struct PlacementFailed {
 /// The ball was placed.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct PlacementSucceeded {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// How long it took, s.
+    /// Duration of the preparation, s.
     #[prost(float, optional, tag = "2")]
     pub time_taken: Option<f32>,
-    /// Ball to its target, m.
+    /// Distance from the ball to its target, m.
     #[prost(float, optional, tag = "3")]
     pub precision: Option<f32>,
-    /// From where it was to the target, m.
+    /// Distance from the ball to the target, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -262,7 +263,7 @@ pub struct PlacementSucceeded {
 /// Both teams were ready (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct Prepared {
-    /// How long it took, s.
+    /// Duration of the preparation, s.
     #[prost(float, optional, tag = "1")]
     pub time_taken: Option<f32>,
 }
@@ -270,7 +271,7 @@ pub struct Prepared {
 /// A ball flew over the boundary's wall.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BoundaryCrossing {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// Where it crossed, m.
@@ -281,13 +282,13 @@ pub struct BoundaryCrossing {
 /// The penalty kick brought no goal.
 #[derive(Clone, PartialEq, Message)]
 pub struct PenaltyKickFailed {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "2")]
     pub location: Option<Vector2>,
-    /// Why, in words.
+    /// Reason, as text.
     #[prost(string, optional, tag = "3")]
     pub reason: Option<String>,
 }

@@ -1,6 +1,7 @@
-//! `event`: game events. Events that automatic referees see and the game controller decides and repeats.
+//! `event`: game events, reported by automatic referees, decided and repeated by the game controller.
 //!
-//! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is who did it.
+//! Units: m, m/s, rad, s in the field frame; robots by shell number 0–15; `by_team` is the team that caused
+//! the event.
 
 mod ball;
 mod robot;
@@ -12,19 +13,19 @@ pub use ball::*;
 pub use robot::*;
 pub use team::*;
 
-/// One event with who saw it.
+/// One event with its origin.
 #[derive(Clone, PartialEq, Message)]
 pub struct GameEvent {
     /// Kind of event, [`GameEventType`]; its numbers are not the field numbers of [`Event`].
     #[prost(enumeration = "GameEventType", optional, tag = "40")]
     pub r#type: Option<i32>,
-    /// Who saw it: names of automatic referees, or `UI`.
+    /// Its sources: names of automatic referees, or `UI`.
     #[prost(string, repeated, tag = "41")]
     pub origin: Vec<String>,
-    /// When it was made, µs, Unix time.
+    /// Time of its creation, µs, Unix time.
     #[prost(uint64, optional, tag = "49")]
     pub created_timestamp: Option<u64>,
-    /// Names this event.
+    /// Id of this event.
     #[prost(string, optional, tag = "50")]
     pub id: Option<String>,
     /// The event and its evidence.
@@ -35,13 +36,13 @@ pub struct GameEvent {
     pub event: Option<Event>,
 }
 
-/// What happened; deprecated ones still stand in old log files.
+/// Kind of event; deprecated ones are still in old log files.
 #[derive(Clone, PartialEq, Oneof)]
 pub enum Event {
     /// Both teams were ready for the restart (deprecated).
     #[prost(message, tag = "1")]
     Prepared(Prepared),
-    /// Nobody got the ball going.
+    /// No team got the ball moving.
     #[prost(message, tag = "2")]
     NoProgressInGame(NoProgressInGame),
     /// A team failed to place the ball.
@@ -56,7 +57,7 @@ pub enum Event {
     /// The ball left over a goal line.
     #[prost(message, tag = "7")]
     BallLeftFieldGoalLine(BallLeftField),
-    /// A goal.
+    /// A goal was scored.
     #[prost(message, tag = "8")]
     Goal(Goal),
     /// A goal straight from an indirect free kick (deprecated).
@@ -92,7 +93,7 @@ pub enum Event {
     /// An attacker was within 0.2 m of the opponent's defence area at a restart.
     #[prost(message, tag = "19")]
     AttackerTooCloseToDefenseArea(AttackerTooCloseToDefenseArea),
-    /// A robot stood in the way of the placement.
+    /// A robot interfered with the placement.
     #[prost(message, tag = "20")]
     BotInterferedPlacement(BotInterferedPlacement),
     /// Two robots crashed, both at fault.
@@ -101,16 +102,16 @@ pub enum Event {
     /// Two robots crashed, one at fault.
     #[prost(message, tag = "22")]
     BotCrashUnique(BotCrashUnique),
-    /// The same, play went on (deprecated).
+    /// The same, play continued (deprecated).
     #[prost(message, tag = "23")]
     BotCrashUniqueSkipped(BotCrashUnique),
     /// A robot pushed another.
     #[prost(message, tag = "24")]
     BotPushedBot(BotPushedBot),
-    /// The same, play went on (deprecated).
+    /// The same, play continued (deprecated).
     #[prost(message, tag = "25")]
     BotPushedBotSkipped(BotPushedBot),
-    /// A robot held the ball so that nobody else could reach it.
+    /// A robot held the ball so that no other robot could reach it.
     #[prost(message, tag = "26")]
     BotHeldBallDeliberately(BotHeldBallDeliberately),
     /// A robot fell over.
@@ -137,22 +138,22 @@ pub enum Event {
     /// A team committed several fouls: a yellow card.
     #[prost(message, tag = "34")]
     MultipleFouls(MultipleFouls),
-    /// A human saw minor unsporting behaviour.
+    /// A human referee saw minor unsporting behaviour.
     #[prost(message, tag = "35")]
     UnsportingBehaviorMinor(UnsportingBehaviorMinor),
-    /// A human saw major unsporting behaviour.
+    /// A human referee saw major unsporting behaviour.
     #[prost(message, tag = "36")]
     UnsportingBehaviorMajor(UnsportingBehaviorMajor),
-    /// A team wants to substitute a robot.
+    /// A team requests to substitute a robot.
     #[prost(message, tag = "37")]
     BotSubstitution(BotSubstitution),
     /// A team had too many robots on the field.
     #[prost(message, tag = "38")]
     TooManyRobots(TooManyRobots),
-    /// Perhaps a goal: the human referee decides.
+    /// A possible goal: the human referee decides.
     #[prost(message, tag = "39")]
     PossibleGoal(Goal),
-    /// The same as above, play went on (deprecated).
+    /// The same as above, play continued (deprecated).
     #[prost(message, tag = "42")]
     AttackerTouchedOpponentInDefenseAreaSkipped(AttackerTouchedOpponentInDefenseArea),
     /// A ball flew over the boundary's wall.

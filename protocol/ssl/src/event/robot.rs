@@ -7,16 +7,16 @@ use crate::common::{Team, Vector2};
 /// A robot was too fast in STOP.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotTooFastInStop {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Its speed, m/s.
+    /// Speed of the robot, m/s.
     #[prost(float, optional, tag = "4")]
     pub speed: Option<f32>,
 }
@@ -24,16 +24,16 @@ pub struct BotTooFastInStop {
 /// An opponent was too close to the ball at a free kick.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderTooCloseToKickPoint {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to ball, without the robot's radius, m.
+    /// Distance from robot to ball, without the robot's radius, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -41,13 +41,13 @@ pub struct DefenderTooCloseToKickPoint {
 /// Two robots crashed; the difference of speeds was small.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotCrashDrawn {
-    /// The yellow one.
+    /// The yellow robot.
     #[prost(uint32, optional, tag = "1")]
     pub bot_yellow: Option<u32>,
-    /// The blue one.
+    /// The blue robot.
     #[prost(uint32, optional, tag = "2")]
     pub bot_blue: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
     /// Relative speed along the line between them, m/s.
@@ -64,16 +64,16 @@ pub struct BotCrashDrawn {
 /// Two robots crashed; the faster one is at fault.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotCrashUnique {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// The faster one, of `by_team`.
+    /// The faster robot, of `by_team`.
     #[prost(uint32, optional, tag = "2")]
     pub violator: Option<u32>,
-    /// The other one, of the other team.
+    /// The other robot, of the other team.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "4")]
     pub location: Option<Vector2>,
     /// Relative speed along the line between them, m/s.
@@ -90,19 +90,19 @@ pub struct BotCrashUnique {
 /// A robot pushed another.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotPushedBot {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Who pushed, of `by_team`.
+    /// The robot that pushed, of `by_team`.
     #[prost(uint32, optional, tag = "2")]
     pub violator: Option<u32>,
-    /// Who was pushed.
+    /// The robot that was pushed.
     #[prost(uint32, optional, tag = "3")]
     pub victim: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "4")]
     pub location: Option<Vector2>,
-    /// How far, m.
+    /// Distance of the push, m.
     #[prost(float, optional, tag = "5")]
     pub pushed_distance: Option<f32>,
 }
@@ -110,16 +110,16 @@ pub struct BotPushedBot {
 /// A robot fell over.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotTippedOver {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }
@@ -127,16 +127,16 @@ pub struct BotTippedOver {
 /// A robot lost parts.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotDroppedParts {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }
@@ -144,16 +144,16 @@ pub struct BotDroppedParts {
 /// A defender other than the keeper touched the ball, entirely in its own defence area.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to the nearest point outside the area, m.
+    /// Distance from the robot to the nearest point outside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
 }
@@ -161,19 +161,19 @@ pub struct DefenderInDefenseArea {
 /// The same, partly in the area (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DefenderInDefenseAreaPartially {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// How deep it was in, m.
+    /// Depth inside the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "5")]
     pub ball_location: Option<Vector2>,
 }
@@ -181,16 +181,16 @@ pub struct DefenderInDefenseAreaPartially {
 /// An attacker touched an opponent in the opponent's defence area (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTouchedOpponentInDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Who was touched.
+    /// The robot that was touched.
     #[prost(uint32, optional, tag = "4")]
     pub victim: Option<u32>,
 }
@@ -198,19 +198,19 @@ pub struct AttackerTouchedOpponentInDefenseArea {
 /// An attacker was too close to the opponent's defence area at a restart.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct AttackerTooCloseToDefenseArea {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
-    /// Robot to the area, m.
+    /// Distance from the robot to the area, m.
     #[prost(float, optional, tag = "4")]
     pub distance: Option<f32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "5")]
     pub ball_location: Option<Vector2>,
 }
@@ -218,13 +218,13 @@ pub struct AttackerTooCloseToDefenseArea {
 /// A robot was too close to the line between ball and target.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotInterferedPlacement {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
     /// The robot that did it.
     #[prost(uint32, optional, tag = "2")]
     pub by_bot: Option<u32>,
-    /// Where, m.
+    /// Position, m.
     #[prost(message, optional, tag = "3")]
     pub location: Option<Vector2>,
 }
@@ -232,16 +232,16 @@ pub struct BotInterferedPlacement {
 /// A team had too many robots on the field.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TooManyRobots {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// How many it may have.
+    /// Number of robots it may have.
     #[prost(int32, optional, tag = "2")]
     pub num_robots_allowed: Option<i32>,
-    /// How many it had.
+    /// Number of robots it had.
     #[prost(int32, optional, tag = "3")]
     pub num_robots_on_field: Option<i32>,
-    /// Where the ball was, m.
+    /// Position of the ball, m.
     #[prost(message, optional, tag = "4")]
     pub ball_location: Option<Vector2>,
 }

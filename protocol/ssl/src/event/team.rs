@@ -1,4 +1,4 @@
-//! What concerns a whole team: cards, fouls that add up, behaviour, substitutions, challenges.
+//! Events of a whole team: cards, fouls that add up, behaviour, substitutions, challenges.
 
 use prost::Message;
 
@@ -8,7 +8,7 @@ use crate::common::Team;
 /// A team got several yellow cards.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct MultipleCards {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }
@@ -16,10 +16,10 @@ pub struct MultipleCards {
 /// A team committed several fouls.
 #[derive(Clone, PartialEq, Message)]
 pub struct MultipleFouls {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// The fouls.
+    /// The fouls that were counted.
     #[prost(message, repeated, tag = "2")]
     pub caused_game_events: Vec<GameEvent>,
 }
@@ -27,37 +27,37 @@ pub struct MultipleFouls {
 /// A team failed to place several times (deprecated).
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct MultiplePlacementFailures {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }
 
-/// A human saw minor unsporting behaviour.
+/// A human referee saw minor unsporting behaviour.
 #[derive(Clone, PartialEq, Message)]
 pub struct UnsportingBehaviorMinor {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// What, in words.
+    /// Reason, as text.
     #[prost(string, required, tag = "2")]
     pub reason: String,
 }
 
-/// A human saw major unsporting behaviour.
+/// A human referee saw major unsporting behaviour.
 #[derive(Clone, PartialEq, Message)]
 pub struct UnsportingBehaviorMajor {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// What, in words.
+    /// Reason, as text.
     #[prost(string, required, tag = "2")]
     pub reason: String,
 }
 
-/// A team wants to substitute a robot.
+/// A team requests to substitute a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BotSubstitution {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }
@@ -65,7 +65,7 @@ pub struct BotSubstitution {
 /// A team substituted more often than is free.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct ExcessiveBotSubstitution {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }
@@ -73,7 +73,7 @@ pub struct ExcessiveBotSubstitution {
 /// A team challenges a decision.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct ChallengeFlag {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }
@@ -81,10 +81,10 @@ pub struct ChallengeFlag {
 /// A challenge was decided.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct ChallengeFlagHandled {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
-    /// Was the challenge right?
+    /// Whether the challenge was accepted.
     #[prost(bool, required, tag = "2")]
     pub accepted: bool,
 }
@@ -92,7 +92,7 @@ pub struct ChallengeFlagHandled {
 /// A team stopped the game in an emergency.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct EmergencyStop {
-    /// Who did it, [`Team`].
+    /// The team that caused the event, [`Team`].
     #[prost(enumeration = "Team", required, tag = "1")]
     pub by_team: i32,
 }

@@ -1,4 +1,4 @@
-//! `error`: errors of opening a log file. Each answer says what was met and what mends it.
+//! `error`: errors of opening a log file. Each error states the cause and the fix.
 
 use std::fmt;
 use std::io;
@@ -9,26 +9,26 @@ use std::path::PathBuf;
 pub enum LogError {
     /// The file cannot be opened.
     Open {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause of the failure.
         error: io::Error,
     },
     /// Its first bytes cannot be read (or gunzipped).
     Read(io::Error),
-    /// It ends within its header.
+    /// The file ends within its header.
     Short {
-        /// How many of the header's 16 bytes there are.
+        /// Number of the header's 16 bytes that the file has.
         bytes: usize,
     },
-    /// It begins otherwise than a log file.
+    /// It does not start like a log file.
     NotALog {
         /// Its first bytes.
         begins: Vec<u8>,
     },
-    /// It is of the league's first logger: Qt's strings and compression.
+    /// It is of the league's first logger, with Qt's strings and compression.
     LegacyQt,
-    /// It is of a version that nobody writes.
+    /// Its version is unknown.
     Version(i32),
 }
 

@@ -1,9 +1,8 @@
-//! `guess`: type detection of `Unknown` payloads. Whichever message it has the required fields of, and no
-//! others.
+//! `guess`: type detection of `Unknown` payloads: the message whose required fields it has, and no others.
 //!
-//! A protobuf decoder alone accepts nearly anything as nearly anything: unknown fields are passed over and missing ones
-//! read as zero. So the wire is looked at: numbers and wire types of the outermost fields, and where vision's two
-//! generations and the tracker differ, one or two levels deeper.
+//! A protobuf decoder alone accepts nearly any bytes as any message: unknown fields are skipped and missing
+//! ones read as zero. So the wire is examined: numbers and wire types of the outermost fields, and where
+//! vision's two generations and the tracker differ, one or two levels deeper.
 
 use prost::Message;
 
@@ -31,7 +30,7 @@ pub fn guess(payload: &[u8]) -> Option<MessageKind> {
     tracker.then_some(MessageKind::Tracker2020)
 }
 
-/// Numbers and wire types a message may have; numbers it must have.
+/// Field numbers and wire types a message may have; numbers it must have.
 type Known = [(u32, u8)];
 
 const REFEREE: [(u32, u8); 18] = [
@@ -68,7 +67,7 @@ fn is(fields: &[Field<'_>], known: &Known, required: &[u32]) -> bool {
         && required.iter().all(|number| fields.iter().any(|field| field.number == *number))
 }
 
-/// Is a field of the wrapper what vision puts there?
+/// Whether a field of the wrapper is one of vision's.
 fn vision_part(field: &Field<'_>) -> bool {
     match (field.number, field.value) {
         (1, Value::Bytes(frame)) => {
@@ -120,7 +119,7 @@ mod tests {
         assert_eq!(guess(&[0xff; 40]), None);
         // A referee without its teams.
         assert_eq!(guess(&[8, 1, 16, 1, 32, 1, 40, 1, 48, 1]), None);
-        // A detection frame without its camera is no frame: field 4 is required.
+        // A detection frame without its camera is invalid: field 4 is required.
         let mut frame = DetectionFrame { frame_number: 7, ..Default::default() }.encode_to_vec();
         frame.truncate(frame.len() - 2);
         let mut packet = vec![0x0a, frame.len() as u8];

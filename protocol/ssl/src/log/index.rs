@@ -1,7 +1,7 @@
-//! `index`: message index of an uncompressed log file. The index that may stand at its end.
+//! `index`: message index at the end of an uncompressed log file.
 //!
-//! Its payload: an int64 offset from the file's begin for each message, an int64 distance from the file's end back to the
-//! index message's begin, and `INDEXED`; big-endian. Its own offset is not in it, its time is 0.
+//! Its payload: an int64 offset from the file's start for each message, an int64 distance from the file's end
+//! back to the index message's start, and `INDEXED`; big-endian. Its own offset is not in it, its time is 0.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -13,19 +13,19 @@ const MARK: &[u8; 7] = b"INDEXED";
 /// Bytes after the offsets: the distance and the mark.
 const TAIL: usize = 8 + MARK.len();
 
-/// What stands at a file's end.
+/// Content of a file's end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Index {
-    /// Where each message begins, bytes from the file's begin, rising.
+    /// Start of each message, bytes from the file's start, rising.
     Whole(Vec<u64>),
-    /// No index: it was not written, or the file is cut.
+    /// No index: it was not written, or the file is truncated.
     Absent,
-    /// An index that cannot be right.
+    /// An invalid index, with the reason.
     Broken(&'static str),
 }
 
 impl Index {
-    /// Looks for an index at the end. Allocates no more than the file is long.
+    /// Searches an index at the end. Allocates no more bytes than the file has.
     pub fn read(file: &mut (impl Read + Seek)) -> io::Result<Self> {
         let length = file.seek(SeekFrom::End(0))?;
         if length < (FILE_HEADER + MESSAGE_HEADER + TAIL) as u64 {
@@ -71,7 +71,7 @@ impl Index {
         Ok(Self::Whole(offsets))
     }
 
-    /// The index's payload for messages that begin at `offsets`.
+    /// The index's payload for messages that start at `offsets`.
     pub(super) fn payload(offsets: &[u64]) -> Vec<u8> {
         let mut payload = Vec::with_capacity(offsets.len() * 8 + TAIL);
         payload.extend(offsets.iter().flat_map(|offset| offset.to_be_bytes()));

@@ -1,11 +1,12 @@
 //! `log`: the league's log files: `.log` and `.log.gz`, as its recorder writes and its players read.
 //!
-//! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32 type, int32
-//! size, payload; all integers big-endian. An index of the messages may stand at the end of an uncompressed file; a
-//! `.log.gz` is the whole file gzipped and has none.
+//! A file is `SSL_LOG_FILE`, an int32 version (1), and then messages: int64 receiver's time in ns, int32
+//! type, int32 size, payload; all integers big-endian. An index of the messages may stand at the end of an
+//! uncompressed file; a `.log.gz` is the whole file gzipped and has none.
 //!
-//! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end anywhere and hold
-//! anything: what is whole is given, and [`LogReader::end`] says what was met instead of an end.
+//! Read with [`open`] or [`open_at`], write with [`LogWriter`], count with [`Summary`]. A file may end
+//! anywhere and hold anything: every whole message is returned, and [`LogReader::end`] reports what was found
+//! instead of an end.
 
 mod error;
 mod guess;
@@ -37,16 +38,16 @@ const FILE_HEADER: usize = 16;
 /// Bytes before each payload: time, type, size.
 const MESSAGE_HEADER: usize = 16;
 
-/// Most bytes of a payload that are accepted: a message is a datagram, and a datagram's length has 16 bits. A larger
-/// size is taken for damage, so that damage cannot ask for gigabytes.
+/// Most bytes of a payload that are accepted: a message is a datagram, and a datagram's length has 16 bits. A
+/// larger size counts as damage, so that damage cannot request gigabytes.
 pub const PAYLOAD_MAX: usize = 65_535;
 
-/// What a message of a log file holds.
+/// Kind of a message in a log file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MessageKind {
-    /// 0: nothing; to be passed over.
+    /// 0: no message; to be skipped.
     Blank,
-    /// 1: some message; [`guess`] finds out.
+    /// 1: unknown message; [`guess`] detects its type.
     Unknown,
     /// 2: [`vision::legacy::WrapperPacket`](crate::vision::legacy::WrapperPacket).
     Vision2010,
@@ -58,7 +59,7 @@ pub enum MessageKind {
     Tracker2020,
     /// 6: the [`Index`].
     Index2021,
-    /// A number that is not the league's.
+    /// A number not defined by the league.
     Other(i32),
 }
 
@@ -110,16 +111,17 @@ impl std::fmt::Display for MessageKind {
 /// One message of a log file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README, trap 6).
+    /// When the recorder received it, ns, Unix time. Neighbours may step back half a millisecond (README,
+    /// trap 6).
     pub timestamp_ns: i64,
-    /// What it holds.
+    /// Kind of the message.
     pub kind: MessageKind,
-    /// The datagram.
+    /// Bytes of the datagram.
     pub payload: Vec<u8>,
 }
 
 impl Record {
-    /// The message itself; `None` where there is none to have (blank, index).
+    /// The decoded message; `None` for blank messages and the index.
     pub fn decode(&self) -> Result<Option<Packet>, PacketError> {
         Packet::decode(self.kind, &self.payload)
     }

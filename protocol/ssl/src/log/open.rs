@@ -1,4 +1,4 @@
-//! `open`: opening of a log file. By its first bytes, whatever its name ends in.
+//! `open`: opening of a log file, by its first bytes, independent of its file name.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -12,9 +12,9 @@ use super::{Index, LogError, LogReader, MESSAGE_HEADER};
 /// The bytes of an opened file.
 #[derive(Debug)]
 pub enum Source {
-    /// As they are.
+    /// An uncompressed file.
     Plain(BufReader<File>),
-    /// Gunzipped.
+    /// A gzipped file.
     Gzip(Box<MultiGzDecoder<BufReader<File>>>),
 }
 
@@ -27,7 +27,7 @@ impl Read for Source {
     }
 }
 
-/// How [`open_at`] found its place.
+/// Method by which [`open_at`] found its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// By the index: a few reads.
@@ -45,8 +45,8 @@ pub fn open(path: &Path) -> Result<LogReader<Source>, LogError> {
 
 /// Opens a file at its first message of `timestamp_ns` (ns, Unix time) or later; at its end if there is none.
 ///
-/// "First" is as the file stands, whichever way it is found: times may step back (README, trap 6), and with an index a
-/// step back is seen over [`BACK_STEP_MESSAGES`] messages.
+/// "First" is in the order of the file, with either search method: times may step back (README, trap 6), and
+/// with an index a step back is detected over [`BACK_STEP_MESSAGES`] messages.
 pub fn open_at(path: &Path, timestamp_ns: i64) -> Result<(LogReader<Source>, Place), LogError> {
     let mut reader = open(path)?;
     let Source::Plain(mut file) = source(path)? else {
@@ -66,8 +66,8 @@ pub fn open_at(path: &Path, timestamp_ns: i64) -> Result<(LogReader<Source>, Pla
     Ok((LogReader::from_message(Source::Plain(file), at), place))
 }
 
-/// How many messages before the one found by halving are looked at, because times step back. The league's recorder steps
-/// back by half a millisecond, in which it receives one or two messages.
+/// Number of messages checked before the one found by bisection, because times step back. The league's
+/// recorder steps back by half a millisecond, in which it receives one or two messages.
 pub const BACK_STEP_MESSAGES: usize = 64;
 
 const NOT_ITS_OWN: &str = "its offsets lead to no messages";
@@ -82,7 +82,7 @@ fn source(path: &Path) -> Result<Source, LogError> {
     Ok(if gzip { Source::Gzip(Box::new(MultiGzDecoder::new(file))) } else { Source::Plain(file) })
 }
 
-/// Halves the index; `None` where an offset leads outside the file's messages.
+/// Bisects the index; `None` where an offset leads outside the file's messages.
 fn search(file: &mut BufReader<File>, offsets: &[u64], timestamp_ns: i64) -> io::Result<Option<u64>> {
     let mut low = 0;
     let mut high = offsets.len();
@@ -91,7 +91,7 @@ fn search(file: &mut BufReader<File>, offsets: &[u64], timestamp_ns: i64) -> io:
         let next = offsets.get(at + 1);
         let (time, size) = header_at(file, offsets[at])?;
         let length = u64::try_from(size).unwrap_or(u64::MAX).saturating_add(MESSAGE_HEADER as u64);
-        // The next message may lie further on: blanks between them need no offset.
+        // The next message may be farther on: blanks between them need no offset.
         plausible &= next.is_none_or(|next| offsets[at].saturating_add(length) <= *next);
         Ok(time >= timestamp_ns)
     };
@@ -126,7 +126,7 @@ fn header_at(file: &mut BufReader<File>, at: u64) -> io::Result<(i64, i32)> {
     Ok((time, size))
 }
 
-/// Walks over the headers from `at` on; where they end or break, the reader that comes after says how.
+/// Walks over the headers from `at` on; where they end or break, the reader that follows reports how.
 fn scan(file: &mut BufReader<File>, mut at: u64, timestamp_ns: i64) -> Result<u64, LogError> {
     use super::MessageKind::{Blank, Index2021};
     file.seek(SeekFrom::Start(at)).map_err(LogError::Read)?;

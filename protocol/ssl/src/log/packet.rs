@@ -8,18 +8,19 @@ use crate::{referee, tracker, vision};
 /// A message of a log file, decoded.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Packet {
-    /// Vision as of today.
+    /// Present vision packet.
     Vision(vision::WrapperPacket),
-    /// Vision until 2014.
+    /// Vision packet until 2014.
     VisionLegacy(vision::legacy::WrapperPacket),
-    /// The referee.
+    /// A referee packet.
     Referee(referee::Referee),
-    /// A tracker.
+    /// A tracker packet.
     Tracker(tracker::TrackerWrapperPacket),
 }
 
 impl Packet {
-    /// Decodes what `kind` says, or what [`guess`] finds where it says `Unknown`; `None` for blank and index.
+    /// Decodes a payload of the type `kind`, or of the type that [`guess`] finds where it is `Unknown`;
+    /// `None` for blank and index.
     pub fn decode(kind: MessageKind, payload: &[u8]) -> Result<Option<Self>, PacketError> {
         let broken = |kind| move |error| PacketError::Broken { kind, error };
         let packet = match kind {
@@ -37,7 +38,7 @@ impl Packet {
         Ok(Some(packet))
     }
 
-    /// The kind a log file keeps it under.
+    /// The kind under which a log file stores it.
     pub const fn kind(&self) -> MessageKind {
         match self {
             Self::Vision(_) => MessageKind::Vision2014,
@@ -51,16 +52,16 @@ impl Packet {
 /// A payload without a message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PacketError {
-    /// It is not what its type says.
+    /// It is not of its declared type.
     Broken {
-        /// Its type.
+        /// Declared type.
         kind: MessageKind,
-        /// Where it breaks.
+        /// Error of the decoder.
         error: prost::DecodeError,
     },
     /// Its type is not one of the league's.
     KindNotKnown(i32),
-    /// Its type is `Unknown`, and it is none of the messages we know.
+    /// Its type is `Unknown`, and it is none of the known messages.
     NothingKnown,
 }
 

@@ -1,18 +1,18 @@
 //! `reader`: reader of log files.
 //!
-//! Streams from any `Read`; holds one message at a time. Whatever the bytes are: every whole message before the first
-//! damage is given, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is told.
+//! Streams from any `Read`; holds one message at a time. For any input: every whole message before the first
+//! damage is returned, nothing larger than [`PAYLOAD_MAX`] is allocated, and the end is reported.
 
 use std::fmt;
 use std::io::{self, Read};
 
 use super::{FILE_HEADER, LogError, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, Record, VERSION};
 
-/// Reads messages from first to last; an iterator. Blank messages and the index are counted and passed over.
+/// Reads messages from first to last; an iterator. Blank messages and the index are counted and skipped.
 #[derive(Debug)]
 pub struct LogReader<R> {
     source: R,
-    /// Where the next message begins, bytes from the (unzipped) file's begin.
+    /// Start of the next message, bytes from the (unzipped) file's start.
     at: u64,
     ahead: Option<Record>,
     last_ns: Option<i64>,
@@ -20,16 +20,16 @@ pub struct LogReader<R> {
     end: Option<End>,
 }
 
-/// What was met on the way.
+/// Counters of the messages read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Messages given.
+    /// Number of messages returned.
     pub messages: u64,
-    /// Blank messages passed over.
+    /// Number of blank messages skipped.
     pub blank: u64,
-    /// Indices passed over: 0 or 1 in a sound file.
+    /// Number of indices skipped: 0 or 1 in a valid file.
     pub index: u64,
-    /// Messages earlier than the one before them.
+    /// Number of messages earlier than the one before them.
     pub back_steps: u64,
     /// The largest such step, ns.
     pub largest_back_step_ns: u64,
@@ -38,33 +38,33 @@ pub struct Counts {
 /// How a file ends. Positions and sizes are bytes of the unzipped file.
 #[derive(Debug)]
 pub enum End {
-    /// After a whole message.
+    /// The file ends after a whole message.
     Whole,
-    /// Within a message.
+    /// The file ends within a message.
     Cut {
-        /// Where that message begins.
+        /// Start of that message.
         at: u64,
-        /// How many bytes of it there are.
+        /// Number of its bytes that are there.
         bytes: u64,
     },
-    /// At a message of an impossible size; where the next one begins cannot be told.
+    /// At a message of an impossible size; the start of the next one is unknown.
     Size {
-        /// Where that message begins.
+        /// Start of that message.
         at: u64,
-        /// The size it claims.
+        /// The size it declares.
         size: i32,
     },
-    /// Where it cannot be read or gunzipped any more.
+    /// The file cannot be read or gunzipped any further.
     Read {
-        /// Where the message that was being read begins.
+        /// Start of the message that was being read.
         at: u64,
-        /// Why.
+        /// Cause of the failure.
         error: io::Error,
     },
 }
 
 impl End {
-    /// Did the file end as it should?
+    /// Whether the file ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
@@ -114,7 +114,7 @@ impl<R: Read> LogReader<R> {
         }
     }
 
-    /// Reads on from a message's first byte, which is byte `at` of the file.
+    /// Continues reading from a message's first byte, which is byte `at` of the file.
     pub(super) fn from_message(source: R, at: u64) -> Self {
         Self { source, at, ahead: None, last_ns: None, counts: Counts::default(), end: None }
     }
@@ -124,17 +124,17 @@ impl<R: Read> LogReader<R> {
         self.end.as_ref()
     }
 
-    /// What was met so far.
+    /// Counters so far.
     pub fn counts(&self) -> &Counts {
         &self.counts
     }
 
-    /// Where the next unread message begins, bytes of the unzipped file.
+    /// Start of the next unread message, bytes of the unzipped file.
     pub(super) fn position(&self) -> u64 {
         self.at
     }
 
-    /// Passes over messages until the first of `timestamp_ns` or later, which comes next.
+    /// Skips messages until the first of `timestamp_ns` or later, which is returned next.
     pub fn skip_to(&mut self, timestamp_ns: i64) {
         while let Some(record) = self.next() {
             if record.timestamp_ns >= timestamp_ns {
@@ -225,7 +225,7 @@ pub(super) fn parse_header(header: &[u8; MESSAGE_HEADER]) -> (i64, MessageKind, 
     )
 }
 
-/// Reads until the buffer is full or the source ends; says how far it came.
+/// Reads until the buffer is full or the source ends; returns the number of bytes read.
 pub(super) fn fill(source: &mut impl Read, buffer: &mut [u8]) -> Result<usize, (usize, io::Error)> {
     let mut filled = 0;
     while filled < buffer.len() {

@@ -6,42 +6,43 @@ use std::io::Read;
 
 use super::{Counts, LogReader, MessageKind, Packet, PacketError};
 
-/// A file in numbers.
+/// Statistics of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// By the kind the file names; a message of kind `Unknown` stands there, whatever it was found to be.
+    /// By the kind that the file names; a message of kind `Unknown` is counted there, even if its kind was
+    /// found.
     pub kinds: BTreeMap<MessageKind, KindSummary>,
-    /// Messages of kind `Unknown` that were found to be something.
+    /// Number of messages of kind `Unknown` whose kind was found.
     pub guessed: u64,
-    /// What the reader met.
+    /// Counters of the reader.
     pub counts: Counts,
     /// First and last time of any message, ns, Unix time.
     pub span_ns: Option<(i64, i64)>,
-    /// Images by camera.
+    /// Camera frames by camera.
     pub cameras: BTreeMap<u32, u64>,
-    /// Trackers by their id, with what they call themselves.
+    /// Names of trackers, by their id.
     pub trackers: BTreeMap<String, String>,
     /// The first message that could not be decoded: its number among all, from 0, and why.
     pub first_undecodable: Option<(u64, PacketError)>,
-    /// How the file ended, in words; empty if whole.
+    /// How the file ended, as text; empty if whole.
     pub damage: String,
 }
 
-/// Messages of one kind.
+/// Statistics of one kind of messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KindSummary {
-    /// How many.
+    /// Number of messages.
     pub messages: u64,
-    /// Their payloads, bytes.
+    /// Total length of their payloads, bytes.
     pub bytes: u64,
-    /// Those that could not be decoded.
+    /// Number of those that could not be decoded.
     pub undecodable: u64,
     /// Least and greatest time, ns, Unix time.
     pub span_ns: (i64, i64),
 }
 
 impl Summary {
-    /// Reads to the end.
+    /// Reads the file to its end.
     pub fn of<R: Read>(reader: &mut LogReader<R>) -> Self {
         let mut summary = Self::default();
         for (number, record) in (0..).zip(reader.by_ref()) {
@@ -70,7 +71,7 @@ impl Summary {
         summary
     }
 
-    /// Messages that could not be decoded, of all kinds.
+    /// Number of messages that could not be decoded, of all kinds.
     pub fn undecodable(&self) -> u64 {
         self.kinds.values().map(|kind| kind.undecodable).sum()
     }

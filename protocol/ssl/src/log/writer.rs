@@ -1,4 +1,4 @@
-//! `writer`: writer of log files. Writes `.log`, with an index at its end, and `.log.gz`.
+//! `writer`: writer of log files: `.log`, with an index at its end, and `.log.gz`.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -9,13 +9,13 @@ use flate2::write::GzEncoder;
 
 use super::{FILE_HEADER, Index, MAGIC, MESSAGE_HEADER, MessageKind, PAYLOAD_MAX, VERSION};
 
-/// Writes messages one after the other. [`finish`](Self::finish) it: without that there is no index, and the last
-/// messages of a `.log.gz` may be missing.
+/// Writes messages one after the other. [`finish`](Self::finish) it: without that there is no index, and the
+/// last messages of a `.log.gz` may be missing.
 #[derive(Debug)]
 pub struct LogWriter<W: Write> {
     sink: W,
     at: u64,
-    /// Where each message begins; `None` where no index is wanted.
+    /// Start of each message; `None` where no index is wanted.
     offsets: Option<Vec<u64>>,
 }
 
@@ -41,7 +41,7 @@ impl LogWriter<Sink> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Without an index.
+    /// A writer without an index.
     pub fn new(sink: W) -> io::Result<Self> {
         Self::begin(sink, None)
     }
@@ -69,7 +69,7 @@ impl<W: Write> LogWriter<W> {
         self.put(timestamp_ns, kind, payload)
     }
 
-    /// Writes what is buffered: what stands in the file then survives a crash.
+    /// Writes the buffered bytes: they survive a crash in the file.
     pub fn flush(&mut self) -> io::Result<()> {
         self.sink.flush()
     }
@@ -99,9 +99,9 @@ impl<W: Write> LogWriter<W> {
 /// A file being written.
 #[derive(Debug)]
 pub enum Sink {
-    /// As it is.
+    /// An uncompressed file.
     Plain(BufWriter<File>),
-    /// Gzipped.
+    /// A gzipped file.
     Gzip(GzEncoder<BufWriter<File>>),
 }
 

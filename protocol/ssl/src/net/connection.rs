@@ -1,4 +1,4 @@
-//! `connection`: TCP connection to the game controller. Whole messages over TCP, each after its length.
+//! `connection`: TCP connection to the game controller, with whole messages, each after its length.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -26,7 +26,7 @@ impl Connection {
         Self::over(stream)
     }
 
-    /// Talks over a stream that somebody else opened or accepted.
+    /// Communicates over a stream that the caller opened or accepted.
     pub fn over(stream: TcpStream) -> Result<Self, NetError> {
         let unknown = SocketAddr::from(([0; 4], 0));
         let system = |address| move |error| NetError::System { doing: "talk with", address, error };
@@ -37,7 +37,7 @@ impl Connection {
         Ok(Self { stream, peer, reader: FrameReader::new(MESSAGE_MAX), chunk: vec![0; CHUNK].into() })
     }
 
-    /// The other side.
+    /// Address of the peer.
     pub const fn peer(&self) -> SocketAddr {
         self.peer
     }
@@ -47,7 +47,8 @@ impl Connection {
         self.stream.write_all(&delimited(message)).map_err(|error| self.broken("send to", error))
     }
 
-    /// The next message, within `wait` (at least a millisecond). `None`: none came whole; what came of it is kept.
+    /// The next message, within `wait` (at least a millisecond). `None`: none arrived completely; the bytes
+    /// received are kept.
     pub fn receive<M: Message + Default>(&mut self, wait: Duration) -> Result<Option<M>, NetError> {
         let from = self.peer;
         let until = Instant::now() + wait.max(SHORTEST_WAIT);
@@ -90,10 +91,10 @@ fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted)
 }
 
-/// A wait of zero would be forever.
+/// Shortest wait; zero would wait forever.
 const SHORTEST_WAIT: Duration = Duration::from_millis(1);
 
-/// The game controller answers within its tick of 25 ms; who takes a second does not read any more.
+/// The game controller answers within its tick of 25 ms; a peer that takes a second does not read any more.
 const WRITE_WAIT: Duration = Duration::from_secs(1);
 
 /// Bytes read at once; a reply has about a hundred.

@@ -9,76 +9,76 @@ use crate::stream::StreamError;
 /// Why a socket cannot be opened or used.
 #[derive(Debug)]
 pub enum NetError {
-    /// Another program has the port and does not share it.
+    /// Another program has bound the port and does not share it.
     Busy {
-        /// Which port.
+        /// Address of the port.
         address: SocketAddr,
-        /// Was the port to be shared (multicast), so that the other program is at fault?
+        /// Whether the port was to be shared (multicast), so that the other program is at fault.
         shared: bool,
     },
     /// No interface of that name or address.
     NoInterface {
-        /// What was asked for.
+        /// Name that was requested.
         wanted: String,
-        /// What there is, `name (address)`.
+        /// Existing interfaces, `name (address)`.
         there_are: Vec<String>,
     },
     /// No interface could join the group.
     NotJoined {
-        /// The group.
+        /// Address of the group.
         group: Ipv4Addr,
-        /// Each interface and why it could not.
+        /// Each interface with its error.
         tried: Vec<(String, io::Error)>,
     },
     /// The group's address is not one: multicast is 224.0.0.0 to 239.255.255.255.
     NotMulticast(Ipv4Addr),
-    /// The machine has no way to that address.
+    /// The machine has no route to that address.
     NoRoute {
-        /// Where to.
+        /// Destination.
         to: SocketAddr,
-        /// By which interface, if not by the system's choice.
+        /// Address of the interface, if not chosen by the system.
         by: Option<Ipv4Addr>,
     },
     /// A datagram larger than UDP carries.
     TooLarge {
-        /// Its bytes.
+        /// Length of the datagram, bytes.
         bytes: usize,
     },
-    /// Nobody took the TCP connection.
+    /// The TCP connection was not accepted.
     NotConnected {
-        /// Where to.
+        /// Destination.
         to: SocketAddr,
-        /// Why not.
+        /// Cause of the failure.
         error: io::Error,
     },
-    /// The other side closed the TCP connection.
+    /// The peer closed the TCP connection.
     Closed {
-        /// Who.
+        /// Address of the peer.
         by: SocketAddr,
-        /// Bytes of a message that did not come whole.
+        /// Bytes of an incomplete message.
         pending: usize,
     },
-    /// What comes by TCP are no messages of the league's.
+    /// Bytes received by TCP are no messages of the league's.
     NotFramed {
-        /// From whom.
+        /// Address of the sender.
         from: SocketAddr,
-        /// Why.
+        /// Cause of the failure.
         error: StreamError,
     },
-    /// A message came by TCP that is not the one expected.
+    /// A message received by TCP is not of the expected type.
     NotDecoded {
-        /// From whom.
+        /// Address of the sender.
         from: SocketAddr,
-        /// Why.
+        /// Cause of the failure.
         error: prost::DecodeError,
     },
-    /// Anything else the system refuses.
+    /// Any other error of the system.
     System {
-        /// What was tried.
+        /// Operation that failed.
         doing: &'static str,
-        /// On which address.
+        /// Address concerned.
         address: SocketAddr,
-        /// Why not.
+        /// Cause of the failure.
         error: io::Error,
     },
 }

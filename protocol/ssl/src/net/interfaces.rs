@@ -1,4 +1,4 @@
-//! `interfaces`: choice of the network interface. Those with IPv4: the league's groups are IPv4.
+//! `interfaces`: choice of the network interface, among those with IPv4: the league's groups are IPv4.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};
@@ -8,14 +8,14 @@ use super::NetError;
 /// An interface that is up and has IPv4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
-    /// As the system names it: `lo`, `eth0`.
+    /// Its name in the system: `lo`, `eth0`.
     pub name: String,
     /// Its first IPv4 address.
     pub address: Ipv4Addr,
 }
 
 impl Interface {
-    /// Does it lead to this machine only?
+    /// Whether it leads to this machine only.
     pub const fn is_loopback(&self) -> bool {
         self.address.is_loopback()
     }
@@ -27,13 +27,13 @@ impl fmt::Display for Interface {
     }
 }
 
-/// Which interfaces to use.
+/// Choice of interfaces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
-    /// Every one that can, loopback included: wherever vision comes from, it is heard.
+    /// Every interface that can, loopback included: vision is received from any of them.
     #[default]
     All,
-    /// These, by name or IPv4 address; one that is missing or cannot is an error.
+    /// These, by name or IPv4 address; a missing or unsuitable one is an error.
     These(Vec<String>),
 }
 
@@ -43,7 +43,7 @@ impl Interfaces {
         Self::These(vec![Ipv4Addr::LOCALHOST.to_string()])
     }
 
-    /// The interfaces themselves.
+    /// The interfaces chosen.
     pub(super) fn choose(&self) -> Result<Vec<Interface>, NetError> {
         let there_are = interfaces().map_err(|error| NetError::System {
             doing: "list the interfaces of",

@@ -1,12 +1,12 @@
-//! `net`: sockets of the league's network. Sockets for multicast and unicast, as its own programs open them.
+//! `net`: sockets of the league's network, for multicast and unicast, opened as the league's own programs do.
 //!
-//! [`Receiver`] hears a multicast group beside other programs on the same machine, [`Sender`] speaks to one, [`Port`] is a
-//! UDP port of one's own (simulators, robots), [`Connection`] a talk with the game controller. Every error says what to
-//! mend.
+//! [`Receiver`] receives a multicast group beside other programs on the same machine, [`Sender`] sends to
+//! one, [`Port`] is a UDP port of one's own (simulators, robots), [`Connection`] a dialogue with the game
+//! controller. Every error names the fix.
 //!
-//! **No async runtime.** A receive waits at most as long as it is told and takes no memory, so one thread a socket, or
-//! one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets and under a thousand
-//! datagrams a second. Whoever wants a runtime calls these from a blocking task.
+//! **No async runtime.** A receive waits for at most the given time and allocates no memory, so one thread a
+//! socket, or one loop over all with a wait of zero, is simple and enough: a match has four to eight sockets
+//! and under a thousand datagrams a second. A program with a runtime calls these from a blocking task.
 
 mod connection;
 mod error;
@@ -20,7 +20,7 @@ pub use interfaces::{Interface, Interfaces, interfaces};
 pub use probe::{LoopbackProbe, probe_loopback, route};
 pub use sockets::{Datagram, Port, Receiver, Sender};
 
-/// Where the league's programs meet.
+/// Addresses and ports of the league's programs.
 pub mod addresses {
     use std::net::{Ipv4Addr, SocketAddrV4};
 
@@ -41,11 +41,11 @@ pub mod addresses {
     pub const AUTOREF_PORT: u16 = 10007;
     /// Game controller's TCP port for teams.
     pub const TEAM_PORT: u16 = 10008;
-    /// Game controller's TCP port for somebody who drives its clock.
+    /// Game controller's TCP port for a program that drives its clock.
     pub const CI_PORT: u16 = 10009;
     /// Game controller's TCP port for remote controls.
     pub const REMOTE_CONTROL_PORT: u16 = 10011;
-    /// An automatic referee's TCP port for somebody who drives its clock.
+    /// An automatic referee's TCP port for a program that drives its clock.
     pub const AUTOREF_CI_PORT: u16 = 10013;
     /// A simulator's UDP port for [`SimulatorCommand`](crate::simulation::SimulatorCommand).
     pub const SIMULATOR_PORT: u16 = 10300;

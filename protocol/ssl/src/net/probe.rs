@@ -1,7 +1,8 @@
-//! `probe`: multicast self-test of this machine. Asked before a user waits in vain for packets.
+//! `probe`: multicast self-test of this machine, run before a user waits in vain for packets.
 //!
-//! Our own sockets choose their interface and reach each other by loopback on any machine. The league's programs let the
-//! system choose, so for them the loopback needs a route; [`route`] tells which way they will send.
+//! Our own sockets choose their interface and reach each other by loopback on any machine. The league's
+//! programs let the system choose, so for them the loopback needs a route; [`route`] finds the interface they
+//! will send by.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::Duration;
@@ -9,13 +10,13 @@ use std::time::Duration;
 use super::error::LOOPBACK_MEND;
 use super::{Interfaces, NetError, Receiver, Sender, interfaces};
 
-/// What a packet sent by loopback met.
+/// Result of a packet sent by loopback.
 #[derive(Debug)]
 pub enum LoopbackProbe {
-    /// It came back: programs on this machine hear each other.
+    /// It came back: programs on this machine receive each other.
     Works {
-        /// By which address programs send that let the system choose; not 127.0.0.1: the league's own programs need
-        /// this machine's other interface to be heard, or the mend.
+        /// Address by which programs send that let the system choose; not 127.0.0.1: the league's own
+        /// programs need this machine's other interface to be received, or the fix.
         league_sends_by: Option<Ipv4Addr>,
     },
     /// It was sent and did not come back.
@@ -46,7 +47,7 @@ impl std::fmt::Display for LoopbackProbe {
     }
 }
 
-/// Sends a packet to a group by loopback, on a port nobody uses, and waits for it.
+/// Sends a packet to a group by loopback, on an unused port, and waits for it.
 pub fn probe_loopback(group: Ipv4Addr, wait: Duration) -> LoopbackProbe {
     match send_and_wait(group, wait) {
         Ok(true) => {
@@ -58,7 +59,8 @@ pub fn probe_loopback(group: Ipv4Addr, wait: Duration) -> LoopbackProbe {
     }
 }
 
-/// By which of this machine's addresses the system sends to a group where a program does not choose. Sends nothing.
+/// Address of this machine by which the system sends to a group where a program does not choose. Sends
+/// nothing.
 pub fn route(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {
     let to = SocketAddr::from(group);
     let any = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
@@ -72,7 +74,7 @@ pub fn route(group: SocketAddrV4) -> Result<Ipv4Addr, NetError> {
 }
 
 fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
-    // The system gives a port nobody has; the next moment it is ours again.
+    // The system gives an unused port; the next moment it is ours again.
     let any = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
     let port = super::Port::bind(any)?.address().port();
     let to = SocketAddrV4::new(group, port);
@@ -88,5 +90,5 @@ fn send_and_wait(group: Ipv4Addr, wait: Duration) -> Result<bool, NetError> {
 
 const PROBE: &[u8] = b"onetwo: does loopback carry multicast?";
 
-/// Any; nothing is sent to it.
+/// Arbitrary port; nothing is sent to it.
 const PROBE_PORT: u16 = 10006;

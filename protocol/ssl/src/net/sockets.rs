@@ -1,4 +1,4 @@
-//! `sockets`: multicast and unicast sockets. One that hears a group, one that speaks to it, one of its own
+//! `sockets`: multicast and unicast sockets: one that receives a group, one that sends to it, one of its own
 //! port.
 
 use std::io;
@@ -11,16 +11,17 @@ use super::error::multicast_group;
 use super::interfaces::find;
 use super::{Interface, Interfaces, NetError, interfaces};
 
-/// A datagram as it came.
+/// A received datagram.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Datagram<'a> {
-    /// One message.
+    /// Bytes of one message.
     pub bytes: &'a [u8],
-    /// Who sent it.
+    /// Address of the sender.
     pub from: SocketAddr,
 }
 
-/// Hears a multicast group, beside other programs that hear it too. Datagrams sent straight to its port come as well.
+/// Receives a multicast group, beside other programs that receive it too. Datagrams sent straight to its port
+/// come as well.
 #[derive(Debug)]
 pub struct Receiver {
     inbox: Inbox,
@@ -34,7 +35,7 @@ impl Receiver {
         let bound = SocketAddr::from((Ipv4Addr::UNSPECIFIED, group.port()));
         let socket = udp().map_err(|error| NetError::System { doing: "open", address: bound, error })?;
         share(&socket).map_err(|error| NetError::System { doing: "share", address: bound, error })?;
-        // A hint: some systems allow less, and go on with less.
+        // A hint: systems that allow less use less.
         let _ = socket.set_recv_buffer_size(RECEIVE_BUFFER);
         socket.bind(&bound.into()).map_err(|error| NetError::bind(bound, true, error))?;
         let mut joined = Vec::new();
@@ -52,18 +53,18 @@ impl Receiver {
         Ok(Self { inbox: Inbox::new(socket.into(), bound), joined })
     }
 
-    /// The interfaces it hears.
+    /// The interfaces it receives on.
     pub fn joined(&self) -> &[Interface] {
         &self.joined
     }
 
-    /// The next datagram, within `wait`; a wait of zero looks only. `None`: none came.
+    /// The next datagram, within `wait`; a wait of zero only polls. `None`: none came.
     pub fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
         self.inbox.receive(wait)
     }
 }
 
-/// Speaks to one address: a multicast group, or a single machine.
+/// Sends to one address: a multicast group, or a single machine.
 #[derive(Debug)]
 pub struct Sender {
     socket: UdpSocket,
@@ -72,9 +73,10 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// To a group: by the interface named, or by the one the system chooses. Programs on this machine hear it too.
+    /// To a group: by the interface named, or by the one the system chooses. Programs on this machine receive
+    /// it too.
     ///
-    /// One interface only: a program that hears several would hear everything several times.
+    /// One interface only: a program that receives on several would receive every packet several times.
     pub fn multicast(group: SocketAddrV4, by: Option<&str>) -> Result<Self, NetError> {
         multicast_group(group)?;
         let to = SocketAddr::from(group);
@@ -92,7 +94,7 @@ impl Sender {
         Ok(Self { socket: socket.into(), to, by })
     }
 
-    /// To a single machine's port.
+    /// A sender to a single machine's port.
     pub fn unicast(to: SocketAddr) -> Result<Self, NetError> {
         let any = if to.is_ipv4() { SocketAddr::from(([0; 4], 0)) } else { SocketAddr::from(([0u16; 8], 0)) };
         let socket = UdpSocket::bind(any).map_err(|error| NetError::bind(any, false, error))?;
@@ -105,13 +107,14 @@ impl Sender {
         sent.map(drop).map_err(|error| NetError::send(self.to, self.by, bytes.len(), error))
     }
 
-    /// Where it sends to.
+    /// Destination address.
     pub const fn to(&self) -> SocketAddr {
         self.to
     }
 }
 
-/// A UDP port of one's own, for both directions: a simulator's, a robot's, or a client's that gets answers.
+/// A UDP port of one's own, for both directions: a simulator's, a robot's, or a client's that receives
+/// answers.
 ///
 /// Not shared: of several listeners on one port, a datagram sent straight to it reaches one (README, trap 7).
 #[derive(Debug)]
@@ -127,12 +130,12 @@ impl Port {
         Ok(Self { inbox: Inbox::new(socket, address) })
     }
 
-    /// Its address, with the port it got.
+    /// Its address, with the port assigned.
     pub const fn address(&self) -> SocketAddr {
         self.inbox.address
     }
 
-    /// The next datagram, within `wait`; a wait of zero looks only. `None`: none came.
+    /// The next datagram, within `wait`; a wait of zero only polls. `None`: none came.
     pub fn receive(&mut self, wait: Duration) -> Result<Option<Datagram<'_>>, NetError> {
         self.inbox.receive(wait)
     }
@@ -144,13 +147,13 @@ impl Port {
     }
 }
 
-/// A bound socket and room for its largest datagram, taken once.
+/// A bound socket and a buffer for its largest datagram, allocated once.
 #[derive(Debug)]
 struct Inbox {
     socket: UdpSocket,
     address: SocketAddr,
     buffer: Box<[u8]>,
-    /// What the socket is set to; the system is asked only when it changes.
+    /// Time-out of the socket; the system is called only when it changes.
     waits: Option<Duration>,
 }
 
@@ -176,7 +179,7 @@ impl Inbox {
     }
 }
 
-/// Nothing came, a signal came instead, or an earlier answer of ours found nobody.
+/// Nothing came, a signal came instead, or an earlier answer of ours found no receiver.
 fn is_silence(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionRefused, ConnectionReset, Interrupted, TimedOut, WouldBlock};
     matches!(error.kind(), WouldBlock | TimedOut | Interrupted | ConnectionRefused | ConnectionReset)
@@ -186,7 +189,7 @@ fn udp() -> io::Result<Socket> {
     Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))
 }
 
-/// Lets other programs hear the same port.
+/// Lets other programs receive on the same port.
 fn share(socket: &Socket) -> io::Result<()> {
     socket.set_reuse_address(true)?;
     #[cfg(unix)]
@@ -194,11 +197,11 @@ fn share(socket: &Socket) -> io::Result<()> {
     Ok(())
 }
 
-/// As the game controller's.
+/// Time to live, as the game controller's.
 const MULTICAST_TTL: u32 = 32;
 
-/// The largest datagram and a byte, so that none is cut unseen.
+/// The largest datagram and a byte, so that truncation is detected.
 const BUFFER: usize = crate::stream::DATAGRAM_MAX + 1;
 
-/// Bytes the system shall keep for us: half a second of vision (four cameras, 100 Hz, 2 kB) while we compute.
+/// Bytes of the system's receive buffer: half a second of vision (four cameras, 100 Hz, 2 kB).
 const RECEIVE_BUFFER: usize = 512 * 1024;

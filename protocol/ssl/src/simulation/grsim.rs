@@ -1,15 +1,16 @@
-//! `grsim`: grSim's own messages, older than the league's protocol and still spoken by many teams. Commands go to UDP 20011, robots'
-//! states come back to 30011 (blue) and 30012 (yellow). Units: m, m/s, rad/s; **degrees** for a robot's heading.
+//! `grsim`: grSim's own messages, older than the league's protocol and still used by many teams. Commands go
+//! to UDP 20011, robots' states come back to 30011 (blue) and 30012 (yellow). Units: m, m/s, rad/s;
+//! **degrees** for a robot's heading.
 
 use prost::Message;
 
-/// To port 20011: commands for one team, and things to be moved.
+/// To port 20011: commands for one team, and replacements.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimPacket {
-    /// What robots shall do.
+    /// Commands to robots.
     #[prost(message, optional, tag = "1")]
     pub commands: Option<GrsimCommands>,
-    /// What is to be put somewhere else.
+    /// Objects to be moved.
     #[prost(message, optional, tag = "2")]
     pub replacement: Option<GrsimReplacement>,
 }
@@ -17,93 +18,93 @@ pub struct GrsimPacket {
 /// Commands for one team.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimCommands {
-    /// The sender's time, s; nobody reads it.
+    /// The sender's time, s; read by no known program.
     #[prost(double, required, tag = "1")]
     pub timestamp: f64,
     /// True: for yellow.
     #[prost(bool, required, tag = "2")]
     pub isteamyellow: bool,
-    /// One a robot.
+    /// Commands, one per robot.
     #[prost(message, repeated, tag = "3")]
     pub robot_commands: Vec<GrsimRobotCommand>,
 }
 
-/// What one robot shall do until the next command.
+/// Command to one robot, valid until the next.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimRobotCommand {
     /// Shell number, 0–15.
     #[prost(uint32, required, tag = "1")]
     pub id: u32,
-    /// Kick along the ground, m/s; 0: none.
+    /// Speed of a kick along the ground, m/s; 0: none.
     #[prost(float, required, tag = "2")]
     pub kickspeedx: f32,
-    /// Kick upwards, m/s; with the above it makes a chip.
+    /// Speed of a kick upwards, m/s; with the above it makes a chip.
     #[prost(float, required, tag = "3")]
     pub kickspeedz: f32,
-    /// Forward, m/s.
+    /// Velocity forward, m/s.
     #[prost(float, required, tag = "4")]
     pub veltangent: f32,
-    /// To the left, m/s.
+    /// Velocity to the left, m/s.
     #[prost(float, required, tag = "5")]
     pub velnormal: f32,
-    /// Counter-clockwise, rad/s.
+    /// Turning rate, counter-clockwise, rad/s.
     #[prost(float, required, tag = "6")]
     pub velangular: f32,
-    /// The dribbler turns.
+    /// Whether the dribbler turns.
     #[prost(bool, required, tag = "7")]
     pub spinner: bool,
     /// The wheels' speeds below hold instead of the velocities above.
     #[prost(bool, required, tag = "8")]
     pub wheelsspeed: bool,
-    /// Front left, rad/s.
+    /// Speed of the front left wheel, rad/s.
     #[prost(float, optional, tag = "9")]
     pub wheel1: Option<f32>,
-    /// Back left, rad/s.
+    /// Speed of the back left wheel, rad/s.
     #[prost(float, optional, tag = "10")]
     pub wheel2: Option<f32>,
-    /// Back right, rad/s.
+    /// Speed of the back right wheel, rad/s.
     #[prost(float, optional, tag = "11")]
     pub wheel3: Option<f32>,
-    /// Front right, rad/s.
+    /// Speed of the front right wheel, rad/s.
     #[prost(float, optional, tag = "12")]
     pub wheel4: Option<f32>,
 }
 
-/// What is to be put somewhere else.
+/// Objects to be moved.
 #[derive(Clone, PartialEq, Message)]
 pub struct GrsimReplacement {
-    /// The ball.
+    /// The ball's new state.
     #[prost(message, optional, tag = "1")]
     pub ball: Option<GrsimBallReplacement>,
-    /// Robots.
+    /// The robots' new states.
     #[prost(message, repeated, tag = "2")]
     pub robots: Vec<GrsimRobotReplacement>,
 }
 
-/// Where the ball shall be; what is left out stays as it is.
+/// New state of the ball; absent fields stay as they are.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimBallReplacement {
     /// Along the field's length, m.
     #[prost(double, optional, tag = "1")]
     pub x: Option<f64>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(double, optional, tag = "2")]
     pub y: Option<f64>,
-    /// m/s.
+    /// Velocity along +x, m/s.
     #[prost(double, optional, tag = "3")]
     pub vx: Option<f64>,
-    /// m/s.
+    /// Velocity to the left of +x, m/s.
     #[prost(double, optional, tag = "4")]
     pub vy: Option<f64>,
 }
 
-/// Where a robot shall stand.
+/// New state of a robot.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GrsimRobotReplacement {
     /// Along the field's length, m.
     #[prost(double, required, tag = "1")]
     pub x: f64,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(double, required, tag = "2")]
     pub y: f64,
     /// Heading, **degrees**, counter-clockwise from +x.
@@ -115,15 +116,15 @@ pub struct GrsimRobotReplacement {
     /// True: yellow's.
     #[prost(bool, required, tag = "5")]
     pub yellowteam: bool,
-    /// False: it is switched off, and vision does not see it. Absent: on.
+    /// False: it is switched off, and invisible to vision. Absent: on.
     #[prost(bool, optional, tag = "6")]
     pub turnon: Option<bool>,
 }
 
-/// To port 30011 (blue) or 30012 (yellow) of whoever commanded last: robots whose state changed.
+/// To port 30011 (blue) or 30012 (yellow) of the last commander: robots whose state changed.
 #[derive(Clone, PartialEq, Message)]
 pub struct RobotsStatus {
-    /// One a robot.
+    /// States, one per robot.
     #[prost(message, repeated, tag = "1")]
     pub robots_status: Vec<RobotStatus>,
 }
@@ -134,13 +135,13 @@ pub struct RobotStatus {
     /// Shell number, 0–15.
     #[prost(int32, required, tag = "1")]
     pub robot_id: i32,
-    /// The ball is at the dribbler.
+    /// Whether the ball is at the dribbler.
     #[prost(bool, required, tag = "2")]
     pub infrared: bool,
-    /// It kicks along the ground now.
+    /// Whether it kicks along the ground now.
     #[prost(bool, required, tag = "3")]
     pub flat_kick: bool,
-    /// It chips now.
+    /// Whether it chips now.
     #[prost(bool, required, tag = "4")]
     pub chip_kick: bool,
 }
@@ -149,8 +150,8 @@ pub struct RobotStatus {
 mod tests {
     use super::*;
 
-    /// Written by hand from grSim's field numbers and types: yellow's robot 3 ahead at 1 m/s, turning, kicking, with its dribbler and
-    /// two wheels given; blue's robot 15 put somewhere and switched off.
+    /// Written by hand from grSim's field numbers and types: yellow's robot 3 ahead at 1 m/s, turning,
+    /// kicking, with its dribbler and two wheels given; blue's robot 15 put somewhere and switched off.
     const BYTES: [u8; 93] = [
         0x0a, 54, // commands, bytes
         0x09, 0, 0, 0, 0, 0, 0, 0xe0, 0x3f, // timestamp 0.5

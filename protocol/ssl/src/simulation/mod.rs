@@ -1,8 +1,9 @@
 //! `simulation`: simulation control. [`SimulatorCommand`] to port 10300, [`RobotControl`] to 10301 (blue) and
 //! 10302 (yellow).
 //!
-//! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm. What is
-//! absent stays as it is. What a simulator cannot do it answers with a [`SimulatorError`].
+//! Units: m, m/s, m/s², rad, rad/s, kg in the field frame; `kick_angle` in degrees, `dribbler_speed` in rpm.
+//! Absent fields stay as they are. A simulator answers requests that it cannot fulfil with a
+//! [`SimulatorError`].
 
 mod custom;
 mod grsim;
@@ -23,32 +24,32 @@ pub use robot::{
     RobotControlResponse, RobotFeedback, RobotMoveCommand,
 };
 
-/// What a simulator could not do.
+/// Failed request to a simulator.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorError {
-    /// For programs, of the simulator's own choice.
+    /// Error code, of the simulator's own choice.
     #[prost(string, optional, tag = "1")]
     pub code: Option<String>,
-    /// For people.
+    /// Text for the user.
     #[prost(string, optional, tag = "2")]
     pub message: Option<String>,
 }
 
-/// To port 10300: move things, or change settings.
+/// To port 10300: teleports, or settings.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorCommand {
-    /// Move things.
+    /// Objects to be moved.
     #[prost(message, optional, tag = "1")]
     pub control: Option<SimulatorControl>,
-    /// Change settings.
+    /// Settings to change.
     #[prost(message, optional, tag = "2")]
     pub config: Option<SimulatorConfig>,
 }
 
-/// What comes back from port 10300.
+/// Answer from port 10300.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulatorResponse {
-    /// What was not done; empty when all was.
+    /// Failed requests; empty when all succeeded.
     #[prost(message, repeated, tag = "1")]
     pub errors: Vec<SimulatorError>,
 }
@@ -59,7 +60,7 @@ pub struct SimulatorControl {
     /// Move the ball.
     #[prost(message, optional, tag = "1")]
     pub teleport_ball: Option<TeleportBall>,
-    /// Move robots.
+    /// Robots to be moved.
     #[prost(message, repeated, tag = "2")]
     pub teleport_robot: Vec<TeleportRobot>,
     /// Simulated seconds a second: 1 is real time, 0 stands still.
@@ -73,7 +74,7 @@ pub struct TeleportBall {
     /// Along the field's length, m.
     #[prost(float, optional, tag = "1")]
     pub x: Option<f32>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(float, optional, tag = "2")]
     pub y: Option<f32>,
     /// Up, m.
@@ -88,27 +89,27 @@ pub struct TeleportBall {
     /// Velocity upwards, m/s.
     #[prost(float, optional, tag = "6")]
     pub vz: Option<f32>,
-    /// Push robots out of the way instead of putting the ball inside one.
+    /// Push robots aside instead of putting the ball inside one.
     #[prost(bool, optional, tag = "7")]
     pub teleport_safely: Option<bool>,
     /// Start as a rolling ball, without a sliding phase.
     #[prost(bool, optional, tag = "8")]
     pub roll: Option<bool>,
-    /// Move it by forces, through what stands between, instead of at once.
+    /// Move it by forces, through obstacles in between, instead of at once.
     #[prost(bool, optional, tag = "9")]
     pub by_force: Option<bool>,
 }
 
-/// Move a robot, or take it away.
+/// Move a robot, or remove it.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct TeleportRobot {
-    /// Which.
+    /// Robot to be moved.
     #[prost(message, required, tag = "1")]
     pub id: RobotId,
     /// Along the field's length, m.
     #[prost(float, optional, tag = "2")]
     pub x: Option<f32>,
-    /// To the left of +x, m.
+    /// Coordinate to the left of +x, m.
     #[prost(float, optional, tag = "3")]
     pub y: Option<f32>,
     /// Heading, rad, counter-clockwise from +x.
@@ -123,7 +124,7 @@ pub struct TeleportRobot {
     /// Rate of turn, rad/s, counter-clockwise.
     #[prost(float, optional, default = "0", tag = "7")]
     pub v_angular: Option<f32>,
-    /// False takes the robot away, true puts it there.
+    /// False removes the robot, true adds it.
     #[prost(bool, optional, tag = "8")]
     pub present: Option<bool>,
     /// Move it by forces instead of at once.
@@ -137,13 +138,13 @@ pub struct SimulatorConfig {
     /// The field, in vision's units (mm).
     #[prost(message, optional, tag = "1")]
     pub geometry: Option<GeometryData>,
-    /// What robots are like.
+    /// Properties of robots.
     #[prost(message, repeated, tag = "2")]
     pub robot_specs: Vec<RobotSpecs>,
     /// Noise, delay and losses, in a form of the simulator's own.
     #[prost(message, optional, tag = "3")]
     pub realism_config: Option<RealismConfig>,
-    /// Where vision packets go.
+    /// Port for vision packets.
     #[prost(uint32, optional, tag = "4")]
     pub vision_port: Option<u32>,
 }
@@ -156,10 +157,10 @@ pub struct RealismConfig {
     pub custom: Vec<Any>,
 }
 
-/// What a robot is like.
+/// Properties of a robot.
 #[derive(Clone, PartialEq, Message)]
 pub struct RobotSpecs {
-    /// Which.
+    /// The robot.
     #[prost(message, required, tag = "1")]
     pub id: RobotId,
     /// Radius of its hull, m.
@@ -177,13 +178,13 @@ pub struct RobotSpecs {
     /// Fastest chip kick, m/s, in space.
     #[prost(float, optional, tag = "8")]
     pub max_chip_kick_speed: Option<f32>,
-    /// Centre to the flat front, m.
+    /// Distance from the centre to the flat front, m.
     #[prost(float, optional, tag = "9")]
     pub center_to_dribbler: Option<f32>,
-    /// Bounds of its motion.
+    /// Limits of its motion.
     #[prost(message, optional, tag = "10")]
     pub limits: Option<RobotLimits>,
-    /// Where its wheels are.
+    /// Angles of its wheels.
     #[prost(message, optional, tag = "13")]
     pub wheel_angles: Option<RobotWheelAngles>,
     /// For ER-Force's simulator a [`RobotSpecErForce`].
@@ -191,19 +192,19 @@ pub struct RobotSpecs {
     pub custom: Vec<Any>,
 }
 
-/// Bounds of a robot's motion.
+/// Limits of a robot's motion.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotLimits {
-    /// Getting faster, m/s².
+    /// Largest acceleration, m/s².
     #[prost(float, optional, tag = "1")]
     pub acc_speedup_absolute_max: Option<f32>,
-    /// Turning faster, rad/s².
+    /// Largest angular acceleration, rad/s².
     #[prost(float, optional, tag = "2")]
     pub acc_speedup_angular_max: Option<f32>,
     /// Braking, m/s².
     #[prost(float, optional, tag = "3")]
     pub acc_brake_absolute_max: Option<f32>,
-    /// Braking a turn, rad/s².
+    /// Largest angular braking, rad/s².
     #[prost(float, optional, tag = "4")]
     pub acc_brake_angular_max: Option<f32>,
     /// Speed, m/s.
@@ -214,19 +215,19 @@ pub struct RobotLimits {
     pub vel_angular_max: Option<f32>,
 }
 
-/// Where the wheels' axles point, rad, counter-clockwise from the robot's front.
+/// Directions of the wheels' axles, rad, counter-clockwise from the robot's front.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct RobotWheelAngles {
-    /// Front right, rad.
+    /// Axle of the front right wheel, rad.
     #[prost(float, required, tag = "1")]
     pub front_right: f32,
-    /// Back right, rad.
+    /// Axle of the back right wheel, rad.
     #[prost(float, required, tag = "2")]
     pub back_right: f32,
-    /// Back left, rad.
+    /// Axle of the back left wheel, rad.
     #[prost(float, required, tag = "3")]
     pub back_left: f32,
-    /// Front left, rad.
+    /// Axle of the front left wheel, rad.
     #[prost(float, required, tag = "4")]
     pub front_left: f32,
 }
@@ -237,21 +238,21 @@ pub struct SimulationSyncRequest {
     /// Length of the step, s.
     #[prost(float, optional, tag = "1")]
     pub sim_step: Option<f32>,
-    /// What port 10300 would get.
+    /// Message as to port 10300.
     #[prost(message, optional, tag = "2")]
     pub simulator_command: Option<SimulatorCommand>,
-    /// What ports 10301 and 10302 would get.
+    /// Message as to ports 10301 and 10302.
     #[prost(message, optional, tag = "3")]
     pub robot_control: Option<RobotControl>,
 }
 
-/// What the step brought.
+/// Output of the step.
 #[derive(Clone, PartialEq, Message)]
 pub struct SimulationSyncResponse {
-    /// What each camera saw.
+    /// Detections of each camera.
     #[prost(message, repeated, tag = "1")]
     pub detection: Vec<DetectionFrame>,
-    /// What ports 10301 and 10302 would send.
+    /// Message as from ports 10301 and 10302.
     #[prost(message, optional, tag = "2")]
     pub robot_control_response: Option<RobotControlResponse>,
 }

@@ -1,26 +1,28 @@
-//! `decoder`: allocation-free vision decoder. Into the same packet again and again.
+//! `decoder`: allocation-free vision decoder that reuses one packet.
 //!
-//! A plain decode takes memory for every list of balls and robots, and where the field comes with every packet (README,
-//! trap 2) for each line's name.
+//! A plain decode allocates memory for every list of balls and robots, and where the field comes with every
+//! packet (README, trap 2) for each line's name.
 
 use prost::{DecodeError, Message};
 
 use super::{DetectionFrame, GeometryData, WrapperPacket};
 use crate::wire::{Fields, Value};
 
-/// Decodes packets into room that is kept. Gives what [`WrapperPacket::decode`](prost::Message::decode) gives.
+/// Decodes packets into reused memory. The result equals that of
+/// [`WrapperPacket::decode`](prost::Message::decode).
 #[derive(Clone, Debug, Default)]
 pub struct Decoder {
     packet: WrapperPacket,
-    /// Room of the packet's parts while they are absent.
+    /// Memory of the packet's parts while they are absent.
     spare_detection: DetectionFrame,
     spare_geometry: GeometryData,
-    /// What the geometry at hand was decoded from; the same bytes are not decoded again.
+    /// The bytes from which the present geometry was decoded; the same bytes are not decoded again.
     geometry_bytes: Vec<u8>,
 }
 
 impl Decoder {
-    /// The packet in `bytes`; takes memory only where it has more robots or balls than any before, or another field.
+    /// The packet in `bytes`; allocates memory only where it has more robots or balls than any before, or
+    /// another field.
     pub fn decode(&mut self, bytes: &[u8]) -> Result<&WrapperPacket, DecodeError> {
         if let Some(detection) = self.packet.detection.take() {
             self.spare_detection = detection;
@@ -32,7 +34,7 @@ impl Decoder {
         if let Some(parts) = Parts::of(bytes) {
             self.decode_parts(&parts)?;
         } else {
-            // Not as SSL-Vision sends it; whether it is a packet all the same, prost says.
+            // Not as SSL-Vision sends it; prost decides whether it is a packet all the same.
             self.geometry_bytes.clear();
             self.packet = WrapperPacket::decode(bytes)?;
         }

@@ -2,54 +2,54 @@
 
 use prost::Message;
 
-/// One orange blob.
+/// Detection of one orange blob.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionBall {
-    /// How sure it is a ball, 0–1.
+    /// Confidence that it is a ball, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
-    /// Pixels of the blob.
+    /// Area of the blob, px.
     #[prost(uint32, optional, tag = "2")]
     pub area: Option<u32>,
     /// Along the field's length, mm.
     #[prost(float, required, tag = "3")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
-    /// Height, mm; nearly nobody sets it.
+    /// Height, mm; set by few programs.
     #[prost(float, optional, tag = "5")]
     pub z: Option<f32>,
-    /// Column in the camera's image, px; simulators send dummies.
+    /// Column in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "6")]
     pub pixel_x: f32,
-    /// Row in the camera's image, px; simulators send dummies.
+    /// Row in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "7")]
     pub pixel_y: f32,
 }
 
-/// One pattern of markers.
+/// Detection of one marker pattern.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct DetectionRobot {
-    /// How sure the pattern is, 0–1.
+    /// Confidence of the pattern, 0–1.
     #[prost(float, required, tag = "1")]
     pub confidence: f32,
-    /// Shell number, 0–15; absent where only the centre marker was seen.
+    /// Shell number, 0–15; absent where only the centre marker was detected.
     #[prost(uint32, optional, tag = "2")]
     pub robot_id: Option<u32>,
     /// Along the field's length, mm.
     #[prost(float, required, tag = "3")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "4")]
     pub y: f32,
-    /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was seen.
+    /// Heading, rad, counter-clockwise from +x; absent where only the centre marker was detected.
     #[prost(float, optional, tag = "5")]
     pub orientation: Option<f32>,
-    /// Column in the camera's image, px; simulators send dummies.
+    /// Column in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "6")]
     pub pixel_x: f32,
-    /// Row in the camera's image, px; simulators send dummies.
+    /// Row in the camera frame, px; simulators send dummies.
     #[prost(float, required, tag = "7")]
     pub pixel_y: f32,
     /// Height of the pattern, mm.
@@ -57,19 +57,19 @@ pub struct DetectionRobot {
     pub height: Option<f32>,
 }
 
-/// What one camera saw in one image.
+/// Detections of one camera in one camera frame.
 #[derive(Clone, PartialEq, Message)]
 pub struct DetectionFrame {
-    /// Counts this camera's images.
+    /// Counts this camera's frames.
     #[prost(uint32, required, tag = "1")]
     pub frame_number: u32,
-    /// When the image was taken, s: Unix time, or the simulation's own (README, trap 1).
+    /// Capture time of the camera frame, s: Unix time, or the simulation's own (README, trap 1).
     #[prost(double, required, tag = "2")]
     pub t_capture: f64,
     /// When the packet was sent, s, on the same clock.
     #[prost(double, required, tag = "3")]
     pub t_sent: f64,
-    /// Which camera.
+    /// Number of the camera.
     #[prost(uint32, required, tag = "4")]
     pub camera_id: u32,
     /// Every orange blob: none or two are normal.
@@ -81,7 +81,7 @@ pub struct DetectionFrame {
     /// Robots with a blue centre marker.
     #[prost(message, repeated, tag = "7")]
     pub robots_blue: Vec<DetectionRobot>,
-    /// When the image was taken by the camera's own clock, s.
+    /// Capture time of the camera frame by the camera's own clock, s.
     #[prost(double, optional, tag = "8")]
     pub t_capture_camera: Option<f64>,
 }

@@ -8,7 +8,7 @@ pub struct Vector2f {
     /// Along the field's length, mm.
     #[prost(float, required, tag = "1")]
     pub x: f32,
-    /// To the left of +x, mm.
+    /// Coordinate to the left of +x, mm.
     #[prost(float, required, tag = "2")]
     pub y: f32,
 }
@@ -16,7 +16,7 @@ pub struct Vector2f {
 /// A straight line painted on the field.
 #[derive(Clone, PartialEq, Message)]
 pub struct FieldLineSegment {
-    /// Which line, as `TopTouchLine` or `LeftPenaltyStretch`.
+    /// Name of the line, as `TopTouchLine` or `LeftPenaltyStretch`.
     #[prost(string, required, tag = "1")]
     pub name: String,
     /// One end, on the middle of the line's width.
@@ -36,10 +36,10 @@ pub struct FieldLineSegment {
 /// A round line painted on the field.
 #[derive(Clone, PartialEq, Message)]
 pub struct FieldCircularArc {
-    /// Which arc, as `CenterCircle`.
+    /// Name of the arc, as `CenterCircle`.
     #[prost(string, required, tag = "1")]
     pub name: String,
-    /// Its centre.
+    /// Centre of the arc, mm.
     #[prost(message, required, tag = "2")]
     pub center: Vector2f,
     /// Its radius, mm, to the middle of the line's width.
@@ -59,28 +59,29 @@ pub struct FieldCircularArc {
     pub r#type: Option<i32>,
 }
 
-/// The field's measures and lines. Neither simulator sets the fields after `field_arcs` (README, trap 8).
+/// Dimensions and lines of the field. Neither simulator sets the fields after `field_arcs` (README, trap 8).
 #[derive(Clone, PartialEq, Message)]
 pub struct GeometryFieldSize {
-    /// Goal line to goal line, mm.
+    /// Distance from goal line to goal line, mm.
     #[prost(int32, required, tag = "1")]
     pub field_length: i32,
-    /// Touch line to touch line, mm.
+    /// Distance from touch line to touch line, mm.
     #[prost(int32, required, tag = "2")]
     pub field_width: i32,
-    /// Between the posts, inside, mm.
+    /// Distance between the posts, inside, mm.
     #[prost(int32, required, tag = "3")]
     pub goal_width: i32,
-    /// Goal line to the goal's back, mm.
+    /// Distance from the goal line to the goal's back, mm.
     #[prost(int32, required, tag = "4")]
     pub goal_depth: i32,
-    /// Touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line` is absent.
+    /// Distance from the touch line to the wall, mm; also goal line to wall where `boundary_width_goal_line`
+    /// is absent.
     #[prost(int32, required, tag = "5")]
     pub boundary_width: i32,
     /// Straight lines, in any order.
     #[prost(message, repeated, tag = "6")]
     pub field_lines: Vec<FieldLineSegment>,
-    /// Round lines.
+    /// Arcs among the lines.
     #[prost(message, repeated, tag = "7")]
     pub field_arcs: Vec<FieldCircularArc>,
     /// Defence area along x, mm.
@@ -95,10 +96,10 @@ pub struct GeometryFieldSize {
     /// Width of every line, mm.
     #[prost(int32, optional, tag = "11")]
     pub line_thickness: Option<i32>,
-    /// Goal centre to penalty mark, mm.
+    /// Distance from the goal centre to the penalty mark, mm.
     #[prost(int32, optional, tag = "12")]
     pub goal_center_to_penalty_mark: Option<i32>,
-    /// Ground to the crossbar's lower edge, mm.
+    /// Height of the crossbar's lower edge, mm.
     #[prost(int32, optional, tag = "13")]
     pub goal_height: Option<i32>,
     /// Radius of the ball, mm.
@@ -107,7 +108,7 @@ pub struct GeometryFieldSize {
     /// Largest radius of a robot, mm.
     #[prost(float, optional, tag = "15")]
     pub max_robot_radius: Option<f32>,
-    /// Goal line to the wall, mm.
+    /// Distance from the goal line to the wall, mm.
     #[prost(int32, optional, tag = "16")]
     pub boundary_width_goal_line: Option<i32>,
     /// Width of the substitution area behind the goal lines, mm.
@@ -115,10 +116,10 @@ pub struct GeometryFieldSize {
     pub goal_substitution_area_width: Option<i32>,
 }
 
-/// Where a camera hangs and how it looks.
+/// Position and orientation of a camera, and its lens.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryCameraCalibration {
-    /// Which camera.
+    /// Number of the camera.
     #[prost(uint32, required, tag = "1")]
     pub camera_id: u32,
     /// Focal length, px.
@@ -136,42 +137,42 @@ pub struct GeometryCameraCalibration {
     /// Rotation from field to camera: quaternion, x. Simulators send 0.7 four times, which is not normalised.
     #[prost(float, required, tag = "6")]
     pub q0: f32,
-    /// Quaternion, y.
+    /// y of the orientation quaternion.
     #[prost(float, required, tag = "7")]
     pub q1: f32,
-    /// Quaternion, z.
+    /// z of the orientation quaternion.
     #[prost(float, required, tag = "8")]
     pub q2: f32,
-    /// Quaternion, w.
+    /// w of the orientation quaternion.
     #[prost(float, required, tag = "9")]
     pub q3: f32,
     /// Translation from field to camera, mm, camera frame.
     #[prost(float, required, tag = "10")]
     pub tx: f32,
-    /// Translation, y, mm.
+    /// Translation along y, mm.
     #[prost(float, required, tag = "11")]
     pub ty: f32,
-    /// Translation, z, mm.
+    /// Translation along z, mm.
     #[prost(float, required, tag = "12")]
     pub tz: f32,
-    /// Where the camera hangs, along x, mm, field frame.
+    /// Position of the camera along x, mm, field frame.
     #[prost(float, optional, tag = "13")]
     pub derived_camera_world_tx: Option<f32>,
-    /// Where the camera hangs, along y, mm, field frame.
+    /// Position of the camera along y, mm, field frame.
     #[prost(float, optional, tag = "14")]
     pub derived_camera_world_ty: Option<f32>,
-    /// How high the camera hangs, mm.
+    /// Height of the camera, mm.
     #[prost(float, optional, tag = "15")]
     pub derived_camera_world_tz: Option<f32>,
-    /// Columns of the image, px.
+    /// Columns of the camera frame, px.
     #[prost(uint32, optional, tag = "16")]
     pub pixel_image_width: Option<u32>,
-    /// Rows of the image, px.
+    /// Rows of the camera frame, px.
     #[prost(uint32, optional, tag = "17")]
     pub pixel_image_height: Option<u32>,
 }
 
-/// Which line or arc.
+/// Kind of line or arc.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]
@@ -209,24 +210,24 @@ pub struct BallModelStraightTwoPhase {
 /// A chipped ball: each bounce keeps a fixed part of its speed.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct BallModelChipFixedLoss {
-    /// What the first bounce keeps of the speed along the ground, 0–1.
+    /// Share of the speed along the ground that the first bounce keeps, 0–1.
     #[prost(double, required, tag = "1")]
     pub damping_xy_first_hop: f64,
-    /// What later bounces keep of it, 0–1.
+    /// Share of it that later bounces keep, 0–1.
     #[prost(double, required, tag = "2")]
     pub damping_xy_other_hops: f64,
-    /// What a bounce keeps of the vertical speed, 0–1.
+    /// Share of the vertical speed that a bounce keeps, 0–1.
     #[prost(double, required, tag = "3")]
     pub damping_z: f64,
 }
 
-/// How the ball moves here. Simulators differ widely: read it, hard-code nothing.
+/// Ball model of this field. Simulators differ widely: it must be read, not hard-coded.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryModels {
-    /// On the ground.
+    /// Model on the ground.
     #[prost(message, optional, tag = "1")]
     pub straight_two_phase: Option<BallModelStraightTwoPhase>,
-    /// In the air.
+    /// Model in the air.
     #[prost(message, optional, tag = "2")]
     pub chip_fixed_loss: Option<BallModelChipFixedLoss>,
 }
@@ -234,13 +235,13 @@ pub struct GeometryModels {
 /// The field, its cameras and its ball.
 #[derive(Clone, PartialEq, Message)]
 pub struct GeometryData {
-    /// Measures and lines.
+    /// Dimensions and lines.
     #[prost(message, required, tag = "1")]
     pub field: GeometryFieldSize,
     /// Cameras: all of them, or one a packet; merge by camera id.
     #[prost(message, repeated, tag = "2")]
     pub calib: Vec<GeometryCameraCalibration>,
-    /// How the ball moves.
+    /// Model of the ball's motion.
     #[prost(message, optional, tag = "3")]
     pub models: Option<GeometryModels>,
 }

@@ -7,7 +7,7 @@ use prost::Message;
 
 use super::{DetectionFrame, GeometryCameraCalibration};
 
-/// The field as eleven measures and three for restarts, mm.
+/// Field geometry: eleven dimensions and three for restarts, mm.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub struct GeometryFieldSize {
     /// Width of every line, mm.
@@ -57,10 +57,10 @@ pub struct GeometryFieldSize {
 /// The field and its cameras.
 #[derive(Clone, PartialEq, Message)]
 pub struct GeometryData {
-    /// Measures.
+    /// Dimensions of the field.
     #[prost(message, required, tag = "1")]
     pub field: GeometryFieldSize,
-    /// Cameras.
+    /// Calibration of the cameras.
     #[prost(message, repeated, tag = "2")]
     pub calib: Vec<GeometryCameraCalibration>,
 }
@@ -68,7 +68,7 @@ pub struct GeometryData {
 /// A datagram of vision in 2014: a camera's frame, the field, or both.
 #[derive(Clone, PartialEq, Message)]
 pub struct WrapperPacket {
-    /// What one camera saw.
+    /// Detections of one camera.
     #[prost(message, optional, tag = "1")]
     pub detection: Option<DetectionFrame>,
     /// The field and cameras.

@@ -1,8 +1,8 @@
 //! `vision`: packets of SSL-Vision. One [`WrapperPacket`] a datagram, to 224.5.23.2:10006 (simulators:
 //! 10020).
 //!
-//! Units: mm and rad in the field frame, times in s as `f64`: Unix time, but grSim counts from its own start (README,
-//! trap 1). Fields that newer versions added are optional here; older ones lack them.
+//! Units: mm and rad in the field frame, times in s as `f64`: Unix time, but grSim counts from its own start
+//! (README, trap 1). Fields that newer versions added are optional here; older ones lack them.
 
 mod decoder;
 mod detection;
@@ -21,18 +21,18 @@ pub use geometry::{
 /// A datagram of vision: a camera's frame, the field, or both.
 #[derive(Clone, PartialEq, Message)]
 pub struct WrapperPacket {
-    /// What one camera saw.
+    /// Detections of one camera.
     #[prost(message, optional, tag = "1")]
     pub detection: Option<DetectionFrame>,
     /// The field and cameras; grSim sends one camera's calibration a packet, so merge by camera id.
     #[prost(message, optional, tag = "2")]
     pub geometry: Option<GeometryData>,
-    /// Which program sent it, [`Source`]; most leave it out.
+    /// Program that sent it, [`Source`]; most leave it out.
     #[prost(enumeration = "Source", optional, tag = "3")]
     pub source: Option<i32>,
 }
 
-/// Which program sends vision.
+/// Program that sends vision.
 #[expect(missing_docs, reason = "the league's own names")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Enumeration)]
 #[repr(i32)]

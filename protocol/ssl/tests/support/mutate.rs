@@ -1,5 +1,5 @@
-//! `mutate`: mutation of packets. Seeds are true packets; each round breaks one and reads it as everything
-//! the league sends.
+//! `mutate`: mutation of packets. Seeds are true packets; each round breaks one and reads it as every message
+//! of the league.
 
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -8,16 +8,16 @@ use ssl::stream::FrameReader;
 
 use crate::messages::{Decode, decoder};
 
-/// What a run met.
+/// Counters of a run.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Tally {
     /// Packets broken and read.
     pub packets: u64,
-    /// Those that still decode as what they were.
+    /// Number of those that still decode as their original message.
     pub decoded: u64,
     /// Those that do not.
     pub refused: u64,
-    /// Broken packets that are still told to be vision, referee or tracker.
+    /// Broken packets that are still recognized as vision, referee or tracker.
     pub guessed: u64,
     /// Messages a log file of broken bytes gave.
     pub logged: u64,
@@ -25,8 +25,8 @@ pub(crate) struct Tally {
     pub framed: u64,
 }
 
-/// Breaks `count` packets and reads each; the same seed breaks the same ones. Panics where a decoder does, or where a
-/// message does not survive being encoded.
+/// Breaks `count` packets and reads each; the same seed breaks the same ones. Panics where a decoder does, or
+/// where a message does not survive being encoded.
 pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Tally {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut tally = Tally::default();
@@ -45,7 +45,7 @@ pub(crate) fn run(seeds: &[Seed], count: u64, seed: u64) -> Tally {
     tally
 }
 
-/// What comes from outside as a whole: each packet is read as each of these too.
+/// Outermost messages: each packet is read as each of these too.
 const DATAGRAMS: [(&str, &str); 10] = [
     ("vision", "SSL_WrapperPacket"),
     ("legacy", "SSL_WrapperPacket"),
@@ -59,7 +59,7 @@ const DATAGRAMS: [(&str, &str); 10] = [
     ("radio", "RadioProtocolWrapper"),
 ];
 
-/// Is it a message? If so, what we encode must decode to the same bytes. (`Debug` runs on the way.)
+/// Whether it is a message. If so, what we encode must decode to the same bytes. (`Debug` runs in between.)
 fn survives(decode: Decode, bytes: &[u8]) -> bool {
     let Ok((_, encoded)) = decode(bytes) else { return false };
     let (_, again) = decode(&encoded).expect("what we encode decodes");
@@ -129,7 +129,7 @@ pub(crate) fn mutated(seeds: &[Seed], random: &mut impl RngCore) -> (Decode, Vec
             10 => packet.truncate(at),
             11 => packet.insert(at, random.next_u32() as u8),
             12 => drop(packet.remove(at)),
-            // A part of another packet takes the place of the rest.
+            // A part of another packet replaces the tail.
             13 => {
                 let (_, other) = &seeds[below(random, seeds.len())];
                 packet.truncate(at);
@@ -152,7 +152,7 @@ fn below(random: &mut impl RngCore, bound: usize) -> usize {
     (random.next_u64() % bound as u64) as usize
 }
 
-/// A true packet, and how it is read.
+/// A true packet, and its decoder.
 pub(crate) type Seed = (Decode, Vec<u8>);
 
 /// True packets: the golden ones, and every hundredth of two recordings.

@@ -1,12 +1,11 @@
-//! `shown`: comparison of messages by their `Debug` text. Its `Debug` text, read back as a tree and compared
-//! with JSON.
+//! `shown`: comparison of messages by their `Debug` text, read back as a tree and compared with JSON.
 //!
-//! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a wrong enum,
-//! which a round trip of bytes does not.
+//! `Debug` names the Rust fields and the enums' variants, so this sees a field under a wrong name or with a
+//! wrong enum, which a round trip of bytes does not.
 
 use serde_json::Value;
 
-/// A value as `Debug` shows it.
+/// A value as `Debug` prints it.
 #[derive(Debug, PartialEq)]
 enum Shown {
     Number(String),
@@ -19,7 +18,7 @@ enum Shown {
     List(Vec<Shown>),
 }
 
-/// Does the message's `Debug` text say what the JSON says, and nothing else? Otherwise where they part.
+/// Whether the message's `Debug` text equals the JSON; otherwise where they differ.
 pub(crate) fn agree(debug: &str, expected: &Value) -> Result<(), String> {
     let mut reader = Reader { text: debug.as_bytes(), at: 0 };
     let shown = reader.value();
@@ -56,7 +55,8 @@ fn compare_fields(
     let mut shown: Vec<(String, &Shown)> =
         shown.iter().filter_map(|(name, value)| set(name, value)).collect();
     for (name, value) in expected {
-        // Required bytes that are empty look like a list that is: here both are nothing, the encoded bytes tell.
+        // Required bytes that are empty look like a list that is: here both are nothing, the encoded bytes
+        // differ.
         if value.as_array().is_some_and(Vec::is_empty) {
             continue;
         }
@@ -97,7 +97,8 @@ fn snake(camel: &str) -> String {
     out
 }
 
-/// Is the variant the league's value? Ours go without the enum's name in front, and `UNKNOWN_…` is `Unknown`.
+/// Whether the variant is the league's value. Ours go without the enum's name in front, and `UNKNOWN_…` is
+/// `Unknown`.
 pub(crate) fn same_variant(league: &str, variant: &str) -> bool {
     let prefixes = ["SSL_SOURCE_", "DIV_", "HULL_COLOR_", "TEAM_COLOR_", "CAPABILITY_"];
     let bare = prefixes.iter().find_map(|prefix| league.strip_prefix(prefix)).unwrap_or(league);
@@ -111,7 +112,7 @@ fn same_number(value: &serde_json::Number, shown: &str) -> bool {
     if value.to_string() == shown {
         return true;
     }
-    // An f32 is shown with its shortest digits, the same in both.
+    // An f32 is printed with its shortest digits, the same in both.
     !value.is_i64() && !value.is_u64() && value.as_f64() == shown.parse().ok()
 }
 
@@ -152,7 +153,7 @@ impl Reader<'_> {
         (name.trim_start_matches("r#").to_owned(), self.value())
     }
 
-    /// What stands between the bracket here and `close`, separated by commas.
+    /// The items between the bracket here and `close`, separated by commas.
     fn list<T>(&mut self, close: u8, mut item: impl FnMut(&mut Self) -> T) -> Vec<T> {
         self.at += 1;
         let mut items = Vec::new();
@@ -185,7 +186,7 @@ impl Reader<'_> {
         }
         self.at += 1;
         let quoted = std::str::from_utf8(&self.text[start..self.at]).expect("whole letters");
-        // Rust's escapes of what stands in these texts are JSON's.
+        // Rust's escapes in these texts are JSON's.
         Shown::Text(serde_json::from_str(quoted).expect("a string with simple escapes"))
     }
 

@@ -1,5 +1,5 @@
-//! `free`: the free-running firmware image. The image for the emulated board without a simulator: radio over
-//! the serial line, motors that are modelled, watchdog and panic as on a robot; all of it is in [`standalone`].
+//! `free`: the free-running firmware for the emulated board without a simulator: radio over the serial line,
+//! simulated motors, watchdog and panic as on a robot; all of it is in [`standalone`].
 //!
 //! `onetwo firmware run` starts it. Built with the feature `omni` alone.
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -1,6 +1,6 @@
 //! `math_hash`: golden-hash test of `geometry::math` and of the runtime's memory copy on the target. Prints
-//! the golden hash of `geometry::math` (docs/architecture.md §2.4); exit code 0 if it is the PC's and the
-//! runtime's copying moves exactly the bytes it shall, else 1.
+//! the golden hash of `geometry::math` (docs/architecture.md §2.4); exit code 0 if it equals the PC's and the
+//! runtime's memory copy moves exactly the requested bytes, else 1.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -10,7 +10,7 @@ mod check {
     use cortex_m_semihosting::{debug, hprintln};
     use geometry::math::{GOLDEN_HASH, GOLDEN_ROUNDS, golden_hash};
     use panic_semihosting as _;
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     #[cortex_m_rt::entry]
@@ -35,13 +35,16 @@ mod check {
         fn memcpy(to: *mut c_void, from: *const c_void, len: usize) -> *mut c_void;
     }
 
-    /// Every length up to a few rounds of the loop, at every alignment: the bytes arrive, and their neighbours stay.
+    /// Every length up to a few rounds of the loop, at every alignment: the bytes arrive, and their
+    /// neighbours stay unchanged.
     fn copies_are_exact() -> bool {
-        // SAFETY: `is_exact` gives pointers into two arrays that do not overlap, each with at least `len` bytes behind its pointer.
+        // SAFETY: `is_exact` passes pointers into two arrays that do not overlap, each with at least `len`
+        // bytes behind its pointer.
         let any = |to, from, len| unsafe { __aeabi_memcpy(to, from, len) };
         // SAFETY: as above; it is called with both offsets 0, where the arrays are aligned to four bytes.
         let words = |to, from, len| unsafe { __aeabi_memcpy4(to, from, len) };
-        // The compiler knows what `memcpy` returns and would not look; what it cannot see through, it has to call.
+        // The compiler knows the result of `memcpy` and would not check it; through a black box it has to
+        // call it.
         let memcpy = core::hint::black_box(memcpy as Memcpy);
         let returning = |to, from, len| {
             // SAFETY: as above.
@@ -68,7 +71,8 @@ mod check {
             *byte = i as u8 + 1;
         }
         let (to, from) = (MARGIN + to, MARGIN + from);
-        // SAFETY (of the functions handed in): both ranges lie within buffers of their own, the margins cover all offsets.
+        // SAFETY (of the functions passed in): both ranges lie within buffers of their own, the margins cover
+        // all offsets.
         copy(target.0[to..].as_mut_ptr().cast(), source.0[from..].as_ptr().cast(), len);
         (0..BUFFER_LEN).all(|i| {
             let moved = (to..to + len).contains(&i);

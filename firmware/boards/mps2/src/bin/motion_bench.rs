@@ -1,5 +1,5 @@
-//! `motion_bench`: motion benchmark on the target. Does every work on every task of a seed and counts; a line
-//! a task.
+//! `motion_bench`: motion benchmark on the target. Counts the instructions of every work on every task of a
+//! seed; a line a task.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench motion` starts it and reads the lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -15,7 +15,7 @@ mod measure {
     use cortex_m_semihosting::{debug, hprintln};
     use motion_bench::{Counted, SEED, TASKS, Tasks};
     use panic_semihosting as _;
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     use crate::instructions::{self, counted};
@@ -24,7 +24,7 @@ mod measure {
     fn main() -> ! {
         let core = cortex_m::Peripherals::take().expect("nobody took them before");
         instructions::start(core.SYST);
-        // What counting itself takes.
+        // Instructions of the counting itself.
         let ((), idle) = counted(|| ());
         for task in Tasks::new(SEED).take(TASKS) {
             let counts = Counted::of(&task, |work, task| {

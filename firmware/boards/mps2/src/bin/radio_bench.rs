@@ -1,5 +1,5 @@
-//! `radio_bench`: radio benchmark on the target. Does every work several times and counts; a line each:
-//! `number of the work, what it gave, instructions`.
+//! `radio_bench`: radio benchmark on the target. Counts the instructions of every work several times; a line
+//! each: `number of the work, result, instructions`.
 //!
 //! Needs `-icount shift=6`. `cargo xtask bench radio` starts it and reads the lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -15,7 +15,7 @@ mod measure {
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
     use radio_bench::{Bench, ROUNDS, Work};
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     use crate::instructions::{self, counted};
@@ -24,7 +24,7 @@ mod measure {
     fn main() -> ! {
         let core = cortex_m::Peripherals::take().expect("nobody took them before");
         instructions::start(core.SYST);
-        // What counting itself takes.
+        // Instructions of the counting itself.
         let ((), idle) = counted(|| ());
         let mut bench = Bench::new();
         for _ in 0..ROUNDS {

@@ -1,8 +1,9 @@
-//! `retrieval_bench`: retrieval benchmark on the target. Retrieves for every problem that lies in memory,
-//! with the table beside them, three ways: `retrieve_best`, `retrieve`, the plain scan; an answer a line,
+//! `retrieval_bench`: retrieval benchmark on the target. Retrieves for every problem in memory, with the
+//! table beside them, by three methods: `retrieve_best`, `retrieve`, the plain scan; one line per answer,
 //! instructions included.
 //!
-//! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems there and reads the lines.
+//! Needs `-icount shift=6`. `cargo xtask bench retrieval` puts table and problems into memory and reads the
+//! lines.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -17,7 +18,7 @@ mod measure {
     use cortex_m_semihosting::{debug, hprintln};
     use panic_semihosting as _;
     use retrieval_bench::{Answer, LEN_MAX, PROBLEMS_ADDRESS, TABLE_ADDRESS, behind_header, problems, scan};
-    // For its functions of the run-time ABI.
+    // Links its functions of the run-time ABI.
     use runtime as _;
 
     use crate::instructions::{self, counted};
@@ -28,7 +29,7 @@ mod measure {
         instructions::start(core.SYST);
         let base = CaseBase::from_bytes(behind_header(memory(TABLE_ADDRESS))).expect("a table in memory");
         let settings = Settings::default();
-        // What counting itself takes.
+        // Instructions of the counting itself.
         let ((), idle) = counted(|| ());
         for problem in problems(memory(PROBLEMS_ADDRESS)) {
             let (best, first) = counted(|| retrieve_best(black_box(&base), black_box(&problem), &settings));
@@ -43,7 +44,8 @@ mod measure {
     }
 
     fn memory(address: usize) -> &'static [u8] {
-        // SAFETY: plain memory of the board that the image does not use (build.rs), and nobody writes after the start.
+        // SAFETY: plain memory of the board that the firmware does not use (build.rs), never written after
+        // the start.
         unsafe { core::slice::from_raw_parts(address as *const u8, LEN_MAX) }
     }
 }

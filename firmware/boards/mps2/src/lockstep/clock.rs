@@ -1,7 +1,7 @@
 //! `clock`: time of the lockstep board. Time moves by ticks from outside, tasks run until all of them wait.
 //!
-//! [`Clock::advance`] stops at every alarm on the way, so that each deadline runs at its own time, however far apart the
-//! ticks are and however slow the machine is that emulates the board.
+//! [`Clock::advance`] stops at every alarm in between, so that each deadline runs at its own time, however
+//! far apart the ticks are and however slow the machine is that emulates the board.
 
 use core::cell::{Cell, RefCell};
 use core::ptr;
@@ -21,18 +21,18 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// A clock that stands at zero, without tasks; call once.
+    /// A clock at zero, without tasks; call once.
     pub(crate) fn new() -> Self {
         static EXECUTOR: StaticCell<Executor> = StaticCell::new();
         Self { executor: EXECUTOR.init(Executor::new(ptr::null_mut())) }
     }
 
-    /// For starting tasks; they begin to run with the next [`Clock::settle`].
+    /// For starting tasks; they first run with the next [`Clock::settle`].
     pub(crate) fn spawner(&self) -> Spawner {
         self.executor.spawner()
     }
 
-    /// Moves time to `to`; every alarm up to then rings at its own time.
+    /// Moves time to `to`; every alarm up to then fires at its own time.
     pub(crate) fn advance(&self, to: Instant) {
         loop {
             self.settle();
@@ -48,23 +48,23 @@ impl Clock {
         TIME.set(to.0);
     }
 
-    /// Runs the tasks until all of them wait. Alarms that are due ring with the next [`Clock::advance`].
+    /// Runs the tasks until all of them wait. Alarms that are due fire with the next [`Clock::advance`].
     pub(crate) fn settle(&self) {
         while WORK.swap(false, Ordering::Acquire) {
-            // SAFETY: nobody else polls this executor, and no task calls this function.
+            // SAFETY: this is the only place that polls this executor, and no task calls this function.
             unsafe { self.executor.poll() }
         }
     }
 }
 
-/// Embassy's clock: a number and a queue of alarms.
+/// Embassy's time driver: a number and a queue of alarms.
 struct Time {
     now: Mutex<Cell<u64>>,
     alarms: Mutex<RefCell<Queue>>,
 }
 
 impl Time {
-    /// Moves forward; never back.
+    /// Moves forward; never backwards.
     fn set(&self, to: u64) {
         critical_section::with(|cs| {
             let now = self.now.borrow(cs);
@@ -72,7 +72,7 @@ impl Time {
         });
     }
 
-    /// Rings the alarms that are due and says when the next is; `u64::MAX` if there is none.
+    /// Wakes the alarms that are due and returns when the next is; `u64::MAX` if there is none.
     fn ring(&self) -> u64 {
         critical_section::with(|cs| self.alarms.borrow_ref_mut(cs).next_expiration(self.now.borrow(cs).get()))
     }
@@ -84,7 +84,7 @@ impl Driver for Time {
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {
-        // Nobody waits for the alarm itself: `Clock` asks for the next one.
+        // No task waits for the alarm itself: `Clock` asks for the next one.
         critical_section::with(|cs| self.alarms.borrow_ref_mut(cs).schedule_wake(at, waker));
     }
 }
@@ -94,7 +94,7 @@ embassy_time_driver::time_driver_impl!(static TIME: Time = Time {
     alarms: Mutex::new(RefCell::new(Queue::new())),
 });
 
-/// Some task wants to run.
+/// Whether some task is ready.
 static WORK: AtomicBool = AtomicBool::new(false);
 
 /// Embassy's executor calls this, by this name, when a task was woken.

@@ -1,9 +1,9 @@
 //! `eth`: Ethernet driver for lockstep messages. One Ethernet frame each, through the board's LAN9118
 //! controller (data sheet DS00002266).
 //!
-//! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message. Frames that
-//! are not of that form are counted and skipped. QEMU needs about 100 µs for the way there and back, 30 times less than
-//! through the UART.
+//! A frame is the 14-byte header with `protocol::lockstep::ETHERTYPE`, the length (u16 LE), and the message.
+//! Frames that are not of that form are counted and skipped. QEMU needs about 100 µs for a round trip, 30
+//! times less than through the UART.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -14,7 +14,7 @@ use zerocopy::IntoBytes;
 
 use super::register::Register;
 
-/// Starts the controller: its ear and its mouth. Call once; `None` if there is no such controller.
+/// Starts the controller: receiver and sender. Call once; `None` if there is no such controller.
 pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     if BYTE_TEST.read() != BYTE_TEST_VALUE {
         return None;
@@ -29,17 +29,17 @@ pub(crate) fn start() -> Option<(Inlet, Outlet)> {
     INT_STS.write(u32::MAX);
     INT_EN.write(INT_RX_STATUS_LEVEL);
     IRQ_CFG.write(IRQ_CFG_ENABLE | IRQ_CFG_ACTIVE_HIGH | IRQ_CFG_PUSH_PULL);
-    // SAFETY: the interrupt does no more than `acknowledge`; nothing else stands on it being masked.
+    // SAFETY: the interrupt only runs `acknowledge`; no other code relies on it being masked.
     unsafe { NVIC::unmask(EthernetIrq) }
     Some((Inlet { frame: [0; FRAME_WORDS] }, Outlet { frame: [0; FRAME_WORDS] }))
 }
 
-/// What the controller's interrupt does; the frame itself is fetched outside.
+/// Handles the controller's interrupt; the frame itself is fetched outside.
 pub(crate) fn acknowledge() {
     INT_STS.write(u32::MAX);
 }
 
-/// How many frames came that were none of ours, or too long.
+/// Number of foreign or too long frames.
 pub(crate) static STRANGE_FRAMES: AtomicU32 = AtomicU32::new(0);
 
 /// Takes frames from the controller.
@@ -60,7 +60,8 @@ impl Inlet {
         self.frame.as_bytes().get(message).unwrap_or_default()
     }
 
-    /// Fetches the next frame into the buffer; its length, which is more than the buffer's where it did not fit.
+    /// Fetches the next frame into the buffer; returns its length, which is more than the buffer's where it
+    /// did not fit.
     fn next_frame(&mut self) -> usize {
         sleep_until(|| RX_FIFO_INF.read() >> 16 & 0xff != 0);
         let len = (RX_STATUS_FIFO.read() >> 16 & 0x3fff) as usize;
@@ -74,7 +75,7 @@ impl Inlet {
     }
 }
 
-/// Where in a frame its message lies, if the frame is one of ours.
+/// Range of the message in a frame, if the frame is one of ours.
 fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
     let (header, rest) = frame?.split_first_chunk::<HEADER_LEN>()?;
     let (len, rest) = rest.split_first_chunk::<2>()?;
@@ -83,13 +84,13 @@ fn message_in(frame: Option<&[u8]>) -> Option<core::ops::Range<usize>> {
     ours.then_some(MESSAGE_AT..MESSAGE_AT + len)
 }
 
-/// Hands frames to the controller.
+/// Passes frames to the controller.
 pub(crate) struct Outlet {
     frame: [u32; FRAME_WORDS],
 }
 
 impl Outlet {
-    /// Sends the message that `write` puts into the buffer it is given; `write` says how long it is.
+    /// Sends the message that `write` puts into the buffer it is given; `write` returns its length.
     pub(crate) fn send(&mut self, write: impl FnOnce(&mut [u8]) -> usize) {
         let Some((header, rest)) = self.frame.as_mut_bytes().split_first_chunk_mut::<HEADER_LEN>() else {
             return;
@@ -104,15 +105,15 @@ impl Outlet {
         for word in self.frame.iter().take(frame_len.div_ceil(4)) {
             TX_DATA_FIFO.write(*word);
         }
-        // Nobody reads how the sending went; the queue of reports must not fill up.
+        // Transmission status is not used; the status queue must not fill up.
         while TX_FIFO_INF.read() >> 16 & 0xff != 0 {
             TX_STATUS_FIFO.read();
         }
     }
 }
 
-/// Sleeps until `ready`. Interrupts are held back around the question, so that none comes between a "no" and the sleep;
-/// one that is held back still ends it.
+/// Sleeps until `ready`. Interrupts are masked around the check, so that none comes between a negative result
+/// and the sleep; a masked one still ends it.
 fn sleep_until(mut ready: impl FnMut() -> bool) {
     loop {
         let done = critical_section::with(|_| {
@@ -129,13 +130,13 @@ fn sleep_until(mut ready: impl FnMut() -> bool) {
     }
 }
 
-/// Destination (everybody), source (a locally administered address), type.
+/// Destination (broadcast), source (a locally administered address), type.
 const HEADER: [u8; HEADER_LEN] = {
     let [high, low] = ETHERTYPE.to_be_bytes();
     [0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 0x01, high, low]
 };
 const HEADER_LEN: usize = 14;
-/// Behind header and length.
+/// Offset of the message, behind header and length.
 const MESSAGE_AT: usize = HEADER_LEN + 2;
 /// Ethernet's shortest frame, without the checksum.
 const FRAME_LEN_MIN: usize = 60;
@@ -180,7 +181,7 @@ const IRQ_CFG_PUSH_PULL: u32 = 1;
 const TX_FIRST: u32 = 1 << 13;
 const TX_LAST: u32 = 1 << 12;
 
-/// The controller's line to the processor.
+/// The controller's interrupt number.
 #[derive(Clone, Copy)]
 struct EthernetIrq;
 

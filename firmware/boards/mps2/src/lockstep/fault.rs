@@ -1,7 +1,7 @@
-//! `fault`: fault handler of the lockstep board. It tells the place on stderr and ends the emulator with exit
-//! code 1.
+//! `fault`: fault handler of the lockstep board. It prints the place on stderr and ends the emulator with
+//! exit code 1.
 //!
-//! Only the place: what a panic says besides would need the formatting of `core::fmt`, 7 kB of an image.
+//! Only the place: the panic message would need the formatting of `core::fmt`, 7 kB of flash.
 
 use core::panic::PanicInfo;
 
@@ -19,7 +19,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     ended(Ending::Fault(frame.pc()))
 }
 
-/// Tells the place, then ends the emulator.
+/// Prints the place, then ends the emulator.
 fn ended(how: Ending<'_>) -> ! {
     let mut place = [0; PLACE_LEN];
     let len = how.write(&mut place);
@@ -27,9 +27,9 @@ fn ended(how: Ending<'_>) -> ! {
     end()
 }
 
-/// Writes the words and a line's end on stderr.
+/// Writes the text and a line's end on stderr.
 fn say(words: &[&[u8]]) {
-    // Nobody is left to be told where even that fails.
+    // If that fails too, no output is left.
     if let Ok(mut stderr) = hio::hstderr() {
         for word in words.iter().chain([&&b"\n"[..]]) {
             let _ = stderr.write_all(word);
@@ -37,12 +37,12 @@ fn say(words: &[&[u8]]) {
     }
 }
 
-/// Ends the emulator; on hardware, where nobody listens, it stands still.
+/// Ends the emulator; on hardware without a debugger it stops here.
 fn end() -> ! {
     loop {
         debug::exit(debug::EXIT_FAILURE);
     }
 }
 
-/// Bytes of a place that are told.
+/// Bytes of a place that are printed.
 const PLACE_LEN: usize = 128;

@@ -1,7 +1,8 @@
-//! `instructions`: instruction counter. The system timer knows, where the emulator counts them.
+//! `instructions`: instruction counter, read from the system timer where the emulator counts instructions.
 //!
-//! QEMU with `-icount shift=6` lets each guest instruction take 2⁶ = 64 ns of virtual time; the timer ticks at 25 MHz, once
-//! in 40 ns. So a count is exact, up to the timer's 24 bits: 10.4 million instructions. Without `-icount` it is noise.
+//! QEMU with `-icount shift=6` lets each guest instruction take 2⁶ = 64 ns of virtual time; the timer ticks
+//! at 25 MHz, once in 40 ns. So a count is exact, up to the timer's 24 bits: 10.4 million instructions.
+//! Without `-icount` it is noise.
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -14,7 +15,7 @@ pub(crate) fn start(mut timer: SYST) {
     timer.enable_counter();
 }
 
-/// Does the work; gives what it gave, and how many instructions it took.
+/// Runs the work; returns its result, and the number of instructions.
 pub(crate) fn counted<T>(work: impl FnOnce() -> T) -> (T, u32) {
     let before = SYST::get_current();
     let result = work();
@@ -25,7 +26,7 @@ pub(crate) fn counted<T>(work: impl FnOnce() -> T) -> (T, u32) {
 }
 
 const TIMER_MASK: u32 = 0x00ff_ffff;
-/// 25 MHz.
+/// Length of a timer tick at 25 MHz, ns.
 const TICK_NS: u64 = 40;
-/// `-icount shift=6`.
+/// Time of an instruction with `-icount shift=6`, ns.
 const INSTRUCTION_NS: u64 = 1 << 6;

@@ -1,9 +1,9 @@
 //! `lockstep`: firmware in lockstep with the simulator. Tick by tick, with the tasks a real board starts
 //! (docs/architecture.md §7.2).
 //!
-//! The robot's tasks are `runtime`'s. This board has no radio, no senses and no body of its own: the simulator deals them
-//! out, one tick a frame, over Ethernet ([`ticks`]), and the clock moves by ticks alone ([`clock`]). A panic or fault
-//! ends the emulator with exit code 1 and its place on stderr ([`fault`]).
+//! The robot's tasks are `runtime`'s. This board has no radio, no sensors and no body of its own: the
+//! simulator provides them, one tick a frame, over Ethernet ([`ticks`]), and the clock moves by ticks alone
+//! ([`clock`]). A panic or fault ends the emulator with exit code 1 and its place on stderr ([`fault`]).
 
 mod clock;
 mod eth;
@@ -23,7 +23,7 @@ fn main() -> ! {
     ticks::run()
 }
 
-/// The one interrupt that is on is the Ethernet controller's.
+/// Only the Ethernet controller's interrupt is enabled.
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {
     eth::acknowledge();

@@ -1,9 +1,10 @@
-//! `ticks`: execution of one lockstep tick. It lets the robot live up to that moment and tells what came
-//! of it (docs/architecture.md §7.2).
+//! `ticks`: execution of one lockstep tick. It runs the robot up to that moment and reports the result
+//! (docs/architecture.md §7.2).
 //!
-//! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets in their order, its picture of
-//! the world, and after each kind the tasks run until all of them wait. The robot is born with its set-up, at time zero.
-//! A message that makes no sense where it comes is counted and gets no answer; another life needs another process.
+//! Hello, set-up, ready; then tick after tick: alarms up to the tick's time, its packets in their order, its
+//! sensor frame, and after each kind the tasks run until all of them wait. The robot is constructed with its
+//! set-up, at time zero. A message that is invalid in its place is counted and gets no answer; another boot
+//! epoch needs another process.
 
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -24,7 +25,7 @@ use super::clock::Clock;
 use super::eth::{self, Inlet, Outlet};
 use super::{instructions, library, stack};
 
-/// The board's life.
+/// Main loop of the board.
 pub(crate) fn run() -> ! {
     let core = cortex_m::Peripherals::take().expect("nobody took them before");
     instructions::start(core.SYST);
@@ -53,7 +54,7 @@ pub(crate) fn run() -> ! {
     }
 }
 
-/// Who the robot is and what it knows; asks on until both can be read.
+/// Identity and case base of the robot; asks again until both can be read.
 fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseBase<'static>) {
     loop {
         let Some(ToRobot::Setup { config }) = read(inlet.receive()) else {
@@ -67,19 +68,19 @@ fn wait_for_setup(inlet: &mut Inlet, outlet: &mut Outlet) -> (BrainConfig, CaseB
     }
 }
 
-/// One tick: time, then packets, then the picture.
+/// One tick: time, then packets, then the sensor frame.
 fn live(clock: &Clock, tick: TickIn<'_>) {
     clock.advance(tick.now);
     for packet in &tick.air {
         if BOXES.is_full() {
             clock.settle();
         }
-        // A packet longer than any frame is none of ours; a radio would not have taken it either.
+        // A packet longer than any frame is invalid; a radio would not have received it either.
         if !Packet::from_slice(packet).is_ok_and(|packet| BOXES.hear(packet)) {
             STRANGE.fetch_add(1, Ordering::Relaxed);
         }
     }
-    // All before the picture.
+    // All before the sensor frame.
     clock.settle();
     if SEEN.try_send(tick.sensors).is_err() {
         STRANGE.fetch_add(1, Ordering::Relaxed);
@@ -99,17 +100,18 @@ fn tell(outlet: &mut Outlet, message: &FromRobot<'_>) {
     outlet.send(|buffer| postcard::to_slice(message, buffer).map_or(0, |bytes| bytes.len()));
 }
 
-/// Ticks between two looks at the stack: a look takes some 80,000 instructions, and its deepest use stays to be seen.
+/// Ticks between two measurements of the stack: one takes some 80,000 instructions, and the deepest use
+/// remains visible.
 const STACK_EVERY: u32 = 64;
 
-/// Messages and packets that made no sense, for a debugger to read.
+/// Number of invalid messages and packets, for a debugger to read.
 static STRANGE: AtomicU32 = AtomicU32::new(0);
-/// Packets said beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
+/// Packets sent beyond a tick's [`AIR_OUT_MAX`], for a debugger to read.
 static UNHEARD: AtomicU32 = AtomicU32::new(0);
 
-/// What the tick hands to the senses; its packets go straight into the inbox, as there is no radio here.
+/// Input of the tick for the sensor task; its packets go straight into the inbox, as there is no radio here.
 static SEEN: Channel<CriticalSectionRawMutex, SensorFrame, 1> = Channel::new();
-/// What the tasks made of the tick.
+/// Output of the tasks in this tick.
 static DONE: Mutex<RefCell<Done>> = Mutex::new(RefCell::new(Done { air: Vec::new(), actuators: None }));
 
 #[derive(Default)]

@@ -1,5 +1,5 @@
-//! `body`: simulated actuators of a board without motors. Wheels that follow their duty as motors do, a
-//! capacitor that fills, and probes that see nothing amiss.
+//! `body`: simulated actuators of a board without motors. Wheels that follow their duty cycle as motors do, a
+//! capacitor that fills, and probes without disturbances.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -10,12 +10,12 @@ use runtime::wheel::WHEELS;
 
 /// Rim speeds, m/s, as bits.
 static SPEEDS: [AtomicU32; WHEELS] = [const { AtomicU32::new(0) }; WHEELS];
-/// The motors have current.
+/// Whether the motors have current.
 static DRIVEN: AtomicBool = AtomicBool::new(false);
 /// The capacitor's voltage, V, as bits.
 static VOLTS: AtomicU32 = AtomicU32::new(0);
 
-/// Takes the current off everything at once, whatever else goes on: what a panic does first.
+/// Takes the current off all actuators at once, in any state: the first act of a panic.
 pub(crate) fn stop() {
     DRIVEN.store(false, Ordering::Relaxed);
     for speed in &SPEEDS {
@@ -24,7 +24,7 @@ pub(crate) fn stop() {
     VOLTS.store(0, Ordering::Relaxed);
 }
 
-/// Four wheels.
+/// Four simulated wheels.
 pub(crate) struct Motors;
 
 impl Wheels for Motors {
@@ -45,7 +45,7 @@ impl Wheels for Motors {
     }
 }
 
-/// A kicker without ball.
+/// A kicker without a ball.
 pub(crate) struct Coil;
 
 impl Coil {
@@ -72,7 +72,7 @@ impl Kicker for Coil {
     }
 }
 
-/// Probes that see nothing amiss.
+/// Probes of an undisturbed robot.
 pub(crate) struct Senses;
 
 impl Probes for Senses {
@@ -86,10 +86,11 @@ fn volts() -> f32 {
     f32::from_bits(VOLTS.load(Ordering::Relaxed))
 }
 
-/// Rim speed at full duty, m/s, and the share of a change that happens in a millisecond (a motor's 30 ms).
+/// Rim speed at a duty cycle of 1, m/s, and the share of a change that happens in a millisecond (a motor's 30
+/// ms).
 const FREE_SPEED: f32 = 6.0;
 const FOLLOWS: f32 = 1.0 / 30.0;
-/// What a step of the kicker adds or takes, V: full in 0.4 s.
+/// Change of the capacitor's voltage in a step of the kicker, V: full in 0.4 s.
 const CHARGES: f32 = 0.5;
-/// A step of the kicker.
+/// Period of the kicker.
 const STEP: Duration = Duration::millis(1);

@@ -1,8 +1,8 @@
 //! `clock`: time source and executor wake-up of the free-running board. The system timer counts microseconds,
 //! and the executor sleeps with WFI.
 //!
-//! Works on any Cortex-M whose core clock is a whole number of MHz. Embassy's own executor sleeps with WFE, which QEMU runs
-//! as nothing: an idle robot would keep a whole core of the PC busy.
+//! Works on any Cortex-M whose core clock is a whole number of MHz. Embassy's own executor sleeps with WFE,
+//! which QEMU runs as nothing: an idle robot would keep a whole core of the PC busy.
 
 use core::cell::RefCell;
 use core::ptr;
@@ -32,23 +32,23 @@ pub(crate) fn run(init: impl FnOnce(Spawner)) -> ! {
     let executor = EXECUTOR.init(Executor::new(ptr::null_mut()));
     init(executor.spawner());
     loop {
-        // Interrupts are held back between the question and the sleep; one that is held back still ends it.
+        // Interrupts are masked between the check and the sleep; a masked one still ends it.
         cortex_m::interrupt::disable();
         let work = WORK.swap(false, Ordering::Acquire);
         if !work {
             cortex_m::asm::dsb();
             cortex_m::asm::wfi();
         }
-        // SAFETY: nothing here stands on interrupts being off.
+        // SAFETY: no code here relies on interrupts being off.
         unsafe { cortex_m::interrupt::enable() };
         if work {
-            // SAFETY: nobody else polls this executor, and no task calls this function.
+            // SAFETY: this is the only place that polls this executor, and no task calls this function.
             unsafe { executor.poll() };
         }
     }
 }
 
-/// Embassy's clock.
+/// Embassy's time driver.
 struct Time {
     /// Whole milliseconds since the start; 49 days of them.
     millis: AtomicU32,
@@ -60,7 +60,7 @@ impl Driver for Time {
         critical_section::with(|_| {
             let mut millis = self.millis.load(Ordering::Relaxed);
             let mut left = SYST::get_current();
-            // It began anew, and its interrupt waits for us.
+            // The counter has wrapped, and its interrupt is pending.
             if SCB::is_pendst_pending() {
                 left = SYST::get_current();
                 millis = millis.wrapping_add(1);
@@ -70,7 +70,7 @@ impl Driver for Time {
     }
 
     fn schedule_wake(&self, at: u64, waker: &Waker) {
-        // Whether the alarm is the first is seen with the next millisecond.
+        // Whether the alarm is the first is checked with the next millisecond.
         critical_section::with(|cs| self.alarms.borrow_ref_mut(cs).schedule_wake(at, waker));
     }
 }
@@ -88,7 +88,7 @@ fn SysTick() {
     critical_section::with(|cs| TIME.alarms.borrow_ref_mut(cs).next_expiration(now));
 }
 
-/// Some task wants to run.
+/// Whether some task is ready.
 static WORK: AtomicBool = AtomicBool::new(true);
 
 /// Embassy's executor calls this, by this name, when a task was woken.
@@ -97,7 +97,7 @@ fn pender(_executor: *mut ()) {
     WORK.store(true, Ordering::Release);
 }
 
-/// 25 MHz.
+/// Timer ticks per microsecond: 25 MHz.
 const TICKS_A_MICRO: u32 = 25;
-/// Of the timer, in its ticks: a millisecond.
+/// Period of the timer in its ticks: a millisecond.
 const PERIOD: u32 = 1_000 * TICKS_A_MICRO;

@@ -1,4 +1,4 @@
-//! `dog`: watchdog driver. The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out rings
+//! `dog`: watchdog driver. The board's watchdog (CMSDK APB watchdog, Arm DDI 0479): its first time-out raises
 //! the NMI, its second resets the board.
 
 use cortex_m_rt::exception;
@@ -10,7 +10,7 @@ use super::{body, console::say, fault};
 /// The watchdog, running.
 pub(crate) struct Watchdog(());
 
-/// Starts it; from now on it wants to be fed.
+/// Starts it; from now on it must be fed.
 pub(crate) fn start() -> Watchdog {
     LOCK.write(UNLOCKED);
     LOAD.write(PATIENCE_TICKS);
@@ -22,12 +22,12 @@ impl Dog for Watchdog {
     const PATIENCE: Duration = PATIENCE;
 
     fn feed(&mut self) {
-        // Any value loads the counter anew.
+        // Any value reloads the counter.
         CLEAR.write(1);
     }
 }
 
-/// Whether the last life was ended by it.
+/// Whether the watchdog ended the last boot epoch.
 pub(crate) fn has_bitten() -> bool {
     fault::was_bitten()
 }
@@ -38,7 +38,8 @@ unsafe fn NonMaskableInt() {
     body::stop();
     fault::remember_bite();
     say(&[b"watchdog: a task hangs; motors off"]);
-    // The interrupt stays on until it is cleared, and clearing would feed the dog: wait for the reset here.
+    // The interrupt stays pending until it is cleared, and clearing would feed the watchdog: wait for the
+    // reset here.
     loop {
         core::hint::spin_loop();
     }
@@ -49,7 +50,8 @@ struct Register(usize);
 
 impl Register {
     fn write(self, value: u32) {
-        // SAFETY: every register below is one of this board's watchdog (MPS2 AN386: at 0x4000_8000), 32 bits wide.
+        // SAFETY: every register below is one of this board's watchdog (MPS2 AN386: at 0x4000_8000), 32 bits
+        // wide.
         unsafe { ((BASE + self.0) as *mut u32).write_volatile(value) }
     }
 }
@@ -62,7 +64,7 @@ const LOCK: Register = Register(0xc00);
 const UNLOCKED: u32 = 0x1acc_e551;
 const INTERRUPT: u32 = 1;
 const RESET: u32 = 1 << 1;
-/// Until the first time-out.
+/// Time until the first time-out.
 const PATIENCE: Duration = Duration::millis(100);
-/// In ticks of 25 MHz.
+/// The same in ticks of 25 MHz.
 const PATIENCE_TICKS: u32 = 25 * PATIENCE.0 as u32;

@@ -1,7 +1,7 @@
 //! `fault`: fault handler: motors off, crash record kept and reported, restart (docs/architecture.md §6.2).
 //!
-//! A record in memory that no start clears outlives the reset: how often the robot was started since power came, and what
-//! ended the last life.
+//! A record in memory that no start clears outlives the reset: the number of starts since power-on, and what
+//! ended the last boot epoch.
 
 use core::mem::MaybeUninit;
 use core::panic::PanicInfo;
@@ -14,16 +14,17 @@ use runtime::ending::Ending;
 use super::body;
 use super::console::say;
 
-/// What is known of this life and the last.
+/// Record of this boot epoch and the last.
 #[derive(Clone, Copy)]
 pub(crate) struct Life {
-    /// Starts since power came, this one included.
+    /// Starts since power-on, this one included.
     pub(crate) boots: u32,
     /// Panics since then.
     pub(crate) panics: u32,
     place: [u8; PLACE_LEN],
     place_len: usize,
-    /// Not 0: the watchdog ended the last life. No `bool`, for memory nobody wrote may hold anything.
+    /// Not 0: the watchdog ended the last boot epoch. No `bool`, because uninitialized memory may hold any
+    /// value.
     bitten: u32,
     magic: u32,
 }
@@ -32,13 +33,13 @@ impl Life {
     const FIRST: Self =
         Self { boots: 0, panics: 0, place: [0; PLACE_LEN], place_len: 0, bitten: 0, magic: MAGIC };
 
-    /// Where the last panic was: file and line.
+    /// File and line of the last panic.
     pub(crate) fn place(&self) -> &[u8] {
         self.place.get(..self.place_len).unwrap_or_default()
     }
 }
 
-/// Counts this start; call once, first of all.
+/// Counts this start; must be called once, before anything else.
 pub(crate) fn life() -> Life {
     let mut life = with(|life| *life);
     if life.magic != MAGIC {
@@ -47,23 +48,23 @@ pub(crate) fn life() -> Life {
     life.boots = life.boots.wrapping_add(1);
     BITTEN.store(life.bitten != 0, Ordering::Relaxed);
     let told = life;
-    // Told once: the next life has its own end.
+    // Reported once: the next boot epoch has its own end.
     life.bitten = 0;
     with(|kept| *kept = life);
     told
 }
 
-/// Whether this is the first life since power came.
+/// Whether this is the first boot epoch since power-on.
 pub(crate) fn is_first_life() -> bool {
     with(|life| life.boots) == 1
 }
 
-/// Whether the last life was ended by the watchdog.
+/// Whether the watchdog ended the last boot epoch.
 pub(crate) fn was_bitten() -> bool {
     BITTEN.load(Ordering::Relaxed)
 }
 
-/// The watchdog has bitten.
+/// Records that the watchdog's time-out has passed.
 pub(crate) fn remember_bite() {
     with(|life| life.bitten = 1);
 }
@@ -83,7 +84,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     ended(Ending::Fault(frame.pc()))
 }
 
-/// Keeps and tells the place, then starts anew.
+/// Keeps and prints the place, then restarts.
 fn ended(how: Ending<'_>) -> ! {
     with(|life| {
         life.panics = life.panics.wrapping_add(1);
@@ -93,12 +94,13 @@ fn ended(how: Ending<'_>) -> ! {
     SCB::sys_reset()
 }
 
-/// The record. Nobody is interrupted by a panic who holds it: it is touched at the start, in the watchdog's NMI, and here.
+/// Access to the record. A panic never interrupts another access: the record is used at the start, in the
+/// watchdog's NMI, and here.
 fn with<T>(work: impl FnOnce(&mut Life) -> T) -> T {
     #[unsafe(link_section = ".uninit.life")]
     static mut LIFE: MaybeUninit<Life> = MaybeUninit::uninit();
-    // SAFETY: one processor, and no two of its users run at the same time. The record consists of whole numbers, for which
-    // every pattern of bits is a value; a start whose `magic` is wrong replaces all of it.
+    // SAFETY: one processor, and no two of its users run at the same time. The record consists of integers,
+    // for which every bit pattern is valid; a start whose `magic` is wrong replaces all of it.
     unsafe { work(&mut *(&raw mut LIFE).cast::<Life>()) }
 }
 

@@ -1,7 +1,8 @@
-//! `standalone`: start-up of the free-running board. Clock, provisioned page, tasks, and what it says of all that.
+//! `standalone`: start-up of the free-running board: clock, provisioned page, tasks, and their log.
 //!
-//! Without a page ([`protocol::provision`]) it drives nothing and says nothing on the air. Its words for people go to stderr
-//! over semihosting. A page and a fault to be tried out ([`mod@trial`]) are put into its flash by the emulator's loader.
+//! Without a page ([`protocol::provision`]) it drives nothing and sends nothing. Its log goes to stderr over
+//! semihosting. A page and a fault to be tried out ([`mod@trial`]) are put into its flash by the emulator's
+//! loader.
 
 mod body;
 mod clock;
@@ -48,7 +49,7 @@ fn main() -> ! {
             clock::run(|_| ())
         }
     };
-    // Rises with every boot: a recording of an earlier life is none of this one's
+    // Rises with every boot: recorded frames of an earlier boot epoch are refused in this one
     // (docs/architecture.md §6.1).
     let epoch = life.boots;
     let config = BrainConfig { epoch, ..BrainConfig::hosted(who.robot, who.team, who.league) };
@@ -58,9 +59,9 @@ fn main() -> ! {
     })
 }
 
-/// What provisioning wrote.
+/// The provisioned page.
 fn page() -> &'static [u8] {
-    // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
+    // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
     unsafe { core::slice::from_raw_parts(protocol::slot::PAGE_ADDRESS as *const u8, PAGE_LEN) }
 }
 

@@ -1,5 +1,5 @@
-//! `trial`: fault injection on the emulated board. A word that the emulator's loader puts into flash asks for
-//! it.
+//! `trial`: fault injection on the emulated board. A value that the emulator's loader puts into flash
+//! requests it.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,10 +10,10 @@ use super::console::say;
 use super::fault;
 use super::stack;
 
-/// Does what the word asks for: once since power came, 1 a panic, 2 a task that hangs, both after 300 ms; 3 tells the deepest use
-/// of the stack every second.
+/// Injects the requested fault: once since power-on, 1 a panic, 2 a task that hangs, both after 300 ms; 3
+/// reports the deepest use of the stack every second.
 pub(crate) async fn run() {
-    // SAFETY: plain memory of the board above the image (build.rs), which nobody writes after the start.
+    // SAFETY: plain memory of the board above the firmware (build.rs), never written after the start.
     let word = unsafe { (protocol::slot::TRIAL_ADDRESS as *const u32).read_volatile() };
     if word == 3 {
         loop {

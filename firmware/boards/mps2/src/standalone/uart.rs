@@ -1,5 +1,5 @@
-//! `uart`: UART driver of the radio link. Stuffed bytes (`protocol::serial`), an interrupt each (CMSDK APB
-//! UART, Arm DDI 0479).
+//! `uart`: UART driver of the radio link. COBS bytes (`protocol::serial`), an interrupt each (CMSDK APB UART,
+//! Arm DDI 0479).
 
 use core::future::poll_fn;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -21,24 +21,25 @@ use super::register::Register;
 pub(crate) fn start() {
     BAUD_DIVIDER.write(DIVIDER_LEAST);
     CONTROL.write(TX_ON | RX_ON | TX_INTERRUPT | RX_INTERRUPT);
-    // SAFETY: the interrupts do no more than move a byte and wake a task.
+    // SAFETY: the interrupts only move a byte and wake a task.
     unsafe {
         NVIC::unmask(Irq(RX_IRQ));
         NVIC::unmask(Irq(TX_IRQ));
     }
 }
 
-/// Bytes that came; twice the longest frame, so that the brain's longest step loses none at the line's pace.
+/// Received bytes; twice the longest frame, so that none are lost during the brain's longest step at the
+/// line's rate.
 static CAME: Pipe<CriticalSectionRawMutex, 512> = Pipe::new();
-/// Bytes that found it full, for a debugger to read.
+/// Number of bytes that found it full, for a debugger to read.
 static LOST: AtomicU32 = AtomicU32::new(0);
 static ROOM: AtomicWaker = AtomicWaker::new();
 
-/// The two interrupts that are on are the line's.
+/// Only the line's two interrupts are enabled.
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
     if number == RX_IRQ as i16 {
-        // First: a byte that comes after the last look must ring again.
+        // Cleared first: a byte that arrives after the last check must raise it again.
         INTERRUPTS.write(RX_INTERRUPT_BIT);
         while STATE.read() & RX_FULL != 0 {
             if CAME.try_write(&[DATA.read() as u8]).is_err() {
@@ -51,7 +52,7 @@ unsafe fn DefaultHandler(number: i16) {
     }
 }
 
-/// Hears frames.
+/// Receives frames.
 pub(crate) struct Ear(Lines);
 
 impl Ear {
@@ -72,7 +73,7 @@ impl RadioReceiver for Ear {
     }
 }
 
-/// Speaks frames.
+/// Sends frames.
 pub(crate) struct Mouth;
 
 impl RadioSender for Mouth {
@@ -118,5 +119,5 @@ const TX_INTERRUPT: u32 = 1 << 2;
 const RX_INTERRUPT: u32 = 1 << 3;
 const TX_INTERRUPT_BIT: u32 = 1;
 const RX_INTERRUPT_BIT: u32 = 1 << 1;
-/// The fastest the line goes; an emulated one has no other pace.
+/// The fastest rate of the line; an emulated one has no other.
 const DIVIDER_LEAST: u32 = 16;

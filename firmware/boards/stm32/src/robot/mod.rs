@@ -1,7 +1,8 @@
-//! `robot`: tasks of the robot's board. The start, then a task each for what must go on.
+//! `robot`: tasks of the robot's board: the start, then one task for each continuous activity.
 //!
-//! All tasks run on one executor in one thread, in the order in which they are woken: the same order as on the emulated board. The
-//! brain's longest step, 40,000 instructions, takes a fifth of a millisecond here; by so much a control step may be late.
+//! All tasks run on one executor in one thread, in the order in which they are woken: the same order as on
+//! the emulated board. The brain's longest step, 40,000 instructions, takes a fifth of a millisecond here; a
+//! control step may be late by this time.
 
 use board_stm32::analog::Analog;
 use board_stm32::dog::Watchdog;
@@ -27,7 +28,7 @@ use static_cell::StaticCell;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let parts = board_stm32::start();
-    // First of all, with what is on the motors' wires before anybody drives them.
+    // First of all, the levels of the motors' wires before they are driven.
     let drivers = Drivers::new(parts.motors);
     let kicker = Kicker::new(parts.kicker);
     let mut alarm = Output::new(parts.lamps.alarm, Level::Low, Speed::Low);
@@ -49,7 +50,7 @@ fn main() -> ! {
     defmt::info!("robot {=u8}, team {=u8}, epoch {=u32}", who.robot.number(), who.team.0, epoch);
     let wheels = Wheels::new(drivers, Encoders::new(parts.encoders));
     let (imu, analog) = (Imu::new(parts.imu), Analog::new(parts.analog));
-    // The last step that may take long lies behind us.
+    // The last step that may take long is over.
     let dog = Watchdog::start(parts.keeper.watchdog);
     static EXECUTOR: StaticCell<Executor> = StaticCell::new();
     EXECUTOR.init(Executor::new()).run(|spawner| {
@@ -127,7 +128,7 @@ async fn watchdog(dog: Watchdog) -> ! {
     hardware::watchdog(dog, &BOXES).await
 }
 
-/// Blinks, and tells each second how the board is.
+/// Blinks, and reports the board's state each second.
 #[embassy_executor::task]
 async fn report(mut alive: Output<'static>) -> ! {
     let mut ticker = Ticker::every(BLINK);
@@ -146,7 +147,7 @@ async fn report(mut alive: Output<'static>) -> ! {
     }
 }
 
-/// What ended the last life.
+/// Reports what ended the last boot epoch.
 fn tell(life: &Life) {
     if life.panics > 0 {
         defmt::warn!(
@@ -161,7 +162,7 @@ fn tell(life: &Life) {
     }
 }
 
-/// Why nobody commands this robot.
+/// Reports why this robot cannot be commanded.
 fn refuse(error: ProvisionError) {
     let why = match error {
         ProvisionError::Empty => "no page",
@@ -172,5 +173,5 @@ fn refuse(error: ProvisionError) {
     defmt::error!("{=str}: nobody commands this robot; run `onetwo firmware provision`", why);
 }
 
-/// Half of the lamp's second.
+/// Half of the lamp's period of a second.
 const BLINK: Duration = Duration::from_millis(500);

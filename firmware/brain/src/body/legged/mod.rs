@@ -61,7 +61,7 @@ impl Body for Legged {
     }
 }
 
-/// The body's kick for a kind of the library: the one it names, else by reach.
+/// The body's kick for a kick kind of the library: the one it names, else by reach.
 fn legged_kick(kind: &Kick) -> LeggedKick {
     match (kind.primitive, kind.aim) {
         (Primitive::ForwardSoft, _) => LeggedKick::ForwardSoft,
@@ -78,7 +78,7 @@ fn legged_kick(kind: &Kick) -> LeggedKick {
 const SPEC: BodySpec = BodySpec {
     speed: WALK_FORWARD,
     carry_speed: CARRY_SPEED,
-    // At 1 rad/s.
+    // A quarter turn at 1 rad/s.
     turn: 1.5,
     // Grabs of 0.5 s each, of which three in four succeed.
     grab: 1.5,
@@ -86,9 +86,9 @@ const SPEC: BodySpec = BodySpec {
     // Half the adaptation limit of 1.5 m at walking speed.
     longest_fetch: 2.5,
     arrived_within: 0.15,
-    // A step from touching it.
+    // A step away from touching it.
     next_to_ball: 0.35,
-    // It turns first, and the ball comes firmly.
+    // The robot turns first, and the ball arrives fast.
     receiver_haste: 0.6,
     receiver_near: 0.3,
     // The league's 3 s of holding a ball.

@@ -1,7 +1,8 @@
 //! `walk`: conversion of intents to walking velocities and primitives; SI, body frame out.
 //!
-//! Far from its goal the robot turns where it goes and walks ahead (its fastest gait), near it steps sideways and turns
-//! to the heading wanted at the end. Robots in the way are walked around, one at a time, nearest first.
+//! Far from its goal the robot turns towards its direction of travel and walks ahead (its fastest gait); near
+//! it, it steps sideways and turns to the heading wanted at the end. Robots on the path are walked around,
+//! one at a time, nearest first.
 
 use geometry::{Angle, Body, Field, Point, Pose, Segment, Twist, Vector, math};
 use motion::legged::{CARRY_SPEED, CARRY_TURN_RATE, TURN_RATE, WALK_FORWARD, WALK_SIDEWAYS};
@@ -22,7 +23,8 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
             walk(Twist { linear: Vector::default(), angular: turn(pose, heading, limit) })
         }
         Intent::Walk { to, face, shy_of_ball } => {
-            // Adapted positions may lie outside (they are never clamped): the body stays on the carpet.
+            // Adapted positions may lie outside (they are never clamped): the body stays on the field
+            // surface.
             let to = belief.league().field().clamp(to, CARPET);
             let way_point = around(now, belief, mates, to, shy_of_ball);
             let far = pose.position.distance(to) > FACE_END_WITHIN;
@@ -42,10 +44,10 @@ pub fn actuate(now: Instant, belief: &Belief, mates: &Mates, intent: Intent) -> 
     }
 }
 
-/// Where a kick sends the ball, as the brain believes: direction from straight ahead, distance to rest in m.
+/// Nominal result of a kick: direction from straight ahead, distance to its stop position in m.
 ///
-/// Straight kicks: UT Austin's 50 measured ERS-7 power kicks rest 2.15 m ahead on average; the soft one and the head
-/// kicks are the simulator's nominal values.
+/// Straight kicks: UT Austin's 50 measured ERS-7 power kicks stop 2.15 m ahead on average; the soft one and
+/// the head kicks are the simulator's nominal values.
 pub fn nominal(kick: LeggedKick) -> (Angle, f32) {
     match kick {
         LeggedKick::ForwardSoft => (Angle::ZERO, 0.8),
@@ -68,7 +70,7 @@ fn turn(pose: Pose<Field>, heading: Angle, limit: f32) -> f32 {
     math::clamp((heading - pose.heading).radians() * TURN_GAIN, -limit, limit)
 }
 
-/// Velocity towards `way_point`, within what the gait can do in that direction, slowing down before `end`.
+/// Velocity towards `way_point`, within the gait's limits in that direction, slowing down before `end`.
 fn step_to(pose: Pose<Field>, way_point: Point<Field>, end: Point<Field>) -> Vector<Body> {
     let Some(direction) = (way_point - pose.position).unit() else { return Vector::default() };
     let left = pose.position.distance(end);
@@ -78,7 +80,8 @@ fn step_to(pose: Pose<Field>, way_point: Point<Field>, end: Point<Field>) -> Vec
     body * (1.0 / excess)
 }
 
-/// The next point to walk to on the way to `to`: `to` itself, or one beside the first thing in the way.
+/// The next point to walk to on the path to `to`: `to` itself, or a point beside the first obstacle on the
+/// path.
 fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of_ball: bool) -> Point<Field> {
     let way = Segment::new(belief.pose.position, to);
     let others = mates.present(now).map(|(_, mate)| mate.pose().position);
@@ -87,7 +90,7 @@ fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of
         .iter()
         .copied()
         .chain(others)
-        // What stands where we must go cannot be walked around.
+        // A robot on the target itself cannot be walked around.
         .filter(|robot| robot.distance(to) > ROBOT_CLEARANCE)
         .map(|robot| (robot, ROBOT_CLEARANCE));
     let ball = belief.ball.filter(|_| shy_of_ball).map(|ball| (ball.position, BALL_CLEARANCE));
@@ -102,7 +105,7 @@ fn around(now: Instant, belief: &Belief, mates: &Mates, to: Point<Field>, shy_of
     }
 }
 
-/// The point `offset` to that side of `obstacle` on which the way already runs.
+/// The point `offset` beside `obstacle`, on the side on which the path already runs.
 fn beside(way: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Field> {
     let Some(along) = way.vector().unit() else { return way.to };
     let left = Vector::new(-along.y(), along.x());
@@ -110,9 +113,10 @@ fn beside(way: Segment<Field>, obstacle: Point<Field>, offset: f32) -> Point<Fie
     obstacle + left * (side * offset)
 }
 
-/// How far within the lines a walk may end, m: on the carpet's edge, half a body outside.
+/// How far within the lines a walk may end, m: negative, half a body outside on the edge of the field
+/// surface.
 const CARPET: f32 = -0.1;
-/// The robot is near enough to turn to its final heading, m: the way on which it turns half about.
+/// The robot is near enough to turn to its final heading, m: the distance walked during half a turn.
 const FACE_END_WITHIN: f32 = 0.4;
 /// Heading is near enough to walk ahead with the ball, rad.
 const CARRY_AHEAD_WITHIN: f32 = 0.4;
@@ -124,7 +128,7 @@ const TURN_GAIN: f32 = 4.0;
 const ROBOT_CLEARANCE: f32 = 0.30;
 /// Distance at which a robot passes a ball without touching it, m.
 const BALL_CLEARANCE: f32 = 0.17;
-/// How much farther out than the clearance the way point lies, m.
+/// How much farther out than the clearance the intermediate point lies, m.
 const SIDE_STEP: f32 = 0.06;
 
 const _: () = assert!(math::PI > CARRY_AHEAD_WITHIN);

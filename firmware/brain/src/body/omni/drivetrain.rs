@@ -1,9 +1,9 @@
 //! `drivetrain`: velocity of the wheeled body in the next control step: from an intent to a path around all
 //! obstacles, and from there to a twist.
 //!
-//! Every step plans anew from where the robot is and from the velocity it was told last (wheels follow within a step; where
-//! they do not, from the measured one); one with no time to look for a way keeps the last one ([`Intent::Onwards`]). SI, body frame
-//! out.
+//! Every step plans again, from the robot's position and the velocity ordered last (wheels follow within a
+//! step; where they do not, from the measured one); a step without time to plan reuses the last path
+//! ([`Intent::Onwards`]). SI, body frame out.
 
 use geometry::{Angle, Body, Field, Point, Twist, Vector, math};
 use motion::avoid::{self, Course, Restraint, Verdict};
@@ -21,28 +21,28 @@ use crate::governor::{STOP_SPEED, Wanted};
 /// Wheels that follow a plan.
 #[derive(Clone, Debug, Default)]
 pub struct Drivetrain {
-    /// What they were told last.
+    /// Velocity ordered last.
     velocity: Vector<Field>,
     angular: f32,
     stepped: Option<Instant>,
     /// Length of the present step, s.
     step: f32,
-    /// The way it is on; none where it stands or brakes.
+    /// The path in use; `None` while the robot stands or brakes.
     under_way: Option<UnderWay>,
 }
 
-/// What a way came to when it was planned last.
+/// Result of the last path planning.
 #[derive(Clone, Copy, Debug)]
 struct UnderWay {
     drive: Drive,
-    /// The goal, or past the first corner on the way to it.
+    /// The goal, or a point past the first corner of the path to it.
     towards: Point<Field>,
-    /// It leads around something.
+    /// Whether it leads around something.
     winds: bool,
 }
 
 impl Drivetrain {
-    /// What the body shall do for `intent`.
+    /// The motion, dribbler and kick for `intent`.
     pub fn actuate(&mut self, now: Instant, belief: &Belief, intent: Intent) -> Wanted {
         let since = self.stepped.map_or(STEP, |last| now.since(last));
         let step = since.as_secs_f32().clamp(STEP_LEAST, STEP_MOST);
@@ -76,15 +76,15 @@ impl Drivetrain {
         }
     }
 
-    /// What was let through in the end: the next plan starts from it. The body turns in the step, and `twist` is meant for the
-    /// heading in the middle of it.
+    /// Records the motion that the governor allowed: the next plan starts from it. The body turns in the
+    /// step, and `twist` is meant for the heading in the middle of it.
     pub fn told(&mut self, belief: &Belief, twist: Twist<Body>) {
         let half = half_turn(twist.angular, self.step);
         self.velocity = belief.pose.vector_to_field(twist.linear.rotated(half));
         self.angular = twist.angular;
     }
 
-    /// Its last way led around something: to look for one takes longer.
+    /// Whether the last path led around something: planning such a path takes longer.
     pub fn winds(&self) -> bool {
         self.under_way.is_some_and(|way| way.winds)
     }
@@ -94,7 +94,7 @@ impl Drivetrain {
         self.wanted(belief, step, self.velocity.clamped(speed), face, &held_or_free(belief))
     }
 
-    /// The same way once more, without looking for a better one.
+    /// Follows the same path without planning.
     fn onwards(&mut self, belief: &Belief, step: f32, way: UnderWay) -> Wanted {
         self.under_way = Some(way);
         let UnderWay { drive, towards, .. } = way;
@@ -106,7 +106,7 @@ impl Drivetrain {
         let from = belief.pose.position;
         let rests = self.velocity.norm() < THERE_SPEED;
         if rests && from.distance(drive.to) < THERE && !is_moved_by_the_rules(belief.game.phase) {
-            // Nothing to plan.
+            // No plan is needed.
             return self.wanted(belief, step, Vector::default(), Some(drive.face), drive);
         }
         let field = belief.league().field();
@@ -168,18 +168,18 @@ impl Drivetrain {
     }
 }
 
-/// By how much the body has turned in the middle of a step of so many s.
+/// Angle by which the body has turned in the middle of a step of `step` seconds.
 fn half_turn(angular: f32, step: f32) -> Angle {
     Angle::new(0.5 * (angular * step))
 }
 
-/// What a step may spend on a way, and on a way out of a forbidden region. It is what the rest of the step leaves of 40,000
-/// instructions (`qemu_wheels`).
+/// Planning effort that a step may spend on a path, and on a path out of a forbidden region. It is what the
+/// other work of the step leaves of 40,000 instructions (`qemu_wheels`).
 fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
     let ball_moves = belief.ball.as_ref().is_some_and(|ball| ball.velocity.norm() > BALL_MOVES);
     let stopped = is_moved_by_the_rules(belief.game.phase);
     let effort = match belief.game.phase {
-        // From behind a goal the way into its mouth is long.
+        // From behind a goal the path into its opening is long.
         _ if belief.pose.position.x().abs() > 0.5 * field.length => EFFORT_BEHIND_GOAL,
         Phase::BallPlacement(Side::Ours) => EFFORT_TAKING,
         _ if stopped && belief.game.duty == Duty::Taker => EFFORT_TAKING,
@@ -190,30 +190,31 @@ fn efforts(belief: &Belief, field: &FieldSpec) -> (u32, u32) {
     (effort, if stopped { EFFORT_STOPPED_TO_LEAVE } else { EFFORT_TO_LEAVE })
 }
 
-/// In play: eight pieces among three obstacles, five among a dozen; only what stands near the way is one. Where to meet a moving ball
-/// is sought in the same step.
+/// In play: eight pieces among three obstacles, five among a dozen; only what stands near the path is an
+/// obstacle. The interception of a moving ball is computed in the same step.
 const EFFORT_BALL_MOVES: u32 = 100;
-/// The same while the ball rests.
+/// The same while the ball is stationary.
 const EFFORT_BALL_RESTS: u32 = 115;
-/// The same while the ball is not in play: neither a case nor an interception is sought then.
+/// The same while the ball is not in play: neither a case nor an interception is computed then.
 const EFFORT_STOPPED: u32 = 230;
 /// Behind a goal line.
 const EFFORT_BEHIND_GOAL: u32 = 312;
-/// The same of who places the ball or takes a restart: it looks for a way behind the ball besides.
+/// The same for a robot that places the ball or kicks a restart: it also plans a path behind the ball.
 const EFFORT_TAKING: u32 = 200;
-/// A way out of a forbidden region then.
+/// A path out of a forbidden region while the ball is not in play.
 const EFFORT_STOPPED_TO_LEAVE: u32 = 460;
-/// A way out in play, where a step may seek a case too.
+/// A path out of a forbidden region in play, where a step may retrieve a case too.
 const EFFORT_TO_LEAVE: u32 = 125;
-/// A ball faster than this is met on its way, m/s.
+/// A ball faster than this is intercepted, m/s.
 const BALL_MOVES: f32 = 0.05;
 
-/// Whether where a robot may stand changes in this phase, though nobody tells it to go: with the ball, or with the phase itself.
+/// Whether the allowed positions of a robot change in this phase without a new directive: with the ball, or
+/// with the phase itself.
 fn is_moved_by_the_rules(phase: Phase<Side>) -> bool {
     !matches!(phase, Phase::Run | Phase::Halt | Phase::Timeout(_))
 }
 
-/// Standing with the ball keeps it.
+/// A standing robot with the ball keeps it.
 fn held_or_free(belief: &Belief) -> Drive {
     let drive = if belief.holds_ball { Drive::holding } else { Drive::shy };
     Drive { kick: OmniKick::None, ..drive(belief.pose.position, belief.pose.heading) }
@@ -230,29 +231,32 @@ fn limits(belief: &Belief, drive: &Drive) -> FreeLimits {
     limits.slowed_to(drive.speed.min(stop))
 }
 
-/// What is planned with, free: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan can be kept.
+/// Planning limits without the ball: below what wheels hold (the simulator's 3.5 to 5.5 m/s²), so that a plan
+/// can be kept.
 pub const LIMITS: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.0, braking: 3.5 };
-/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it aside with 4: it brakes a ball that it caught on the
-/// run before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no harder than the roller follows.
+/// With the ball on the dribbler, which pulls it with some 6 m/s² and holds it sideways with 4: it brakes a
+/// ball that it caught while moving before the rules' metre is over (2.2 m/s in 0.97 m), and backs up no
+/// harder than the roller follows.
 const HOLDING: FreeLimits = FreeLimits { speed: 1.5, acceleration: 1.8, braking: 2.5 };
 /// How fast a ball is pushed to its place at most, m/s.
 const PLACING_SPEED: f32 = 2.0;
 const TURN: TurnLimits = TurnLimits { rate: 8.0, acceleration: 30.0 };
-/// ω² · 95 mm stays below 1.2 m/s².
+/// Turning limits with the ball: ω² · 95 mm stays below 1.2 m/s².
 const HOLDING_TURN: TurnLimits = TurnLimits { rate: 3.5, acceleration: 12.0 };
 /// The same where there is time: 0.4 m/s² along the roller.
 const PLACING_TURN: TurnLimits = TurnLimits { rate: 1.5, acceleration: 4.0 };
-/// The last bit of a turn while a ball is placed, 1/s: orders that arrive 0.1 s late make a faster one swing about its goal.
+/// Gain of the final turn while a ball is placed, 1/s: with orders that arrive 0.1 s late a larger gain
+/// oscillates.
 const SETTLES: f32 = 5.0;
-/// Below the governor's limit in STOP, m/s: it shall not need to say anything.
+/// Below the governor's limit in STOP, m/s: the governor need not intervene.
 const SLACK: f32 = 0.1;
-/// A robot this near its place, and this slow, stands, m and m/s: the vision's noise.
+/// Position error, m, and speed, m/s, below which a robot stands at its place: the vision's noise.
 const THERE: f32 = 0.004;
 const THERE_SPEED: f32 = 0.05;
-/// It looks the right way, rad; and hardly turns, rad/s.
+/// Heading error, rad, and turning rate, rad/s, below which the robot faces its target.
 const FACED: f32 = 0.01;
 const FACED_RATE: f32 = 0.2;
-/// Wheels that are told one thing and measure another by this much are blocked, or slip, m/s.
+/// Wheels whose measured velocity differs from the ordered one by this are blocked or slip, m/s.
 const ASTRAY: f32 = 0.6;
 /// The same for turning, rad/s.
 const ASTRAY_TURN: f32 = 3.0;

@@ -1,7 +1,7 @@
 //! `omni`: abilities of the wheeled robot, and how it carries out the case language's actions. SI.
 //!
-//! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] says what it keeps out of, the skills are in
-//! [`skills::wheels`](crate::skills::wheels).
+//! [`Drivetrain`] turns intents into a body's motion, [`surroundings`] lists what it keeps out of, the skills
+//! are in [`skills::wheels`](crate::skills::wheels).
 
 mod drivetrain;
 pub mod surroundings;
@@ -22,45 +22,45 @@ use crate::skills::{Reception, Step};
 
 pub use drivetrain::{Drivetrain, LIMITS};
 
-/// From the robot's centre to its flat front, m: usual for robots of 180 mm.
+/// Distance from the robot's centre to its flat front, m: usual for robots of 180 mm.
 pub const FRONT: f32 = 0.073;
-/// From the robot's centre to a ball at its front, m.
+/// Distance from the robot's centre to a ball at its front, m.
 pub const BALL_AT: f32 = FRONT + rules::limits::BALL_RADIUS;
 
-/// A way to go, and what dribbler and kicker do on it.
+/// A target to drive to, and what dribbler and kicker do meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Where to, and to rest there.
+    /// Target position, at which the robot stops.
     pub to: Point<Field>,
-    /// Where to look.
+    /// Heading to turn to.
     pub face: Angle,
-    /// No faster than this, m/s.
+    /// Speed limit, m/s.
     pub speed: f32,
-    /// What the ball is on the way.
+    /// How the ball is treated on the path.
     pub manner: Manner,
     /// Share of the dribbler's full speed, 0–1.
     pub dribbler: f32,
-    /// What the kicker does as soon as the ball touches it, once it is armed.
+    /// Kick to fire as soon as the ball touches the kicker, once it is armed.
     pub kick: OmniKick,
-    /// It is armed: the robot looks where the kick shall go.
+    /// Whether it is armed: the robot faces the direction of the kick.
     pub armed: bool,
     /// Share of the acceleration that a held ball is moved with.
     pub gentle: f32,
 }
 
-/// What the ball is to a robot on its way.
+/// How a robot treats the ball on its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
-    /// Something to go around.
+    /// An obstacle to go around.
     Shy,
-    /// Nothing in the way: it may be touched.
+    /// It is no obstacle: it may be touched.
     Bold,
-    /// In the grip, and to stay there: gently.
+    /// It is held and must stay held: gentle accelerations.
     Holding,
 }
 
 impl Drive {
-    /// To a place, around the ball, as fast as may be.
+    /// Drives to a place, around the ball, at full speed.
     pub fn shy(to: Point<Field>, face: Angle) -> Self {
         Self {
             to,
@@ -74,12 +74,12 @@ impl Drive {
         }
     }
 
-    /// To a place on which the ball may be.
+    /// Drives to a place; the ball may be touched.
     pub fn bold(to: Point<Field>, face: Angle) -> Self {
         Self { manner: Manner::Bold, ..Self::shy(to, face) }
     }
 
-    /// To a place with the ball.
+    /// Drives to a place with the ball.
     pub fn holding(to: Point<Field>, face: Angle) -> Self {
         Self { manner: Manner::Holding, dribbler: 1.0, ..Self::shy(to, face) }
     }
@@ -143,16 +143,16 @@ impl Body for Wheeled {
     }
 }
 
-/// The fastest kick wanted, m/s; the governor has the last word.
+/// The fastest kick wanted, m/s; the governor limits it.
 pub const SHOT: f32 = 5.8;
-/// How fast a ball kicked into free space still is where the case wants it, m/s: nearly lying.
+/// Remaining speed of a ball kicked into free space at the case's end point, m/s: nearly stationary.
 const ROLLS_ON: f32 = 0.3;
 
 const SPEC: BodySpec = BodySpec {
-    // Two metres from rest to rest take 1.5 s with 3.5 m/s².
+    // Two metres from standstill to standstill take 1.5 s with 3.5 m/s².
     speed: 1.3,
     carry_speed: 0.7,
-    // A quarter turn at 3 rad/s and getting there.
+    // A quarter turn at 3 rad/s, including acceleration.
     turn: 0.8,
     grab: 0.7,
     kick: 0.2,

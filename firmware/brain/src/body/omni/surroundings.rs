@@ -1,7 +1,8 @@
 //! `surroundings`: obstacles of a wheeled robot: all other robots, the rules' shapes, goal walls, and the
 //! ball where it avoids it.
 //!
-//! Regions are for the robot's centre: grown by its radius and by what sight and wheels err. Field frame, m.
+//! Regions are for the robot's centre: grown by its radius and by the errors of vision and wheels. Field
+//! frame, m.
 
 use geometry::{Field, GoalEnd, Point, Segment, Shape, Vector};
 use motion::avoid::{OBSTACLES_MAX, Obstacle};
@@ -12,44 +13,46 @@ use rules::{Duty, FieldSpec, Phase, Side};
 use super::Manner;
 use crate::belief::Belief;
 
-/// What stands around, and where the body may be.
+/// Obstacles around the robot, and the region it must stay in.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
-    /// To be kept out of.
+    /// Regions and bodies to keep out of.
     pub obstacles: heapless::Vec<Obstacle<Field>, OBSTACLES_MAX>,
-    /// To stay in.
+    /// Region to stay in.
     pub within: Shape<Field>,
 }
 
 impl Surroundings {
-    /// Where nothing stands around; [`Surroundings::look`] comes next, for they are large to be handed around.
+    /// An empty value to be filled by [`Surroundings::look`]; it is too large to be moved around.
     pub fn none(field: &FieldSpec) -> Self {
         Self { obstacles: heapless::Vec::new(), within: field.carpet().grown(-BODY - BORDER) }
     }
 
-    /// Takes in what matters to this robot on its way to `to`.
+    /// Collects what matters to this robot on its path to `to`.
     pub fn look(&mut self, belief: &Belief, field: &FieldSpec, to: Point<Field>, manner: Manner) {
         let KeepOut { forbidden, within } = keep_out(&situation(belief, field));
-        // Who goes for the ball may touch the boards: one in a corner is had no other way.
+        // A robot that goes for the ball may touch the boards: a ball in a corner cannot be reached
+        // otherwise.
         self.within = within.grown(if manner == Manner::Shy { -BODY - BORDER } else { -BODY });
         let me = belief.pose.position;
-        // The way it means to go, and the one on which it could come to rest.
+        // The planned path, and the one on which it could stop.
         let way = Segment::new(me, to);
         let stops = Segment::new(me, me + belief.velocity * STOPS_IN);
-        // A robot at a ball that lies beside an area may be as near as the rules let it.
+        // A robot at a ball that lies beside an area may be as near as the rules allow.
         let rolls = belief.ball.map_or(0.0, |ball| ball.velocity.norm());
         let at_ball = belief.game.phase == Phase::Run
             && belief.ball.is_some_and(|ball| rolls < LIES && ball.position.distance(to) < AT_BALL);
         let grown = |region: &Forbidden| {
             let law = match region.why {
                 Why::OpponentArea | Why::OwnArea if at_ball => LAW_AT_BALL,
-                // It comes along with the ball.
+                // The stadium moves with the ball.
                 Why::Stadium => LAW + (LEADS * rolls).min(LEADS_MOST),
                 _ => LAW,
             };
             region.shape.grown(BODY + law)
         };
-        // Who must leave a region may have to leave by another way than the one it means to go: all of them count.
+        // A robot that must leave a region may have to leave by another path than the planned one: all
+        // regions count.
         let covers = |shape: Shape<Field>| shape.contains(me) || shape.contains(to);
         let leaves = forbidden.iter().any(|region| covers(grown(region)));
         for shape in forbidden.iter().map(grown) {
@@ -87,7 +90,8 @@ impl Surroundings {
         }
     }
 
-    /// Where there is no room for another one it is left out: rules and goals come first, and robots leave room.
+    /// Without capacity for another obstacle it is left out: rules and goals are added first, and other
+    /// robots keep their distance too.
     fn add(&mut self, obstacle: Obstacle<Field>) {
         let _ = self.obstacles.push(obstacle);
     }
@@ -107,7 +111,7 @@ impl Surroundings {
     }
 }
 
-/// Whether a region comes near the way: looked at from three places on it, each for its stretch.
+/// Whether a region comes near the path: tested at three points of it, each for its stretch.
 fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
     let along = way.vector();
     let stretch = SIXTH * (along.x().abs() + along.y().abs());
@@ -116,8 +120,8 @@ fn is_near(shape: &Shape<Field>, way: Segment<Field>) -> bool {
         .any(|share| shape.distance_to(way.from + along * *share) < stretch + ASIDE)
 }
 
-/// Where the ball goes that a teammate is about to kick at our restart: a teammate behind it looks over it. Not to be crossed; who
-/// is sent into it waits there for the ball.
+/// The path of a ball that a teammate is about to kick at our restart: a teammate behind the ball faces along
+/// it. It must not be crossed; a robot that is sent into it waits there for the ball.
 fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
     let phase = belief.game.phase;
     let ours = matches!(
@@ -136,7 +140,7 @@ fn kicking_lane(belief: &Belief) -> Option<Shape<Field>> {
     Some(Shape::Capsule { spine, radius: BODY + BALL_RADIUS + LANE_MARGIN })
 }
 
-/// The rules' question, as this robot sees it.
+/// Input of `rules::keep_out` from this robot's belief.
 pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     let game = &belief.game;
     Situation {
@@ -150,49 +154,53 @@ pub fn situation<'f>(belief: &Belief, field: &'f FieldSpec) -> Situation<'f> {
     }
 }
 
-/// Of a way.
+/// Share of the path's length.
 const SIXTH: f32 = 1.0 / 6.0;
-/// The robot's own radius, m.
+/// The robot's radius, m.
 const BODY: f32 = ROBOT_RADIUS;
-/// More than the rules' distances, m: vision's noise, its delay at walking pace, and what wheels overshoot.
+/// Added to the rules' distances, m: vision's noise, its delay at walking pace, and overshoot of the wheels.
 const LAW: f32 = 0.04;
-/// Beside areas at a ball that lies, m: what wheels overshoot at 0.35 m/s.
+/// Added beside areas at a ball that lies, m: overshoot of the wheels at 0.35 m/s.
 const LAW_AT_BALL: f32 = 0.01;
-/// A placement's stadium swings with the ball by what it rolls in so long, s: picture, radio, and what wheels take to follow; …
+/// A placement's stadium moves with the ball by what it rolls in this time, s: snapshot and radio latency,
+/// and the lag of the wheels; …
 const LEADS: f32 = 0.15;
-/// … no more than this, m: who stands where hosts send it is 0.15 m clear.
+/// … at most this, m: the places that hosts order are 0.15 m clear of it.
 const LEADS_MOST: f32 = 0.3;
-/// A slower ball lies, m/s.
+/// A slower ball counts as stationary, m/s.
 const LIES: f32 = 0.3;
-/// This near the ball its way ends, m: lining up behind it.
+/// A robot whose path ends this near the ball lines up behind it, m.
 const AT_BALL: f32 = 0.2;
-/// From the carpet's edge, m.
+/// Distance kept from the edge of the field surface, m.
 const BORDER: f32 = 0.02;
-/// From goal walls, m.
+/// Distance kept from goal walls, m.
 const WALL: f32 = 0.01;
-/// From a ball that is not to be touched, m.
+/// Distance kept from a ball that must not be touched, m.
 const SHY: f32 = 0.03;
-/// The same while it is placed: what touches it then rolls away.
+/// The same while it is placed: a ball that is touched then rolls away.
 const SHY_PLACING: f32 = 0.055;
-/// From other robots, m.
+/// Distance kept from other robots, m.
 const ROBOTS: f32 = 0.03;
-/// From other robots beside the ball, m.
+/// Distance kept from other robots beside the ball, m.
 const ROBOTS_AT_BALL: f32 = 0.0;
-/// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room for a swing.
+/// A teammate this near the ball of our restart is about to kick it, m: 0.18 m where it lines up, and room
+/// for a swing.
 const KICKS_WITHIN: f32 = 0.35;
-/// It looks at the ball within this, rad.
+/// Heading tolerance within which it faces the ball, rad.
 const LOOKS_AT: f32 = 0.35;
-/// The lane ends so far from the ball, m: short of who waits for a pass of a metre.
+/// The lane ends this far from the ball, m: short of a robot that waits for a pass of a metre.
 const LANE: f32 = 0.9;
-/// Beside the ball's way, m.
+/// Beside the ball's path, m.
 const LANE_MARGIN: f32 = 0.03;
-/// Who stands farther beside the way than this is in nobody's way, m: a way around one robot keeps nearer.
+/// A robot that stands farther beside the path than this is no obstacle, m: a path around one robot keeps
+/// nearer.
 const ASIDE: f32 = 0.3;
-/// Who moves may come nearer for so long, s.
+/// Time for which a moving robot may come nearer, s.
 const ASIDE_FOR: f32 = 0.4;
-/// Who moves may be elsewhere than it was shown, by this much of its way, s: two images' worth of its velocity's error.
+/// A moving robot may be elsewhere than received, by its velocity's error over this time, s: two camera
+/// frames.
 const STRAYS_FOR: f32 = 0.025;
-/// At 3 m/s and 3.5 m/s² a robot comes to rest in 0.43 s times its speed, s.
+/// At 3 m/s and 3.5 m/s² a robot stops in 0.43 s times its speed, s.
 const STOPS_IN: f32 = 0.5;
 /// Goal walls matter within this distance of the goal line, m.
 const NEAR_GOAL: f32 = 0.7;

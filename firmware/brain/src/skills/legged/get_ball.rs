@@ -1,4 +1,4 @@
-//! `get_ball`: go where the ball can be met and take it. Field frame, SI.
+//! `get_ball`: intercept the ball and take it. Field frame, SI.
 
 use geometry::{Angle, Field, Point, Vector, math};
 use motion::legged::{CARRY_TURN_RATE, GRAB_HALF_ANGLE, GRAB_REACH, WALK_FORWARD};
@@ -32,18 +32,19 @@ pub fn get_ball(belief: &Belief, onwards: Option<Angle>) -> Step {
     {
         return Step::Running(Intent::Walk { to, face: onwards, shy_of_ball: true });
     }
-    // Not slowing down before the ball is in reach: the walk would end beyond that.
+    // No slowing down before the ball is in reach: the walk would end beyond that.
     let to = meeting - Vector::polar(WALK_UP_TO, direct);
     let face = if distance < NEAR { pose.position.direction_to(ball.position) } else { direct };
     Step::Running(Intent::Walk { to, face, shy_of_ball: false })
 }
 
-/// Where to stand for a ball that will lie, so as to face `onwards` with it at once; `None` where meeting it and turning with
-/// it, ready `by` seconds from now, is quicker, or an opponent is there first.
+/// Where to stand for a ball that will stop, so as to face `onwards` with it at once; `None` where
+/// intercepting it and turning with it, ready `by` seconds from now, is quicker, or an opponent is there
+/// first.
 fn place_behind(belief: &Belief, ball: &Ball, onwards: Angle, by: f32) -> Option<Point<Field>> {
     let from = belief.pose.position;
     let behind = ball.rest - Vector::polar(STAND_OFF, onwards);
-    // Around the ball the way is an arc about it, not through it.
+    // Around the ball the path is an arc about it, not through it.
     let astray = (onwards - from.direction_to(ball.rest)).abs();
     let arc = BALL_CLEARANCE * (astray - math::FRAC_PI_2).max(0.0);
     let walk = (from.distance(behind) + arc) / WALK_FORWARD;
@@ -54,15 +55,15 @@ fn place_behind(belief: &Belief, ball: &Ball, onwards: Angle, by: f32) -> Option
     (ready + WORTH_TURNING < by && ready < opponent).then_some(behind)
 }
 
-/// Where a robot that now stands at `from` can have the ball, and in how many seconds: the earliest place on the ball's
-/// way that it reaches no later than the ball, else where the ball will rest.
+/// Where a robot that now stands at `from` can have the ball, and in how many seconds: the earliest point on
+/// the ball's path that it reaches no later than the ball, else the ball's stop position.
 pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
     let walk = |to: Point<Field>| from.distance(to) / WALK_FORWARD;
     if ball.is_at_rest() {
         return (ball.position, walk(ball.position));
     }
     let way = ball.rest - ball.position;
-    // An evenly slowing ball: at share 1 − (1 − τ)² of its way after share τ of its time.
+    // An evenly slowing ball: at share 1 − (1 − τ)² of its path after share τ of its time.
     let duration = ball.rolls_for();
     for step in 1..MEETING_STEPS {
         let tau = step as f32 / MEETING_STEPS as f32;
@@ -74,17 +75,17 @@ pub fn meeting(ball: &Ball, from: Point<Field>) -> (Point<Field>, f32) {
     (ball.rest, walk(ball.rest).max(duration))
 }
 
-/// Where the robot's centre stands to grab, behind the ball, m: the ball lies between the front legs.
+/// Distance of the robot's centre behind the ball for a grab, m: the ball lies between the front legs.
 const STAND_OFF: f32 = 0.14;
-/// Where a walk straight to the ball would end, before its centre, m: less than the grab's reach.
+/// End of a walk straight to the ball, before its centre, m: less than the grab's reach.
 const WALK_UP_TO: f32 = 0.08;
-/// Within this distance only the way to the ball counts, m.
+/// Within this distance only the time to the ball counts, m.
 const NEAR: f32 = 0.5;
-/// Standing behind the ball must gain this much, s: the steps that a robot needs to stand still there.
+/// Least gain of standing behind the ball, s: the steps that a robot needs to stand still there.
 const WORTH_TURNING: f32 = 0.3;
-/// How far off the ball a robot walks around it, m.
+/// Distance from the ball at which a robot walks around it, m.
 const BALL_CLEARANCE: f32 = 0.2;
-/// Places tried on the ball's way.
+/// Points tried on the ball's path.
 const MEETING_STEPS: u32 = 16;
 
 #[cfg(test)]
@@ -134,10 +135,11 @@ mod tests {
 
     #[test]
     fn a_rolling_ball_is_met_where_the_robot_is_in_time() {
-        // 1 m ahead, rolling to the left at 0.7 m/s, to rest after 0.7 m and 2 s: the robot needs more than 3 s.
+        // 1 m ahead, rolling to the left at 0.7 m/s, stopping after 0.7 m and 2 s: the robot needs more than
+        // 3 s.
         let b = belief((1.0, 0.0), (0.0, 0.7), (1.0, 0.7));
         assert_eq!(meeting(&b.ball.unwrap(), b.pose.position).0, Point::new(1.0, 0.7));
-        // Rolling towards the robot it is met on the way.
+        // Rolling towards the robot it is intercepted.
         let b = belief((1.0, 0.0), (-0.7, 0.0), (0.3, 0.0));
         let met = meeting(&b.ball.unwrap(), b.pose.position).0;
         assert!(met.x() > 0.3 && met.x() < 0.7, "{met:?}");
@@ -150,7 +152,7 @@ mod tests {
             panic!("walks")
         };
         assert!(shy_of_ball && to.x() > 0.7);
-        // With an opponent at the ball it goes straight for it.
+        // With an opponent at the ball it walks straight to it.
         let mut contested = b.clone();
         let _ = contested.opponents.push(Point::new(1.0, 0.0));
         let Step::Running(Intent::Walk { to, .. }) = get_ball(&contested, Some(Angle::HALF_TURN)) else {
@@ -161,7 +163,8 @@ mod tests {
 
     #[test]
     fn for_a_ball_that_comes_to_rest_near_it_stands_where_it_will_face_onwards() {
-        // Rolling towards it for 2.4 s, to rest 0.4 m ahead; a quarter turn with the ball would take 1.6 s more.
+        // Rolling towards it for 2.4 s, stopping 0.4 m ahead; a quarter turn with the ball would take 1.6 s
+        // more.
         let b = belief((1.4, 0.0), (-0.84, 0.0), (0.4, 0.0));
         let left = Angle::degrees(90.0);
         let Step::Running(Intent::Walk { to, face, .. }) = get_ball(&b, Some(left)) else { panic!("walks") };

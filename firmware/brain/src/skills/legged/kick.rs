@@ -1,4 +1,5 @@
-//! `kick`, `pass_ball`, `dribble_to`: with the ball held, turn until the kick points right, and kick; or carry it.
+//! `kick`, `pass_ball`, `dribble_to`: with the ball held, turn until the kick points right, and kick; or
+//! carry it.
 
 use geometry::{Angle, Field, Point};
 use protocol::robot_io::LeggedKick;
@@ -17,7 +18,7 @@ pub fn shoot(belief: &Belief, direction: Angle, kick: LeggedKick) -> Intent {
     }
 }
 
-/// Passes to `place`: straight ahead, or with a head kick where its one length suits and it saves turning.
+/// Passes to `place`: straight ahead, or with a head kick where its fixed length fits and it saves turning.
 pub fn pass(belief: &Belief, place: Point<Field>) -> Intent {
     let (direction, distance) = (aim(belief, place), belief.pose.position.distance(place));
     let turn = |off: Angle| (direction - off - belief.pose.heading).abs();
@@ -43,17 +44,17 @@ pub fn aim(belief: &Belief, target: Point<Field>) -> Angle {
 
 /// Carries the ball held to `to`; done when the ball is within `tolerance` of it, m.
 pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
-    // Who stands between the ball and the place has not brought it there.
+    // A robot that stands between the ball and the target has not brought the ball there.
     let ball = belief.ball.map_or(belief.pose.position, |ball| ball.position);
     if ball.distance(to) <= tolerance { Step::Done } else { Step::Running(Intent::Carry { to }) }
 }
 
-/// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which can still be
-/// grabbed, and in 1.6 s instead of the 2.4 s of one that comes to rest there (0.35 m/s²).
+/// A pass would roll this much farther than its receiver stands: over a metre it arrives with 0.37 m/s, which
+/// can still be grabbed, and in 1.6 s instead of the 2.4 s of one that stops there (0.35 m/s²).
 const PASS_FIRMLY: f32 = 1.2;
-/// A head kick may miss the wanted length by this share: as much as kicks scatter anyway.
+/// A head kick may miss the wanted length by this share: about the scatter of kicks.
 const SIDE_PASS_WITHIN: f32 = 0.3;
-/// How well a kick is aimed before it is let go, rad: half of the 10° by which it scatters anyway.
+/// Aiming tolerance of a kick, rad: half of the 10° by which it scatters anyway.
 const AIM_WITHIN: f32 = 0.087;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `receive_ball`: meet a passed ball and take it, or say why it will not be had. Field frame, SI.
+//! `receive_ball`: intercepts a passed ball and takes it, or reports why it cannot be had. Field frame, SI.
 
 use geometry::{Angle, Segment};
 
@@ -6,7 +6,7 @@ use crate::belief::Belief;
 use crate::skills::legged::get_ball;
 use crate::skills::{Reception, Step};
 
-/// Goes for a ball that has been passed to this robot.
+/// Receives a ball that has been passed to this robot.
 pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
@@ -16,7 +16,7 @@ pub fn receive(belief: &Belief, onwards: Option<Angle>) -> Reception {
     let missed = if ball.is_at_rest() {
         ball.position.distance(me) > FETCH_WITHIN
     } else {
-        // Rolling away, and its way to rest comes no nearer than can be fetched.
+        // Rolling away, and its path to the stop position comes no nearer than can be fetched.
         Segment::new(ball.position, ball.rest).distance_to(me) > FETCH_WITHIN
     };
     if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }

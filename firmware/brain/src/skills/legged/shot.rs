@@ -1,8 +1,9 @@
 //! `shot`: aim of a shot between the posts. The open angle of the goal, as kicks scatter. Field frame, SI.
 //!
-//! Rays from the robot fan over the goal's mouth. A ray is free where no opponent can be at it when the ball passes: each
-//! covers its body and what it walks sideways until then. A kick in one of these directions goes astray as kicks do
-//! (motion's spread); its chance is the share of such kicks that run along free rays, times that of rolling far enough.
+//! Rays from the robot fan over the goal opening. A ray is free where no opponent can be at it when the ball
+//! passes: each covers its body and what it walks sideways until then. A kick in one of these directions
+//! deviates as kicks do (motion's spread); its probability is the share of such kicks that run along free
+//! rays, times the probability of rolling far enough.
 
 use geometry::{Angle, Field, GoalEnd, Point, Vector, math};
 use motion::legged::{KICK_ANGLE_SPREAD, KICK_LENGTH_SPREAD, WALK_ACCELERATION, WALK_SIDEWAYS};
@@ -16,16 +17,17 @@ use crate::skills::legged as skills;
 /// A shot at goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shot {
-    /// Where to, on the field.
+    /// Direction on the field.
     direction: Angle,
-    /// With which kick.
+    /// Kick to use.
     kick: LeggedKick,
-    /// The chance of a goal, 0 to 1.
+    /// Probability of a goal, 0 to 1.
     chance: f32,
 }
 
-/// With the ball near their goal: shoot if the chance is good, or fair while an opponent is about to take the ball (or there is
-/// no more time); else walk with the ball to where shots come from best. `None` while neither is near.
+/// With the ball near their goal: shoot if the probability of a goal is good, or fair while an opponent is
+/// about to take the ball (or there is no more time); else walk with the ball to the best place for shots.
+/// `None` while neither is near.
 pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Intent> {
     let pressed = is_pressed(belief);
     let enough = if pressed || !patient { FAIR_SHOT } else { GOOD_SHOT };
@@ -38,25 +40,27 @@ pub fn attempt(belief: &Belief, attacked: GoalEnd, patient: bool) -> Option<Inte
     if me.distance(place) > CARRIED_AT_MOST {
         return None;
     }
-    // A goalie on the way to where the ball is leaves the far post open once it is there: be turned to it by then.
+    // A goalkeeper that walks towards the ball's new position leaves the far post open: face that post by
+    // then.
     let goal = belief.league().field().goal_center(attacked);
     let far = Point::new(goal.x(), -FAR_POST * me.y());
     let aside = me.y().abs() > ASIDE;
     Some(if aside { Intent::Turn { heading: me.direction_to(far) } } else { Intent::Carry { to: place } })
 }
 
-/// Is an opponent about to take the ball?
+/// Whether an opponent is about to take the ball.
 fn is_pressed(belief: &Belief) -> bool {
     belief.nearest_opponent(belief.pose.position).is_some_and(|(_, distance)| distance < PRESSED_WITHIN)
 }
 
-/// A short kick on towards where shots come from best.
+/// A short kick towards the best place for shots.
 pub fn push_on(belief: &Belief, attacked: GoalEnd) -> Intent {
     let place = shooting_place(belief, attacked);
     skills::shoot(belief, belief.pose.position.direction_to(place), LeggedKick::ForwardSoft)
 }
 
-/// Where a shot comes from best: before the goal, aside of its middle, where a goalie opposite the ball leaves the far post open.
+/// Best place for a shot: before the goal, beside its middle, where a goalkeeper opposite the ball leaves the
+/// far post open.
 fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
     let field = belief.league().field();
     let goal = field.goal_center(attacked);
@@ -65,7 +69,8 @@ fn shooting_place(belief: &Belief, attacked: GoalEnd) -> Point<Field> {
     Point::new(goal.x() - out, 0.5 * field.penalty_width * side)
 }
 
-/// The shot at the goal at `attacked` with the best chance, less what turning for it costs; `None` from behind the goal line.
+/// The shot at the goal at `attacked` with the best probability, less the cost of turning for it; `None` from
+/// behind the goal line.
 fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     let fan = Fan::new(belief, attacked)?;
     let mut best: Option<(f32, Shot)> = None;
@@ -85,7 +90,7 @@ fn best_shot(belief: &Belief, attacked: GoalEnd) -> Option<Shot> {
     best.map(|(_, shot)| shot)
 }
 
-/// The chance that a kick nominally `length` long rolls beyond `distance`.
+/// Probability that a kick nominally `length` long rolls beyond `distance`.
 fn reaches(length: f32, distance: f32) -> f32 {
     // The logistic curve of slope 1.7 is the normal distribution within 0.01.
     let margin = (length - distance) / (KICK_LENGTH_SPREAD * length);
@@ -96,13 +101,13 @@ fn reaches(length: f32, distance: f32) -> f32 {
 struct Fan {
     from: Point<Field>,
     right: Angle,
-    /// Between neighbouring rays, rad.
+    /// Angle between neighbouring rays, rad.
     step: f32,
     /// The rays' directions, of length 1.
     along: [Vector<Field>; RAYS],
-    /// How dense kicks are so many rays off the one they are aimed along; 1 for none.
+    /// Probability density of a kick by the number of rays off its aim; 1 for none.
     density: [f32; RAYS],
-    /// To the goal's centre, m.
+    /// Distance to the goal's centre, m.
     distance: f32,
 }
 
@@ -120,7 +125,7 @@ impl Fan {
             return None;
         }
         let step = width / (RAYS - 1) as f32;
-        // Both are asked for again and again: each is computed once.
+        // Both are needed repeatedly: each is computed once.
         let along = core::array::from_fn(|index| Vector::polar(1.0, right + Angle::new(step * index as f32)));
         let density = core::array::from_fn(|off| {
             let z = step * off as f32 / KICK_ANGLE_SPREAD;
@@ -133,7 +138,7 @@ impl Fan {
         self.right + Angle::new(self.step * index as f32)
     }
 
-    /// The rays along which a ball kicked that far passes everybody.
+    /// The rays along which a ball kicked that far passes every opponent.
     fn free_rays(&self, belief: &Belief, length: f32) -> [bool; RAYS] {
         let mut free = [true; RAYS];
         let rolling = RollingBall { deceleration: belief.league().ball().rolling_deceleration };
@@ -141,7 +146,7 @@ impl Fan {
         let body = belief.league().robot().radius + belief.league().ball().radius;
         for &opponent in &belief.opponents {
             let to = opponent - self.from;
-            // A ball that stops before it is covered for certain.
+            // A ball that stops before the opponent is certainly covered.
             let Some(time) = rolling.travel_time(speed, to.norm()) else { continue };
             let covered = body + sidestep(time);
             for (along, free) in self.along.iter().zip(&mut free) {
@@ -161,7 +166,7 @@ impl Fan {
     }
 }
 
-/// How far a robot that stands now walks aside within `time`, m.
+/// Distance that a robot that now stands walks sideways within `time`, m.
 fn sidestep(time: f32) -> f32 {
     let time = (time - REACTION).max(0.0);
     let speeding = WALK_SIDEWAYS / WALK_ACCELERATION;
@@ -174,27 +179,29 @@ fn sidestep(time: f32) -> f32 {
 
 /// Kicks to shoot with: the hard one, and from near the goal the head kicks, which save turning.
 const SHOTS: [LeggedKick; 3] = [LeggedKick::ForwardHard, LeggedKick::Left, LeggedKick::Right];
-/// A shot with this chance is taken at once: about the best there is against a goalie in his place.
+/// A shot with this probability is taken at once: about the best there is against a well-placed goalkeeper.
 const GOOD_SHOT: f32 = 0.3;
-/// And with this one if an opponent is about to take the ball.
+/// A shot with this probability is taken if an opponent is about to take the ball.
 const FAIR_SHOT: f32 = 0.12;
-/// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's walk.
+/// An opponent whose centre is this near the robot's is about to take the ball, m: two bodies and a second's
+/// walk.
 const PRESSED_WITHIN: f32 = 0.6;
-/// Shots come from this far before the penalty area, m: out of its goalie's reach.
+/// Shots are made from this far before the penalty area, m: out of its goalkeeper's reach.
 const SHOT_BEFORE_AREA: f32 = 0.5;
 /// The ball is carried no farther for a shot, m: 5 s of walking with it.
 const CARRIED_AT_MOST: f32 = 0.8;
-/// This far off the goal's middle axis the far post is worth waiting for, m.
+/// This far off the goal's middle axis waiting for the far post is useful, m.
 const ASIDE: f32 = 0.35;
-/// Where beside the goal's middle to wait aiming at, as a share of the own distance from the axis.
+/// Aim while waiting, beside the goal's middle, as a share of the own distance from the axis.
 const FAR_POST: f32 = 0.4;
 /// Rays in a fan: at 1 m from the goal they stand 3° apart, a third of a kick's spread.
 const RAYS: usize = 15;
-/// Chance that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a goalie walks half a goal's width.
+/// Probability of a goal that a shot gives up to turn 1 rad less: with the ball that takes 1 s, in which a
+/// goalkeeper walks half a goal's width.
 const TURN_PRICE: f32 = 0.1;
-/// A robot that stands needs this long to see a kick and to lift a leg, s.
+/// Time that a standing robot needs to perceive a kick and to lift a leg, s.
 const REACTION: f32 = 0.3;
-/// √(2π).
+/// Square root of 2π, √(2π).
 const ROOT_TWO_PI: f32 = 2.506_628_3;
 
 #[cfg(test)]
@@ -218,8 +225,8 @@ mod tests {
 
     #[test]
     fn an_empty_goal_is_as_wide_as_it_looks_to_a_scattering_kick() {
-        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a hard kick of
-        // 2.15 ± 0.645 m rolls 1 m in 96 of 100.
+        // From 1 m the posts (less the ball) stand at ±19.7°: a deviation of 10° stays within in 95 of 100; a
+        // hard kick of 2.15 ± 0.645 m rolls 1 m in 96 of 100.
         assert!((chance(&belief(1.7, 0.0, &[])) - 0.95 * 0.963).abs() < 0.03);
         // From 2.15 m every second hard kick gets there, and the posts stand at ±9.4°: 65 of 100.
         assert!((chance(&belief(0.55, 0.0, &[])) - 0.5 * 0.65).abs() < 0.03);
@@ -229,7 +236,7 @@ mod tests {
     fn a_shot_goes_where_the_goalie_is_not() {
         let shot = best_shot(&belief(1.5, 0.0, &[(2.5, 0.15)]), GoalEnd::Positive).unwrap();
         assert!(shot.direction.radians() < 0.0, "{shot:?}");
-        // Right before the goalie there is no gap at all.
+        // Directly before the goalkeeper there is no gap at all.
         assert_eq!(chance(&belief(1.5, 0.0, &[(2.05, 0.0)])), 0.0);
     }
 
@@ -251,13 +258,13 @@ mod tests {
 
     #[test]
     fn without_a_gap_it_waits_turned_to_the_far_post_and_under_pressure_takes_what_there_is() {
-        // The goalie is still on its way across: near post open by a little.
+        // The goalkeeper is still crossing: near post open by a little.
         let waiting = belief(1.4, 0.6, &[(2.05, 0.33)]);
         let Some(Intent::Turn { heading }) = attempt(&waiting, GoalEnd::Positive, true) else {
             panic!("waits")
         };
         assert!(heading.radians() < -0.4, "{heading:?}");
-        // In the middle it walks aside first; far away it is no business of this skill.
+        // In the middle it walks aside first; far away this skill does not apply.
         let middle = belief(1.4, 0.1, &[(2.05, 0.1)]);
         assert!(matches!(attempt(&middle, GoalEnd::Positive, true), Some(Intent::Carry { .. })));
         assert_eq!(attempt(&belief(0.0, 0.0, &[(2.05, 0.0)]), GoalEnd::Positive, true), None);

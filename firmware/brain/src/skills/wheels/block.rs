@@ -1,7 +1,8 @@
-//! Block: stand on a stretch where the ball would cross it, and stop a ball that comes.
+//! Block: stand on a stretch where the ball would cross it, and stop an approaching ball.
 //!
-//! A ball that comes: where `motion::intercept` finds the most slack on its way, but never behind the stretch. A ball that
-//! does not: on the line from it to the own goal, or along where its holder looks. The keeper's stretch lies before its goal.
+//! A ball that approaches: at the point of most slack on its path, by `motion::intercept`, but never behind
+//! the stretch. Otherwise: on the line from the ball to the own goal, or along the heading of its holder. The
+//! keeper's stretch lies before its goal.
 
 use geometry::{Field, Point, Pose, Segment};
 use motion::ball::BallModel;
@@ -13,7 +14,7 @@ use crate::body::Intent;
 use crate::body::omni::{BALL_AT, Drive, LIMITS};
 use crate::skills::wheels::get_ball::LOOKS_AHEAD;
 
-/// Blocks on `stretch`.
+/// Blocks a ball on `stretch`.
 pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     let me = belief.pose.position;
     let Some(ball) = belief.ball else {
@@ -28,7 +29,7 @@ pub fn block(belief: &Belief, stretch: Segment<Field>) -> Intent {
     Drive::shy(threatened(belief, &ball, stretch), face).into()
 }
 
-/// Where a ball that comes crosses the stretch.
+/// Point at which an approaching ball crosses the stretch.
 fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
     if ball.velocity.norm() < COMING {
         return None;
@@ -37,7 +38,7 @@ fn coming(ball: &Ball, stretch: Segment<Field>) -> Option<Point<Field>> {
     crossing(way, stretch, BESIDE)
 }
 
-/// The place with the most time to spare on the ball's way to `crossing`.
+/// The point with the most slack on the ball's path to `crossing`.
 fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     let path = BallModel::default().rolling(ball.position, ball.velocity);
     let until = path.time_to(ball.position.distance(crossing)).unwrap_or(f32::INFINITY).min(LOOKS_AHEAD);
@@ -51,15 +52,16 @@ fn stop(belief: &Belief, ball: &Ball, crossing: Point<Field>) -> Point<Field> {
     };
     match question.find(&LIMITS, Wish::Safest) {
         Verdict::Meets(meeting) if meeting.slack() > 0.0 => meeting.place,
-        // Too late for rest there: go where it crosses, as fast as possible; a body in the way will do.
+        // Too late to stop there: go where it crosses, as fast as possible; a body on the ball's path is
+        // enough.
         _ => crossing,
     }
 }
 
-/// Where a ball that does not come would cross the stretch.
+/// Point at which a ball that does not approach would cross the stretch.
 fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Field> {
     let goal = belief.league().field().goal_center(belief.game.defending);
-    // Who takes a penalty tells by where it lines up: there is no time to wait for the ball.
+    // The kicker of a penalty reveals its aim by where it lines up: there is no time to wait for the ball.
     let penalty = belief.game.phase == Phase::Penalty(Side::Theirs);
     let looks_at_it =
         |pose: Pose<Field>| (pose.position.direction_to(ball.position) - pose.heading).abs() < LOOKS_AT;
@@ -75,7 +77,8 @@ fn threatened(belief: &Belief, ball: &Ball, stretch: Segment<Field>) -> Point<Fi
     shot.or(straight).unwrap_or_else(|| stretch.closest_to(ball.position))
 }
 
-/// Where two stretches cross; the second one is longer by `beyond` at either end, and what crosses there is moved onto it.
+/// Intersection of two stretches; the second one is longer by `beyond` at either end, and a crossing there is
+/// moved onto it.
 fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option<Point<Field>> {
     let (v, w) = (way.vector(), stretch.vector());
     let across = v.cross(w);
@@ -89,13 +92,13 @@ fn crossing(way: Segment<Field>, stretch: Segment<Field>, beyond: f32) -> Option
     crosses.then(|| stretch.from + w * share.clamp(0.0, 1.0))
 }
 
-/// A faster ball comes, m/s.
+/// A faster ball approaches, m/s.
 const COMING: f32 = 0.3;
 /// A ball that passes the stretch's ends within this is blocked there, m: a robot's width.
 const BESIDE: f32 = 0.18;
 /// An opponent this near the ball has it, m.
 const HOLDS: f32 = 0.15;
-/// The taker of a penalty this near the ball lines up for its shot, m; and looks at it within this, rad.
+/// The kicker of a penalty this near the ball lines up for its shot, m; and faces it within this, rad.
 const LINES_UP: f32 = 0.6;
 const LOOKS_AT: f32 = 0.3;
 /// A point far along a line, m.
@@ -130,9 +133,9 @@ mod tests {
     fn a_shot_is_met_where_there_is_most_time_and_not_behind_the_stretch() {
         let b = rolling(belief((-4.3, 0.0, 0.0), (-1.3, 0.4)), (-3.0, 0.0));
         let to = goes_to(block(&b, line()));
-        // On its line, but no nearer the ball than helps.
+        // On its line, but no nearer the ball than useful.
         assert!((to.y() - 0.4).abs() < 1e-3 && to.x() >= -4.3 - BALL_AT - 1e-3, "{to:?}");
-        // One too fast to be met is still gone for, on the stretch.
+        // A ball too fast to be intercepted is still approached, on the stretch.
         let b = rolling(belief((-4.3, -0.5, 0.0), (-3.6, 0.45)), (-6.0, 0.0));
         assert!(goes_to(block(&b, line())).distance(Point::new(-4.3, 0.45)) < 1e-3);
     }
@@ -142,7 +145,7 @@ mod tests {
         let mut b = belief((-4.5, 0.0, 0.0), (1.5, 0.0));
         b.game.defending = GoalEnd::Negative;
         let goal_line = Segment::new(Point::new(-4.5, -0.5), Point::new(-4.5, 0.5));
-        // 0.4 m behind the ball, looking over it at the goal line's y = −0.3: 6 m on, 0.3 m aside.
+        // 0.4 m behind the ball, facing across it to the goal line's y = −0.3: 6 m on, 0.3 m aside.
         let along = Point::<Field>::new(1.5, 0.0).direction_to(Point::new(-4.5, -0.3));
         let pose =
             Pose { position: Point::new(1.5, 0.0) - geometry::Vector::polar(0.4, along), heading: along };

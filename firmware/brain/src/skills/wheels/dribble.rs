@@ -1,6 +1,8 @@
-//! Dribble: carry the ball, never farther than the rules let (1 m; 0.5 m in 2013), counted from the first touch.
+//! Dribble: carry the ball, never farther than the rules allow (1 m; 0.5 m in 2013), counted from the first
+//! touch.
 //!
-//! Near the limit the ball is let go: dribbler still, a step back, until everybody sees the gap; then it may be taken anew.
+//! Near the limit the ball is let go: dribbler off, a step back, until the gap is visible; then it may be
+//! taken again.
 
 use geometry::{Angle, Field, Point, Pose, Vector, math};
 use protocol::robot_io::OmniKick;
@@ -37,15 +39,16 @@ pub fn carry_to(belief: &Belief, to: Point<Field>, tolerance: f32) -> Step {
     Step::Running(Drive::holding(to - Vector::polar(BALL_AT, face), face).into())
 }
 
-/// What any skill wants, but with the ball let go before it was held too long or carried too far.
+/// Any skill's intent, but with the ball let go before it was held too long or carried too far.
 ///
-/// Host, case and what the robot does by itself may all change their minds while the opponents move with it. So where the ball shall go
-/// is settled after [`SETTLES`] by what is wanted then, or after [`ACTS`] where nothing is, and stays; [`kick_held`] gets less exact from
-/// then on, and after [`LASTS`] the robot leaves the ball.
+/// Host, case and reactive behaviour may all change their target while the opponents move with it. So the
+/// ball's target is fixed after [`SETTLES`] to the one wanted then, or after [`ACTS`] where there is none;
+/// [`kick_held`] tolerates more aiming error from then on, and after [`LASTS`] the robot leaves the ball.
 pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     let held = belief.held();
     if belief.disputed() > TURNS && belief.holds_ball {
-        // Both turn the same way: their fronts part, and the ball goes with one of them, which kicks it a little farther round.
+        // Both turn in the same direction: their fronts part, and the ball goes with one of them, which kicks
+        // it a little farther round.
         let aside = belief.pose.position + Vector::polar(AFAR, belief.pose.heading + Angle::new(TURN));
         belief.resolved = Some((aside, OmniKick::Flat(FREED)));
     } else if belief.disputed() > DISPUTES
@@ -77,7 +80,7 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     }
     let left = limit(belief.league()) - SPARE - belief.carried();
     if left > 0.0 && held < LASTS {
-        // Slow by then: what is let go while it moves rolls on.
+        // It must be slow by then: a ball that is released while it moves rolls on.
         let slow = math::sqrt(2.0 * SLOWS * left) + CRAWL;
         return Drive { speed: drive.speed.min(slow), ..drive }.into();
     }
@@ -85,7 +88,8 @@ pub fn let_go_in_time(belief: &mut Belief, intent: Intent) -> Intent {
     Drive { speed: AWAY, ..Drive::bold(back, belief.pose.heading) }.into()
 }
 
-/// Two robots that press the ball against each other get nowhere: the first touch is a kick, unless it looks at its own goal.
+/// Two robots that press the ball against each other block each other: the first touch is a kick, unless the
+/// robot faces its own goal.
 fn break_free(belief: &Belief, drive: Drive) -> Drive {
     let own = belief.league().field().goal_center(belief.game.defending);
     let off = (belief.pose.position.direction_to(own) - belief.pose.heading).abs();
@@ -93,43 +97,47 @@ fn break_free(belief: &Belief, drive: Drive) -> Drive {
     Drive { kick, armed: true, ..drive }
 }
 
-/// It turns to where the ball shall go.
+/// Whether the robot turns towards the ball's target.
 fn aims(intent: &Intent) -> bool {
     matches!(intent, Intent::Drive(drive) if drive.manner == Manner::Holding && drive.kick != OmniKick::None)
 }
 
-/// How far that league's rules let a robot dribble, m.
+/// Distance over which that league's rules let a robot dribble, m.
 fn limit(league: League) -> f32 {
     league.limits().map_or(f32::INFINITY, |limits| limits.dribble)
 }
 
-/// Where the ball shall go is settled after so long with it, s: host and robots have looked several times by then.
+/// The ball's target is fixed after this time with it, s: host and robots have updated their targets several
+/// times by then.
 const SETTLES: f32 = 0.7;
-/// Who only carries or waits does something with it after so long, s: what 0.75 m take, and a pass waits for its receiver.
+/// A robot that only carries or waits acts on the ball after this time with it, s: what 0.75 m take, and a
+/// pass waits for its receiver.
 const ACTS: f32 = 1.5;
-/// And who is kept from that lets it go after so long, s.
+/// A robot that is prevented from that lets the ball go after this time, s.
 const LASTS: f32 = 3.0;
-/// So long two robots dispute the ball before one kicks it whichever way it lies, s: longer than a tackle takes.
+/// Time for which two robots dispute the ball before one kicks it in any direction, s: longer than a tackle
+/// takes.
 const DISPUTES: f32 = 0.8;
-/// And after so long it turns away with it, s: two or three kicks.
+/// After this time it turns away with the ball, s: two or three kicks.
 const TURNS: f32 = 1.3;
-/// It kicks so much farther round than where the ball came free, rad: past the other robot.
+/// It kicks this much farther round than where the ball came free, rad: past the other robot.
 const TURN: f32 = 0.8;
-/// How fast that kick is, m/s: out of reach, not out of the field.
+/// Speed of that kick, m/s: out of reach, not out of the field.
 const FREED: f32 = 2.5;
-/// No such kick within so much of the direction of the own goal, rad.
+/// No such kick within this angle of the direction of the own goal, rad.
 const OWN_GOAL: f32 = 0.8;
-/// What is aimed at is about so far, m.
+/// Approximate distance of a target, m.
 const AFAR: f32 = 3.0;
-/// Let go so much before the limit, m: what the ball rolls on from a crawl, a robot's delay, and noise.
+/// Distance before the limit at which the ball is let go, m: what the ball rolls on from a crawl, a robot's
+/// delay, and noise.
 const SPARE: f32 = 0.25;
-/// How fast it slows down towards that, m/s².
+/// Deceleration towards that, m/s².
 const SLOWS: f32 = 1.0;
-/// How fast it still is then, m/s.
+/// Remaining speed then, m/s.
 const CRAWL: f32 = 0.15;
-/// How far back, m.
+/// Distance of the step back, m.
 const STEP_BACK: f32 = 0.2;
-/// How fast, m/s.
+/// Speed of the step back, m/s.
 const AWAY: f32 = 0.8;
 /// Nearer than this it keeps its heading, m.
 const TURNS_FROM: f32 = 0.2;
@@ -155,7 +163,7 @@ mod tests {
         }
     }
 
-    /// A robot at the origin that has had the ball for so many ms.
+    /// A robot at the origin that has had the ball for `ms` ms.
     fn holding(ms: u64) -> Belief {
         let mut b = belief((0.0, 0.0, 0.0), (BALL_AT, 0.0));
         let sensors = holding_sensors();

@@ -1,4 +1,4 @@
-//! Go to: be at a place with a heading. And keep off the ball where it must not be touched again.
+//! Go to: be at a place with a heading. Also: stay off a ball that must not be touched again.
 
 use geometry::{Angle, Field, Pose, Vector};
 
@@ -6,7 +6,7 @@ use crate::belief::Belief;
 use crate::body::Intent;
 use crate::body::omni::Drive;
 
-/// Goes there, around everything and around the ball.
+/// Drives there, around all obstacles and around the ball.
 pub fn go_to(pose: Pose<Field>) -> Intent {
     Drive::shy(pose.position, pose.heading).into()
 }
@@ -24,7 +24,7 @@ pub fn keep_off(belief: &Belief) -> Intent {
     Drive::shy(ball.position + away * (OFF + 0.1), face).into()
 }
 
-/// This far from the ball a robot does not touch it by accident, m.
+/// At this distance from the ball a robot does not touch it by accident, m.
 const OFF: f32 = 0.3;
 
 #[cfg(test)]

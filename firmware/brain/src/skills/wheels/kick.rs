@@ -1,7 +1,8 @@
-//! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked as it is touched.
+//! Kick, chip and pass: with the ball held, turn until it points right, and kick; a ball that lies is kicked
+//! as it is touched.
 //!
-//! In a restart the taker may touch the ball once: it goes in only when everything points right, kicker armed and dribbler
-//! still, so that the first touch is the kick.
+//! In a restart the kicker may touch the ball once: it goes in only when everything points right, kicker
+//! armed and dribbler still, so that the first touch is the kick.
 
 use geometry::{Field, Point, Vector};
 use motion::ball::BallModel;
@@ -20,7 +21,7 @@ pub fn kick(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     pass(belief, at, kick, true)
 }
 
-/// The same, but waits behind the ball, or turned with it, until it is `ready`.
+/// The same, but the robot waits behind the ball, or turned with it, until it is `ready`.
 pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> Intent {
     let ready = ready && may_kick(belief.game.phase);
     let once = belief.game.phase != Phase::Run;
@@ -30,7 +31,8 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
     }
     let Some(ball) = belief.ball else { return Intent::Stand { face: None } };
     let face = ball.position.direction_to(at);
-    // Where an opponent stands behind the ball there is no room to line up: it is taken first, and turned.
+    // Where an opponent stands behind the ball there is no room to line up: the ball is taken first, and
+    // turned.
     let behind = ball.position - Vector::polar(LINES_UP, face);
     let blocked = belief.nearest_opponent(behind).is_some_and(|(_, distance)| distance < BODIES);
     if !once && (ball.velocity.norm() > LIES || blocked) {
@@ -45,7 +47,7 @@ pub fn pass(belief: &Belief, at: Point<Field>, kick: OmniKick, ready: bool) -> I
             if aimed || ball.position.distance(belief.pose.position) > BALL_AT + CLOSE {
                 Drive { kick: if aimed { kick } else { OmniKick::None }, ..drive }.into()
             } else {
-                // Too near to touch it while it looks elsewhere: turn on the spot.
+                // Too near to touch the ball while it faces elsewhere: turn on the spot.
                 Drive::bold(belief.pose.position, face).into()
             }
         }
@@ -62,62 +64,66 @@ pub fn kick_held(belief: &Belief, at: Point<Field>, kick: OmniKick) -> Intent {
     let me = belief.pose.position;
     let face = me.direction_to(at);
     let off = (face - belief.pose.heading).abs();
-    // Who is kept from aiming well kicks as well as it can.
+    // A robot that cannot aim well kicks as well as it can.
     let slack = 1.0 + LOOSENS * (belief.held() - AIMS_FOR).max(0.0);
     let still = belief.angular.abs() < STILL_TURNING * slack && sideways(belief) < STILL_SIDEWAYS * slack;
     let armed = off < tolerance(me.distance(at)) * slack && still;
-    // Armed for as long as it points right, though the light barrier may flicker: the kicker acts when the ball is there. The light
-    // barrier sees farther than kicker and roller reach: a ball that stays where it is has not come so near.
+    // Armed for as long as it points right, though the break-beam signal may flicker: the kicker acts when
+    // the ball is there. The beam reaches farther than kicker and roller: a ball that stays where it is has
+    // not come near enough.
     let to = if armed { me + Vector::polar(GOES_ON, belief.pose.heading) } else { me };
     Drive { kick, armed, ..Drive::holding(to, face) }.into()
 }
 
-/// The speed of a pass over `distance` m, m/s: it arrives fast enough not to be caught up with, slow enough to be taken.
+/// The speed of a pass over `distance` m, m/s: it arrives fast enough not to be caught up with, slow enough
+/// to be taken.
 pub fn pass_speed(distance: f32) -> f32 {
     BallModel::default().kick_speed(distance, ARRIVES).clamp(SLOWEST, SHOT)
 }
 
-/// How exactly a kick over that distance must be aimed, rad: a robot's width at the end, never more than 3°.
+/// Aiming tolerance of a kick over that distance, rad: a robot's width at the end, never more than 3°.
 fn tolerance(distance: f32) -> f32 {
     (AIM_WIDTH / distance.max(0.1)).clamp(AIM_BEST, AIM_WORST)
 }
 
-/// The ball takes the robot's sideways speed with it.
+/// The ball keeps the robot's sideways speed.
 fn sideways(belief: &Belief) -> f32 {
     Vector::polar(1.0, belief.pose.heading).cross(belief.velocity).abs()
 }
 
-/// A slower ball lies, m/s.
+/// A slower ball counts as stationary, m/s.
 const LIES: f32 = 0.25;
-/// From a ball to the centre of who lines up behind it, m (`get_ball`); and two bodies side by side.
+/// Distance from a ball to the centre of a robot that lines up behind it, m (`get_ball`); and two bodies side
+/// by side.
 const LINES_UP: f32 = 0.165;
 const BODIES: f32 = 0.18;
-/// How fast a robot goes in for a kick, m/s.
+/// Approach speed for a kick, m/s.
 const GO_IN: f32 = 0.35;
-/// This near the ball it must look right before it goes on, m.
+/// Within this distance of the ball it must face the target before it continues, m.
 const CLOSE: f32 = 0.02;
-/// Between front and ball while it waits to be told, m.
+/// Between front and ball while the robot waits for the order to kick, m.
 const WAIT_OFF: f32 = 0.04;
-/// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that is missed rolls 2.4 m
-/// farther (v²/0.7), one of 2 nearly 6 m and off the field.
+/// A pass arrives with this speed, m/s: Thunderbots' passes are received at 2 and below, and one of 1.3 that
+/// is missed rolls 2.4 m farther (v²/0.7), one of 2 nearly 6 m and off the field.
 const ARRIVES: f32 = 1.3;
-/// No pass is slower, m/s.
+/// Slowest pass, m/s.
 const SLOWEST: f32 = 1.5;
 /// A kick should pass its target within this, m: less than half a robot.
 const AIM_WIDTH: f32 = 0.06;
-/// No better than the heading is known, rad.
+/// Best aiming tolerance, rad: the accuracy of the heading.
 const AIM_BEST: f32 = 0.015;
-/// No worse than 3°, rad.
+/// Worst aiming tolerance, rad: 3°.
 const AIM_WORST: f32 = 0.05;
-/// So long a robot with the ball aims as well as it can, s: half a turn with the ball takes 1.2 s.
+/// Time for which a robot with the ball aims with full precision, s: half a turn with the ball takes 1.2 s.
 const AIMS_FOR: f32 = 1.4;
-/// Then everything that an aim must be within grows by so much of itself a second: 0.3 to 0.5 rad after another 1.3 s (estimate).
+/// Then every tolerance of the aim grows by this share of itself per second: 0.3 to 0.5 rad after another 1.3
+/// s (estimate).
 const LOOSENS: f32 = 7.0;
-/// With the kicker armed it goes on by so much, m: what a light barrier sees beyond a kicker's reach.
+/// With the kicker armed it goes on by this distance, m: the reach of the break beam beyond the kicker's.
 const GOES_ON: f32 = 0.03;
-/// A robot that turns no faster than this kicks where it looks, rad/s.
+/// A robot that turns no faster than this kicks along its heading, rad/s.
 const STILL_TURNING: f32 = 0.6;
-/// Nor moves aside faster than this, m/s.
+/// Sideways speed below which it kicks, m/s.
 const STILL_SIDEWAYS: f32 = 0.15;
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `wheels`: skills of the wheeled robot, one file each; belief in, intent and verdict out.
 //!
-//! They remember nothing, but for what is written in their types ([`Placing`], [`Reception`](crate::skills::Reception)). Whatever they
-//! want passes the governor; what they must keep out of is the drivetrain's. Field frame, SI.
+//! They keep no state but that of their types ([`Placing`], [`Reception`](crate::skills::Reception)). Their
+//! intents pass the governor; the drivetrain keeps them out of forbidden regions. Field frame, SI.
 
 mod block;
 mod dribble;

@@ -1,7 +1,8 @@
-//! Receive: be on the line of a passed ball, face it, give way as it comes; or send it on at first touch.
+//! Receive: be on the line of a passed ball, face it, retreat as it comes; or redirect it at first touch.
 //!
-//! One touch: the kicker adds its speed along the heading, what the ball has across the heading it keeps in part. The heading
-//! between where the ball comes from and where it goes is found by three corrections. Beyond 60° it is taken instead.
+//! One touch: the kicker adds its speed along the heading, the ball keeps part of its speed across the
+//! heading. The heading between where the ball comes from and where it goes is found by three corrections.
+//! Beyond 60° it is taken instead.
 
 use geometry::{Angle, Field, Point, Segment, Vector};
 use protocol::robot_io::OmniKick;
@@ -13,7 +14,7 @@ use crate::skills::wheels::get_ball::{get_ball, receive_at};
 use crate::skills::wheels::kick::{kick_held, pass_speed};
 use crate::skills::{Reception, Step};
 
-/// Has a passed ball at `at`, and sends it on to `then`.
+/// Receives a passed ball at `at`, and redirects it to `then`.
 pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) -> Intent {
     if belief.holds_ball {
         return match then {
@@ -30,12 +31,12 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
                 Step::Done => Intent::Stand { face: None },
             };
         }
-        // Its mouth waits where the ball shall come.
+        // Its dribbler opening waits where the ball shall come.
         let face = at.direction_to(ball.position);
         return Drive::shy(at - Vector::polar(BALL_AT, face), face).into();
     }
     let line = Segment::new(ball.position, ball.rest);
-    // Where it was told, or where the line passes that.
+    // The ordered place, or where the line passes it.
     let meets = line.closest_to(at);
     let way = ball.velocity.unit().unwrap_or_default();
     if let Some(then) = then
@@ -48,7 +49,7 @@ pub fn receive(belief: &Belief, at: Point<Field>, then: Option<Point<Field>>) ->
     receive_at(belief, &ball, meets + way * BALL_AT).into()
 }
 
-/// The case language's `receive_ball`: takes a ball that was passed to this robot, wherever it comes.
+/// The case language's `receive_ball`: takes a ball that was passed to this robot, anywhere near.
 pub fn take_pass(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if belief.holds_ball {
         return Reception::Going(Step::Done);
@@ -63,7 +64,7 @@ pub fn take_pass(belief: &Belief, onwards: Option<Angle>) -> Reception {
     if missed { Reception::Missed } else { Reception::Going(get_ball(belief, onwards)) }
 }
 
-/// It rolls this way: past `at` or this robot within a metre.
+/// Whether the ball comes towards the robot: past `at` or this robot within a metre.
 fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
     let me = belief.pose.position;
     let towards = ball.velocity.dot(at - ball.position) > 0.0 || ball.velocity.dot(me - ball.position) > 0.0;
@@ -71,17 +72,17 @@ fn comes(belief: &Belief, ball: &Ball, at: Point<Field>) -> bool {
     ball.velocity.norm() > COMING && towards && line.distance_to(at).min(line.distance_to(me)) < REACH
 }
 
-/// The kick that sends it on, and its speed, m/s.
+/// The kick that redirects it, and its speed, m/s.
 fn onwards(belief: &Belief, then: Point<Field>) -> (OmniKick, f32) {
     let field = belief.league().field();
     let goal = field.goal_center(belief.game.defending.opposite());
-    // At their goal as hard as may be, else as a pass.
+    // At their goal at full speed, else as a pass.
     let shot = then.distance(goal) < 0.5 * field.goal_width + 0.1;
     let speed = if shot { SHOT } else { pass_speed(belief.mouth().distance(then)) };
     (OmniKick::Flat(speed), speed)
 }
 
-/// The heading from which the ball that comes goes on to `then`; `None` where that is too far round.
+/// The heading from which the incoming ball is redirected to `then`; `None` where that is too far round.
 fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> Option<Angle> {
     let wanted = at.direction_to(then);
     let back = (-ball.velocity).angle();
@@ -98,15 +99,15 @@ fn deflection(ball: &Ball, at: Point<Field>, then: Point<Field>, speed: f32) -> 
     Some(face)
 }
 
-/// A slower ball rests, m/s.
+/// A slower ball is stationary, m/s.
 const RESTS: f32 = 0.15;
-/// A faster one comes, m/s.
+/// A faster ball approaches, m/s.
 const COMING: f32 = 0.4;
 /// A pass that ends within this distance is fetched, m.
 const FETCHED: f32 = 1.0;
-/// One that goes by within this distance is had, m.
+/// A ball that passes within this distance can be taken, m.
 const REACH: f32 = 1.0;
-/// The largest angle between where the ball comes from and where it goes at first touch, rad: 60° (docs/papers.md D11).
+/// The largest angle between the ball's origin and its target at first touch, rad: 60° (docs/papers.md D11).
 const DEFLECTS: f32 = core::f32::consts::FRAC_PI_3;
 /// Share of its speed across the heading that a ball keeps in a kick (the simulator's friction, an estimate).
 const KEEPS_ACROSS: f32 = 0.7;
@@ -144,7 +145,8 @@ mod tests {
         let (at, goal) = (Point::new(2.0, 0.0), Point::new(0.0, 2.0));
         let sent = drive(receive(&b, at, Some(goal)));
         assert!(matches!(sent.kick, OmniKick::Flat(_)));
-        // It drifts on to +x: aimed farther back than straight at the goal (135°), not as far as it came from (180°).
+        // The ball drifts on to +x: aimed farther back than straight at the goal (135°), not as far as it
+        // came from (180°).
         assert!(
             sent.face.to_degrees() > 135.0 && sent.face.to_degrees() < 180.0,
             "{}",

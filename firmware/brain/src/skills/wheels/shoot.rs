@@ -1,6 +1,7 @@
 //! Shoot: at the widest gap between the posts. Clear: away from the own goal, to the freer side.
 //!
-//! A gap's worth is how far every opponent stays from the ball's way, less how far it can move until the ball passes. SI, field frame.
+//! A gap's value is how far every opponent stays from the ball's path, less how far it can move until the
+//! ball passes. SI, field frame.
 
 use geometry::{Field, GoalEnd, Point, Segment};
 use motion::ball::BallModel;
@@ -18,7 +19,7 @@ pub fn shoot(belief: &Belief, attacked: GoalEnd, patient: bool) -> Intent {
     kick_held(belief, at, if open { OmniKick::Flat(SHOT) } else { OmniKick::None })
 }
 
-/// Where to shoot from `from`, and how much room the ball has there, m.
+/// Target of a shot from `from`, and the free distance beside the ball's path, m.
 pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<Field>, f32) {
     let field = belief.league().field();
     let center = field.goal_center(attacked);
@@ -31,7 +32,7 @@ pub fn target(belief: &Belief, from: Point<Field>, attacked: GoalEnd) -> (Point<
     aims.reduce(|best, next| if next.1 > best.1 { next } else { best }).unwrap_or((center, 0.0))
 }
 
-/// The kick with the ball held when nothing better is at hand: at their goal from near, else up the freer wing.
+/// The kick with a held ball without a better option: at their goal from near, else up the freer wing.
 pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     let field = belief.league().field();
     let me = belief.pose.position;
@@ -47,12 +48,13 @@ pub fn clear_or_shoot(belief: &Belief, attacked: GoalEnd) -> Intent {
     });
     let [left, right] = ahead;
     let (at, _) = if left.1 >= right.1 { left } else { right };
-    // It comes to rest there: what rolls on leaves the field, and is theirs.
+    // It stops there: a ball that rolls on leaves the field, and is theirs.
     let speed = BallModel::default().kick_speed(me.distance(at), RESTS).min(CLEARS_WITH);
     kick_held(belief, at, OmniKick::Flat(speed))
 }
 
-/// What opponents leave free beside a ball's way, m; what no one can reach counts as [`ROOM_ENOUGH`].
+/// Distance that opponents leave free beside a ball's path, m; what no opponent can reach counts as
+/// [`ROOM_ENOUGH`].
 fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
     let way = Segment::new(from, to);
     let mut room = ROOM_ENOUGH;
@@ -68,33 +70,33 @@ fn room(belief: &Belief, from: Point<Field>, to: Point<Field>) -> f32 {
     room
 }
 
-/// Places between the posts that are looked at.
+/// Number of aims tried between the posts.
 const AIMS: usize = 9;
 /// A shot keeps this far from a post, m: ball, half a line, and 1° from 3 m.
 const INSIDE_POST: f32 = 0.08;
-/// A gap this wide is shot through, m beside bodies' reach.
+/// A gap this wide is used for a shot, m beyond the reach of bodies.
 const GAP: f32 = 0.02;
-/// From this far the goal is shot at, m.
+/// Distance up to which the robot shoots at the goal, m.
 const SHOOTS_FROM: f32 = 4.0;
-/// A clearance goes so far ahead, m: no aimless kick over the half (division B).
+/// Distance of a clearance, m: no aimless kick over the half (division B).
 const CLEARS_AHEAD: f32 = 2.5;
-/// And with no more than this, m/s: it stays in the field.
+/// Largest speed of a clearance, m/s: it stays in the field.
 const CLEARS_WITH: f32 = 4.0;
-/// As good as at rest, m/s.
+/// As good as stationary, m/s.
 const RESTS: f32 = 0.2;
-/// From the goal line, m.
+/// Distance of a clearing target from the goal line, m.
 const INSIDE: f32 = 1.2;
-/// From the side line, m.
+/// Distance of a clearing target from the side line, m.
 const WING_INSIDE: f32 = 1.1;
-/// More room than this is no better, m.
+/// More room than this has no benefit, m.
 const ROOM_ENOUGH: f32 = 0.5;
 /// Radii of a robot and a ball, m.
 const BODY: f32 = 0.1115;
-/// How fast a shot is on average, m/s.
+/// Average speed of a shot, m/s.
 const FAIR_SPEED: f32 = 5.0;
-/// What an opponent sees late, s.
+/// Reaction time of an opponent, s.
 const REACTION: f32 = 0.15;
-/// How fast it speeds up, m/s².
+/// Acceleration of an opponent, m/s².
 const OPPONENT_ACCELERATION: f32 = 3.0;
 
 #[cfg(test)]
