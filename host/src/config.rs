@@ -48,13 +48,13 @@ pub struct TeamSettings {
     pub league: Option<String>,
     /// The keeper's number.
     pub keeper: Option<u8>,
-    /// Address of the interface that hears multicast.
+    /// Address of the interface on which multicast is received.
     pub interface: Option<IpAddr>,
-    /// Where robots are: see [`RobotLink`].
+    /// Address of the robots: see [`RobotLink`].
     pub robots: Option<String>,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
-    /// Real robots may be led with the key of zeros.
+    /// Real robots may be commanded with the key of zeros.
     pub insecure_zero_key: Option<bool>,
     /// Vision's group.
     pub vision: Option<SocketAddr>,
@@ -68,7 +68,7 @@ pub struct TeamSettings {
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
-    /// What robots do otherwise than told.
+    /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
     /// How the ball moves on this field.
@@ -84,16 +84,16 @@ pub struct BallSettings {
     pub roll: Option<f32>,
 }
 
-/// What one robot does otherwise than it is told.
+/// How one robot deviates from what is ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Which.
+    /// Its number.
     pub robot: u8,
     /// Ball speed over speed ordered.
     #[serde(default = "one")]
     pub kick: f32,
-    /// From an order to its motion, ms: told by `control --learned`, used by nothing yet.
+    /// Latency from an order to its motion, ms: written by `control --learned`, not used yet.
     #[serde(default)]
     pub latency_ms: Option<f32>,
 }
@@ -111,15 +111,15 @@ pub struct TeamConfig {
     pub colour: Colour,
     /// The league played.
     pub league: League,
-    /// The keeper, until the referee says another.
+    /// The keeper, until the referee names another.
     pub keeper: RobotId,
-    /// Whose address hears multicast; `None`: every interface that can.
+    /// Address of the interface on which multicast is received; `None`: every interface that supports it.
     pub interface: Option<IpAddr>,
     /// Where the robots are.
     pub robots: RobotLink,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
-    /// Real robots may be led with the key of zeros, which is public.
+    /// Real robots may be commanded with the key of zeros, which is public.
     pub insecure_zero_key: bool,
     /// Vision's group.
     pub vision: SocketAddr,
@@ -176,7 +176,7 @@ fn error(key: &str, words: impl Into<String>) -> ConfigError {
     ConfigError { key: key.to_owned(), words: words.into() }
 }
 
-/// What is wrong in a file of settings, and where; of a long line its begin.
+/// Error text for a file of settings, with its place; of a long line only the start.
 fn place_of(text: &str, broken: &toml::de::Error) -> String {
     let what = excerpt(broken.message(), MESSAGE_LEN);
     let before = broken.span().and_then(|span| text.get(..span.start));
@@ -185,9 +185,9 @@ fn place_of(text: &str, broken: &toml::de::Error) -> String {
     format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_LEN))
 }
 
-/// As much of an error in a file of settings as is shown, characters.
+/// Longest part of an error in a file of settings that is printed, characters.
 const MESSAGE_LEN: usize = 300;
-/// As much of its line.
+/// Longest part of its line that is printed, characters.
 const LINE_LEN: usize = 80;
 
 impl TeamSettings {
@@ -196,7 +196,7 @@ impl TeamSettings {
         toml::from_str(text).map_err(|broken| error("team.toml", place_of(text, &broken)))
     }
 
-    /// These settings where they say something, else those.
+    /// These settings; where one is missing, that of `below`.
     #[must_use]
     pub fn over(self, below: Self) -> Self {
         Self {
@@ -271,7 +271,7 @@ impl TeamSettings {
 
 /// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
 pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
-/// What carpets do, m/s²: the same.
+/// Deceleration of a rolling ball on a field surface, m/s²: as [`crate::learned`] bounds it.
 const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 

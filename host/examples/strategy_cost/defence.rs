@@ -13,7 +13,8 @@ use rules::League;
 
 use crate::scenes::{Random, SCENES};
 
-/// The whole defence, over scenes in turn; each is looked at for a while, so that memory has something to hold.
+/// The whole defence over all scenes in turn; each scene is planned for several steps, so that the state kept
+/// between steps matters.
 pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
     let mut random = Random::new(1);
     let scenes: Vec<View> = (0..SCENES).map(|_| random.rolling(league, robots)).collect();
@@ -45,7 +46,7 @@ pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     format!("{coercers} coercers, mean value {:.4}", worth / f64::from(count))
 }
 
-/// Ticks of a plan being executed; with `attack` each is the one that plans the attack anew, plan included.
+/// Ticks of a plan being executed; with `attack` each is the tick that replans the attack, planning included.
 pub(crate) fn watches(count: u32, attack: bool) -> String {
     let league = League::DivisionB;
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());

@@ -15,7 +15,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut random = Random::new(1);
     let (mut sum, mut chips) = (0.0_f64, 0);
-    // As many scenes however many places are rated: they cost the same for N and 2N.
+    // The number of scenes does not depend on the number of places rated: they cost the same for N and 2N.
     let scenes: Vec<View> = (0..SCENES).map(|_| random.view(league, robots)).collect();
     for group in 0..count / PLACES {
         let view = &scenes[(group % SCENES) as usize];

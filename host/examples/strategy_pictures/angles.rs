@@ -49,7 +49,7 @@ pub(crate) fn draw() -> String {
     finish(&panels, [width, size[1] + 92.0 + 32.0], &legend, "Open angles and the three placements")
 }
 
-/// What every body keeps a shot from, behind it.
+/// The area behind every body that a shot cannot reach.
 fn shadows(panel: &mut Panel, cover: &Cover) {
     let mut svg = Svg::default();
     let bodies = cover.primaries.iter().map(|place| (*place, "#e69f00"));
@@ -78,7 +78,7 @@ fn rays(panel: &mut Panel, cover: &Cover) {
     ray(half, RED, DASHED);
     ray(-half, RED, DASHED);
     ray(0.0, RED, DOTTED);
-    // What others leave; its borders with the posts are drawn already.
+    // The parts of the goal that the others leave open; their borders with the posts are drawn already.
     let rests = match cover.case {
         Case::Defender => angle::Gaps::new(),
         Case::DefenderAndKeeper => cover.opening.gaps(cover.primaries.iter().copied(), f32::INFINITY),

@@ -141,6 +141,6 @@ fn robots(panel: &mut Panel, view: &View, plan: &CapPlan) {
 }
 
 const SCALE: f64 = 104.0;
-/// Room for the words below, px.
+/// Space for the text below, px.
 const BELOW: f64 = 112.0;
 const SEED: u64 = 1;

@@ -1,7 +1,7 @@
 //! `page`: layout of the figures. Panels with a field of any league, robots, the ball, and areas of equal
 //! value.
 //!
-//! Places are told in metres of the attack frame, the picture is in px with y up (`drawing`).
+//! Places are given in metres of the attack frame; the figure is in px with y up (`drawing`).
 
 use std::fmt::{Display, Write as _};
 
@@ -14,7 +14,8 @@ use rules::FieldSpec;
 pub(crate) const TEXT: f64 = 14.0;
 /// Around and between panels, px.
 pub(crate) const GAP: f64 = 16.0;
-/// Opponents' tactics, and whatever else needs four colours told apart by every eye (Okabe and Ito).
+/// Opponents' tactics, and everything else that needs four colours that readers with any colour vision can
+/// distinguish (Okabe and Ito).
 pub(crate) const BLUE: &str = "#0072b2";
 pub(crate) const GREEN: &str = "#009e73";
 pub(crate) const RED: &str = "#d55e00";
@@ -226,7 +227,7 @@ impl Panel {
     }
 }
 
-/// A point that far off in a direction.
+/// The point at distance `by` from `from` in that direction.
 pub(crate) fn off(from: Point<Attack>, direction: Angle, by: f32) -> Point<Attack> {
     from + geometry::Vector::polar(by, direction)
 }

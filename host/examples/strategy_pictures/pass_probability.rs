@@ -78,7 +78,7 @@ fn over(svg: &mut Svg, view: &View, best: Option<&Rating>) {
     }
 }
 
-/// With what numbers it was drawn.
+/// The constants it was drawn with.
 fn constants(kicks: &Kicks) -> Vec<String> {
     let c = kicks.constants();
     vec![

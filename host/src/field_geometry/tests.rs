@@ -186,7 +186,7 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     (size.penalty_area_depth, size.penalty_area_width) = (Some(1100), Some(2100));
     assert_eq!(area(&size), (1.1, 2.1, AreaSource::Told));
-    // 0 is "not told".
+    // 0 means "not set".
     (size.penalty_area_depth, size.penalty_area_width) = (Some(0), Some(0));
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     // Without the side, the front's distance from the goal line.

@@ -1,4 +1,4 @@
-//! `input`: what comes to a host, and what became of it.
+//! `input`: inputs of a host, and their results.
 
 use protocol::RobotId;
 use protocol::frame::Refusal;
@@ -6,7 +6,7 @@ use protocol::frame::Refusal;
 use crate::referee::{self, SenderAddress};
 use crate::tracking;
 
-/// What came to the host.
+/// An input of the host.
 #[derive(Clone, Copy, Debug)]
 pub enum Input<'a> {
     /// A datagram of the vision.
@@ -24,13 +24,13 @@ pub enum Input<'a> {
 /// What became of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// An image, or geometry.
+    /// A camera frame or geometry.
     Vision(tracking::Heard),
     /// A packet of the referee.
     Referee(Box<referee::Verdict>),
-    /// A robot spoke.
+    /// A frame of this robot was accepted.
     Robot(RobotId),
-    /// A frame that is not believed.
+    /// A frame that was refused.
     Refused(Refusal),
     /// A datagram that is no message.
     Undecodable,

@@ -1,4 +1,4 @@
-//! `state`: read access to what the host knows.
+//! `state`: read access to the host's state.
 
 use protocol::host::Telemetry;
 use protocol::team::Beacon;
@@ -25,7 +25,7 @@ impl Host {
         self.books.tally()
     }
 
-    /// What everybody was told last, and why.
+    /// The newest orders of all robots, with their reasons.
     pub fn orders(&self) -> &Orders {
         &self.orders
     }
@@ -45,12 +45,12 @@ impl Host {
         &self.tracker
     }
 
-    /// The field: vision's, or the league's until vision has told.
+    /// The field: vision's, or the league's until vision has sent one.
     pub fn field(&self) -> FieldSpec {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
-    /// The field that vision told, once it did.
+    /// The field that vision sent, once it did.
     pub fn told_field(&self) -> Option<&FieldSpec> {
         self.geometry.field()
     }
@@ -60,7 +60,7 @@ impl Host {
         self.imaged
     }
 
-    /// Whether robots are told to halt now, by the referee or by `Host::halt`.
+    /// Whether robots are ordered to halt now, by the referee or by `Host::halt`.
     pub fn is_halting(&self) -> bool {
         self.halted || self.listener.game().phase == Phase::Halt
     }
@@ -75,12 +75,12 @@ impl Host {
         self.radio.quality(robot)
     }
 
-    /// What a robot of ours last told of itself.
+    /// The newest telemetry of one of our robots.
     pub fn telemetry(&self, robot: RobotId) -> Option<Telemetry> {
         self.robots[robot.index()].telemetry.map(|(_, telemetry)| telemetry)
     }
 
-    /// What a robot of ours last told its mates.
+    /// The newest beacon of one of our robots.
     pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
         self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
     }
@@ -95,7 +95,7 @@ impl Host {
         self.undecodable
     }
 
-    /// What is fixed for its life.
+    /// The settings it was created with.
     pub fn settings(&self) -> &HostSettings {
         &self.settings
     }

@@ -17,7 +17,7 @@ pub(super) struct Friction {
 /// A ball that rolls by itself.
 #[derive(Clone, Copy, Debug)]
 struct Roll {
-    /// Since then; the parabola's time counts from it.
+    /// Start of the roll; the parabola's time counts from it.
     began: Instant,
     from: Point<Field>,
     along: Vector<Field>,
@@ -112,16 +112,16 @@ impl Roll {
 
 /// Samples kept: a few minutes of play.
 const KEPT: usize = 25;
-/// So many rolls are needed.
+/// Number of rolls needed.
 const LEAST: usize = 5;
 /// No robot's centre is nearer to the ball, m: a radius of 0.09 and what it moves between two frames.
 const CLEAR: f32 = 0.2;
-/// A kicked ball slides for so long at most: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
+/// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
 const SLIDES: Duration = Duration::millis(500);
-/// Slower balls are stopped by a fibre of the carpet, and faster ones may still slide, m/s.
+/// Slower balls are stopped by the fibres of the field surface, and faster ones may still slide, m/s.
 const SLOWEST: f32 = 0.25;
 const FASTEST: f32 = 5.0;
-/// A roll of this time tells its deceleration within 0.05 m/s² where places err by 2 mm.
+/// A roll of this duration gives its deceleration within 0.05 m/s² where places err by 2 mm.
 const SHORTEST: Duration = Duration::millis(500);
 /// A longer one counts as two.
 const LONGEST: Duration = Duration::millis(1_500);
@@ -131,7 +131,7 @@ const PLACES: f64 = 20.0;
 const STRAIGHT: f32 = 0.994;
 /// Places farther off the parabola were no free roll, m (root of the mean square).
 const ON_PARABOLA: f64 = 0.008;
-/// What carpets do, m/s².
+/// Deceleration of a rolling ball on field surfaces, m/s².
 const LEAST_M_S2: f32 = 0.05;
 const MOST_M_S2: f32 = 1.5;
 

@@ -21,19 +21,19 @@ pub(super) struct Latencies {
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
     samples: Samples<KEPT>,
-    /// Where it rests, and since when.
+    /// Its stop position, and since when it stands there.
     rests: Option<(Point<Field>, Instant)>,
     /// Its last order was not to go anywhere.
     was_idle: bool,
     start: Option<Start>,
 }
 
-/// It was at rest and has been ordered to go.
+/// It stood still and has been ordered to move.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     ordered: Instant,
     from: Point<Field>,
-    /// Its newest place: way and time, s after the order.
+    /// Its newest place: distance moved, and time, s after the order.
     newest: (f32, f32),
     /// When it had moved by [`NEAR`].
     near: Option<f32>,
@@ -123,11 +123,11 @@ fn signed(from: Instant, to: Instant) -> f32 {
 
 /// Samples kept for each robot.
 const KEPT: usize = 15;
-/// So many starts are needed.
+/// Number of starts needed.
 const LEAST: usize = 3;
-/// A robot whose place stays within this rests, m: noise of 3 mm.
+/// A robot whose place stays within this stands still, m: noise of 3 mm.
 const STILL: f32 = 0.008;
-/// ... for so long.
+/// For this time.
 const RESTS_FOR: Duration = Duration::millis(300);
 /// A place farther off lets it start with its full acceleration, m.
 const FAR_OFF: f32 = 0.4;
@@ -152,7 +152,8 @@ mod tests {
         RobotId::new(2).unwrap()
     }
 
-    /// Starts from rest with that acceleration, `latency` s after each order, seen at 60 Hz with 2 mm of noise, 20 ms late.
+    /// Starts from standstill with that acceleration, `latency` s after each order, seen at 60 Hz with 2 mm
+    /// of noise, 20 ms late.
     fn learn(latency: f32, acceleration: f32, starts: usize) -> Option<Estimate> {
         let mut learned = Latencies::default();
         let mut noise = 12_345_u32;

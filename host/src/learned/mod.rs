@@ -7,7 +7,8 @@
 //! | `latency` | orders to go that meet a robot at rest, and when it moves | time from the order to the motion, s, by robot |
 //! | `friction` | balls that roll with no robot near | their deceleration, m/s² |
 //!
-//! [`Learned::see`] is called with every snapshot. Whether the host also plays by it is for [`crate::HostSettings::learns`] to say.
+//! [`Learned::see`] is called with every snapshot. [`crate::HostSettings::learns`] sets whether the host also
+//! uses the result.
 
 mod file;
 mod friction;

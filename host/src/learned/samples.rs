@@ -7,7 +7,7 @@ pub struct Estimate {
     pub value: f32,
     /// The median of their distances from it.
     pub spread: f32,
-    /// How many there are.
+    /// Number of samples.
     pub samples: usize,
 }
 

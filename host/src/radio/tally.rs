@@ -1,5 +1,4 @@
-//! `tally`: running statistics of a measure. Count, mean, variance and maximum of a measure, in one pass
-//! (Welford).
+//! `tally`: running statistics: count, mean, variance and maximum of a measure, in one pass (Welford).
 
 /// A measure's summary; its unit is the measure's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +20,7 @@ impl Tally {
         self.squares += off * (value - self.mean);
     }
 
-    /// How many.
+    /// Number of values.
     pub fn count(&self) -> u32 {
         self.count
     }

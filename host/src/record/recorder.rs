@@ -1,11 +1,12 @@
-//! `recorder`: recording of a match. `X.log.gz` for everybody's tools, `X.trace` so that every decision can
-//! be taken again (docs/architecture.md §7.4).
+//! `recorder`: recording of a match: `X.log.gz` for the league's tools, `X.trace` for replaying every
+//! decision (docs/architecture.md §7.4).
 //!
-//! What came and went in a second of the match is in the files when the next one begins: a program that is killed loses no more.
-//! Seconds are counted on the hosts' clock, so that the files of equal matches are equal.
+//! Inputs and packets of one second of the match are in the files when the next second starts: a program that
+//! is killed loses no more. Seconds are counted on the hosts' clock, so that the files of equal matches are
+//! equal.
 //!
-//! The log holds the league's messages at Unix time (what the hosts' clock shows, where the header knows no Unix time); the trace
-//! holds what came to each host and what it sent, at its own clock.
+//! The log holds the league's messages at Unix time (or at the hosts' clock, where the header has no Unix
+//! time); the trace holds what came to each host and what it sent, at its own clock.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -22,7 +23,8 @@ use crate::radio::To;
 use crate::record::header::RecordingHeader;
 use crate::record::trace::{Kind, Writer};
 
-/// Both files while they are written. The first error ends the writing, not the match; [`Recorder::finish`] tells it.
+/// Both files while they are written. The first error ends the writing, not the match; [`Recorder::finish`]
+/// returns it.
 pub struct Recorder {
     files: Option<Files>,
     zero_unix_ns: i64,
@@ -50,7 +52,7 @@ impl Files {
 }
 
 impl Recorder {
-    /// Begins `stem`.log.gz and `stem`.trace, with that header.
+    /// Starts `stem`.log.gz and `stem`.trace, with that header.
     pub fn begin(stem: &Path, header: &RecordingHeader) -> io::Result<Self> {
         let [log, trace] = Self::files(stem);
         let log = LogWriter::create(&log)?;
@@ -74,7 +76,7 @@ impl Recorder {
         })
     }
 
-    /// A league message stood on the network, for everybody to hear: vision, referee or a tracker's.
+    /// A league message was on the network: vision, referee or a tracker's.
     pub fn heard(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
         let at_ns = self.zero_unix_ns.saturating_add((now.0 as i64).saturating_mul(1000));
         self.write(now, |files| files.log.write(at_ns, kind, bytes));
@@ -107,7 +109,7 @@ impl Recorder {
         self.write(now, |files| files.trace.write(now, host, Kind::Sent, &[&[to], packet]));
     }
 
-    /// Records were lost: the trace ends here, and says so. Nothing more may be written to it.
+    /// Records were lost: the trace ends here with a mark for it. Nothing more may be written to it.
     pub fn lost(&mut self, now: Instant) {
         self.write(now, |files| files.trace.write(now, 0, Kind::Lost, &[]));
     }
@@ -117,7 +119,7 @@ impl Recorder {
         self.error.is_some()
     }
 
-    /// Ends both files; tells the first thing that went wrong.
+    /// Closes both files; returns the first error.
     pub fn finish(mut self) -> io::Result<()> {
         if let Some(error) = self.error {
             return Err(error);

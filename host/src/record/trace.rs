@@ -1,17 +1,18 @@
-//! `trace`: trace file of a match, from which it can be decided again. Everything that came to a host and
-//! everything it said, in order (docs/architecture.md §7.4: `X.trace`).
+//! `trace`: trace file of a match, from which its decisions can be replayed: all inputs and outputs of each
+//! host, in order (docs/architecture.md §7.4: `X.trace`).
 //!
 //! ```text
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
-//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the datagram. Version 1 had
-//! no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record of kind [`Kind::Lost`] says that the
-//! recorder could not keep up from then on.
+//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the
+//! datagram. Version 1 had no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record
+//! of kind [`Kind::Lost`] means that the recorder could not keep up from then on.
 //!
-//! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
-//! before the cut and says that it was cut, and where. Compression is the file's business, not this format's: where it ends before
-//! its own end mark (gzip's checksum) the trace is cut, even if the last record is whole.
+//! The header is JSON with seed, commit and configuration. A file cut anywhere gives every whole record
+//! before the cut, and reports the cut and its place. Compression is done by the file, not by this format:
+//! where the stream ends before its own end mark (gzip's checksum) the trace is cut, even if the last record
+//! is whole.
 
 use std::fmt;
 use std::io::{self, Read, Write};
@@ -32,7 +33,7 @@ pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
 pub const HEADER_LEN_MAX: usize = 1 << 20;
 
-/// What a record is.
+/// Kinds of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A datagram of the vision came in.
@@ -65,16 +66,16 @@ impl Kind {
     }
 }
 
-/// Something that came or went.
+/// One input or output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// When, on the host's clock.
+    /// Time on the host's clock.
     pub at: Instant,
-    /// Which host, where one recording holds several teams'.
+    /// Number of the host, where one recording holds several teams'.
     pub host: u8,
-    /// What.
+    /// Its kind.
     pub kind: Kind,
-    /// Who sent it, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
+    /// The sender, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
     pub from: SenderAddress,
     /// Its bytes.
     pub bytes: Vec<u8>,
@@ -87,7 +88,7 @@ pub struct Writer<W: Write> {
 }
 
 impl<W: Write> Writer<W> {
-    /// Begins with the header, which is JSON.
+    /// Starts with the header, which is JSON.
     pub fn new(mut out: W, header: &str) -> io::Result<Self> {
         out.write_all(MAGIC)?;
         out.write_all(&VERSION.to_le_bytes())?;
@@ -133,9 +134,9 @@ pub struct Reader<R: Read> {
     version: u32,
     header: String,
     end: Option<End>,
-    /// Where the next record begins.
+    /// Where the next record starts.
     at: u64,
-    /// When the last one was.
+    /// Time of the last one.
     last: Option<Instant>,
 }
 
@@ -146,20 +147,20 @@ pub enum End {
     Whole,
     /// Where the recorder could not keep up.
     Lost {
-        /// When.
+        /// Time of the gap.
         at: Instant,
     },
     /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or the file was not
     /// copied whole.
     Cut {
-        /// Where the first record that is missing begins, bytes of the uncompressed trace.
+        /// Where the first missing record starts, bytes of the uncompressed trace.
         at: u64,
-        /// When the last whole record was.
+        /// Time of the last whole record.
         last: Option<Instant>,
     },
     /// At a record that cannot be one, or that cannot be read.
     Broken {
-        /// Where it begins, bytes of the uncompressed trace.
+        /// Where it starts, bytes of the uncompressed trace.
         at: u64,
         /// What is wrong with it.
         what: String,
@@ -167,7 +168,7 @@ pub enum End {
 }
 
 impl End {
-    /// Did the trace end as it should?
+    /// Whether the trace ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
@@ -201,7 +202,7 @@ impl fmt::Display for End {
 pub enum TraceError {
     /// It cannot be read.
     Io(io::Error),
-    /// It begins otherwise.
+    /// It does not start as a trace does.
     NotATrace,
     /// Another version.
     Version(u32),
@@ -263,7 +264,7 @@ impl<R: Read> Reader<R> {
         Ok(Self { from, version, header, end: None, at, last: None })
     }
 
-    /// What was said at its beginning: JSON.
+    /// The header: JSON.
     pub fn header(&self) -> &str {
         &self.header
     }
@@ -319,7 +320,7 @@ fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
     Some(sender)
 }
 
-/// As much of `into` as there is.
+/// Fills as much of `into` as there is data.
 fn fill(from: &mut impl Read, into: &mut [u8]) -> io::Result<usize> {
     let mut done = 0;
     while done < into.len() {
@@ -401,7 +402,7 @@ mod tests {
         }
     }
 
-    /// As a recording lies on the disk, with what is flushed after each record.
+    /// A recording as it is on disk, and its lengths after each record was flushed.
     fn zipped() -> (Vec<u8>, Vec<usize>) {
         let zip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         let mut writer = Writer::new(zip, r#"{"seed":7}"#).unwrap();

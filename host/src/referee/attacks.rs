@@ -1,5 +1,5 @@
-//! `attacks`: tests: HALT wins against forged packets, second referees and clocks that step. The attacks of
-//! the security review in virtual time: a genuine controller at 40 Hz, what an attacker adds, and how long
+//! `attacks`: tests: HALT has priority over forged packets, second referees and clocks that step. The attacks
+//! of the security review in virtual time: a genuine controller at 40 Hz, an attacker's packets, and how long
 //! robots were let play under HALT.
 
 use rules::{Colour, League};
@@ -28,7 +28,7 @@ impl Program {
         Self { identifier, address, counter: 1 }
     }
 
-    /// A packet stamped so far off its sending, µs.
+    /// A packet stamped `off` from its sending, µs.
     fn packet(&self, now: u64, off: i64, command: Wire) -> Referee {
         let stamp = (EPOCH + now).saturating_add_signed(off);
         let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
@@ -395,7 +395,7 @@ fn no_flood_of_invented_sources_hides_a_halt() {
         (S, 3 * S),
         |_| 0,
         |now| {
-            // 20 new sources every 5 ms, all of which say FORCE_START.
+            // 20 new sources every 5 ms, all of which send FORCE_START.
             let invented = (0..20).map(|_| {
                 number += 1;
                 let [_, a, b, c] = number.to_be_bytes();

@@ -9,7 +9,7 @@ use ssl::referee::{HullColor, MatchType, Referee, TeamInfo};
 
 use super::words;
 
-/// No field reaches farther from its centre than this, m: what lies beyond is no place to put a ball.
+/// No field reaches farther from its centre than this, m: a designated position beyond it is refused.
 const FARTHEST: f32 = 20.0;
 
 /// The game as the referee and the ball have it.
@@ -17,9 +17,10 @@ const FARTHEST: f32 = 20.0;
 pub struct Game {
     /// The phase now.
     pub phase: Phase<Colour>,
-    /// The phase that will follow the current stop, if the referee says.
+    /// The phase after the current stop, if the referee sends it.
     pub next: Option<Phase<Colour>>,
-    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), whatever packets hold (trap 3).
+    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), even if packets of other
+    /// phases have one (trap 3).
     pub placement: Option<Point<Field>>,
     /// The part of the match.
     pub stage: Stage,
@@ -27,11 +28,11 @@ pub struct Game {
     pub stage_time_left: Option<f32>,
     /// Time left for placement, free kick, kick-off or penalty, s; negative when it ran over.
     pub action_time_left: Option<f32>,
-    /// The goal that blue defends, once that was said.
+    /// The goal that blue defends, once the referee has sent it.
     pub blue_goal: Option<GoalEnd>,
     /// What kind of match.
     pub match_type: MatchType,
-    /// What the referee waits for, in its words.
+    /// What the referee waits for, as it sends it.
     pub status: String,
     /// Yellow's and blue's account, in this order.
     pub teams: [TeamAccount; 2],
@@ -76,13 +77,14 @@ pub struct TeamAccount {
     pub yellow_card_times: Vec<f32>,
     /// Fouls that count towards the next yellow card.
     pub fouls: u32,
-    /// Robots it may have on the field now, if the referee says.
+    /// Robots it may have on the field now, if the referee sends it.
     pub robots_allowed: Option<u32>,
     /// Time-outs left.
     pub timeouts: u32,
     /// Time left for time-outs, s.
     pub timeout_time: f32,
-    /// Whether it may place the ball: it can, and has not failed too often; if the referee does not say, it may.
+    /// Whether it may place the ball: it can, and has not failed too often; if the referee does not send it,
+    /// it may.
     pub may_place: bool,
     /// Failed placements that count.
     pub placement_failures: u32,
@@ -90,11 +92,11 @@ pub struct TeamAccount {
     pub substitution_wanted: bool,
     /// It may substitute now.
     pub substitution_allowed: bool,
-    /// Substitutions left in this half, if the referee says.
+    /// Substitutions left in this half, if the referee sends it.
     pub substitutions_left: Option<u32>,
     /// Time left for the running substitution, s.
     pub substitution_time_left: f32,
-    /// Whether its hulls are dark; none where the referee does not say.
+    /// Whether its hulls are dark; none where the referee does not send it.
     pub dark_hulls: Option<bool>,
 }
 
@@ -104,12 +106,12 @@ impl Game {
         &self.teams[colour as usize]
     }
 
-    /// The goal that a team defends, once that was said.
+    /// The goal that a team defends, once the referee has sent it.
     pub fn own_goal(&self, colour: Colour) -> Option<GoalEnd> {
         self.blue_goal.map(|goal| if colour == Colour::Blue { goal } else { goal.opposite() })
     }
 
-    /// Takes what a packet says, but for its command.
+    /// Takes all fields of a packet except its command.
     pub(super) fn read(&mut self, packet: &Referee) {
         let place = |mm: f32| mm / 1000.0;
         self.stage = words::stage_of(packet.stage).unwrap_or(self.stage);
@@ -128,7 +130,7 @@ impl Game {
         self.teams[Colour::Blue as usize].read(&packet.blue);
     }
 
-    /// Takes what the state of the game says; `phase` is the one that is obeyed, which may be stricter.
+    /// Takes the state of the game; `phase` is the one that is obeyed, which may be stricter.
     pub(super) fn stands(&mut self, state: &GameState, phase: Phase<Colour>) {
         self.phase = phase;
         let placing = matches!(self.phase, Phase::BallPlacement(_));
@@ -138,8 +140,8 @@ impl Game {
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 
-    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick or penalty. In other
-    /// phases packets hold a place too, that of what was before (trap 3).
+    /// Where the ball is being put, by robots or by hand: in ball placement, and in the stop before a free
+    /// kick or penalty. In other phases packets hold a place too, that of an earlier phase (trap 3).
     pub fn ball_goes_to(&self) -> Option<Point<Field>> {
         let follows = matches!(self.next, Some(Phase::FreeKick(_) | Phase::PreparePenalty(_)));
         let by_hand = self.phase == Phase::Stop && follows;

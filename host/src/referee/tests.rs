@@ -1,4 +1,4 @@
-//! Tests: the league's own packets become the game that was played. Recordings of the game controller and
+//! Tests: the league's own packets give the game that was played. Recordings of the game controller and
 //! packets made here.
 
 use std::path::PathBuf;
@@ -183,7 +183,7 @@ fn trap_03_a_designated_position_counts_in_ball_placement_only() {
         placed += u32::from(placing);
     }
     assert!(placed > 0);
-    // A place that is none is none.
+    // A position that is not finite or too far is dropped.
     for x in [f32::NAN, f32::INFINITY, 1e9] {
         let mut packet = packet(0, Wire::BallPlacementBlue, 1);
         packet.designated_position = Some(WirePoint { x, y: 0.0 });
@@ -285,7 +285,8 @@ fn a_command_without_a_meaning_is_taken_for_halt() {
 
 #[test]
 fn who_joins_in_the_middle_knows_the_age_of_the_command() {
-    // NORMAL_START was given 8 s before the first packet that we hear: 2 s are left until the ball must be in play.
+    // NORMAL_START was given 8 s before the first packet received: 2 s are left until the ball must be in
+    // play.
     let mut listener = listener();
     let mut first = packet(20 * S, Wire::NormalStart, 7);
     first.command_timestamp -= 8 * S;

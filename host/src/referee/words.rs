@@ -1,5 +1,4 @@
-//! `words`: decoding of the referee's commands and stages. The wire's commands and stages in the words of
-//! [`rules`].
+//! `words`: decodes the referee's commands and stages into the types of [`rules`].
 
 use rules::Colour::{self, Blue, Yellow};
 use rules::state::{Command, Stage};

@@ -8,7 +8,7 @@ use protocol::{Instant, RobotId};
 use crate::Host;
 use crate::radio::{RadioWarning, Why};
 
-/// Another host of our team number, and what shows it.
+/// Another host of our team number, with its evidence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SecondHost {
     /// Its frames reach us: it has this boot epoch.

@@ -3,58 +3,58 @@
 use std::fmt;
 use std::io;
 
-/// One variant per thing the people can do something about.
+/// One variant per cause that the operator can fix.
 #[derive(Debug)]
 pub enum LinkError {
-    /// `udp://` names a host that nobody knows.
+    /// `udp://` names a host that cannot be resolved.
     UnknownHost {
         /// As given.
         address: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
-    /// No socket could be had, or it failed.
+    /// A socket could not be opened, or failed.
     Socket {
-        /// What was tried.
+        /// The operation that failed.
         doing: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// The serial line is not there.
     NoSuchLine {
         /// As given.
         device: String,
-        /// Lines that are there.
+        /// Lines that exist.
         present: Vec<String>,
     },
-    /// The serial line may not be used by this person.
+    /// This user has no permission for the serial line.
     NotAllowed {
         /// As given.
         device: String,
     },
-    /// The serial line does not do this rate, or failed.
+    /// The serial line does not support this rate, or failed.
     Line {
         /// As given.
         device: String,
-        /// What was tried.
+        /// The operation that failed.
         doing: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// A virtual robot could not be started.
     Start {
         /// The program.
         program: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// A virtual robot ended again and again.
     GivesUp {
-        /// Which.
+        /// Its number.
         robot: u8,
         /// How it last ended.
         how: String,
-        /// How often.
+        /// Number of times.
         times: u32,
     },
 }
