@@ -1,5 +1,4 @@
-//! `tally`: match counters of passes, free kicks and role changes. Counts of a match, for reports
-//! (docs/papers.md D24).
+//! `tally`: match counters of passes, free kicks and role changes. For reports (docs/papers.md D24).
 
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
@@ -11,12 +10,12 @@ use super::view::{Flip, View};
 use crate::world::World;
 use geometry::{Attack, Point};
 
-/// A restart's pass that has just left, as the coach knows it; attack frame.
+/// A restart's pass that has just left, by the coach's plan; attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sent {
-    /// Who kicked.
+    /// The robot that kicked.
     pub passer: RobotId,
-    /// Who shall have it.
+    /// The robot that shall receive it.
     pub receiver: RobotId,
     /// x0.
     pub from: Point<Attack>,
@@ -37,9 +36,9 @@ pub struct Sent {
 pub struct CapTally {
     /// Passes that left.
     pub attempts: u32,
-    /// … that the receiver, or another mate, had.
+    /// … that the receiver, or another teammate, received.
     pub successes: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub reuses: u32,
     /// … of those, that arrived.
     pub reuse_successes: u32,
@@ -52,11 +51,11 @@ pub struct PlayTally {
     pub passes: PassTally,
     /// Planned free kicks.
     pub cap: CapTally,
-    /// How often a robot's role changed while the phase did not; places within a role do not count.
+    /// Number of role changes of robots while the phase did not change; places within a role do not count.
     pub role_changes: u32,
 }
 
-/// Counts while a match is played.
+/// Counters updated while a match is played.
 #[derive(Clone, Debug, Default)]
 pub struct Bookkeeper {
     tally: PlayTally,
@@ -66,12 +65,12 @@ pub struct Bookkeeper {
 }
 
 impl Bookkeeper {
-    /// What was counted so far.
+    /// The counts so far.
     pub fn tally(&self) -> &PlayTally {
         &self.tally
     }
 
-    /// The next moment: what was ordered in it, and the pass that began.
+    /// Takes the next snapshot: the orders in it, and the pass that started.
     pub fn note(
         &mut self,
         (world, view, field): (&World, &View, &FieldSpec),

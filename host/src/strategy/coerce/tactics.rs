@@ -1,8 +1,9 @@
-//! `tactics`: likelihood of a position under each tactic. P(p | M_t, W) for the four tactics that the planner
-//! knows (Biswas et al. 2014 §4.1; its Figure 5). Attack frame (opponents defend +x), m.
+//! `tactics`: likelihood of a position under each tactic. P(p | M_t, W) for the planner's four tactics
+//! (Biswas et al. 2014 §4.1; its Figure 5). Attack frame (opponents defend +x), m.
 //!
-//! The paper computes its models "analytically using assumptions of SSL-specific tactic behaviors and the rules" and prints none.
-//! Ours are bells around where the tactic wants a robot, 1 at their top, so that a threshold means the same for all of them.
+//! The paper computes its models "analytically using assumptions of SSL-specific tactic behaviors and the
+//! rules" and prints none. Ours are bell curves around the place that the tactic gives a robot, 1 at their
+//! top, so that a threshold means the same for all of them.
 
 use geometry::{Attack, Point, Segment, Vector, math};
 use rules::FieldSpec;
@@ -11,7 +12,7 @@ use rules::limits::{BALL_DISTANCE, ROBOT_RADIUS};
 use super::super::threat::edge::Edge;
 use super::super::view::View;
 
-/// What a robot of theirs does.
+/// The tactic of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tactic {
     /// Follows the ball within its defence area.
@@ -20,7 +21,7 @@ pub enum Tactic {
     PrimaryDefence,
     /// Follows one of our attackers.
     Mark,
-    /// Follows the ball, as close to our taker as it may.
+    /// Follows the ball, as close to our taker as the rules allow.
     Wall,
 }
 
@@ -45,13 +46,15 @@ pub type Likelihoods = [f32; 4];
 /// The numbers of the models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Models {
-    /// Standard deviation of where a robot is around where its tactic wants it, m (docs/papers.md D17).
+    /// Standard deviation of a robot's distance from the place that its tactic gives it, m (docs/papers.md
+    /// D17).
     pub spread: f32,
-    /// … of how far primary defenders are from the edge that they move along, and walls from the distance they keep, m.
+    /// … of the distance of primary defenders from the edge that they move along, and of walls from the
+    /// distance they keep, m.
     pub keeps: f32,
-    /// … of how far the keeper is outside its area, m: it never is; what cameras err by.
+    /// … of the keeper's distance outside its area, m: it never leaves it; this is the cameras' error.
     pub outside: f32,
-    /// A defender's centre is this far outside the area that it must not enter, m: a body and a finger.
+    /// A defender's centre is this far outside the area that it must not enter, m: a body and a margin.
     pub off_area: f32,
     /// Markers stand this far from our robot, towards their goal or towards the ball, m (D19).
     pub stand_off: f32,
@@ -65,20 +68,20 @@ impl Default for Models {
     }
 }
 
-/// What the models need of the world: the ball and the robots of ours that can be marked.
+/// The world's part in the models: the ball and the robots of ours that can be marked.
 #[derive(Clone, Debug)]
 pub struct Situation<'v> {
     view: &'v View,
     models: Models,
     ball: Point<Attack>,
-    /// Our field players but for the taker.
+    /// Our field players except the taker.
     marked: heapless::Vec<usize, { super::super::view::ROBOTS_MAX }>,
-    /// The ball's shortest way to the middle of their goal ends here, on their area's border.
+    /// End of the ball's shortest path to the middle of their goal, on their area's border.
     keeper_front: Point<Attack>,
 }
 
 impl<'v> Situation<'v> {
-    /// This moment, with `taker` at the ball.
+    /// The situation in this snapshot, with `taker` at the ball.
     pub fn new(view: &'v View, models: Models, taker: Option<protocol::RobotId>) -> Self {
         let ball = view.ball.map_or(Point::new(0.0, 0.0), |ball| ball.position);
         let marked = |robot: &super::super::view::Robot| robot.id != view.keeper && Some(robot.id) != taker;
@@ -94,7 +97,7 @@ impl<'v> Situation<'v> {
         [self.goalkeeper(at), self.primary(at), self.mark(at).0, self.wall(at)]
     }
 
-    /// Within the defence area, on the ball's way to the goal.
+    /// Within the defence area, on the ball's path to the goal.
     fn goalkeeper(&self, at: Point<Attack>) -> f32 {
         let out = Edge::of(&self.view.field, 0.0).distance_to(turned(at)).max(0.0);
         let way = Segment::new(self.view.their_goal(), self.keeper_front);
@@ -130,7 +133,7 @@ impl<'v> Situation<'v> {
         [towards(self.view.their_goal()), towards(self.ball)]
     }
 
-    /// As near to the ball as the rules let it.
+    /// As near to the ball as the rules allow.
     fn wall(&self, at: Point<Attack>) -> f32 {
         bell(at.distance(self.ball) - (BALL_DISTANCE + ROBOT_RADIUS + 0.02), self.models.keeps)
     }
@@ -158,7 +161,7 @@ fn bell(off: f32, spread: f32) -> f32 {
     math::exp(-0.5 * x * x)
 }
 
-/// How far a place is outside the triangle of ball and posts, m.
+/// Distance of a place outside the triangle of ball and posts, m.
 fn off_angle(field: &FieldSpec, ball: Point<Attack>, at: Point<Attack>) -> f32 {
     let (x, y) = (field.length * 0.5, field.goal_width * 0.5);
     let corners = [ball, Point::new(x, -y), Point::new(x, y)];
@@ -172,7 +175,7 @@ fn off_angle(field: &FieldSpec, ball: Point<Attack>, at: Point<Attack>) -> f32 {
     }
 }
 
-/// Half a turn: [`Edge`] is told for our end.
+/// Half a turn: [`Edge`] is defined for our end.
 fn turned(at: Point<Attack>) -> Point<Attack> {
     Point::new(-at.x(), -at.y())
 }
@@ -231,7 +234,7 @@ mod tests {
         assert_eq!(tactic(1.25, -0.9), Some(Tactic::Mark));
         assert_eq!(tactic(0.5, 0.7), Some(Tactic::Wall));
         assert_eq!(tactic(-2.0, -1.8), None);
-        // Nobody marks the taker or the keeper.
+        // Neither the taker nor the keeper is marked.
         assert_eq!(situation.mark(Point::new(-0.1, 1.3)).1, Some(2));
     }
 

@@ -1,6 +1,5 @@
-//! `bridge`: refinement of a retrieved case's pass point. P(receive) · P(goal) refines a retrieved case's
-//! pass point near its adapted position (docs/papers.md §8: the case is the intent, the evaluator its
-//! parameters). Attack frame, m.
+//! `bridge`: refinement of a retrieved case's pass point by P(receive) · P(goal) near its adapted position
+//! (docs/papers.md §8: the case gives the intent, the evaluator its parameters). Attack frame, m.
 
 use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};
@@ -11,13 +10,13 @@ use super::scene::{Rating, Scene};
 /// The next pass of a case that is being played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CasePass {
-    /// Which case.
+    /// The case.
     pub case: CaseId,
-    /// Who passes, and what it is in the case.
+    /// The passer, and its robot in the case.
     pub passer: (RobotId, CaseRobot),
-    /// To whom, and what that one is in the case.
+    /// The receiver, and its robot in the case.
     pub receiver: (RobotId, CaseRobot),
-    /// Where the case, adapted, has it received.
+    /// Where the adapted case has it received.
     pub at: Point<Attack>,
 }
 
@@ -36,7 +35,7 @@ impl Refined {
         self.best.value() - self.proposed.value()
     }
 
-    /// How far the point moves, m.
+    /// Distance by which the point moves, m.
     pub fn moved(&self) -> f32 {
         self.best.at.distance(self.proposed.at)
     }
@@ -74,16 +73,16 @@ pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     Refined { proposed, best }
 }
 
-/// How far from the adapted position the point may move, m: less than the least scope of the cases' robots, so that it stays the case's
-/// play.
+/// Largest distance of the point from the adapted position, m: less than the least scope of the cases'
+/// robots, so that it stays the case's play.
 pub const RADIUS: f32 = 0.6;
-/// The case's own place stands unless another one is better by a twentieth: below, it moves for noise.
+/// The case's own place is kept unless another one is better by a twentieth: below, it would follow noise.
 pub const WORTH_MOVING: f32 = 1.05;
 /// Places of the sunflower: 0.15 m apart at a radius of 0.6 m.
 const SEEDS: u32 = 48;
 /// rad: π (3 − √5).
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
-/// Rounding must not put the outermost ones outside.
+/// Rounding must not place the outermost ones outside.
 const INSIDE: f32 = 0.999;
 /// Circles around the best place: radius of the first as a share, how many, places on each.
 const FIRST_STEP: f32 = 0.125;

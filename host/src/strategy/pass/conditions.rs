@@ -1,8 +1,9 @@
-//! `conditions`: the conditions of a pass and of a goal after it. The paper's conditions c1–c5 and c1'–c4',
-//! one function each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
+//! `conditions`: the conditions of a pass and of a goal after it. Conditions c1–c5 and c1'–c4', one function
+//! each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
 //!
-//! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the condition just holds
-//! (docs/papers.md D3). Which margins those are is found by [`super::intercept`], [`super::open`] and [`super::scene`].
+//! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the
+//! condition just holds (docs/papers.md D3). The margins are computed by [`super::intercept`],
+//! [`super::open`] and [`super::scene`].
 
 use geometry::math;
 
@@ -12,7 +13,7 @@ use super::constants::PassConstants;
 #[inline]
 pub fn likely(margin: f32, width: f32) -> f32 {
     let x = margin / width;
-    // Beyond, it is 0 or 1 to six digits; NaN is no promise.
+    // Beyond, it is 0 or 1 to six digits; NaN gives 0.
     if x > CERTAIN {
         1.0
     } else if x > -CERTAIN {
@@ -28,8 +29,8 @@ pub fn first_there(receiver: f32, soonest_opponent: f32, c: &PassConstants) -> f
     likely(soonest_opponent - receiver, c.time_width)
 }
 
-/// c2: no opponent intercepts the pass. `margin` is the least time, over the places of its way, by which an opponent comes later
-/// than the ball, s.
+/// c2: no opponent intercepts the pass. `margin` is the least time, over the places of its path, by which an
+/// opponent comes later than the ball, s.
 #[inline]
 pub fn not_intercepted(margin: f32, chip: bool, c: &PassConstants) -> f32 {
     let p = likely(margin, c.time_width);
@@ -48,7 +49,7 @@ pub fn short_enough(distance: f32, c: &PassConstants) -> f32 {
     likely(c.longest - distance, c.distance_width)
 }
 
-/// c5: x is a reliable place: off areas, lines and mates. The least of these margins, m.
+/// c5: x is a reliable place: off areas, lines and teammates. The least of these margins, m.
 #[inline]
 pub fn reliable_place(margin: f32, c: &PassConstants) -> f32 {
     likely(margin, c.distance_width)
@@ -73,8 +74,8 @@ pub fn shot_in_time(one_touch: bool, c: &PassConstants) -> f32 {
     if one_touch { 1.0 } else { c.turn_prior }
 }
 
-/// c4': a shot before opponents steal the ball: nobody may in their defence area. Where attackers may not enter it either, no place
-/// is inside.
+/// c4': a shot before opponents steal the ball: none may in their defence area. Where attackers may not enter
+/// it either, no place is inside.
 #[inline]
 pub fn not_stolen(in_their_area: bool, c: &PassConstants) -> f32 {
     if in_their_area && !c.their_area_forbidden { 1.0 } else { c.outside_prior }

@@ -16,7 +16,7 @@ pub struct Shot {
     pub aim: Point<Attack>,
     /// The open angle around it, rad.
     pub angle: f32,
-    /// Until it is there, s.
+    /// Time until it is there, s.
     pub time: f32,
     /// P(c1'), P(c2'), P(c4').
     pub factors: [f32; 3],

@@ -1,20 +1,20 @@
 //! `tally`: counters of passes and calibration. Counts that add up over matches: the passes of the second
-//! paper's Table 1, and the calibration of its equation 5, predicted against seen.
+//! paper's Table 1, and the calibration of its equation 5, predicted against observed.
 
 use serde::{Deserialize, Serialize};
 
 use super::watch::{Ordered, Verdict};
 
-/// Passes of one kind of kick, by what became of them.
+/// Passes of one kind of kick, by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fates {
-    /// The receiver had it.
+    /// The receiver received it.
     pub received: u32,
-    /// Another mate had it.
+    /// Another teammate received it.
     pub by_mate: u32,
-    /// An opponent had it.
+    /// An opponent intercepted it.
     pub intercepted: u32,
-    /// It went by.
+    /// It passed the receiver.
     pub missed: u32,
     /// The receiver came too late.
     pub late: u32,
@@ -31,7 +31,7 @@ pub struct Bin {
     pub passes: u32,
     /// Sum of their P(receive).
     pub predicted: f64,
-    /// How many their receiver had.
+    /// Number of them received.
     pub received: u32,
 }
 
@@ -61,7 +61,7 @@ impl Fates {
         received + by_mate + intercepted + missed + late + out
     }
 
-    /// Those that the team had in the end.
+    /// Those that the team received.
     pub fn successful(&self) -> u32 {
         self.received + self.by_mate
     }
@@ -105,7 +105,7 @@ impl PassTally {
         bin.received += u32::from(matches!(verdict, Verdict::Received { .. }));
     }
 
-    /// The passes of another match, too.
+    /// Adds the passes of another match.
     pub fn add(&mut self, other: &Self) {
         self.flat.add(&other.flat);
         self.chip.add(&other.chip);
@@ -116,8 +116,8 @@ impl PassTally {
         }
     }
 
-    /// How far P(receive) is off what was seen: the mean over the bins of |predicted − seen|, each by its passes (expected calibration
-    /// error); `None` without passes.
+    /// Difference between P(receive) and the observed share: the mean over the bins of |predicted −
+    /// observed|, each by its passes (expected calibration error); `None` without passes.
     pub fn calibration_error(&self) -> Option<f64> {
         let passes: u32 = self.calibration.iter().map(|bin| bin.passes).sum();
         let off: f64 =
@@ -167,12 +167,12 @@ mod tests {
     fn the_calibration_error_by_hand_and_over_two_matches() {
         let mut one = PassTally::default();
         assert_eq!(one.calibration_error(), None);
-        // Predicted 0.75 + 0.75, one seen: |1.5 − 1| / 2.
+        // Predicted 0.75 + 0.75, one received: |1.5 − 1| / 2.
         one.record(&pass(0.75, false), &RECEIVED);
         one.record(&pass(0.75, false), &Verdict::Missed { by: 1.0 });
         assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
         let mut other = PassTally::default();
-        // Predicted 0.25 + 0.25, none seen: with the above (0.5 + 0.5) / 4.
+        // Predicted 0.25 + 0.25, none received: with the above (0.5 + 0.5) / 4.
         other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
         other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
         one.add(&other);

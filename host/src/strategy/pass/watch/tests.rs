@@ -84,7 +84,7 @@ fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
 fn a_ball_that_stops_at_the_receivers_mouth_is_received_in_time() {
     let verdict = Play::new(rolling((1.0, 0.0), 2.0)).verdict();
     let Verdict::Received { off, late } = verdict else { panic!("{verdict:?}") };
-    // 2 m take 0.8 s; the kick is known by the picture in which the ball has left the passer.
+    // 2 m take 0.8 s; the kick is known by the snapshot in which the ball has left the passer.
     assert!(off < 0.02 && late.abs() < 0.05, "{verdict:?}");
     assert!(verdict.is_success());
 }
