@@ -5,21 +5,21 @@
 //! colour = "blue"                 # blue or yellow; the referee may change sides, not colours
 //! league = "division-b"           # ssl-2013, division-b or division-a
 //! keeper = 0
-//! interface = "192.168.1.7"       # whose address hears multicast; left out: every interface
+//! interface = "192.168.1.7"       # interface for multicast; left out: every interface
 //! robots = "sim://127.0.0.1"      # sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]
 //! key_file = "team.key"           # 32 hexadecimal digits; may be left out for sim:// only
-//! insecure_zero_key = false       # true: real robots may be led with the key of zeros, which is public
+//! insecure_zero_key = false       # true: real robots may use the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
-//! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
-//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command stands
+//! referee_source = "192.168.1.5"  # only referee obeyed: address or identifier; left out: the strictest
+//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
-//! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
+//! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //!
-//! [[calibration]]                 # what a robot does otherwise than it is told
+//! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
 //! kick = 1.06                     # balls leave this much faster than ordered
-//! latency_ms = 45                 # from an order to its motion; shown, not used
+//! latency_ms = 45                 # from an order to its motion; displayed, not used
 //!
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
@@ -36,7 +36,7 @@ use serde::Deserialize;
 
 use crate::referee::{OnSilence, SourcePin};
 
-/// A team's settings: as a file or flags give them, everything may be left out.
+/// A team's settings: from a file or flags; every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TeamSettings {
@@ -219,7 +219,7 @@ impl TeamSettings {
         }
     }
 
-    /// Complete and checked; what was left out is the league's usual.
+    /// Complete and checked; defaults of the league for missing fields.
     pub fn complete(self) -> Result<TeamConfig, ConfigError> {
         let league = match self.league.as_deref() {
             None => League::DivisionB,
@@ -327,7 +327,8 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75 for one of eleven (80).
+/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75
+/// for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! Simulators send one camera's calibration a packet (trap 2), leave the defence area out, send lines in any
 //! order and dummies for a camera's rotation (trap 8). The defence area is taken from its own numbers, else
-//! from its lines, else from the division whose length is nearest, and [`AreaSource`] says which. Numbers
+//! from its lines, else from the division whose length is nearest, and [`AreaSource`] states which. Numbers
 //! that no field can have are refused ([`GeometryFault`]); the previous geometry is kept. SI, field frame.
 
 mod area;
@@ -18,8 +18,8 @@ use ssl::vision::{GeometryData, GeometryFieldSize};
 pub use area::AreaSource;
 pub use camera::Camera;
 
-/// Cameras have numbers below this, twice as many as any field has: a camera of another number is invented, and would take
-/// the place of a genuine one.
+/// Cameras have numbers below this, twice as many as any field has: a camera of another number is invented,
+/// and would take the place of a genuine one.
 pub const CAMERAS_MAX: u32 = 16;
 
 /// Width of the goal substitution area that the game controller (2026) assumes where vision does not send it,
@@ -55,7 +55,7 @@ pub struct News {
 /// Why a geometry packet was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GeometryFault {
-    /// A measure of the field is nonsense.
+    /// A dimension of the field is invalid.
     Field(FieldFault),
 }
 
@@ -146,7 +146,7 @@ impl VisionGeometry {
     }
 }
 
-/// The division whose field is nearest in length: what is left out is taken from it.
+/// The division whose field is nearest in length: missing values are taken from it.
 fn nearest_division(length: f32) -> League {
     let off = |league: League| (league.field().length - length).abs();
     if off(League::DivisionA) < off(League::DivisionB) { League::DivisionA } else { League::DivisionB }
@@ -170,8 +170,8 @@ fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFa
         margin,
         // The newest message has both; older programs send 0 for "not set".
         goal_line_margin: told(size.boundary_width_goal_line).unwrap_or(margin),
-        // Here 0 is an answer: no such area. If it is not sent, the game controller takes its own default,
-        // the same in both divisions.
+        // Here 0 is a value: no such area. If it is not sent, the game controller takes its own default, the
+        // same in both divisions.
         goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_UNTOLD, metres),
         goal_width: metres(size.goal_width),
         goal_depth: metres(size.goal_depth),

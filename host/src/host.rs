@@ -51,13 +51,13 @@ pub struct HostSettings {
     pub kick: [f32; RobotId::COUNT],
     /// Deceleration of a rolling ball, m/s²; none: vision's, or the league's usual.
     pub roll: Option<f32>,
-    /// It plays by what it learns of kickers and ball; it learns in either case.
+    /// It uses the learned gains and deceleration; it learns in either case.
     pub learns: bool,
     /// The only referee that is obeyed; none: every one, the strictest first.
     pub referee: Option<SourcePin>,
     /// What robots do when the referee falls silent.
     pub referee_silence: OnSilence,
-    /// What decides open play: the case base in the robots, or the coach.
+    /// Which team decides open play: ours or an opponent team.
     pub team: Team,
     /// The radio's.
     pub radio: RadioSettings,
@@ -209,7 +209,7 @@ impl Host {
         self.requests.poll()
     }
 
-    /// When [`Input::Timeout`] is wanted, if nothing comes before.
+    /// When the next [`Input::Timeout`] is due, unless another input comes before.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.radio.poll_timeout()
     }

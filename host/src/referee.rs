@@ -15,7 +15,7 @@
 //! - **HALT that ends without a STOP** of the source that is followed (the other source fell silent, a late
 //!   copy) is left through [`GRACE`] of STOP: staff may be on the field.
 //! - **Silence is not loss** (trap 5). The phase is kept for [`HALT_AFTER`]; then robots halt
-//!   ([`OnSilence::Halt`]) or go on by it ([`OnSilence::GoOn`]). [`Listener::silence`] returns the time
+//!   ([`OnSilence::Halt`]) or continue by it ([`OnSilence::GoOn`]). [`Listener::silence`] returns the time
 //!   without a packet.
 //!
 //! Only a change of command or counter is a command, and [`rules::state`] defines what the same command with
@@ -59,13 +59,15 @@ pub const HALT_AFTER: Duration = Duration::millis(2_000);
 /// HALT.
 const SOURCES_MAX: usize = 8;
 
-/// What robots do while nothing comes from a referee that was received before. Before the first packet they halt in any case.
+/// What robots do while nothing comes from a referee that was received before. Before the first packet they
+/// halt in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnSilence {
     /// They halt after [`HALT_AFTER`], and play again after a STOP of [`GRACE`] when it is back.
     #[default]
     Halt,
-    /// They go on by its last command: for test days on which the controller is started for a command and ended.
+    /// They continue by its last command: for test days on which the controller is started for a command and
+    /// ended.
     GoOn,
 }
 
@@ -268,7 +270,7 @@ impl Listener {
         }
     }
 
-    /// Chooses the source that is followed, and what is imposed on it.
+    /// Chooses the source that is followed, and the strictness imposed on it.
     fn settle(&mut self, now: Instant) {
         let audible = |source: &Source| now.since(source.heard) < SILENCE;
         let successor = self.sources.iter().position(audible).filter(|place| *place > 0);

@@ -34,7 +34,7 @@ impl Requests {
         self.advantage(view);
     }
 
-    /// The next request to be sent.
+    /// The next request to send.
     pub(crate) fn poll(&mut self) -> Option<Request> {
         self.out.pop_front()
     }
@@ -87,7 +87,7 @@ impl Requests {
         }
     }
 
-    /// They have a surplus robot: we play on while that is to our advantage (our penalty, or the ball in
+    /// They have a surplus robot: we continue while that is to our advantage (our penalty, or the ball in
     /// their half); the controller stops the game for it otherwise.
     fn advantage(&mut self, view: &View) {
         let theirs = view.theirs.iter().filter(|robot| view.counts_for_them(robot.position)).count();

@@ -157,7 +157,7 @@ impl World {
 }
 
 impl Ball {
-    /// One that lies still, with full confidence.
+    /// A ball at standstill, with full confidence.
     pub fn at_rest(position: Point<Field>, seen: Instant) -> Self {
         Self {
             position,
@@ -261,7 +261,8 @@ impl Robot {
 /// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
 /// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted height some 10.
+/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted
+/// height some 10.
 const FLIES_ABOVE: f32 = 0.03;
 /// Gravity, m/s².
 pub(crate) const GRAVITY: f32 = 9.81;

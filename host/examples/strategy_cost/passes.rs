@@ -48,7 +48,7 @@ pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
     format!("mean {:.5}", sum / f64::from(count / SAMPLES))
 }
 
-/// Moments in a row at which one search goes on.
+/// Consecutive snapshots over which one search continues.
 const MOMENTS: u32 = 8;
 /// Places rated in a row at one moment, as a search does; the moment's own part is in their cost.
 const PLACES: u32 = 200;

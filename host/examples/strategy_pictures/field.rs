@@ -30,7 +30,7 @@ pub(crate) fn in_mm(field: &FieldSpec) -> FieldMm {
     }
 }
 
-/// Lines and goals over what is there, the defence areas as the rules have them.
+/// Lines and goals over the drawing so far, with the rules' defence areas.
 pub(crate) fn lines(svg: &mut Svg, field: &FieldSpec) {
     let style = r##"fill="none" stroke="#ffffff" stroke-width="25""##;
     let (x, y) = (f64::from(field.length) * 500.0, f64::from(field.width) * 500.0);
@@ -90,7 +90,8 @@ pub(crate) fn map(svg: &mut Svg, field: &FieldSpec, cell: f32, value: impl Fn(Po
     svg.group(&squares, r#"shape-rendering="crispEdges""#);
 }
 
-/// From dark violet (0) over blue-green to yellow (1), evenly in brightness: viridis at nine places, in [`SHADES`] steps.
+/// From dark violet (0) over blue-green to yellow (1), evenly in brightness: viridis at nine places, in
+/// [`SHADES`] steps.
 pub(crate) fn shade(value: f64) -> String {
     let step = (value.clamp(0.0, 1.0) * f64::from(SHADES)).round() / f64::from(SHADES);
     let place = step * (VIRIDIS.len() - 1) as f64;

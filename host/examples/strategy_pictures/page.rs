@@ -94,7 +94,7 @@ impl Panel {
         self.clipped(&svg);
     }
 
-    /// What lies beyond the panel is cut off.
+    /// Parts beyond the panel are cut off.
     pub(crate) fn clipped(&mut self, inner: &Svg) {
         let name = format!("panel-{:.0}-{:.0}", self.corner[0], self.corner[1]);
         self.svg.element(format_args!(r#"<clipPath id="{name}">"#));

@@ -1,4 +1,4 @@
-//! Tests: geometry of the league's own programs, and refusal of nonsense.
+//! Tests: geometry of the league's own programs, and refusal of invalid values.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ fn near(a: f32, b: f32) {
     assert!((a - b).abs() < 1e-6, "{a} is not {b}");
 }
 
-/// The sizes that neither simulator leaves out.
+/// The sizes that both simulators send.
 fn plain(length: i32, width: i32) -> GeometryFieldSize {
     GeometryFieldSize {
         field_length: length,
@@ -145,7 +145,8 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     data.calib[0].derived_camera_world_tx = None;
     let news = geometry.hear(&data).unwrap();
     assert_eq!((news.cameras, news.cameras_refused), (0, 1));
-    // A rotation that is one: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
+    // A rotation that is one: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y,
+    // −z).
     let real = GeometryCameraCalibration {
         q0: 1.0,
         q1: 0.0,

@@ -32,6 +32,7 @@ impl Host {
     }
 }
 
-/// A learned gain scales a kick's order by 0.8 to 1.7, not farther: what is beyond is a mistake of what was learned, or a broken kicker.
+/// A learned gain scales a kick's order by 0.8 to 1.7, not more: values beyond are an error of learning, or a
+/// broken kicker.
 const GAIN_MIN: f32 = 1.0 / 1.7;
 const GAIN_MAX: f32 = 1.0 / 0.8;

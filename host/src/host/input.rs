@@ -47,6 +47,7 @@ pub struct Undecodable {
     pub vision: u64,
     /// On the referee's port.
     pub referee: u64,
-    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
+    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look
+    /// like that.
     pub empty: u64,
 }

@@ -30,17 +30,17 @@ impl Host {
         &self.orders
     }
 
-    /// The game as the referee has it.
+    /// The game by the referee's packets.
     pub fn game(&self) -> &referee::Game {
         self.listener.game()
     }
 
-    /// The referee's listener, to look at.
+    /// Read access to the referee's listener.
     pub fn listener(&self) -> &Listener {
         &self.listener
     }
 
-    /// The tracker, to look at and to publish.
+    /// Read access to the tracker, also for publishing.
     pub fn tracker(&self) -> &Tracker {
         &self.tracker
     }
@@ -65,7 +65,7 @@ impl Host {
         self.halted || self.listener.game().phase == Phase::Halt
     }
 
-    /// The radio, to look at.
+    /// Read access to the radio.
     pub fn radio(&self) -> &Radio {
         &self.radio
     }

@@ -114,7 +114,7 @@ impl Roll {
 const KEPT: usize = 25;
 /// Number of rolls needed.
 const LEAST: usize = 5;
-/// No robot's centre is nearer to the ball, m: a radius of 0.09 and what it moves between two frames.
+/// No robot's centre is nearer to the ball, m: a radius of 0.09 and its motion between two frames.
 const CLEAR: f32 = 0.2;
 /// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
 const SLIDES: Duration = Duration::millis(500);
@@ -143,7 +143,8 @@ mod tests {
     use protocol::{RobotId, Who};
     use rules::Colour;
 
-    /// Balls that roll from 2 m/s with that deceleration, seen at 75 Hz with 3 mm of noise; `followed`: a robot is beside the ball.
+    /// Balls that roll from 2 m/s with that deceleration, seen at 75 Hz with 3 mm of noise; `followed`: a
+    /// robot is beside the ball.
     fn learn(deceleration: f32, balls: u64, followed: bool) -> Option<Estimate> {
         let mut learned = Friction::default();
         let mut noise = 99_u32;

@@ -139,11 +139,13 @@ impl Watched {
 const KEPT: usize = 15;
 /// Number of kicks needed: of three, two with the same error determine the median.
 const LEAST: usize = 5;
-/// A gain is known when its standard error is at most this (estimate: half of what a pass's speed may err).
+/// A gain is known when its standard error is at most this (estimate: half of the tolerance of a pass's
+/// speed).
 const ERROR: f32 = 0.05;
 /// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
 const ORDERED: Duration = Duration::millis(400);
-/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better known.
+/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
+/// known.
 const SAME: Duration = Duration::millis(200);
 /// The ball is observed in this window after the kick: later than the filter needs, and before rolling
 /// changes the deceleration (0.29 s at 4 m/s).

@@ -2,7 +2,8 @@
 //! mm: at any constant acceleration the second takes three times as long as the first, which gives
 //! t₀ = (3 t₁ − t₂) / 2. m, s.
 //!
-//! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and motors are.
+//! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and
+//! motors are.
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive};

@@ -1,4 +1,5 @@
-//! `samples`: the last few samples of a quantity and their median; a sample that is far off moves it by one place at most.
+//! `samples`: the last few samples of a quantity and their median; a sample that is far off moves it by one
+//! place at most.
 
 /// A quantity as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +35,7 @@ impl<const N: usize> Default for Samples<N> {
 }
 
 impl<const N: usize> Samples<N> {
-    /// One more; the oldest goes. Not a number is none.
+    /// Adds a sample; the oldest is dropped. NaN is ignored.
     pub(super) fn add(&mut self, value: f32) {
         if value.is_finite() {
             self.values[self.next] = value;
@@ -43,7 +44,7 @@ impl<const N: usize> Samples<N> {
         }
     }
 
-    /// What they come to, where there are at least `least`.
+    /// Their median and spread, where there are at least `least`.
     pub(super) fn estimate(&self, least: usize) -> Option<Estimate> {
         let known = &self.values[..self.count];
         if known.len() < least.max(1) {

@@ -2,8 +2,9 @@
 //! telemetry and link quality (docs/architecture.md §3.3, §6.1). Sans-IO: times come from the caller, packets
 //! go back to it.
 //!
-//! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]). Only then it is commanded,
-//! addressed by snapshots, relayed and given to the strategy. Before, it is welcomed, at most every [`STRANGER_EVERY`].
+//! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]).
+//! Only then it is commanded, addressed by snapshots, relayed and given to the strategy. Before, it is
+//! welcomed, at most every [`STRANGER_EVERY`].
 //!
 //! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
 //! early waits, the newest replaces older ones. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last
@@ -292,7 +293,8 @@ impl Radio {
         let audience: Audience = self.present(now).collect();
         self.link.set_audience(audience);
         let there = latest.world.at(now + self.settings.way);
-        // Without robots one part goes out to an empty audience: a base station learns the host's address from it.
+        // Without robots one part goes out to an empty audience: a base station learns the host's address
+        // from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
         for part in
             picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most)

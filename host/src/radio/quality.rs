@@ -7,8 +7,8 @@
 //!   states its silence in 0.1 ms, the snapshot's departure is that of its first part;
 //! - loss down: parts of snapshots, by the robot's own counts; loss up: the robot's frames, by their
 //!   counters;
-//! - data rate: bytes of frames to and from this robot (to all counts for each) in whole seconds, without the link's own
-//!   overhead;
+//! - data rate: bytes of frames to and from this robot (to all counts for each) in whole seconds, without the
+//!   link's own overhead;
 //! - start-up: from the first frame of the robot's epoch to its first telemetry that names a snapshot.
 
 use std::fmt::Write as _;
@@ -150,7 +150,7 @@ impl Quality {
         match &mut self.life {
             Some(life) if life.epoch == epoch => {
                 self.up.came += 1;
-                // Telemetry and beacons may overtake each other; what is late was counted as lost.
+                // Telemetry and beacons may overtake each other; a late frame was counted as lost.
                 if let Some(ahead) = counter.checked_sub(life.counter) {
                     self.up.lost += u64::from(ahead.saturating_sub(1));
                     life.counter = counter;

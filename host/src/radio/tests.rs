@@ -91,7 +91,7 @@ fn fetch(radio: &mut Radio) -> Vec<(To, Packet)> {
     std::iter::from_fn(|| radio.poll_packet()).collect()
 }
 
-/// Hands the packets that are for `n` to its link; gives what it believed.
+/// Delivers the packets that are for `n` to its link; returns the messages it accepted.
 fn deliver(link: &mut Link, n: u8, now: Instant, packets: &[(To, Packet)]) -> Vec<HostMessage> {
     let meant = packets.iter().filter(|(to, _)| *to == To::All || *to == To::One(id(n)));
     meant
@@ -396,6 +396,7 @@ fn more_robots_than_fit_are_left_out_and_nobody_fetching_is_no_harm() {
         radio.offer(ms(n * 10), &world(ms(n * 10), 16, 16), situation(), &commands);
     }
     let packets = fetch(&mut radio);
-    // 24 robots in eight parts for an audience of sixteen, as many commands; and sixteen welcomes each 100 ms after the first.
+    // 24 robots in eight parts for an audience of sixteen, as many commands; and sixteen welcomes each 100 ms
+    // after the first.
     assert_eq!((packets.len(), radio.dropped()), (OUT_MAX, (50 * 24 + 4 * 16 - OUT_MAX) as u32));
 }

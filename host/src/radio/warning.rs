@@ -205,13 +205,14 @@ impl Refusals {
         }
     }
 
-    /// A frame came that names our team's host, with an epoch that is not ours. Ours come back from base stations that repeat them.
+    /// A frame came that names our team's host, with an epoch that is not ours. Ours come back from base
+    /// stations that repeat them.
     pub(super) fn other_host(&mut self, now: Instant, epoch: u32) {
         self.host.0.add(now, 1);
         self.host.1 = epoch;
     }
 
-    /// What goes on now, for a host of that epoch.
+    /// The warnings that apply now, for a host of that epoch.
     pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
         let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
             let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < OVER);

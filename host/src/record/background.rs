@@ -130,7 +130,7 @@ impl BackgroundRecorder {
         }
     }
 
-    /// The host of that colour sent a frame.
+    /// Time at which the trace has ended because a record was dropped.
     pub fn sent(&mut self, now: Instant, host: Colour, to: To, packet: &Packet) {
         if self.has_record_room(now, 0) {
             self.put(Entry::Sent(now, host, to, packet.clone()));

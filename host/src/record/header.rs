@@ -62,7 +62,7 @@ pub struct HostHeader {
     /// When it started, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
-    /// What decided open play: the case base in the robots, or the coach.
+    /// Which team decided open play: ours or an opponent team.
     #[serde(default)]
     pub plays: Team,
     /// The team's number on the radio.
@@ -76,7 +76,8 @@ pub struct HostHeader {
     /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_source: Option<String>,
-    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command stood.
+    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command
+    /// stood.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_silence: Option<String>,
     /// Whether frames were sealed with a key other than zeros.
@@ -85,7 +86,7 @@ pub struct HostHeader {
     /// Which tactics it played.
     #[serde(default = "Tactics::none")]
     pub tactics: Tactics,
-    /// The hash of the case base by which it understood its robots, where its tactics asked for one.
+    /// The hash of the case base in which its robots' cases were looked up, where its tactics needed one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cases: Option<String>,
 }

@@ -118,7 +118,7 @@ impl fmt::Display for Difference {
 }
 
 impl Recheck {
-    /// The hosts of a recording as they started; `key` opens what was sealed with one.
+    /// The hosts of a recording as they started; `key` opens sealed frames.
     pub fn new(header: &RecordingHeader, key: TeamKey) -> Result<Self, HeaderError> {
         let league = header.league()?;
         let build = |host: &crate::record::header::HostHeader| {
@@ -161,7 +161,8 @@ impl Recheck {
         self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
     }
 
-    /// Host by host, in the header's order: what it was fed, and where it differs from the record.
+    /// Host by host, in the header's order: the numbers of its inputs and packets, and where it differs from
+    /// the record.
     pub fn results(&self) -> impl Iterator<Item = (Counts, Option<&Difference>)> {
         self.hosts.iter().map(|checked| (checked.counts, checked.difference.as_ref()))
     }

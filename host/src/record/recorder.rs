@@ -6,7 +6,7 @@
 //! equal.
 //!
 //! The log holds the league's messages at Unix time (or at the hosts' clock, where the header has no Unix
-//! time); the trace holds what came to each host and what it sent, at its own clock.
+//! time); the trace holds each host's inputs and packets, at its own clock.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -34,8 +34,9 @@ pub struct Recorder {
     flush_due: Instant,
 }
 
-/// One flush after the other, of both files. A flush ends a block of the compressed stream: at this interval it costs 0.2 % of a
-/// log's bytes and 0.04 % of a trace's (a match of twelve robots; the tests below hold it under 3 %).
+/// One flush after the other, of both files. A flush ends a block of the compressed stream: at this interval
+/// it costs 0.2 % of a log's bytes and 0.04 % of a trace's (a match of twelve robots; the tests below hold it
+/// under 3 %).
 const FLUSH_EVERY: Duration = Duration::millis(1_000);
 
 struct Files {
@@ -191,7 +192,8 @@ mod tests {
         (Recorder::begin(&stem, &header).unwrap(), stem)
     }
 
-    /// As a host with six robots records a packet: in, and a frame to each robot, which no compression makes shorter.
+    /// As a host with six robots records a packet: in, and a frame to each robot, which no compression makes
+    /// shorter.
     fn record(recorder: &mut Recorder, now: Instant, kind: MessageKind, bytes: &[u8], noise: &mut u64) {
         recorder.heard(now, kind, bytes);
         match kind {
@@ -232,7 +234,7 @@ mod tests {
             }
             looked = now.0 / 730_000;
             seconds += 1;
-            // Read while it is written: what a kill at this moment would leave.
+            // Read while it is written: the file that a kill at this moment would leave.
             let within = |at: u64| at + FLUSH_EVERY.0 + 50_000 >= now.0;
             let trace = fs::read(&trace_file).unwrap();
             let mut reader = Reader::new(MultiGzDecoder::new(&trace[..])).unwrap();

@@ -112,12 +112,12 @@ impl<W: Write> Writer<W> {
         bytes.iter().try_for_each(|part| self.out.write_all(part))
     }
 
-    /// Writes what is buffered: a reader of what is then in the file finds every record so far.
+    /// Writes what is buffered: a reader of the file then finds every record so far.
     pub fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
 
-    /// Gives back what is written to.
+    /// Returns the underlying writer.
     pub fn into_inner(self) -> W {
         self.out
     }
@@ -150,8 +150,8 @@ pub enum End {
         /// Time of the gap.
         at: Instant,
     },
-    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or the file was not
-    /// copied whole.
+    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or
+    /// the file was not copied whole.
     Cut {
         /// Where the first missing record starts, bytes of the uncompressed trace.
         at: u64,

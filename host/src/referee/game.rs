@@ -12,7 +12,7 @@ use super::words;
 /// No field reaches farther from its centre than this, m: a designated position beyond it is refused.
 const FARTHEST: f32 = 20.0;
 
-/// The game as the referee and the ball have it.
+/// The game by the referee's packets and the ball's motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
     /// The phase now.
@@ -88,7 +88,7 @@ pub struct TeamAccount {
     pub may_place: bool,
     /// Failed placements that count.
     pub placement_failures: u32,
-    /// It asked for a substitution.
+    /// It has requested a substitution.
     pub substitution_wanted: bool,
     /// It may substitute now.
     pub substitution_allowed: bool,

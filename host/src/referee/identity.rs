@@ -22,7 +22,8 @@ pub struct SenderAddress {
 }
 
 impl SenderAddress {
-    /// The sender of packets that came over no network: a referee in this process, or a recording without addresses.
+    /// The sender of packets that came over no network: a referee in this process, or a recording without
+    /// addresses.
     pub const INTERNAL: Self = Self { ip: IpAddr::V6(Ipv6Addr::UNSPECIFIED), port: 0 };
     /// Bytes of [`SenderAddress::to_bytes`].
     pub const LEN: usize = 18;
@@ -96,7 +97,8 @@ impl fmt::Display for SourceKey {
 /// The one referee that the operator wants obeyed (`--referee-source`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SourcePin {
-    /// Every source on this machine: a restart of the controller changes its port and its identifier, not this.
+    /// Every source on this machine: a restart of the controller changes its port and its identifier, not
+    /// this.
     Machine(IpAddr),
     /// This address with its port.
     Address(SenderAddress),

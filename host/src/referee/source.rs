@@ -2,8 +2,9 @@
 //! restraint that its packets out of order impose. Times: µs, the host's clock for arrivals, the referee's
 //! for stamps.
 //!
-//! A packet is *in order* when its stamp is within [`WINDOW`] of where the referee's clock should be, not before the newest
-//! stamp, and its counter either belongs to the same command or has risen. Only packets in order change the game.
+//! A packet is *in order* when its stamp is within [`WINDOW`] of where the referee's clock should be, not
+//! before the newest stamp, and its counter either belongs to the same command or has risen. Only packets in
+//! order change the game.
 //!
 //! HALT and STOP out of order also restrain, for [`HOLD`] from their arrival, without changing the stored
 //! game. That is safe in both directions: a genuine HALT whose stamp seems old is repeated every 25 ms and
@@ -30,7 +31,8 @@ use super::{Game, SILENCE, words};
 /// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY`, so
 /// that a referee whose stamps stay the same restrains without a gap.
 pub const HOLD: Duration = WINDOW;
-/// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.
+/// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`]
+/// of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
 /// Packets that are not in order are reported for this time after the last one, and belong to one spell.
 const REPORTED: Duration = SILENCE;
@@ -46,7 +48,7 @@ const NO_TIME: u64 = 0;
 /// How strict a command is. Ordered: what restrains more is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Strictness {
-    /// Robots play.
+    /// Robots may play.
     Play,
     /// STOP or a timeout: slow and away from the ball.
     Stop,
@@ -207,7 +209,7 @@ impl Source {
         Outcome::Taken(taken)
     }
 
-    /// How strict this source is now: its newest command in order, and what came out of order.
+    /// How strict this source is now: its newest command in order, and those out of order.
     pub(super) fn strictness(&self, now: Instant) -> Strictness {
         self.restraint(now).max(Strictness::of(self.command))
     }
@@ -221,9 +223,9 @@ impl Source {
         }
     }
 
-    /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets that were overtaken,
-    /// as two networks bring them, nor for a counter that is contradicted for less than [`CONFIRM`], as by the league's controller
-    /// when it resets a match.
+    /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets
+    /// that were overtaken, as two networks bring them, nor for a counter that is contradicted for less than
+    /// [`CONFIRM`], as by the league's controller when it resets a match.
     pub(super) fn reportable_doubt(&self, now: Instant) -> Option<Doubt> {
         let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
         match doubt {

@@ -28,13 +28,13 @@ impl StampClock {
         Self { offset: difference(stamp, now), started: now, followed: now }
     }
 
-    /// How far a stamp that arrives now lies ahead of where it should be, µs; negative: behind.
+    /// Difference of a stamp that arrives now from its expected value, µs; negative: behind.
     pub(super) fn ahead(&self, stamp: u64, now: Instant) -> i64 {
         let ahead = difference(stamp, now) - self.offset;
         ahead.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
     }
 
-    /// Whether it lies within the window.
+    /// Whether the difference is within the window.
     pub(super) fn fits(&self, stamp: u64, now: Instant) -> bool {
         self.ahead(stamp, now).unsigned_abs() <= WINDOW.0
     }

@@ -26,8 +26,8 @@ use super::words::team_of;
 pub const REPLY_TIME: Duration = Duration::millis(3_000);
 /// An idle connection is checked this often: a controller that is gone is detected between two stoppages.
 pub const PING_EVERY: Duration = Duration::millis(5_000);
-/// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough for a name
-/// that its operator just entered.
+/// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough
+/// for a name that its operator just entered.
 pub const RETRY_AFTER: Duration = Duration::millis(2_000);
 /// What a team may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,9 +36,9 @@ pub enum Request {
     Keeper(RobotId),
     /// We request the substitution of a robot at the next opportunity, or withdraw the request.
     Substitute(bool),
-    /// After a card against them: go on, or stop.
+    /// After a card against them: continue, or stop.
     Advantage {
-        /// Go on.
+        /// Continue.
         go_on: bool,
     },
     /// Checks the connection.

@@ -76,8 +76,8 @@ fn phases(name: &str) -> (Vec<Phase<Colour>>, Listener) {
 
 #[test]
 fn the_recorded_match_goes_through_its_phases() {
-    // As an independent decoder listed the commands: the second NORMAL_START of each pair changes nothing, the free kick of 20.6 s
-    // is stopped at 27.6 s, before its 10 s are over.
+    // As an independent decoder listed the commands: the second NORMAL_START of each pair changes nothing,
+    // the free kick of 20.6 s is stopped at 27.6 s, before its 10 s are over.
     let (got, listener) = phases("grsim_divB_noisy_64s.log.gz");
     let start = [
         Phase::Halt,

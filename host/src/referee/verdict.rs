@@ -63,9 +63,9 @@ pub enum Verdict {
 /// Why a packet is not in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// Its stamp lies ahead of its arrival.
+    /// Its stamp is ahead of its arrival.
     Ahead(Duration),
-    /// Its stamp lies behind its arrival.
+    /// Its stamp is behind its arrival.
     Behind(Duration),
     /// A newer one came before it.
     Old(Duration),
@@ -87,7 +87,7 @@ impl fmt::Display for Doubt {
 /// Changes by a packet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Taken {
-    /// A command, and what it means.
+    /// A command, and its effect.
     pub command: Option<(Command, Heard)>,
     /// Commands that were never received, by the counter.
     pub missed: u32,

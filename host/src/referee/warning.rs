@@ -41,7 +41,7 @@ pub enum Warning {
         /// The reason.
         doubt: Doubt,
     },
-    /// A source's clock has stepped, and was followed.
+    /// A source's clock has stepped, and the step was followed.
     ClockStepped {
         /// The source.
         source: SourceKey,

@@ -4,8 +4,8 @@ use rules::Colour::{self, Blue, Yellow};
 use rules::state::{Command, Stage};
 use ssl::referee as wire;
 
-/// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free kicks since 2020;
-/// GOAL is old too, and came with a stop.
+/// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free
+/// kicks since 2020; GOAL is old too, and came with a stop.
 pub fn command_of(number: i32) -> Option<Command> {
     let command = wire::Command::try_from(number).ok()?;
     Some(match command {

@@ -7,7 +7,7 @@
 //! | `side` | keepers or teams at the goals that the other team defends |
 //! | `second_host` | another host of the same team number |
 //! | `port` | no camera frames on vision's port, or another program's packets |
-//! | `stall` | this computer, vision or the radio stood still: which of them |
+//! | `stall` | a stall of this computer, vision or the radio |
 //!
 //! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
 //! cause and for as long as that lasts. A match without a fault has none.
@@ -34,8 +34,8 @@ pub use stall::Stall;
 
 /// [`Sanity::look`] is called at least this often, so that "within two seconds" holds.
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
-/// A fault on the field must last this long before it is a finding: longer than a misread pattern is believed
-/// (0.2 s), and half of the two seconds.
+/// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
+/// in tracking (0.2 s), and half of the two seconds.
 const LASTS: Duration = Duration::millis(1_000);
 
 /// A deviation from the settings.

@@ -66,7 +66,7 @@ struct Seen {
     robots: [Vec<Point<Field>>; 2],
 }
 
-/// Durations of each evidence.
+/// State of the checks of the sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sides {
     lasting: Lasting,
@@ -169,7 +169,7 @@ mod tests {
         RobotId::new(n).unwrap()
     }
 
-    /// Teams of four as before a kick-off; `swapped`: at each other's goals.
+    /// Teams of four as before a kick-off; `swapped`: on each other's sides.
     fn seen(swapped: bool, defending: GoalEnd, phase: Phase<rules::Colour>) -> Seen {
         let sign = defending.sign() as f32 * if swapped { -1.0 } else { 1.0 };
         let team = |sign: f32| -> Vec<Point<Field>> {

@@ -144,7 +144,7 @@ impl Stalls {
         self.shown.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
     }
 
-    /// Whether the computer runs again after a stall, for long enough.
+    /// Whether the computer runs, and for long enough after its last stall.
     fn runs_again(&self, now: Instant) -> bool {
         self.host.is_none_or(|(_, since)| now.since(since) >= CATCHES_UP)
     }

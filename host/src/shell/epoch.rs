@@ -1,5 +1,5 @@
-//! `epoch`: the host's boot epoch, larger with every start even where this computer's clock was set back. Seconds since 1970, or one
-//! more than the last that was used, kept in a file per user.
+//! `epoch`: the host's boot epoch, larger with every start even where this computer's clock was set back.
+//! Seconds since 1970, or one more than the last that was used, kept in a file per user.
 //!
 //! Robots refuse every host whose epoch is below that of the host they followed last. The file is one decimal
 //! number, replaced as a whole under a lock, so that neither a power cut nor two simultaneous starts damage

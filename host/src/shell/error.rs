@@ -52,9 +52,9 @@ pub enum LinkError {
     GivesUp {
         /// Its number.
         robot: u8,
-        /// How it last ended.
+        /// Its last exit status.
         how: String,
-        /// Number of times.
+        /// Number of exits.
         times: u32,
     },
 }

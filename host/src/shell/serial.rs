@@ -36,7 +36,7 @@ pub struct SerialLink {
     /// resynchronises.
     broken: bool,
     baud: u32,
-    /// When the line has sent what it was given, by its rate.
+    /// When the line has sent all bytes given to it, by its rate.
     busy_until: Instant,
     /// Writes that found no room, and when that was last reported.
     stuck: (u32, Option<Instant>),

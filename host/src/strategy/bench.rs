@@ -1,4 +1,5 @@
-//! `bench`: which of our robots leave the field while we have more of them than we may, and where they wait. Attack frame, m.
+//! `bench`: which of our robots leave the field while there are more than allowed, and where they wait.
+//! Attack frame, m.
 //!
 //! Rules of 2026, chapter on substitution, and the league's game controller, which counts every robot outside
 //! the goal substitution area ([`rules::FieldSpec::goal_substitution_area`]). Where the field has that area
@@ -30,8 +31,8 @@ impl Bench {
     /// back.
     pub(super) fn choose(&mut self, view: &View, first: Option<RobotId>) -> &[RobotId] {
         self.off.retain(|id| *id != view.keeper && view.our(*id).is_some());
-        // Robots that never answered cannot leave, and sending others in their place does not help: the staff
-        // who put them there remove them.
+        // Robots that never answered cannot leave, and sending others in their place does not help: staff
+        // placed them there and must remove them.
         let silent = view.uncommanded.saturating_sub(view.strangers);
         let surplus = (view.ours.len() + silent).saturating_sub(view.allowed);
         while self.off.len() < surplus {
@@ -134,7 +135,7 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
 const RETURN_AFTER: Duration = Duration::millis(1000);
 /// Places on both sides together, at most.
 const PLACES_MAX: usize = 32;
-/// From one waiting robot's centre to the next one's, m: two radii and room for a hand.
+/// From one waiting robot's centre to the next one's, m: two radii and room for a robot handler's hand.
 const SPACING: f32 = 0.25;
 /// Places on each side at a penalty.
 const BESIDE: usize = 4;

@@ -102,11 +102,11 @@ pub struct Coach {
     barred: Option<RobotId>,
     /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
-    /// Whether the ball that lies before our area is the keeper's.
+    /// Whether the ball that is before our area is left to the keeper.
     keepers: Option<bool>,
     /// Where supporters stand while the ball is not in play.
     settled: Option<Settled>,
-    /// Where the ball is cleared to that lies in our area or before it.
+    /// Target of the clearance of a ball in our area or before it.
     clearing: Option<Clearing>,
 }
 
@@ -305,7 +305,7 @@ const PASS_STOPPED: f32 = 0.3;
 
 /// Places are kept while the ball, or where it is placed, is within this of where it was, m …
 const SETTLED_FROM: f32 = 0.5;
-/// … and no longer than this: to walk half of division A's field and stand.
+/// … and no longer than this: to cross half of division A's field and stop.
 const SETTLED_FOR: Duration = Duration::millis(6000);
 /// Searches for places start from it: one seed, one match.
 const SEARCH_SEED: u64 = 1;

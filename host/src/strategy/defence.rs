@@ -97,7 +97,8 @@ pub fn clearance_beside(
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
+/// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be
+/// aimless.
 fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
@@ -131,7 +132,8 @@ pub fn defenders(view: &View) -> ([Point<Attack>; 2], Why) {
     ([edge.point(middle + off), edge.point(middle - off)], Why::OnBallLine { y: crossing(view, &ball) })
 }
 
-/// The edge of our area, grown by [`EDGE`]: from the goal line at −y around to the goal line at +y, by its length.
+/// The edge of our area, grown by [`EDGE`]: from the goal line at −y around to the goal line at +y, by its
+/// length.
 struct Edge {
     goal: Point<Attack>,
     depth: f32,
@@ -210,7 +212,7 @@ pub fn contested(view: &View, ours: f32) -> bool {
 
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
 const KEEPER_OUT: f32 = 0.15;
-/// A ball slower than this can be kicked as it lies, m/s.
+/// A ball slower than this can be kicked without stopping it, m/s.
 pub(super) const LYING: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
 const ON_THE_GROUND: f32 = 0.1;
@@ -218,7 +220,7 @@ const ON_THE_GROUND: f32 = 0.1;
 const CLEAR_AHEAD: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
 const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
-/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_TURN_STEP`]
+/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
 /// degrees: up to 105° from straight out.
 const CLEAR_TURNS: i16 = 7;
 const CLEAR_STEP_DEG: f32 = 15.0;
@@ -234,7 +236,8 @@ const LINES_UP: f32 = 0.165;
 const CLEAR_INSIDE: f32 = 0.6;
 /// A clearance to a teammate nearer than this is not tried, m.
 const CLEAR_AT_LEAST: f32 = 1.2;
-/// With this much room the ball goes along the ground, m: an opponent's reach in the half second that it takes.
+/// From this room on the ball is kicked along the ground, m: an opponent's reach in the half second that it
+/// takes.
 const ROOM_FOR_FLAT: f32 = 0.35;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CLEAR_CHIP: u16 = 400;

@@ -54,7 +54,7 @@ pub enum Role {
 /// The reason of an order, with its numbers; SI units, attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Why {
-    /// The referee's command leaves no choice.
+    /// The referee's command requires it.
     Referee,
     /// Nearest to the ball: this many seconds away.
     SoonestAtBall {
@@ -167,7 +167,7 @@ pub enum Task {
         receiver: RobotId,
         /// Kind and speed of the kick.
         kick: KickOrder,
-        /// Whether the ball may leave now.
+        /// Whether the ball may be kicked now.
         ready: bool,
     },
     /// Receive a pass.

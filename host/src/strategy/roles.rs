@@ -67,7 +67,8 @@ pub fn assign<const N: usize>(
     taken
 }
 
-/// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and turns.
+/// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and
+/// turns.
 pub const WORTH: f32 = 0.4;
 /// Mean speed of a robot on its path, m/s: teams drive 3 m/s and more, of which this is the average over a
 /// few metres.

@@ -200,7 +200,8 @@ const WORTH_PASSING: f32 = 0.2;
 const POST: f32 = 0.08;
 /// Number of points of the goal tried.
 const SHOTS: usize = 9;
-/// A receiver takes a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off the field.
+/// A receiver takes a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off the
+/// field.
 const ARRIVE_WITH: f32 = 1.2;
 /// Speed that counts as stopped, m/s.
 const REST_WITH: f32 = 0.2;
@@ -240,7 +241,8 @@ mod tests {
 
     #[test]
     fn a_pass_over_two_metres_starts_with_the_speed_that_arrives_with_1_2() {
-        // Slides 3.9 m/s² to 5/7 of its speed, then rolls 0.35: v² = (1.44 + 2·0.35·2)/(0.5102 + 0.4898·0.35/3.9) = 5.125
+        // Slides 3.9 m/s² to 5/7 of its speed, then rolls 0.35: v² = (1.44 + 2·0.35·2)/(0.5102 +
+        // 0.4898·0.35/3.9) = 5.125
         assert_eq!(pass_kick(2.0), KickOrder::Flat(226));
         assert!(matches!(push_kick(2.0), KickOrder::Flat(speed) if speed < 170));
     }

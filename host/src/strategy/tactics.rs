@@ -1,5 +1,5 @@
-//! `tactics`: the parts of the second paper that a team plays with. Each can be left out, so that its value
-//! can be measured: an ablation is a setting (docs/papers.md D24).
+//! `tactics`: the parts of the second paper that a team plays with. Each can be switched off, so that its
+//! value can be measured: an ablation is a setting (docs/papers.md D24).
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tactics {
-    /// Keeper and primary defenders by the first-level threat (Biswas et al. 2014 §5.1), not by the ball's line alone.
+    /// Keeper and primary defenders by the first-level threat (Biswas et al. 2014 §5.1), not by the ball's
+    /// line alone.
     #[serde(default)]
     pub threats: bool,
     /// While the ball is theirs, the others against second-level threats (§5.2).

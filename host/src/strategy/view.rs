@@ -69,7 +69,7 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// A ball that lies still.
+    /// A ball at standstill.
     pub fn at_rest(position: Point<Attack>) -> Self {
         Self { position, velocity: Vector::default(), rest: position, height: 0.0 }
     }

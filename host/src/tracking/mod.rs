@@ -1,15 +1,15 @@
 //! `tracking`: merges camera frames into one world model. Input: [`ssl::vision::WrapperPacket`]s with their
 //! time of arrival; output: a [`World`], now or extrapolated to any moment.
 //!
-//! | question | where |
+//! | topic | module |
 //! |---|---|
-//! | What did the camera claim, without nonsense? | `seen` |
-//! | Whose clock is that, and how does it lie to ours? | `clock` |
-//! | Did we see it before, and where does it belong? | `order` |
-//! | Which robots are there and how do they move? | `robots` |
-//! | Which blob is the ball, who kicked it, does it fly? | `ball` |
-//! | Where do cameras hang, how do balls roll here? | `scene` |
-//! | How is it told to others? | `publish` |
+//! | Valid detections of a camera frame | `seen` |
+//! | Vision's clock, and its offset from ours | `clock` |
+//! | Order of camera frames, without repetitions | `order` |
+//! | Robots and their motion | `robots` |
+//! | Choice of the ball, its kicks and flights | `ball` |
+//! | Positions of cameras, model of the ball | `scene` |
+//! | Tracker packets for other programs | `publish` |
 //!
 //! **Invariants.** No content of a packet causes a panic; every camera frame is counted in [`Counts`]. Frames
 //! within 50 ms of the newest count in the order in which they were taken, so copies and shuffled packets
@@ -24,7 +24,7 @@
 //!
 //! let mut tracker = Tracker::default();
 //! for i in 0..10 {
-//!     // A ball that rolls along +x with 1 m/s, 60 times a second; vision speaks of mm.
+//!     // A ball that rolls along +x with 1 m/s, 60 times a second; vision sends mm.
 //!     let t = f64::from(i) / 60.0;
 //!     let ball = DetectionBall { confidence: 1.0, x: (t * 1000.0) as f32, ..DetectionBall::default() };
 //!     let image = DetectionFrame { frame_number: i, t_capture: t, balls: vec![ball], ..DetectionFrame::default() };

@@ -44,8 +44,8 @@ pub struct RobotNoise {
 }
 
 impl Default for RobotNoise {
-    /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm, 0.010 rad;
-    /// both from second differences, `cargo run -p host --example track`).
+    /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm,
+    /// 0.010 rad; both from second differences, `cargo run -p host --example track`).
     fn default() -> Self {
         Self { place: 0.003, heading: 0.03 }
     }
@@ -267,7 +267,8 @@ const LOST_HEADING: f32 = 1.0;
 /// A new robot's speed, m/s, and rate, rad/s, may be anything of that size.
 const SPEED_SIGMA: f32 = 2.0;
 const RATE_SIGMA: f32 = 5.0;
-/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held for 0.2 s.
+/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held
+/// for 0.2 s.
 const PLACE_FREEDOM: Freedom = Freedom { calm: 0.15, changing: 10.0 };
 /// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
 const HEADING_FREEDOM: Freedom = Freedom { calm: 2.0, changing: 250.0 };

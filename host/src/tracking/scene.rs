@@ -59,7 +59,8 @@ impl Scene {
         self.cameras.get(number as usize).copied().flatten()
     }
 
-    /// Whether a ball there can be in play: on the surface between the walls. Everywhere, while the field is unknown.
+    /// Whether a ball there can be in play: on the surface between the walls. Everywhere, while the field is
+    /// unknown.
     pub(super) fn is_playable(&self, point: Point<Field>) -> bool {
         self.geometry.field().is_none_or(|field| {
             let margin = field.margin.max(field.goal_line_margin).max(field.goal_depth);

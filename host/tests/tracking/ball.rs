@@ -237,7 +237,7 @@ fn a_second_ball_a_shoe_or_a_flicker_does_not_take_over_from_the_ball_in_sight()
         let image = (t * RATE).round() as u32;
         let mut balls = vec![ball];
         if t > 0.5 {
-            // One that lies still, one that moves along 0.3 m beside it, one that is here and there.
+            // One that lies still, one that moves along 0.3 m beside it, one at changing places.
             balls.insert(0, [1.0, 1.0, 0.0]);
             balls.push([ball[0], ball[1] + 0.3, 0.0]);
             balls.push([

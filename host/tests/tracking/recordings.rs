@@ -67,7 +67,8 @@ impl Raw {
         raw
     }
 
-    /// The median place of a robot within a window around `t`; `None` where it was seen seldom there, or was put elsewhere.
+    /// The median place of a robot within a window around `t`; `None` where it was seen seldom there, or was
+    /// moved by a script.
     fn robot(&self, who: Who, t: f64) -> Option<[f64; 2]> {
         median(
             window(&self.robots, t, |seen| seen.0)

@@ -70,7 +70,7 @@ fn the_velocity_of_a_robot_that_starts_with_3_m_s2_lags_less_than_60_ms() {
         1.5 * s * s + 2.4 * (t - 1.8).max(0.0) - 2.0
     };
     let truth = |t| Truth { robots: vec![(robot, [place(t), 0.0, 0.0])], ..Truth::default() };
-    // The mean of many runs is the lag; what is left in one run is noise.
+    // The mean of many runs is the lag; the remainder in one run is noise.
     let mut lags = vec![0.0; 150];
     let (mut noise, runs) = (Rms::default(), 40);
     for seed in 0..runs {

@@ -137,12 +137,12 @@ fn times(
 
 /// A pass that arrives less likely than this is not aimed at.
 const LIKELY: f32 = 0.3;
-/// A pass whose P(receive) falls below this share of what it was is given up.
+/// A pass whose P(receive) falls below this share of its first value is given up.
 const STILL_LIKELY: f32 = 0.5;
 /// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
 /// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
 const SURE: f32 = 0.6;
-/// This near to x_p a passer waits for its receiver, m: the 0.04 m that the robot leaves to the ball, and its
+/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
 /// position error.
 const WAITS_WITHIN: f32 = 0.09;
 /// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.

@@ -36,7 +36,7 @@ impl Cap {
 }
 
 impl Coach {
-    /// Whether another attack is sought in place of one that has become unlikely.
+    /// Whether another attack is searched in place of one that has become unlikely.
     pub(super) fn reconsider(&mut self, view: &View) -> bool {
         self.cap.planner.reconsider(view.now)
     }

@@ -155,7 +155,7 @@ impl Coach {
         (Task::GoTo { at, face: at.direction_to(ball.position) }, why)
     }
 
-    /// The earlier choice for a ball that still lies there: opponents who follow the robot's turns do not
+    /// The earlier choice for a ball that still lies there: opponents that follow the robot's turns do not
     /// turn it back.
     fn kept_clearance(
         &mut self,
@@ -200,15 +200,17 @@ fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
         && view.in_our_area(ball.position, KEEPERS)
 }
 
-/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first: a field player's centre is
-/// 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no room to go around it on the goal's side.
+/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first:
+/// a field player's centre is 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no
+/// room to go around it on the goal's side.
 const KEEPERS: f32 = 0.3;
 /// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
 /// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
 const OFF_OUR_AREA: f32 = 0.115;
 /// Nearer than this to our area no field player gets behind the ball or beside it, m.
 const BEHIND_BALL: f32 = 0.09;
-/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and noise.
+/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and
+/// noise.
 const AT_FRONT: f32 = 0.125;
 const BEFORE_FRONT: f32 = 0.4;
 /// From such a ball to the nearest robot that only defends, m: a robot that lines up is 0.17 m behind it, and

@@ -93,7 +93,7 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
     view.phase = Phase::Run;
     let orders = coach.decide(&view);
     assert_eq!(orders[3].role, Role::Barred);
-    // Another one at the ball: it may again.
+    // Another one is at the ball: it may touch it again.
     let ball = Point::new(0.5, 1.4);
     view.ball = Some(Ball { position: ball, rest: ball, ..view.ball.unwrap() });
     assert_ne!(coach.decide(&view)[3].role, Role::Barred);

@@ -87,7 +87,8 @@ impl Least {
 
 /// The best attack by one of `receivers` in this view that reaches `least`, and the value of every cell.
 ///
-/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn from `seed`.
+/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn
+/// from `seed`.
 pub fn best_attack(
     view: &View,
     value: &dyn PassValue,

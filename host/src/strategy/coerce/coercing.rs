@@ -152,8 +152,8 @@ pub fn coerce(
     plan
 }
 
-/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from it, on the side that it
-/// keeps to.
+/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from
+/// it, on the side that it keeps to.
 pub fn response(situation: &tactics::Situation<'_>, marker: &Detected, at: Point<Attack>) -> Point<Attack> {
     let [goal_side, ball_side] = situation.mark_places(at, marker.stand_off);
     if marker.ball_side { ball_side } else { goal_side }

@@ -1,12 +1,12 @@
 //! `coerce`: Coerce and Attack Planner: free kicks against a defence that follows us (Biswas et al. 2014 §4).
 //!
-//! | step | what | where |
+//! | step | action | module |
 //! |---|---|---|
-//! | 1 | which opponents follow the ball, and which our robots? | [`tactics`], [`detect`] |
-//! | 2 | the best attack if only the former were there: the *optimistic attack* | [`attack`] |
-//! | 3 | where to send robots so that the latter follow them out of its way: the *coerce plan* | [`coercing`] |
-//! | 4, 5 | send them; see whether they were followed | [`Planner::watch`] |
-//! | 6, 7 | the attack as planned, or a new one against everybody as they stand | [`Planner::watch`] |
+//! | 1 | find which opponents follow the ball, and which follow our robots | [`tactics`], [`detect`] |
+//! | 2 | find the best attack against the former only: the *optimistic attack* | [`attack`] |
+//! | 3 | find places that draw the latter off its path: the *coerce plan* | [`coercing`] |
+//! | 4, 5 | send robots there; check whether they are followed | [`Planner::watch`] |
+//! | 6, 7 | play that attack, or a new one against all opponents as they are | [`Planner::watch`] |
 //!
 //! [`Planner`] is a value: snapshots go in ([`Planner::observe`], [`Planner::plan`], [`Planner::watch`]), a
 //! plan with its reasons comes out, and [`Planner::postings`] lists the robots' places. Attack frame, SI.
@@ -77,9 +77,10 @@ impl Default for Settings {
     }
 }
 
-/// P(receive) is a tenth above what the ball may leave with (`coach::ahead`), as it falls a little while passer and receiver get ready.
-/// Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the others to 0.75 (86 and 55 passes, seed 100, against
-/// the zone and against ours); free kicks taken at once against the zone to 0.82 (134).
+/// P(receive) is a tenth above what the ball may leave with (`coach::ahead`), as it falls a little while
+/// passer and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s,
+/// the others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at
+/// once against the zone to 0.82 (134).
 const LEAST: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
 /// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
 const COERCE_SHARE: f32 = 0.4;

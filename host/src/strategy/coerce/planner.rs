@@ -210,8 +210,8 @@ impl Planner {
         Some(CapPlan { taker, detected, optimistic: attack, values, coerce, attackers })
     }
 
-    /// Handles an attack that has become unlikely before the ball left: another one is sought while there is
-    /// time to coerce; false where there is none.
+    /// Handles an attack that has become unlikely before the ball left: another one is searched while there
+    /// is time to coerce; false where there is none.
     pub fn reconsider(&mut self, now: Instant) -> bool {
         let left = self.begun.is_some_and(|begun| now.since(begun).as_secs_f32() < self.settings.coerce_time);
         if self.over.is_none() && left {

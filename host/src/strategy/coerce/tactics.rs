@@ -58,7 +58,7 @@ pub struct Models {
     pub off_area: f32,
     /// Markers stand this far from our robot, towards their goal or towards the ball, m (D19).
     pub stand_off: f32,
-    /// α_t: a tactic is not believed below this likelihood (D17: 0.1 to 0.3).
+    /// α_t: a tactic is not accepted below this likelihood (D17: 0.1 to 0.3).
     pub alpha: Likelihoods,
 }
 
@@ -126,7 +126,8 @@ impl<'v> Situation<'v> {
         best
     }
 
-    /// Where a marker stands: between our robot and their goal against its shot, or the ball against the pass to it.
+    /// Where a marker stands: between our robot and their goal against its shot, or the ball against the pass
+    /// to it.
     pub fn mark_places(&self, ours: Point<Attack>, stand_off: f32) -> [Point<Attack>; 2] {
         let towards =
             |to: Point<Attack>| ours + (to - ours).unit().unwrap_or(Vector::new(1.0, 0.0)) * stand_off;
@@ -209,10 +210,12 @@ mod tests {
         let along = line.vector().unit().unwrap();
         let beside = line.from + along * 0.4 + Vector::new(-along.y(), along.x()) * 0.1;
         near(at(beside.x(), beside.y())[0], 0.923_116);
-        // 0.06 m beyond where that line leaves the area, by its quarter circle about (3, 0.175): 0.0588 m outside it.
+        // 0.06 m beyond where that line leaves the area, by its quarter circle about (3, 0.175): 0.0588 m
+        // outside it.
         let front = situation.keeper_front + along * 0.06;
         near(at(front.x(), front.y())[0], 0.142_476);
-        // Primary: 0.11 m off the area's straight front and within the angle: 1; 0.12 m farther out: exp(−0.5).
+        // Primary: 0.11 m off the area's straight front and within the angle: 1; 0.12 m farther out:
+        // exp(−0.5).
         near(at(2.09, 0.17)[1], 1.0);
         near(at(1.97, 0.17)[1], 0.606_531);
         // Mark: 0.3 m from (1, −1) towards (3, 0): (1.2683, −0.8658) is 1; 0.25 m from that: exp(−0.5).

@@ -1,5 +1,5 @@
 //! `marking`: opponent team of man-markers. A robot that is not at the ball stays between an opponent and the
-//! own goal and moves when it moves, as the paper's Teams G and B, which reacted swiftly to every change
+//! own goal and follows its motion, as the paper's Teams G and B, which reacted swiftly to every change
 //! (Biswas et al. 2014 §6). With the ball far from every opponent two leave their opponents to receive a
 //! pass. Attack frame, m.
 
@@ -47,7 +47,7 @@ fn is_ours(view: &View, ball: &Ball) -> bool {
 
 /// An opponent this near the ball is covered by the robot that goes for the ball, m.
 const AT_BALL: f32 = 0.4;
-/// A marker's centre stands this far from its opponent's, m: two bodies and room to brake.
+/// Distance of a marker's centre from its opponent's, m: two bodies and room to brake.
 const OFF: f32 = 0.3;
 /// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
 /// first step.

@@ -176,7 +176,7 @@ fn defenders(view: &View) -> [Place; 2] {
     [(first, Role::Defender(0), why), (second, Role::Defender(1), why)]
 }
 
-/// Free places for a pass from the ball, as many as are wanted.
+/// Free places for a pass from the ball, at most `wanted` of them.
 fn free_places(view: &View, ball: &Ball, wanted: usize) -> impl Iterator<Item = Place> {
     let places = support::places(view, ball.position, wanted);
     (0_u8..).zip(places).map(|(i, (at, worth))| (at, Role::Support(i), Why::FreePlace { worth }))
@@ -215,7 +215,7 @@ fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
 
 /// Most places of a style: field players of a team of eleven.
 const PLACES: usize = 10;
-/// A ball slower than this lies, m/s.
+/// A ball slower than this counts as stopped, m/s.
 const LIES: f32 = 0.25;
 /// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(1500);

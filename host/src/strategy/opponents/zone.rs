@@ -28,7 +28,8 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
 
 /// Spacing of the wall's robots, centre to centre, m: two bodies, and a gap smaller than a ball.
 const SPACING: f32 = 0.3;
-/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with a body.
+/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with
+/// a body.
 const OFF_BALL: f32 = 0.8;
 /// It never comes nearer to the goal than this beyond the area's depth, m.
 const NEAREST_OFF: f32 = 0.35;

@@ -16,7 +16,7 @@ pub struct CasePass {
     pub passer: (RobotId, CaseRobot),
     /// The receiver, and its robot in the case.
     pub receiver: (RobotId, CaseRobot),
-    /// Where the adapted case has it received.
+    /// The place of its reception in the adapted case.
     pub at: Point<Attack>,
 }
 
@@ -25,7 +25,8 @@ pub struct CasePass {
 pub struct Refined {
     /// At the place that the case adapted.
     pub proposed: Rating,
-    /// At the best place within the radius; the proposed one where nothing near is better by [`WORTH_MOVING`].
+    /// At the best place within the radius; the proposed one where nothing near is better by
+    /// [`WORTH_MOVING`].
     pub best: Rating,
 }
 
@@ -41,8 +42,8 @@ impl Refined {
     }
 }
 
-/// Refines the pass to `place` within `radius` m of it: a sunflower of places, then ever smaller circles around the best of them.
-/// Nothing is random: the same scene gives the same point.
+/// Refines the pass to `place` within `radius` m of it: a sunflower of places, then ever smaller circles
+/// around the best of them. Nothing is random: the same scene gives the same point.
 pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     let proposed = scene.rate(place);
     let mut best = proposed;

@@ -61,7 +61,8 @@ pub fn beats_the_keeper(shot_time: f32, c: &PassConstants) -> f32 {
     likely(c.keeper_time - shot_time, c.time_width)
 }
 
-/// c2': the open angle on the goal is wide enough: from p_gmin where it is 0 evenly to 1 at θ_max and beyond. rad.
+/// c2': the open angle on the goal is wide enough: from p_gmin where it is 0 evenly to 1 at θ_max and beyond.
+/// rad.
 #[inline]
 pub fn open_goal(angle: f32, c: &PassConstants) -> f32 {
     let share = (angle / c.open_enough).clamp(0.0, 1.0);
@@ -81,7 +82,7 @@ pub fn not_stolen(in_their_area: bool, c: &PassConstants) -> f32 {
     if in_their_area && !c.their_area_forbidden { 1.0 } else { c.outside_prior }
 }
 
-/// Widths of margin at which a logistic is as good as 0 or 1: exp(−14) is below 10⁻⁶.
+/// Widths of margin at which a logistic equals 0 or 1: exp(−14) is below 10⁻⁶.
 const CERTAIN: f32 = 14.0;
 
 #[cfg(test)]
@@ -97,7 +98,8 @@ mod tests {
         assert!((is - by_hand).abs() < 2e-6, "{is}, by hand {by_hand}");
     }
 
-    // The values are those of Python's `1/(1+math.exp(-m/w))` in double precision, m and w as written beside them.
+    // The values are those of Python's `1/(1+math.exp(-m/w))` in double precision, m and w as written beside
+    // them.
 
     #[test]
     fn a_condition_that_just_holds_is_a_toss_and_one_width_of_margin_is_0_731() {

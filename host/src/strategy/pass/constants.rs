@@ -5,11 +5,12 @@ use geometry::math;
 use motion::trajectory::FreeLimits;
 use rules::League;
 
-/// Everything that the conditions c1–c5 and c1'–c4' and the kicks need to know; [`PassConstants::of`] a league.
+/// Everything that the conditions c1–c5 and c1'–c4' and the kicks need to know; [`PassConstants::of`] a
+/// league.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassConstants {
-    /// Width of a condition on times, s: margins of this size are e : 1 likely. The scatter of what teams
-    /// achieve against what is planned for them is of this size (100 ms of latency, docs/papers.md D3).
+    /// Width of a condition on times, s: margins of this size are e : 1 likely. The differences between
+    /// planned and achieved times of teams have this size (100 ms of latency, docs/papers.md D3).
     pub time_width: f32,
     /// Width of a condition on places, m: a robot's radius and the scatter of a kick over 2 m (D3).
     pub distance_width: f32,
@@ -35,16 +36,17 @@ pub struct PassConstants {
     /// c5: whether attackers are kept out of the opponents' defence area. Until 2017 they were allowed to
     /// enter (c4' is about that), today a touch of the ball in it is an offence.
     pub their_area_forbidden: bool,
-    /// c1', t_g: their keeper needs this long to any point of its goal, s (D12): half a goal of 1 m less body and ball, at 3.5 m/s²
-    /// without braking, takes 0.4 s.
+    /// c1', t_g: their keeper needs this long to any point of its goal, s (D12): half a goal of 1 m less body
+    /// and ball, at 3.5 m/s² without braking, takes 0.4 s.
     pub keeper_time: f32,
     /// c2', p_gmin: probability of a goal where no angle is open now, as robots move (D12).
     pub closed_prior: f32,
-    /// c2', θ_max: a wider open angle is as good, rad (10°: D12 and Thunderbots).
+    /// c2', θ_max: a wider open angle gives no further value, rad (10°: D12 and Thunderbots).
     pub open_enough: f32,
     /// c3', p_turn: probability that no opponent blocks while the receiver turns to the goal (D12).
     pub turn_prior: f32,
-    /// c3': cosine of the largest angle between the pass and the shot that one touch turns a ball by (60°, D12).
+    /// c3': cosine of the largest angle between the pass and the shot that one touch turns a ball by (60°,
+    /// D12).
     pub one_touch_cos: f32,
     /// c4', p_out: probability that no opponent steals the ball outside the opponents' area (D12).
     pub outside_prior: f32,
@@ -101,11 +103,12 @@ const TODAY: PassConstants = PassConstants {
     arrival: 2.0,
     chip_slope: 1.0,
 };
-/// What any robot of the league is taken to drive: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its reasons).
+/// What any robot of the league is taken to drive: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its
+/// reasons).
 const ROBOT: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
 /// m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;
-/// Share of the limit that is asked of a kicker.
+/// Share of the limit that is ordered of a kicker.
 const KICK_SHARE: f32 = 0.96;
 
 #[cfg(test)]

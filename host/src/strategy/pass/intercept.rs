@@ -48,8 +48,8 @@ pub struct Way {
 }
 
 impl Way {
-    /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below −[`SAFE`], which certainly
-    /// has the ball.
+    /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below
+    /// −[`SAFE`], which certainly has the ball.
     pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
         self.flat_until(kick, opponents, -SAFE)
     }
@@ -213,8 +213,9 @@ mod tests {
 
     #[test]
     fn the_margin_beside_the_way_by_hand() {
-        // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) − 0.1115 = 0.745192 m from
-        // touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which is 0.276890 s sooner than the ball.
+        // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) −
+        // 0.1115 = 0.745192 m from touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which
+        // is 0.276890 s sooner than the ball.
         let kick = kicks().flat(3.0);
         let found = way(3.0).flat(&kick, &[opponent(2, (2.4, 0.6115), (0.0, 0.0))]).unwrap();
         assert!((found.margin + 0.276_890).abs() < 1e-4 && found.along == 3.0, "{found:?}");

@@ -170,7 +170,8 @@ impl Kicks {
         FlatKick::new(self.constants.shot_speed, &self.ground)
     }
 
-    /// The chip that rolls from `distance` m off, between two of the table; `None` where it is too near or too far.
+    /// The chip that rolls from `distance` m off, between two of the table; `None` where it is too near or
+    /// too far.
     #[inline]
     pub fn chip(&self, distance: f32) -> Option<ChipKick> {
         let place = (distance - CHIP_SHORTEST) * (1.0 / CHIP_STEP);
@@ -224,7 +225,8 @@ fn chip_that_rolls(
 
 /// Time of a ball that never arrives, s.
 pub const NEVER: f32 = 1e3;
-/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6 m.
+/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6
+/// m.
 const CHIPS: usize = 64;
 const CHIP_STEP: f32 = 0.1;
 /// No chip is shorter, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
@@ -248,8 +250,9 @@ mod tests {
 
     #[test]
     fn a_pass_over_three_metres_leaves_with_the_speed_that_arrives_with_two_by_hand() {
-        // v² = (4 + 2 · 0.35 · 3) / (0.510204 + 0.489796 · 0.35/3.9) = 6.1 / 0.554160: 3.317774 m/s. It slides (1 − 5/7) v / 3.9 =
-        // 0.243060 s over 0.489796 v² / 7.8 = 0.691216 m, then rolls from 2.369839 to 2: 0.369839 / 0.35 = 1.056683 s more.
+        // v² = (4 + 2 · 0.35 · 3) / (0.510204 + 0.489796 · 0.35/3.9) = 6.1 / 0.554160: 3.317774 m/s. It
+        // slides (1 − 5/7) v / 3.9 = 0.243060 s over 0.489796 v² / 7.8 = 0.691216 m, then rolls from 2.369839
+        // to 2: 0.369839 / 0.35 = 1.056683 s more.
         let kick = kicks().flat(3.0);
         assert!((kick.speed - 3.317_774).abs() < 1e-4, "{kick:?}");
         let (time, speed) = kick.at(3.0);

@@ -128,7 +128,8 @@ mod tests {
 
     #[test]
     fn from_rest_to_rest_by_hand() {
-        // Triangle over 1 m: 2 √(1 / 3.5) = 1.069045 s. Trapezoid over 4 m: 2 · 3/3.5 + (4 − 9/3.5)/3 = 2.190476 s.
+        // Triangle over 1 m: 2 √(1 / 3.5) = 1.069045 s. Trapezoid over 4 m: 2 · 3/3.5 + (4 − 9/3.5)/3 =
+        // 2.190476 s.
         assert!((mover(0.0, 0.0, 0.0, 0.0).time_to(Point::new(0.6, 0.8)) - 1.069_045).abs() < 1e-5);
         assert!((mover(0.0, 0.0, 0.0, 0.0).time_to(Point::new(0.0, 4.0)) - 2.190_476).abs() < 1e-5);
     }
@@ -140,7 +141,8 @@ mod tests {
         assert!((mover(0.0, 0.0, 1.0, 0.0).time_to(to) - 6.0 / 7.0).abs() < 1e-5);
         // Away: 1/3.5 s of braking over 1/7 m, then 8/7 m: 0.285714 + 2 √(1.142857 / 3.5) = 1.428571 s.
         assert!((mover(0.0, 0.0, -1.0, 0.0).time_to(to) - 1.428_571).abs() < 1e-5);
-        // Too fast to stop there, 3 m/s 1 m off: stops after 0.857143 s, 0.285714 m beyond: + 2 √(0.285714 / 3.5) = 1.428571 s.
+        // Too fast to stop there, 3 m/s 1 m off: stops after 0.857143 s, 0.285714 m beyond: + 2 √(0.285714 /
+        // 3.5) = 1.428571 s.
         assert!((mover(0.0, 0.0, 3.0, 0.0).time_to(to) - 1.428_571).abs() < 1e-5);
     }
 

@@ -34,8 +34,8 @@ pub struct Rating {
     /// The opponent that can be there soonest, and its time, s; none if not within [`SAFE`] after the
     /// receiver. Of those that are there [`SAFE`] before it, any.
     pub rival: Option<(RobotId, f32)>,
-    /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those that certainly do
-    /// (−[`SAFE`]), any.
+    /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those
+    /// that certainly do (−[`SAFE`]), any.
     pub interceptor: Option<Interceptor>,
     /// The most restrictive obstacle of the place, with its margin, m.
     pub spoiler: (Spoiler, f32),
@@ -80,7 +80,7 @@ impl Rating {
         self.goal_factors.iter().product()
     }
 
-    /// P(goal | x), what is maximised.
+    /// P(goal | x), the value that is maximised.
     pub fn value(&self) -> f32 {
         self.receive() * self.goal()
     }
@@ -126,7 +126,8 @@ impl<'k> Scene<'k> {
         let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
         let others = view.ours.iter().filter(|mate| mate.id != receiver.id && Some(mate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
-        // The field is the same seen from either end, so its areas are where they are in the attack frame too.
+        // The field is the same seen from either end, so its areas are where they are in the attack frame
+        // too.
         Self {
             kicks,
             from,
@@ -264,8 +265,8 @@ impl<'k> Scene<'k> {
         given::beats_the_keeper(self.shot.at(depth).0, c)
     }
 
-    /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over opponents (c2), but bounces: no
-    /// one-touch shot follows (c3').
+    /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over
+    /// opponents (c2), but bounces: no one-touch shot follows (c3').
     fn chip_if_better(&self, way: &Way, rating: &mut Rating, floor: f32, c: &PassConstants) {
         let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
         let most = c.chip_prior * c.turn_prior;

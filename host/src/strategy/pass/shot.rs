@@ -65,8 +65,8 @@ mod tests {
     #[test]
     fn an_open_goal_two_metres_off_by_hand() {
         let found = shot_from((2.5, 0.0), &[]);
-        // 2 atan(0.4785 / 2) = 0.4697 rad: wide enough. The ball slides from 6.24 m/s with 3.9 m/s²: 2 m = 6.24 t − 1.95 t², t = 0.3613 s;
-        // c1' = 1 / (1 + exp(−0.387)) = 0.5956; c4' = 0.7.
+        // 2 atan(0.4785 / 2) = 0.4697 rad: wide enough. The ball slides from 6.24 m/s with 3.9 m/s²: 2 m =
+        // 6.24 t − 1.95 t², t = 0.3613 s; c1' = 1 / (1 + exp(−0.387)) = 0.5956; c4' = 0.7.
         assert!((found.angle - 0.4697).abs() < 1e-3 && found.aim.y().abs() < 1e-6, "{found:?}");
         assert!((found.time - 0.3613).abs() < 2e-3, "{found:?}");
         assert!((found.factors[0] - 0.5956).abs() < 5e-3 && found.factors[1..] == [1.0, 0.7], "{found:?}");

@@ -239,7 +239,7 @@ impl PassWatch {
 }
 
 impl Flight {
-    /// The verdict where no robot received it, by the robot that caused the failure.
+    /// The verdict where no robot received it: late or missed.
     fn end(&self) -> Verdict {
         match self.receiver_off {
             Some(receiver_off) if receiver_off > THERE && self.nearest <= THERE => {

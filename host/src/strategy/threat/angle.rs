@@ -7,7 +7,8 @@
 use geometry::{Angle, Attack, Point, Vector, math};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-/// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is stopped.
+/// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is
+/// stopped.
 pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
 
 /// The goal as seen from a place.
@@ -43,8 +44,8 @@ impl Span {
 }
 
 impl Opening {
-    /// The goal with its middle at `goal` and `width` m between the posts, seen from `from`; a place on or behind its line is
-    /// taken to be just before it.
+    /// The goal with its middle at `goal` and `width` m between the posts, seen from `from`; a place on or
+    /// behind its line is taken to be just before it.
     pub fn of(from: Point<Attack>, goal: Point<Attack>, width: f32) -> Self {
         let before = if goal.x() < 0.0 {
             from.x().max(goal.x() + BEFORE_LINE)

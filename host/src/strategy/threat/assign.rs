@@ -109,7 +109,8 @@ impl Giving<'_> {
             [place] => {
                 let guard = self.nearest(place, before[0], worth);
                 let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
-                // The spare one is away along the edge where it guards a second-level threat, so it is held more.
+                // The spare one is away along the edge where it guards a second-level threat, so it is held
+                // more.
                 let place = cover.spare_place(&self.edge, self.settings);
                 let spare = self.nearest(place, before[1], 2.0 * worth);
                 let spare = spare.map(|robot| Primary { robot: robot.id, place, needed: false });

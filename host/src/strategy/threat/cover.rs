@@ -2,11 +2,11 @@
 //! three cases; its Figure 7). Attack frame, m, rad.
 //!
 //! 1. One defender covers the whole open angle: it stands on the bisector, the keeper before the middle of
-//!   the goal.
+//!    the goal.
 //! 2. Defender and keeper cover it together: the defender just inside the line from the threat to the nearer
-//!   post, the keeper on the bisector of the remaining angle, as far back as it can be.
+//!    post, the keeper on the bisector of the remaining angle, as far back as it can be.
 //! 3. Else two defenders: the keeper on the bisector of the whole angle, a defender on the bisector of each
-//!   of the two remaining angles.
+//!    of the two remaining angles.
 //!
 //! Division B's goal is wide (1 m): from far away not even three standing bodies cover all of it. The keeper
 //! then comes out as far as it may, and [`Cover::uncovered`] is the angle left to its reaction.
@@ -145,7 +145,8 @@ impl<'v> Placing<'v> {
         (at, half_shadow(self.distance(at)))
     }
 
-    /// Case 2: defender, keeper, the half angle that the keeper covers, and the one that remains, rad.
+    /// Case 2: defender, keeper, the angle that the keeper covers, and the angle that the defender leaves,
+    /// rad.
     fn defender_and_keeper(&self) -> (Point<Attack>, Point<Attack>, f32, f32) {
         let half = self.opening.half;
         // Seen from a threat before our goal, +y lies to the right.
@@ -221,7 +222,8 @@ impl Cover {
         if more <= 0.0 {
             return self.keeper;
         }
-        // Wide gaps count far more than narrow ones, but none alone: which is the widest may change with noise.
+        // Wide gaps count far more than narrow ones, but none alone: which is the widest may change with
+        // noise.
         let (weight, off) = gaps.iter().fold((0.0, 0.0), |(weight, off), gap| {
             let cubed = gap.width() * gap.width() * gap.width();
             (weight + cubed, off + cubed * gap.middle())
@@ -250,7 +252,8 @@ impl Cover {
     }
 }
 
-/// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards (−1).
+/// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards
+/// (−1).
 pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &Settings) -> Point<Attack> {
     let (here, least) = (edge.point(along), 2.0 * settings.shoulder);
     let mut off = least;

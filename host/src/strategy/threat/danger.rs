@@ -179,7 +179,7 @@ impl Position {
     }
 }
 
-/// An opponent whose centre is this near to the ball has it, m: radii of body and ball, and a margin.
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
 const HOLDS: f32 = 0.2;
 /// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
 const ARRIVES: f32 = 2.5;
@@ -244,7 +244,8 @@ mod tests {
 
     #[test]
     fn a_pass_of_two_metres_and_a_shot_of_three_take_their_times() {
-        // Python, slide 3.9 to 5/7, roll 0.35: pass at kick_speed(2, 2.5) = 3.7155 m/s takes 0.7119 s, shot at 6.2 takes 0.5873 s.
+        // Python, slide 3.9 to 5/7, roll 0.35: pass at kick_speed(2, 2.5) = 3.7155 m/s takes 0.7119 s, shot
+        // at 6.2 takes 0.5873 s.
         let time = time_to_shoot(2.0, 3.0);
         assert!((time - PASS_AND_SHOT).abs() < 1e-3, "{time}");
     }
@@ -263,7 +264,7 @@ mod tests {
             made(0, false, 0.17, 0.5), // far, however open
             made(1, true, 0.05, 1.0),  // near, little open
             made(2, true, 0.30, 2.0),  // near, wide open, late
-            made(3, true, 0.20, 1.5),  // near, as good as wide open, sooner
+            made(3, true, 0.20, 1.5),  // near, equal to wide open, sooner
         ];
         let order = |held: &dyn Fn(RobotId, Blocks) -> bool| {
             let ranked = ranked(&dangers, held, &settings);

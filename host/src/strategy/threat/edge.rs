@@ -1,8 +1,9 @@
 //! `edge`: places along the edge of our defence area (Biswas et al. 2014 §5: primary defenders "always move
 //! along the edge of the defense area"). Attack frame, m.
 //!
-//! The edge is the line that bodies' centres may stand on: the area's border, moved outwards. For the box of today that is a
-//! box with round corners, for the quarter circles of 2013 two larger quarter circles: one shape with other numbers.
+//! The edge is the line that bodies' centres may stand on: the area's border, moved outwards. For the box of
+//! today that is a box with round corners, for the quarter circles of 2013 two larger quarter circles: one
+//! shape with other numbers.
 
 use geometry::{Attack, Point, Vector, math};
 use rules::{AreaForm, FieldSpec};

@@ -10,8 +10,8 @@ use super::super::view::View;
 use super::Settings;
 use super::edge::Edge;
 
-/// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge), and off
-/// everything else that the phase forbids.
+/// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
+/// and off everything else that the phase forbids.
 pub fn lawful(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
     lawful_for(view, Duty::Player, at, &[], settings)
 }
@@ -131,7 +131,8 @@ mod tests {
                         let place = lawful(&view, at, &settings);
                         let body = Point::<Field>::new(place.x(), place.y());
                         let offence = rules.offence(body, ROBOT_RADIUS);
-                        // Their own half at a kick-off is far from some of these places: only ours is searched.
+                        // Their own half at a kick-off is far from some of these places: only ours is
+                        // searched.
                         let ours = !matches!(phase, Phase::Kickoff(_)) || at.x() < 0.9;
                         assert!(
                             !ours || offence.is_none(),

@@ -1,5 +1,5 @@
-//! `threat`: threat-based defence. Threats from the ball and from opponents that could have it next (Biswas
-//! et al. 2014 §5).
+//! `threat`: threat-based defence. Threats from the ball and from opponents that could receive it next
+//! (Biswas et al. 2014 §5).
 //!
 //! [`defend`] is the entry point: [`receiving`] finds the *first-level threat* (the ball, or the receiver of
 //! a pass), [`cover`] places keeper and primary defenders against it ([`angle`] computes the angle that a
@@ -50,13 +50,13 @@ pub struct Settings {
     /// Primary defenders stand this far, each, from the middle between them, m: bodies side by side and a
     /// margin between.
     pub shoulder: f32,
-    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and less than a ball, so that
-    /// none rolls along the line behind it.
+    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and
+    /// less than a ball, so that none rolls along the line behind it.
     pub keeper_back: f32,
     /// … and no farther from it, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
-    /// When moving primaries leave a gap wider by this than at their places, the keeper covers only that gap,
-    /// rad: the angle of a body seen from the halfway line.
+    /// Difference of the widest gap now from that of the primaries at their places at which the keeper covers
+    /// only the present gaps, rad: the angle of a body seen from the halfway line.
     pub meanwhile: f32,
     /// A placement of fewer bodies than now must cover this many times the angle that it needs.
     pub to_spare: f32,
@@ -74,7 +74,8 @@ pub struct Settings {
     pub time_worth: f32,
     /// Acceleration of opponents and our defenders, m/s²: values that teams publish (3 to 4.7).
     pub acceleration: f32,
-    /// From an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a tick of ours and theirs more.
+    /// From an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a tick of
+    /// ours and theirs more.
     pub latency: f32,
     /// A defender is no nearer to its opponent's centre than this, m: two bodies and room to brake.
     pub clear: f32,

@@ -9,7 +9,7 @@ use super::Settings;
 /// Equation 6: −(|d| / |v|) · (1 + c · (1 − cos θ)), s, at most 0; greater is riskier.
 ///
 /// `d` leads from the ball to the robot, `v` is the ball's velocity, θ the angle between them. Straight ahead
-/// it is less the time the ball would take; c says how fast risk falls to the side. Places of equal risk lie
+/// it is less the time the ball would take; c sets how fast risk falls to the side. Places of equal risk lie
 /// on an ellipse of eccentricity c / (1 + c) with the ball in a focus ([`isocontour`]). A ball at standstill
 /// is not received: −∞.
 pub fn risk_of_receiving(ball: Point<Attack>, velocity: Vector<Attack>, robot: Point<Attack>, c: f32) -> f32 {
@@ -22,10 +22,11 @@ pub fn risk_of_receiving(ball: Point<Attack>, velocity: Vector<Attack>, robot: P
     -(distance / speed) * (1.0 + c * (1.0 - cos))
 }
 
-/// The ellipse of one `risk` (below 0) for a ball at the origin with `speed` along +x: its centre's x, its half axes along and
-/// across, m.
+/// The ellipse of one `risk` (below 0) for a ball at the origin with `speed` along +x: its centre's x, its
+/// half axes along and across, m.
 pub fn isocontour(speed: f32, c: f32, risk: f32) -> (f32, f32, f32) {
-    // |d| (1 + c) − c d_x = −risk · |v|: a conic with the ball in its focus, e = c / (1 + c), semi-latus rectum k / (1 + c).
+    // |d| (1 + c) − c d_x = −risk · |v|: a conic with the ball in its focus, e = c / (1 + c), semi-latus
+    // rectum k / (1 + c).
     let (k, eccentricity) = (-risk * speed, c / (1.0 + c));
     let rest = 1.0 - eccentricity * eccentricity;
     let along = k / (1.0 + c) / rest;

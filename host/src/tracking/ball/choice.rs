@@ -79,7 +79,7 @@ impl Balls {
         if held { HELD_GONE } else { GONE }
     }
 
-    /// Makes another track the ball where this one is out of sight, or out of the field.
+    /// Makes another track the ball where this one is not visible, or out of the field.
     pub(super) fn choose(&mut self, now: Captured, scene: &Scene) {
         let playable = |track: &Track| scene.is_playable(track.plane.position);
         let current = self.chosen_track();
@@ -115,7 +115,7 @@ impl Balls {
 
 /// Camera frames that make a blob the ball when there is none ...
 const IMAGES_TO_BELIEVE: u16 = 2;
-/// ... and when there is one that is out of sight.
+/// ... and when there is one that is not visible.
 const IMAGES_TO_TAKE_OVER: u16 = 5;
 /// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
 const LOST: f32 = 0.1;

@@ -154,8 +154,8 @@ impl Flight {
     }
 }
 
-/// Least squares for p₀, v and one more unknown u: p₀ + v t + u · `slope` = `value` for each sample, p₀ near 0.
-/// Gives the solution and the sum of squared errors in variances.
+/// Least squares for p₀, v and one more unknown u: p₀ + v t + u · `slope` = `value` for each sample, p₀
+/// close to 0. Gives the solution and the sum of squared errors in variances.
 fn solve(
     samples: &[Sample],
     sigma: f32,
@@ -250,8 +250,8 @@ const STEEPEST: f32 = 4.0;
 /// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
 /// configured; the noise of cameras that disagree is larger).
 const FIT_MAX: f32 = 6.0;
-/// A flat kick explains as well unless its summed squared error is worse by this, in variances (times the flight's own mean):
-/// 1 in 10⁶ by chance.
+/// A flat kick explains as well unless its summed squared error is worse by this, in variances (times the
+/// flight's own mean): 1 in 10⁶ by chance.
 const FLAT_WORSE: f32 = 25.0;
 /// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
 const SLIDE_MORE: f32 = 1.5;

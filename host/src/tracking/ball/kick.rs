@@ -228,7 +228,7 @@ impl Balls {
             let before = same.map_or(velocity, |contact| contact.before);
             self.contact = Some(Contact { who, place: robot.pose.to_body(position), until: now, before });
             if self.kicked.is_some_and(|kicked| now - kicked.at > micros(CONTACT_LATE)) {
-                // Once another robot has it, the kick is over.
+                // Once another robot has the ball, the kick is over.
                 self.kicked = None;
                 self.air = Air::Down;
             }
@@ -281,8 +281,8 @@ fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
     if time <= slides_for {
         return sliding;
     }
-    // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for v by two steps
-    // of Newton's from the speed of a ball that lost nothing.
+    // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for
+    // v by two steps of Newton's from the speed of a ball that lost nothing.
     let (c, a) = (models.ground.switch, models.ground.slide);
     let mut speed = way / time;
     for _ in 0..NEWTON_STEPS {
@@ -304,7 +304,8 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
 
-/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with room for noise.
+/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with room for
+/// noise.
 const TOUCH: f32 = 0.125;
 /// A robot this near can have turned the ball, m: hull, ball, and 7 cm of motion of the robot since.
 const REACH: f32 = 0.18;

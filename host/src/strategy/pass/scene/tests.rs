@@ -36,7 +36,8 @@ fn a_pass_beside_an_opponent_and_a_mate_by_hand() {
     // √(0.640312 / 3.5) = 0.855445 s.
     let PassKick::Flat { speed } = rating.kick else { panic!("{rating:?}") };
     all_close(&[speed, rating.ball_time, rating.receiver_time], &[3.367_840, 1.405_585, 0.855_445]);
-    // No opponent is there within 0.6 s more (likely(6) = 0.997527); number 0, their keeper, is 0.155686 s late for the ball.
+    // No opponent is there within 0.6 s more (likely(6) = 0.997527); number 0, their keeper, is 0.155686 s
+    // late for the ball.
     assert_eq!(rating.rival, None);
     let interceptor = rating.interceptor.unwrap();
     assert_eq!(interceptor.id.number(), 0);
@@ -44,7 +45,8 @@ fn a_pass_beside_an_opponent_and_a_mate_by_hand() {
     // The teammate is 0.6 m off: 0.1 m more than its margin.
     assert_eq!(rating.spoiler.0, Spoiler::Mate);
     all_close(&rating.receive_factors, &[0.997_527, 0.825_902, 0.999_984, 0.999_991, 0.660_756]);
-    // The gap beside the keeper: 9.216°, its middle 0.274680 m below the goal's; 2.015 m at 6.24 m/s take 0.364477 s.
+    // The gap beside the keeper: 9.216°, its middle 0.274680 m below the goal's; 2.015 m at 6.24 m/s take
+    // 0.364477 s.
     all_close(
         &[rating.shot.angle, rating.shot.aim.y(), rating.shot.time],
         &[0.160_849, -0.274_680, 0.364_477],

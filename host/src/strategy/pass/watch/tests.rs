@@ -69,7 +69,7 @@ impl Play {
     }
 }
 
-/// Rolls along `direction` from 0.2 s on, until `stops` m; there it lies.
+/// Rolls along `direction` from 0.2 s on, until `stops` m, where it stops.
 fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
     move |time| {
         let along = Vector::new(direction.0, direction.1);
@@ -99,7 +99,7 @@ fn a_ball_that_a_mate_stops_is_the_teams_but_not_the_receivers() {
 
 #[test]
 fn a_ball_that_an_opponent_turns_aside_is_intercepted_where_it_was() {
-    // At 1 m it goes off to the side.
+    // At 1 m it is deflected to the side.
     let play = Play::new(|time| {
         let way = (2.5 * (time - 0.2)).max(0.0);
         if way <= 1.0 {

@@ -80,7 +80,7 @@ fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
     let opening = cover.opening;
     let on_bisector = opening.shadow(away, f32::INFINITY).unwrap().middle().abs() < 1e-3;
     assert!(on_bisector && (-0.501..-0.3).contains(&away.y()), "{away:?}");
-    // Half there: the open part is on one side, and the keeper goes there.
+    // Half there: the open part is on one side, and the keeper moves there.
     let half = cover.primaries[0] + Vector::new(0.1, 0.0);
     let left = opening.gaps([half].into_iter(), f32::INFINITY);
     let side = |at: Point<Attack>| (opening.from.direction_to(at) - opening.middle).radians();
