@@ -40,13 +40,13 @@ use crate::referee::{OnSilence, SourcePin};
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TeamSettings {
-    /// The team's name.
+    /// The team's name, as registered with the game controller.
     pub name: Option<String>,
     /// `blue` or `yellow`.
     pub colour: Option<String>,
-    /// The league's name.
+    /// The league's name: `ssl-2013`, `division-b` or `division-a`.
     pub league: Option<String>,
-    /// The keeper's number.
+    /// The keeper's number, 0–15.
     pub keeper: Option<u8>,
     /// Address of the interface on which multicast is received.
     pub interface: Option<IpAddr>,
@@ -56,15 +56,15 @@ pub struct TeamSettings {
     pub key_file: Option<PathBuf>,
     /// Real robots may be commanded with the key of zeros.
     pub insecure_zero_key: Option<bool>,
-    /// Vision's group.
+    /// Multicast group and port of vision.
     pub vision: Option<SocketAddr>,
-    /// The referee's group.
+    /// Multicast group and port of the referee.
     pub referee: Option<SocketAddr>,
     /// The only referee that is obeyed: see [`SourcePin`].
     pub referee_source: Option<String>,
     /// `halt` or `go-on`: see [`OnSilence`].
     pub referee_silence: Option<String>,
-    /// Where tracker packets go.
+    /// Address to which tracker packets are sent.
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
@@ -107,9 +107,9 @@ fn one() -> f32 {
 pub struct TeamConfig {
     /// As the game controller knows it.
     pub name: String,
-    /// Our colour.
+    /// The colour our robots play with.
     pub colour: Colour,
-    /// The league played.
+    /// The league, which sets field and rules.
     pub league: League,
     /// The keeper, until the referee names another.
     pub keeper: RobotId,
@@ -121,15 +121,15 @@ pub struct TeamConfig {
     pub key_file: Option<PathBuf>,
     /// Real robots may be commanded with the key of zeros, which is public.
     pub insecure_zero_key: bool,
-    /// Vision's group.
+    /// Multicast group and port of vision.
     pub vision: SocketAddr,
-    /// The referee's group.
+    /// Multicast group and port of the referee.
     pub referee: SocketAddr,
     /// The only referee that is obeyed; none: the strictest of all.
     pub referee_source: Option<SourcePin>,
     /// What robots do when the referee falls silent.
     pub referee_silence: OnSilence,
-    /// Where tracker packets go.
+    /// Address to which tracker packets are sent.
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
@@ -139,7 +139,7 @@ pub struct TeamConfig {
     pub roll: Option<f32>,
 }
 
-/// How robots are reached.
+/// Links to the robots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RobotLink {
     /// Brains of our own drive a simulator on that host.
@@ -148,7 +148,7 @@ pub enum RobotLink {
     Udp(String),
     /// A base station at a serial line: frames between zero bytes (COBS).
     Serial {
-        /// The line's name.
+        /// The line's device, such as `/dev/ttyUSB0`.
         device: String,
         /// Bits a second.
         baud: u32,
@@ -158,7 +158,7 @@ pub enum RobotLink {
 /// What is wrong with a team's settings, and what would be right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfigError {
-    /// Which key or flag.
+    /// The key or flag.
     pub key: String,
     /// What is wrong, and what to write.
     pub words: String,
@@ -191,7 +191,7 @@ const MESSAGE_LEN: usize = 300;
 const LINE_LEN: usize = 80;
 
 impl TeamSettings {
-    /// Reads `team.toml`.
+    /// Reads `team.toml`; unknown keys are errors.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         toml::from_str(text).map_err(|broken| error("team.toml", place_of(text, &broken)))
     }

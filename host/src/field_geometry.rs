@@ -80,7 +80,7 @@ impl VisionGeometry {
         self.field.map(|(_, source)| source)
     }
 
-    /// The cameras, by id.
+    /// The cameras, by their numbers.
     pub fn cameras(&self) -> &BTreeMap<u32, Camera> {
         &self.cameras
     }

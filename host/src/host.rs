@@ -39,7 +39,7 @@ pub use input::{Input, Undecodable, Verdict};
 /// Settings that are fixed while a host runs.
 #[derive(Clone, Debug)]
 pub struct HostSettings {
-    /// Our colour.
+    /// The colour our robots play with.
     pub us: Colour,
     /// The league: its field until vision sends another, and its limits.
     pub league: League,
@@ -59,7 +59,7 @@ pub struct HostSettings {
     pub referee_silence: OnSilence,
     /// Which team decides open play: ours or an opponent team.
     pub team: Team,
-    /// The radio's.
+    /// Settings of the radio.
     pub radio: RadioSettings,
     /// Which of the second paper's tactics it plays.
     pub tactics: Tactics,
@@ -89,7 +89,7 @@ impl HostSettings {
 /// Orders that replace the coach's: robot, its role, and its directive.
 pub type Drill = heapless::Vec<(RobotId, Duty, Directive), { RobotId::COUNT }>;
 
-/// A team's host.
+/// The host of one team: all state from vision to radio.
 #[derive(Clone, Debug)]
 pub struct Host {
     settings: HostSettings,

@@ -84,7 +84,7 @@ impl OnSilence {
     }
 }
 
-/// Receives the referee's packets.
+/// Receives the referee's packets and merges their sources.
 #[derive(Clone, Debug)]
 pub struct Listener {
     limits: Limits,

@@ -23,22 +23,22 @@ pub struct World {
 /// Models of the ball on this field surface.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct BallModels {
-    /// On the ground.
+    /// Model of motion on the ground.
     pub ground: BallModel,
     /// In the air and at bounces.
     pub chip: ChipModel,
 }
 
-/// The ball.
+/// State of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
     /// Its place, or the point below it while it flies.
     pub position: Point<Field>,
     /// Height above its place on the field surface, m.
     pub height: f32,
-    /// Along the ground, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// Upwards, m/s.
+    /// Velocity upwards, m/s.
     pub climb: f32,
     /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
     pub rolls_below: f32,
@@ -74,7 +74,7 @@ impl Kick {
     }
 }
 
-/// A robot.
+/// State of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot {
     /// Its team and number.

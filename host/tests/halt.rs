@@ -69,7 +69,7 @@ fn robot() -> Link {
     Link::new(TeamId::of(Colour::Blue), three(), TeamKey::ZERO.of_robot(three()), 1)
 }
 
-/// Its telemetry.
+/// Telemetry of that robot.
 fn telemetry(robot: &mut Link, now: u64) -> Vec<u8> {
     let mut telemetry = Telemetry::default();
     robot.tell(Instant(now), &mut telemetry);

@@ -79,7 +79,7 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     format!("{planned} plans, {attacks} attacks, {coercing} ticks of coercing")
 }
 
-/// Takes the free kick.
+/// Number of the robot that takes the free kick.
 const TAKER: RobotId = match RobotId::new(1) {
     Some(id) => id,
     None => RobotId::ZERO,

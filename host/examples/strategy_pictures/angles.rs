@@ -10,7 +10,7 @@ use rules::League;
 use crate::page::{BLUE, GAP, GREEN, Panel, RED, YELLOW, finish, lines_of_text, off};
 use crate::scenes;
 
-/// Draws it.
+/// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let field = League::Ssl2013.field();
     let part = [Point::new(-3.3, -1.45), Point::new(-0.35, 1.6)];
@@ -69,7 +69,7 @@ fn rays(panel: &mut Panel, cover: &Cover) {
     let mut svg = Svg::default();
     let mut ray = |side: f32, colour: &str, dash: &str| {
         let direction = cover.opening.direction(side);
-        // To the goal line.
+        // Ray length up to the goal line.
         let by = (-3.0 - from.x()) / direction.x();
         let to: Point<Attack> = from + direction * by;
         let style = format!(r#"stroke="{colour}" stroke-width="2.2" stroke-dasharray="{dash}""#);

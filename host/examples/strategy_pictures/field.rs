@@ -12,7 +12,7 @@ pub(crate) fn colors() -> &'static Colors {
     Theme::Light.colors()
 }
 
-/// A place in mm.
+/// A place of the attack frame in mm.
 pub(crate) fn mm(at: Point<Attack>) -> At {
     [f64::from(at.x()) * 1000.0, f64::from(at.y()) * 1000.0]
 }
@@ -136,7 +136,7 @@ pub(crate) fn legend(svg: &mut Svg, at: At, length: f64, high: f64, from: &str, 
     );
 }
 
-/// Ball and robots.
+/// Draws ball and robots.
 pub(crate) fn robots(svg: &mut Svg, view: &View) {
     let colors = colors();
     let edge = r##"stroke="#ffffff" stroke-width="22""##;

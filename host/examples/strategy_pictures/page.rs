@@ -10,7 +10,7 @@ use geometry::{Angle, Attack, Point};
 use host::strategy::threat::edge::Edge;
 use rules::FieldSpec;
 
-/// Sans-serif, px.
+/// Font size of sans-serif text, px.
 pub(crate) const TEXT: f64 = 14.0;
 /// Around and between panels, px.
 pub(crate) const GAP: f64 = 16.0;
@@ -32,7 +32,7 @@ pub(crate) struct Panel {
     high: Point<Attack>,
     /// Lower left corner, px.
     corner: At,
-    /// px per m.
+    /// Scale, px per m.
     scale: f64,
 }
 
@@ -52,7 +52,7 @@ impl Panel {
         Self::new(field, [Point::new(-x, -y), Point::new(x, y)], corner, scale)
     }
 
-    /// px.
+    /// Width and height, px.
     pub(crate) fn size(&self) -> At {
         let size = self.high - self.low;
         [f64::from(size.x()) * self.scale, f64::from(size.y()) * self.scale]
@@ -69,7 +69,7 @@ impl Panel {
         f64::from(metres) * self.scale
     }
 
-    /// Lines, areas and goals.
+    /// Draws lines, areas and goals.
     pub(crate) fn lines(&mut self) {
         let style = format!(r##"fill="none" stroke="#ffffff" stroke-width="{:.1}""##, self.px(0.025));
         let field = self.field;

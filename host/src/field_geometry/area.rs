@@ -10,14 +10,14 @@ use super::nearest_division;
 pub enum AreaSource {
     /// From the packet's own numbers.
     Told,
-    /// The packet's penalty stretches.
+    /// From the packet's penalty stretches.
     Lines,
     /// The packet has none: this division's, scaled down with the field where that is smaller. To be reported
     /// to the operator.
     Division(League),
 }
 
-/// A defence area, m.
+/// Size of a defence area, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Area {
     pub(super) depth: f32,

@@ -2,12 +2,12 @@
 
 use ssl::vision::GeometryCameraCalibration;
 
-/// A camera.
+/// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Its mounting position, m: along x, y, and height, field frame.
     pub position: [f32; 3],
-    /// Where that is from.
+    /// Source of the position.
     pub source: CameraSource,
 }
 
@@ -16,7 +16,7 @@ pub struct Camera {
 pub enum CameraSource {
     /// The packet contains it.
     Told,
-    /// From rotation and translation.
+    /// Computed from the calibration's rotation and translation.
     Calibration,
 }
 

@@ -34,7 +34,7 @@ pub enum Verdict {
     Refused(Refusal),
     /// A datagram that is no message.
     Undecodable,
-    /// A deadline.
+    /// A deadline was handled.
     Timeout,
     /// Our robots halt until the end.
     Halted,
@@ -43,9 +43,9 @@ pub enum Verdict {
 /// Datagrams that were no messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Undecodable {
-    /// On vision's port.
+    /// Number on vision's port.
     pub vision: u64,
-    /// On the referee's port.
+    /// Number on the referee's port.
     pub referee: u64,
     /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look
     /// like that.

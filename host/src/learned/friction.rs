@@ -125,7 +125,7 @@ const FASTEST: f32 = 5.0;
 const SHORTEST: Duration = Duration::millis(500);
 /// A longer one counts as two.
 const LONGEST: Duration = Duration::millis(1_500);
-/// Camera frames needed.
+/// Number of camera frames needed.
 const PLACES: f64 = 20.0;
 /// Cosine of the turn that ends a roll: 6°, which is what noise makes of the slowest.
 const STRAIGHT: f32 = 0.994;

@@ -9,7 +9,7 @@ use rules::Colour;
 use super::samples::{Estimate, Samples};
 use crate::world::{Kick, World};
 
-/// All robots' kickers.
+/// Estimates of all robots' kick gains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Kicks {
     /// The flat kick that a robot was last ordered, m/s, and when.

@@ -13,7 +13,7 @@ use rules::{Colour, Phase, Side};
 use super::samples::{Estimate, Samples};
 use crate::world::World;
 
-/// All robots' latencies.
+/// Estimates of all robots' latencies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Latencies {
     robots: [Robot; RobotId::COUNT],
@@ -128,7 +128,7 @@ const KEPT: usize = 15;
 const LEAST: usize = 3;
 /// A robot whose place stays within this stands still, m: noise of 3 mm.
 const STILL: f32 = 0.008;
-/// For this time.
+/// ... and for this time.
 const RESTS_FOR: Duration = Duration::millis(300);
 /// A place farther off lets it start with its full acceleration, m.
 const FAR_OFF: f32 = 0.4;

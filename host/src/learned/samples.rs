@@ -20,7 +20,7 @@ impl Estimate {
     }
 }
 
-/// The last `N` samples.
+/// The last `N` samples of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Samples<const N: usize> {
     values: [f32; N],

@@ -62,7 +62,7 @@ const OUT_MAX: usize = 320;
 pub enum To {
     /// Every robot of the team.
     All,
-    /// This robot.
+    /// The robot of this number.
     One(RobotId),
 }
 
@@ -80,13 +80,13 @@ pub enum Relay {
 /// Settings that are fixed while a host runs.
 #[derive(Clone, Copy, Debug)]
 pub struct RadioSettings {
-    /// The team's number.
+    /// The team's number on the radio.
     pub team: TeamId,
-    /// The team's key.
+    /// The key from which each robot's key is derived.
     pub key: TeamKey,
     /// The host's epoch: must rise with every start; Unix seconds do.
     pub epoch: u32,
-    /// How beacons are forwarded.
+    /// How beacons are forwarded between robots.
     pub relay: Relay,
     /// One-way latency of a packet: snapshots are extrapolated by it. 3 ms is what ER-Force takes for theirs.
     pub way: Duration,
@@ -111,7 +111,7 @@ pub enum Heard {
     Greeting(RobotId),
 }
 
-/// The host's radio.
+/// The host's radio: queue of frames, links to robots, refusals.
 #[derive(Clone, Debug)]
 pub struct Radio {
     settings: RadioSettings,
@@ -255,7 +255,7 @@ impl Radio {
         RobotId::all().filter(move |robot| self.robots[robot.index()].is_present(now))
     }
 
-    /// Frames refused, by [`Refusal::kind`].
+    /// Number of frames refused, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         self.link.refused()
     }

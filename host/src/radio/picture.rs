@@ -14,7 +14,7 @@ pub const PARTS_ROBOTS_MAX: usize = WORLD_ROBOTS_MAX;
 /// The state of the game, beside the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation {
-    /// Our colour.
+    /// The colour our robots play with.
     pub us: Colour,
     /// The phase, by side (ours or theirs).
     pub phase: Phase<Side>,

@@ -104,7 +104,7 @@ impl Quality {
         self.telemetry.map_or(Condition::default(), |(_, telemetry)| telemetry.condition)
     }
 
-    /// Round trip, ms.
+    /// Round trips, ms.
     pub fn round_trip(&self) -> &Tally {
         &self.trip
     }

@@ -11,7 +11,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// One more value.
+    /// Adds one value.
     pub fn add(&mut self, value: f64) {
         self.max = if self.count == 0 { value } else { self.max.max(value) };
         self.count = self.count.saturating_add(1);

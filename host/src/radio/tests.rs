@@ -226,7 +226,7 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
         if now.0 > until {
             return out;
         }
-        // It stays present.
+        // Telemetry keeps it present.
         while told + 100_000 <= now.0 {
             told += 100_000;
             assert!(radio.handle_packet(Instant(told), &tell(&mut link, Instant(told))).is_ok());

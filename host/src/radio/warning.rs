@@ -37,9 +37,9 @@ pub enum RadioWarning {
 /// Why a robot refuses frames, as its telemetry counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// They are another version's.
+    /// They are of another protocol version.
     Version,
-    /// They are another team's.
+    /// They are of another team's number.
     Team,
     /// They are of an earlier epoch of the host.
     Epoch,

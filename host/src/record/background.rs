@@ -43,7 +43,7 @@ struct Shared {
     failed: AtomicBool,
 }
 
-/// Something to write.
+/// An entry of the queue.
 enum Entry {
     Heard(Instant, MessageKind, Vec<u8>),
     Input(Instant, Colour, Owned),
@@ -152,7 +152,7 @@ impl BackgroundRecorder {
         self.dropped
     }
 
-    /// Bytes that wait.
+    /// Bytes in the queue.
     pub fn waiting(&self) -> usize {
         self.shared.waiting.load(Ordering::Relaxed)
     }

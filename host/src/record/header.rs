@@ -22,7 +22,7 @@ use crate::strategy::{Tactics, Team};
 /// The header of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordingHeader {
-    /// The program's version.
+    /// Version of the program that recorded.
     pub version: String,
     /// The commit it was built from.
     pub commit: String,
@@ -44,7 +44,7 @@ pub struct RecordingHeader {
 /// The settings one host started with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HostHeader {
-    /// `blue` or `yellow`.
+    /// Its colour: `blue` or `yellow`.
     pub colour: String,
     /// Its goal until the referee reports it: `yellow` is the one at −x, `cyan` the one at +x, as in
     /// problems.
@@ -67,7 +67,7 @@ pub struct HostHeader {
     pub plays: Team,
     /// The team's number on the radio.
     pub team: u8,
-    /// Epoch of the host.
+    /// Epoch of the host on the radio.
     pub epoch: u32,
     /// How beacons were forwarded: `no`, `to-each` or `to-all`.
     pub relay: String,
@@ -122,7 +122,7 @@ impl RecordingHeader {
         serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
     }
 
-    /// The league itself.
+    /// The league of that name.
     pub fn league(&self) -> Result<League, HeaderError> {
         [League::Ssl2013, League::DivisionB, League::DivisionA]
             .into_iter()
@@ -216,7 +216,7 @@ impl HostHeader {
             .ok_or_else(|| wrong(format!("referee_silence: `{word}` is none; halt or go-on")))
     }
 
-    /// Its colour.
+    /// The colour of that name.
     pub fn colour(&self) -> Result<Colour, HeaderError> {
         [Colour::Blue, Colour::Yellow]
             .into_iter()
@@ -231,7 +231,7 @@ impl HostHeader {
         })
     }
 
-    /// Its keeper.
+    /// The keeper of that number.
     pub fn keeper(&self) -> Result<RobotId, HeaderError> {
         RobotId::new(self.keeper)
             .ok_or_else(|| wrong(format!("keeper: {} is no robot; ids are 0 to 15", self.keeper)))
@@ -246,7 +246,7 @@ impl HostHeader {
         })
     }
 
-    /// When it started.
+    /// When it started, on its own clock.
     pub fn began(&self) -> Instant {
         Instant(self.began_us)
     }

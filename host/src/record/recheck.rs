@@ -30,7 +30,7 @@ struct Checked {
 /// Counts of one host under check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Inputs fed.
+    /// Number of inputs fed.
     pub inputs: u64,
     /// Packets that were the same.
     pub same: u64,
@@ -39,7 +39,7 @@ pub struct Counts {
 /// Where record and host differ. Times on the host's clock.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
-    /// Another packet than recorded.
+    /// The host sends another packet than recorded.
     Other {
         /// When it was recorded.
         at: Instant,

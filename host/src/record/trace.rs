@@ -81,7 +81,7 @@ pub struct Record {
     pub bytes: Vec<u8>,
 }
 
-/// Writes a trace.
+/// Writes a trace record by record.
 #[derive(Debug)]
 pub struct Writer<W: Write> {
     out: W,
@@ -200,11 +200,11 @@ impl fmt::Display for End {
 /// Why a file is no trace.
 #[derive(Debug)]
 pub enum TraceError {
-    /// It cannot be read.
+    /// An error while reading.
     Io(io::Error),
     /// It does not start as a trace does.
     NotATrace,
-    /// Another version.
+    /// Another version of the format, which is not read.
     Version(u32),
     /// The header is cut, too long or not UTF-8.
     Header,
@@ -264,7 +264,7 @@ impl<R: Read> Reader<R> {
         Ok(Self { from, version, header, end: None, at, last: None })
     }
 
-    /// The header: JSON.
+    /// The header, as JSON.
     pub fn header(&self) -> &str {
         &self.header
     }

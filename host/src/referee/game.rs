@@ -15,7 +15,7 @@ const FARTHEST: f32 = 20.0;
 /// The game by the referee's packets and the ball's motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
-    /// The phase now.
+    /// The phase that is obeyed now.
     pub phase: Phase<Colour>,
     /// The phase after the current stop, if the referee sends it.
     pub next: Option<Phase<Colour>>,
@@ -30,7 +30,7 @@ pub struct Game {
     pub action_time_left: Option<f32>,
     /// The goal that blue defends, once the referee has sent it.
     pub blue_goal: Option<GoalEnd>,
-    /// What kind of match.
+    /// Kind of match: friendly, group phase, elimination.
     pub match_type: MatchType,
     /// What the referee waits for, as it sends it.
     pub status: String,
@@ -65,13 +65,13 @@ impl Default for Game {
 pub struct TeamAccount {
     /// Its name; empty while unknown.
     pub name: String,
-    /// Goals.
+    /// Goals scored.
     pub score: u32,
     /// The keeper's number, if it is one a robot can have.
     pub keeper: Option<RobotId>,
-    /// Red cards.
+    /// Number of red cards.
     pub red_cards: u32,
-    /// Yellow cards ever given.
+    /// Number of yellow cards ever given.
     pub yellow_cards: u32,
     /// Time left of each yellow card that still counts, s.
     pub yellow_card_times: Vec<f32>,
@@ -79,18 +79,18 @@ pub struct TeamAccount {
     pub fouls: u32,
     /// Robots it may have on the field now, if the referee sends it.
     pub robots_allowed: Option<u32>,
-    /// Time-outs left.
+    /// Number of time-outs left.
     pub timeouts: u32,
     /// Time left for time-outs, s.
     pub timeout_time: f32,
     /// Whether it may place the ball: it can, and has not failed too often; if the referee does not send it,
     /// it may.
     pub may_place: bool,
-    /// Failed placements that count.
+    /// Number of failed placements that count.
     pub placement_failures: u32,
-    /// It has requested a substitution.
+    /// Whether it has requested a substitution.
     pub substitution_wanted: bool,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     pub substitution_allowed: bool,
     /// Substitutions left in this half, if the referee sends it.
     pub substitutions_left: Option<u32>,
@@ -101,7 +101,7 @@ pub struct TeamAccount {
 }
 
 impl Game {
-    /// A team's account.
+    /// The account of the team of that colour.
     pub fn team(&self, colour: Colour) -> &TeamAccount {
         &self.teams[colour as usize]
     }
@@ -179,7 +179,7 @@ impl TeamAccount {
     }
 }
 
-/// µs → s.
+/// Converts µs to s.
 fn seconds(micros: i64) -> f32 {
     (micros as f64 * 1e-6) as f32
 }

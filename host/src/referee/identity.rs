@@ -25,15 +25,15 @@ impl SenderAddress {
     /// The sender of packets that came over no network: a referee in this process, or a recording without
     /// addresses.
     pub const INTERNAL: Self = Self { ip: IpAddr::V6(Ipv6Addr::UNSPECIFIED), port: 0 };
-    /// Bytes of [`SenderAddress::to_bytes`].
+    /// Length of [`SenderAddress::to_bytes`], bytes.
     pub const LEN: usize = 18;
 
-    /// Of a datagram.
+    /// The address of a datagram's sender.
     pub fn new(address: SocketAddr) -> Self {
         Self { ip: address.ip().to_canonical(), port: address.port() }
     }
 
-    /// The machine.
+    /// The machine's IP address.
     pub const fn ip(self) -> IpAddr {
         self.ip
     }
@@ -50,7 +50,7 @@ impl SenderAddress {
         bytes
     }
 
-    /// From a trace.
+    /// From the bytes of a trace.
     pub fn from_bytes(bytes: [u8; Self::LEN]) -> Self {
         let mut ip = [0; 16];
         ip.copy_from_slice(&bytes[..16]);

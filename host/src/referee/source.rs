@@ -66,7 +66,7 @@ impl Strictness {
     }
 }
 
-/// One referee.
+/// State of one referee source.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
     pub(super) key: SourceKey,
@@ -139,7 +139,7 @@ struct Candidate {
 /// Result of a packet of one source.
 #[derive(Debug)]
 pub(super) enum Outcome {
-    /// In order.
+    /// It is in order and was taken.
     Taken(Taken),
     /// Out of order; `restrains`: it is HALT or STOP, and obeyed.
     Doubted { doubt: Doubt, restrains: bool },
@@ -281,7 +281,7 @@ impl Source {
         false
     }
 
-    /// Follows the candidate.
+    /// Follows the candidate's clock and counter.
     fn step(&mut self, came: Stamped, now: Instant, taken: &mut Taken) {
         let Some(candidate) = self.candidate.take() else { return };
         if !self.clock.fits(came.stamp, now) {

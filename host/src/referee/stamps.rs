@@ -23,7 +23,7 @@ pub(super) struct StampClock {
 }
 
 impl StampClock {
-    /// By its first packet.
+    /// Initialised by its first packet.
     pub(super) fn new(stamp: u64, now: Instant) -> Self {
         Self { offset: difference(stamp, now), started: now, followed: now }
     }

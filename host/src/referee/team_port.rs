@@ -38,7 +38,7 @@ pub enum Request {
     Substitute(bool),
     /// After a card against them: continue, or stop.
     Advantage {
-        /// Continue.
+        /// Whether the game continues.
         go_on: bool,
     },
     /// Checks the connection.
@@ -50,7 +50,7 @@ pub enum Request {
 pub enum Event {
     /// The controller knows us now; `verified`: by a signature.
     Registered {
-        /// By a signature.
+        /// Whether the registration was verified by a signature.
         verified: bool,
     },
     /// The registration is refused; we try again after [`RETRY_AFTER`].
@@ -124,7 +124,7 @@ pub struct TeamPort {
     asked: Option<Request>,
     /// When the next reply must have come, if one is due.
     deadline: Option<Instant>,
-    /// When to try again.
+    /// Earliest time of the next attempt.
     retry: Instant,
     /// When the last message went out.
     spoke: Instant,
@@ -164,14 +164,14 @@ impl TeamPort {
         self.stage == Stage::Apart && now >= self.retry
     }
 
-    /// The connection is open.
+    /// Handles an opened connection.
     pub fn connected(&mut self, now: Instant) {
         self.forget();
         self.stage = Stage::Greeted;
         self.deadline = Some(now + REPLY_TIME);
     }
 
-    /// The connection was closed, or could not be opened.
+    /// Handles a connection that was closed, or could not be opened.
     pub fn lost(&mut self, now: Instant) {
         self.give_up(Trouble::Closed, now);
     }
@@ -210,7 +210,7 @@ impl TeamPort {
         }
     }
 
-    /// The time is `now`.
+    /// Handles deadlines at `now`.
     pub fn tick(&mut self, now: Instant) {
         if self.deadline.is_some_and(|deadline| now >= deadline) {
             self.give_up(Trouble::NoAnswer, now);

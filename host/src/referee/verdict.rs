@@ -37,7 +37,7 @@ pub struct Counts {
 /// Result of a packet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It was followed.
+    /// It was taken.
     Taken(Taken),
     /// It is out of order.
     Doubted {

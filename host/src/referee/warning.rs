@@ -54,7 +54,7 @@ pub enum Warning {
         source: SourceKey,
         /// Duration of the silence.
         since: Duration,
-        /// What robots do meanwhile.
+        /// The configured behaviour of robots meanwhile.
         robots: OnSilence,
     },
     /// A source is excluded by `--referee-source`.

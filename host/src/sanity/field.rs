@@ -11,9 +11,9 @@ use crate::Host;
 /// More robots of a team than its league allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyRobots {
-    /// The team.
+    /// Colour of the team.
     pub team: Colour,
-    /// It is ours.
+    /// Whether the team is ours.
     pub ours: bool,
     /// Number of robots inside the lines.
     pub on_field: usize,

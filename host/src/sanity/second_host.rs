@@ -13,12 +13,12 @@ use crate::radio::{RadioWarning, Why};
 pub enum SecondHost {
     /// Its frames reach us: it has this boot epoch.
     Received {
-        /// Its epoch.
+        /// Its boot epoch.
         epoch: u32,
     },
     /// A robot that followed us follows it now.
     TookOver {
-        /// Which robot.
+        /// The robot that changed its host.
         robot: RobotId,
         /// The other host's epoch, later than ours.
         epoch: u32,

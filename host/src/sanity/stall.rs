@@ -92,7 +92,7 @@ pub(super) struct Stalls {
 /// Times of the newest frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct Last {
-    /// The newest camera frame.
+    /// Arrival of the newest camera frame.
     frame: Option<Instant>,
     /// The newest frame of any robot.
     robot: Option<Instant>,

@@ -11,7 +11,7 @@ use rules::{Colour, League};
 use super::*;
 use crate::{HostSettings, Input};
 
-/// Our epoch.
+/// Boot epoch of our host.
 const EPOCH: u32 = 70;
 
 fn id() -> RobotId {

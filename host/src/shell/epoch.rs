@@ -18,7 +18,7 @@ const FILE_LEN_MAX: u64 = 16;
 /// An epoch, with a warning if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Epoch {
-    /// The epoch.
+    /// The epoch, seconds since 1970 or larger.
     pub epoch: u32,
     /// It could not be stored, or the clock is behind.
     pub warning: Option<String>,

@@ -8,7 +8,7 @@ use std::io;
 pub enum LinkError {
     /// `udp://` names a host that cannot be resolved.
     UnknownHost {
-        /// As given.
+        /// The address as configured.
         address: String,
         /// The system's error.
         error: io::Error,
@@ -22,19 +22,19 @@ pub enum LinkError {
     },
     /// The serial line is not there.
     NoSuchLine {
-        /// As given.
+        /// The device as configured.
         device: String,
-        /// Lines that exist.
+        /// Names of the serial lines that exist.
         present: Vec<String>,
     },
     /// This user has no permission for the serial line.
     NotAllowed {
-        /// As given.
+        /// The device as configured.
         device: String,
     },
     /// The serial line does not support this rate, or failed.
     Line {
-        /// As given.
+        /// The device as configured.
         device: String,
         /// The operation that failed.
         doing: String,
@@ -43,7 +43,7 @@ pub enum LinkError {
     },
     /// A virtual robot could not be started.
     Start {
-        /// The program.
+        /// Path of the program.
         program: String,
         /// The system's error.
         error: io::Error,

@@ -12,7 +12,7 @@ const KEY_FILE_LEN_MAX: u64 = 4096;
 /// A key that was read, with a warning about its file if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeyFile {
-    /// The key.
+    /// The key read.
     pub key: TeamKey,
     /// Other users may read the file, or the key is the public one of zeros.
     pub warning: Option<String>,
@@ -23,14 +23,14 @@ pub struct KeyFile {
 pub enum KeyError {
     /// The file cannot be read.
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// The system's error.
         error: std::io::Error,
     },
     /// It does not hold 32 hexadecimal digits.
     Malformed {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Its content by kind; never its text.
         what: String,

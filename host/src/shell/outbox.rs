@@ -42,15 +42,15 @@ pub struct Outbox {
 /// Counts of frames put into an outbox, and of those dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutCounts {
-    /// Snapshots put in.
+    /// Snapshots added.
     pub snapshots: u64,
     /// Of these, replaced by newer ones before their sending started.
     pub superseded: u64,
     /// Side frames replaced by newer ones, or dropped because too many waited.
     pub side_dropped: u64,
-    /// Frames put in.
+    /// Frames added.
     pub frames: u64,
-    /// Their bytes.
+    /// Bytes of the frames added.
     pub bytes: u64,
 }
 
@@ -127,7 +127,7 @@ impl Outbox {
         std::mem::take(&mut self.discard)
     }
 
-    /// Frames that wait.
+    /// Number of frames that wait.
     pub fn waiting(&self) -> usize {
         self.going.len() + self.next.as_ref().map_or(0, Vec::len) + self.side.len()
     }

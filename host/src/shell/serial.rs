@@ -24,7 +24,7 @@ const LEAD: Duration = Duration::from_millis(3);
 /// Interval of reports that the line takes less than its rate.
 const STUCK_EVERY: Duration = Duration::from_secs(10);
 
-/// A serial line.
+/// A base station at a serial line.
 #[derive(Debug)]
 pub struct SerialLink {
     device: String,

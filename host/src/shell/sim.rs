@@ -37,15 +37,15 @@ const LOOK: Duration = Duration::from_millis(100);
 pub struct SimSettings {
     /// The program that has the verb `virtual-robot`; usually this one.
     pub program: PathBuf,
-    /// Our colour.
+    /// The colour our robots play with.
     pub colour: Colour,
-    /// The league played.
+    /// The league, which sets field and rules.
     pub league: League,
-    /// Which robots.
+    /// Numbers of the robots to start.
     pub robots: Vec<RobotId>,
     /// Where the simulator takes our robots' commands: port 10301 for blue, 10302 for yellow.
     pub simulator: SocketAddr,
-    /// The team's key.
+    /// The team's key, sent to each process.
     pub key: TeamKey,
     /// More arguments for each robot's command line: library, settings.
     pub more: Vec<OsString>,
@@ -75,7 +75,7 @@ struct Robot {
 }
 
 impl SimLink {
-    /// Starts all robots.
+    /// Starts the processes of all robots.
     pub fn start(settings: SimSettings) -> Result<Self, LinkError> {
         let system = |error| LinkError::Socket { doing: "open a socket for virtual robots".into(), error };
         let socket = UdpSocket::bind("127.0.0.1:0").map_err(system)?;

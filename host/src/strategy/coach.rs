@@ -59,7 +59,7 @@ struct Settled {
     /// Where the ball is, or will be.
     from: Point<Attack>,
     since: Instant,
-    /// With their worth.
+    /// The places with their values, 0–1.
     places: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX>,
 }
 
@@ -90,7 +90,7 @@ pub struct Coach {
     gave_up: bool,
     /// How near to its place the ball has come in our placement, m, and when.
     placing: Option<(f32, Instant)>,
-    /// The ball is theirs.
+    /// Whether opponents have the ball.
     attacked: bool,
     /// The pass of our restart that is under way.
     pass: Option<Pass>,

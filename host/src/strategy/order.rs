@@ -45,7 +45,7 @@ pub enum Role {
     Support(u8),
     /// Stands between an opponent and our goal.
     Marker(u8),
-    /// Blocks their restart.
+    /// Stands on the line of their restart.
     Wall,
     /// One of too many on the field: waits in a substitution area.
     Leaving,
@@ -88,7 +88,7 @@ pub enum Why {
     },
     /// Its part in the defence against threats.
     Threat(Guards),
-    /// The likeliest pass found.
+    /// The likeliest pass found, with its probabilities.
     Chances {
         /// P(receive).
         receive: f32,
@@ -124,13 +124,13 @@ pub enum Why {
     OpenPlay,
     /// It touched the ball last at our restart.
     DoubleTouch,
-    /// No ball is seen.
+    /// The ball's place is unknown.
     NoBall,
     /// The team is the one that only stands still.
     Idle,
     /// The referee allows us fewer robots.
     TooMany {
-        /// Number allowed.
+        /// Number of robots allowed.
         allowed: usize,
     },
 }
@@ -179,9 +179,9 @@ pub enum Task {
     },
     /// Stand where the ball would cross this line.
     Block {
-        /// One end.
+        /// One end of the line.
         from: Point<Attack>,
-        /// The other.
+        /// The other end of the line.
         to: Point<Attack>,
     },
     /// Bring the ball to a place.

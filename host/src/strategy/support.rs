@@ -172,7 +172,7 @@ fn flat(distance: f32, arrival: f32) -> KickOrder {
 pub const SHOT: KickOrder = KickOrder::Flat(620);
 
 const GRID: (usize, usize) = (12, 7);
-/// Distance between teammates, m.
+/// Least distance between teammates, m.
 const APART: f32 = 1.2;
 /// Room above this gives no further value, m.
 const ROOM_GOOD: f32 = 0.7;

@@ -30,7 +30,7 @@ pub struct Tactics {
 }
 
 impl Tactics {
-    /// None of them.
+    /// No part.
     pub const NONE: Self = Self {
         threats: false,
         second_level: false,
@@ -39,7 +39,7 @@ impl Tactics {
         attack: false,
         bridge: false,
     };
-    /// All of them.
+    /// All parts.
     pub const ALL: Self = Self {
         threats: true,
         second_level: true,

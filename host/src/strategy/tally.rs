@@ -17,15 +17,15 @@ pub struct Sent {
     pub passer: RobotId,
     /// The robot that shall receive it.
     pub receiver: RobotId,
-    /// x0.
+    /// x0: place of the ball at the kick.
     pub from: Point<Attack>,
-    /// x*.
+    /// x*: place of reception.
     pub to: Point<Attack>,
-    /// T_b, s.
+    /// T_b: predicted time of the ball from x0 to x*, s.
     pub flight: f32,
-    /// Through the air.
+    /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive).
+    /// P(receive) as rated.
     pub likely: f32,
     /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
     pub planned: Option<bool>,
@@ -34,7 +34,7 @@ pub struct Sent {
 /// Free kicks by the Coerce and Attack Planner: the second paper's Table 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CapTally {
-    /// Passes that left.
+    /// Number of passes that left.
     pub attempts: u32,
     /// … that the receiver, or another teammate, received.
     pub successes: u32,
@@ -44,7 +44,7 @@ pub struct CapTally {
     pub reuse_successes: u32,
 }
 
-/// A team's counts.
+/// Counts of one team.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlayTally {
     /// Passes of restarts.

@@ -58,7 +58,7 @@ impl Flip {
 /// The ball, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Its place.
+    /// Its place on the ground.
     pub position: Point<Attack>,
     /// Its velocity, m/s.
     pub velocity: Vector<Attack>,
@@ -108,14 +108,14 @@ pub struct Game {
     pub defending: GoalEnd,
     /// Our keeper's number.
     pub keeper: RobotId,
-    /// Theirs.
+    /// Their keeper's number.
     pub their_keeper: RobotId,
 }
 
 /// All inputs of the strategy's decisions.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The time, host's clock.
+    /// The time on the host's clock.
     pub now: Instant,
     /// The phase of the game.
     pub phase: Phase<Side>,
@@ -131,7 +131,7 @@ pub struct View {
     pub uncommanded: usize,
     /// Number of those that have never answered since this start of the host.
     pub strangers: usize,
-    /// Theirs, by id.
+    /// Their robots, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
     /// Our keeper's number, by the referee.
     pub keeper: RobotId,
@@ -145,7 +145,7 @@ pub struct View {
     pub in_play: RobotSet,
     /// The next pass of that case, where the bridge between the papers is played.
     pub proposal: Option<CasePass>,
-    /// The field's lines.
+    /// Dimensions of the field.
     pub field: FieldSpec,
 }
 

@@ -10,9 +10,9 @@ use geometry::{Angle, Field, Point, Vector, math};
 /// Process noise of a velocity: white acceleration of this density, m²/s³ (or rad²/s³).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Freedom {
-    /// While predictions fit.
+    /// Density while predictions fit.
     pub(super) calm: f32,
-    /// When they lag behind.
+    /// Density when predictions lag behind.
     pub(super) changing: f32,
 }
 
@@ -56,9 +56,9 @@ impl Spread {
 /// A point and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
-    /// m.
+    /// Place, m.
     pub(super) position: Point<Field>,
-    /// m/s.
+    /// Velocity, m/s.
     pub(super) velocity: Vector<Field>,
     spread: Spread,
     /// Innovations in units of their deviation, averaged over the last few.
@@ -122,7 +122,7 @@ impl Plane {
 pub(super) struct Turning {
     /// The heading.
     pub(super) heading: Angle,
-    /// rad/s, counter-clockwise.
+    /// Angular velocity, rad/s, counter-clockwise.
     pub(super) rate: f32,
     spread: Spread,
     lag: f32,

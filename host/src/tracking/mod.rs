@@ -128,12 +128,12 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// All packets.
+    /// Number of all packets.
     pub fn packets(&self) -> u64 {
         self.no_image + self.images()
     }
 
-    /// All camera frames.
+    /// Number of all camera frames.
     pub fn images(&self) -> u64 {
         self.newest + self.reordered + self.repeated + self.late + self.nonsense + self.foreign
     }
@@ -158,9 +158,9 @@ impl Counts {
 /// Counts of the objects in camera frames, by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Objects {
-    /// Robots.
+    /// Counts of robots.
     pub robots: RobotCounts,
-    /// Balls.
+    /// Counts of balls.
     pub balls: BallCounts,
     /// Objects without a finite place or a shell number, or too many for one camera frame.
     pub nonsense: u64,

@@ -26,7 +26,7 @@ pub struct RobotCounts {
     pub wrong_name: u64,
 }
 
-/// All robots.
+/// Tracks of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Robots {
     believed: [[Option<Track>; RobotId::COUNT]; 2],
@@ -229,12 +229,12 @@ impl Robots {
     }
 }
 
-/// From µs to s.
+/// Converts µs to s.
 pub(super) fn seconds(micros: Captured) -> f32 {
     micros as f32 * 1e-6
 }
 
-/// From s to µs.
+/// Converts s to µs.
 pub(super) const fn micros(seconds: f32) -> Captured {
     (seconds * 1e6) as Captured
 }

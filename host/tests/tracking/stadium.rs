@@ -17,7 +17,7 @@ pub(crate) const RATE: f64 = 60.0;
 /// The ground truth: m, rad.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Truth {
-    /// x, y, z.
+    /// Balls: x, y, z, m.
     pub(crate) balls: Vec<[f64; 3]>,
     pub(crate) robots: Vec<(Who, [f64; 3])>,
 }

@@ -4,7 +4,7 @@ use super::*;
 
 const S: u64 = 1_000_000;
 
-/// What the controller sends.
+/// A reply of the controller, as bytes.
 fn from_controller(code: Option<StatusCode>, reason: Option<&str>, token: &str) -> Vec<u8> {
     let reply = ControllerReply {
         status_code: code.map(|code| code as i32),

@@ -31,13 +31,13 @@ pub(super) struct Intent {
 
 #[derive(Clone, Copy, Debug)]
 enum What {
-    /// A shot, and P(goal).
+    /// A shot at a point of the goal line, with its P(goal).
     Shot { at: Point<Attack>, goal: f32 },
     /// A pass to where it is likeliest to become a goal.
     Pass { receiver: RobotId, rating: Rating },
     /// The pass of the case that is played, and the distance from its place.
     OfCase { pass: CasePass, rating: Rating, moved: f32 },
-    /// None of these.
+    /// Neither: a case is played.
     Case,
 }
 

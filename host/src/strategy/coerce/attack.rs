@@ -13,9 +13,9 @@ use super::grid::{CELLS, Cell};
 /// What a pass to a place is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
-    /// P(receive | x).
+    /// P(receive | x), 0–1.
     pub receive: f32,
-    /// P(goal | receive, x).
+    /// P(goal | receive, x), 0–1.
     pub goal: f32,
     /// How the ball is kicked.
     pub kick: KickOrder,
@@ -54,11 +54,11 @@ pub trait PassValue {
 /// A pass to a receiver, and a shot from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttackPlan {
-    /// The receiver.
+    /// The robot that receives.
     pub receiver: RobotId,
     /// The best cell.
     pub cell: Cell,
-    /// The place in it.
+    /// The best place in that cell.
     pub at: Point<Attack>,
     /// Its value.
     pub worth: Worth,
@@ -72,9 +72,9 @@ pub type CellValues = [f32; CELLS];
 /// The least values of an attack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Least {
-    /// P(receive | x).
+    /// Least P(receive | x).
     pub receive: f32,
-    /// P(goal | x).
+    /// Least P(goal | x).
     pub value: f32,
 }
 

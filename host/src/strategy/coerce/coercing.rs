@@ -24,9 +24,9 @@ pub struct Coercer {
     pub robot: RobotId,
     /// The opponent that follows it.
     pub marker: RobotId,
-    /// Where it goes.
+    /// Its cell of the grid.
     pub cell: Cell,
-    /// The middle of that.
+    /// The middle of that cell.
     pub at: Point<Attack>,
     /// Where the opponent is expected then.
     pub expected: Point<Attack>,
@@ -44,7 +44,7 @@ pub struct Coercer {
 pub struct CoercePlan {
     /// The coercers with their places.
     pub coercers: heapless::Vec<Coercer, ROBOTS_MAX>,
-    /// By [`Cell::index`].
+    /// Interference likelihood of each cell, by [`Cell::index`].
     pub first: [f32; CELLS],
 }
 
@@ -69,7 +69,7 @@ pub fn pairs(
         if let Some(robot) = marker.follows.filter(|robot| field_players.contains(robot))
             && pairs.iter().all(|pair| pair.robot != robot)
         {
-            // As many as robots.
+            // At most one per robot.
             let _ = pairs.push(Pair { marker: *marker, robot });
         }
     }
@@ -145,7 +145,7 @@ pub fn coerce(
             }
         }
         if let Some((_, _, coercer)) = best {
-            // One a robot.
+            // At most one per robot.
             let _ = plan.coercers.push(coercer);
         }
     }

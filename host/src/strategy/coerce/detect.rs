@@ -12,7 +12,7 @@ use super::tactics::{Likelihoods, Models, Situation, Tactic, detected};
 pub struct Detected {
     /// Its number.
     pub opponent: RobotId,
-    /// Where it is.
+    /// Its place.
     pub at: Point<Attack>,
     /// The tactic that explains its places best; `None` if none does: it counts as one that follows the ball.
     pub tactic: Option<Tactic>,
@@ -53,7 +53,7 @@ impl Detector {
         Self { models, seen: None, known: [None; ROBOTS_MAX] }
     }
 
-    /// The models' numbers.
+    /// The models' parameters.
     pub fn models(&self) -> &Models {
         &self.models
     }

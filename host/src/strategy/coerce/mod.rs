@@ -53,7 +53,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// For a league's rules.
+    /// The settings for a league's rules.
     pub fn of(league: League) -> Self {
         let free_kick = league.limits().map_or(FREE_KICK_TIME, |limits| limits.free_kick_time);
         Self { coerce_time: COERCE_SHARE * free_kick, ..Self::default() }

@@ -59,7 +59,7 @@ pub enum Followed {
     ReceiverMarked {
         /// The marker.
         opponent: RobotId,
-        /// Its distance, m.
+        /// Its distance to the receiver, m.
         near: f32,
     },
 }
@@ -67,7 +67,7 @@ pub enum Followed {
 /// The attack that is played (steps 6 and 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinalAttack {
-    /// Pass and shot.
+    /// The pass and the shot after it.
     pub plan: AttackPlan,
     /// The reaction observed.
     pub followed: Followed,
@@ -82,7 +82,7 @@ pub enum Progress {
     Idle,
     /// Robots go to the places of the coerce plan (step 4).
     Coercing {
-        /// Number that have arrived.
+        /// Number of coercers that have arrived.
         arrived: usize,
         /// Number of coercers.
         of: usize,
@@ -277,7 +277,7 @@ impl Planner {
         Progress::Over(End::NoAttack)
     }
 
-    /// Step 6.
+    /// Step 6: the final attack.
     fn attack_now(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Option<FinalAttack> {
         let followed = self.verify(view, value, plan);
         let coerced = |id: RobotId| plan.coercer(id).is_some();
@@ -297,7 +297,7 @@ impl Planner {
         attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
     }
 
-    /// Step 5.
+    /// Step 5: whether the opponents reacted as expected.
     fn verify(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Followed {
         let mut worst: Option<(RobotId, f32)> = None;
         for coercer in &plan.coerce.coercers {

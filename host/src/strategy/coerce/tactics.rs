@@ -29,7 +29,7 @@ impl Tactic {
     /// All, as [`Likelihoods`] orders them.
     pub const ALL: [Self; 4] = [Self::Goalkeeper, Self::PrimaryDefence, Self::Mark, Self::Wall];
 
-    /// Its English name.
+    /// Its English name, for figures and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Goalkeeper => "goalkeeper",
@@ -139,7 +139,7 @@ impl<'v> Situation<'v> {
         bell(at.distance(self.ball) - (BALL_DISTANCE + ROBOT_RADIUS + 0.02), self.models.keeps)
     }
 
-    /// The models' numbers.
+    /// The models' parameters.
     pub fn models(&self) -> &Models {
         &self.models
     }
@@ -156,7 +156,7 @@ pub fn detected(likelihoods: &Likelihoods, models: &Models) -> Option<Tactic> {
     best.map(|(tactic, _)| tactic)
 }
 
-/// exp(−x²/2σ²).
+/// Bell curve exp(−x²/2σ²).
 fn bell(off: f32, spread: f32) -> f32 {
     let x = off / spread;
     math::exp(-0.5 * x * x)

@@ -22,7 +22,7 @@ use super::{Orders, defence, restart, roles};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Team {
-    /// Our own coach.
+    /// Our own play: cases and the coach.
     #[default]
     Ours,
     /// The nearest runs for the ball and shoots or clears, a second backs it up.

@@ -90,7 +90,7 @@ pub struct PassAhead {
 /// The present moves of both robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moves {
-    /// The passer.
+    /// The passer's present move.
     pub passer: PasserMove,
     /// Whether the receiver goes to x_r.
     pub receiver_goes: bool,

@@ -77,7 +77,7 @@ impl PassConstants {
     }
 }
 
-/// Division B of 2026.
+/// Constants for division B of 2026.
 const TODAY: PassConstants = PassConstants {
     time_width: 0.1,
     distance_width: 0.15,
@@ -106,7 +106,7 @@ const TODAY: PassConstants = PassConstants {
 /// What any robot of the league is taken to drive: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its
 /// reasons).
 const ROBOT: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
-/// m/s (rules 2026, offences).
+/// Ball speed limit, m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;
 /// Share of the limit that is ordered of a kicker.
 const KICK_SHARE: f32 = 0.96;

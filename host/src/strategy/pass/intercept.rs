@@ -17,7 +17,7 @@ use super::reach::Mover;
 pub struct Opponent {
     /// Its number.
     pub id: RobotId,
-    /// How it moves.
+    /// Its motion and limits.
     pub mover: Mover,
 }
 
@@ -35,9 +35,9 @@ pub struct Interceptor {
 /// The path of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// The ball's place.
+    /// Place of the ball at the kick.
     pub from: Point<Attack>,
-    /// Direction, of length 1.
+    /// Direction of the pass, of length 1.
     pub along: Vector<Attack>,
     /// Length up to where it is received, m.
     pub length: f32,

@@ -14,14 +14,14 @@ use super::constants::PassConstants;
 /// A kick of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PassKick {
-    /// Along the ground.
+    /// A kick along the ground.
     Flat {
-        /// m/s.
+        /// Speed at the kick, m/s.
         speed: f32,
     },
-    /// Through the air.
+    /// A kick through the air.
     Chip {
-        /// In three dimensions, m/s.
+        /// Speed at the kick in three dimensions, m/s.
         speed: f32,
         /// Distance to its first touch-down, m.
         lands: f32,
@@ -46,7 +46,7 @@ impl PassKick {
 /// A ball on the ground, kicked with some speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatKick {
-    /// m/s.
+    /// Speed at the kick, m/s.
     pub speed: f32,
     slide: f32,
     roll: f32,
@@ -57,7 +57,7 @@ pub struct FlatKick {
 }
 
 impl FlatKick {
-    /// Kicked with `speed`.
+    /// A kick with `speed`, m/s.
     #[inline]
     pub fn new(speed: f32, ball: &BallModel) -> Self {
         let roll_speed = speed * ball.switch;
@@ -94,13 +94,13 @@ impl FlatKick {
 /// A chip that starts to roll at some distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipKick {
-    /// In three dimensions, m/s.
+    /// Speed at the kick in three dimensions, m/s.
     pub speed: f32,
     /// Along the ground until it first comes down, m/s.
     pub along: f32,
     /// Where it first comes down, m, and when, s.
     pub lands: f32,
-    /// See `lands`.
+    /// Time of the first touch-down, s.
     pub lands_at: f32,
     /// Between these distances it flies over robots, m.
     pub over: (f32, f32),

@@ -8,7 +8,7 @@ use super::super::view::ROBOTS_MAX;
 /// A goal opening on the line x = `x`, between ±`half`, and the size of bodies that can block a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mouth {
-    /// m.
+    /// Position of the goal line, m.
     pub x: f32,
     /// Half its width less the ball's radius, m.
     pub half: f32,
@@ -16,7 +16,7 @@ pub struct Mouth {
     pub body: f32,
 }
 
-/// The widest gap.
+/// The widest gap of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenAngle {
     /// rad; 0 where all is blocked, or the place is not in front of the goal.

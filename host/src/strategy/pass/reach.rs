@@ -12,16 +12,16 @@ use motion::trajectory::FreeLimits;
 pub struct Mover {
     /// Its place.
     pub position: Point<Attack>,
-    /// m/s.
+    /// Its velocity, m/s.
     pub velocity: Vector<Attack>,
     /// Its speed, m/s.
     running: f32,
-    /// m/s, > 0.
+    /// Speed limit, m/s, > 0.
     speed: f32,
     /// m/s², > 0, and 1 over it.
     acceleration: f32,
     per_acceleration: f32,
-    /// 1 / speed.
+    /// 1 / speed, s/m.
     per_speed: f32,
 }
 

@@ -19,7 +19,7 @@ use super::reach::Mover;
 /// Probabilities of a pass to a place, with their factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
-    /// Where it is received.
+    /// Where the pass is received.
     pub at: Point<Attack>,
     /// The kick that is likelier to end in a goal.
     pub kick: PassKick,
@@ -39,7 +39,7 @@ pub struct Rating {
     pub interceptor: Option<Interceptor>,
     /// The most restrictive obstacle of the place, with its margin, m.
     pub spoiler: (Spoiler, f32),
-    /// The shot that follows.
+    /// The shot after the reception.
     pub shot: ShotFrom,
 }
 

@@ -68,7 +68,7 @@ impl Search {
         best
     }
 
-    /// −1 to 1.
+    /// Uniform in −1 to 1.
     fn uniform(&mut self) -> f32 {
         (self.random.next_u32() >> 8) as f32 * (1.0 / 8_388_608.0) - 1.0
     }
@@ -134,7 +134,7 @@ impl Searches {
             let rating = self.each[mate.id.index()].step(&scene, samples);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
-            // One a robot.
+            // At most one per robot.
             let _ = offers.insert(place, Offer { receiver: mate.id, rating });
         }
         offers

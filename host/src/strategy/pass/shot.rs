@@ -18,12 +18,12 @@ pub struct Shot {
     pub angle: f32,
     /// Time until it is there, s.
     pub time: f32,
-    /// P(c1'), P(c2'), P(c4').
+    /// Factors P(c1'), P(c2'), P(c4').
     pub factors: [f32; 3],
 }
 
 impl Shot {
-    /// P(goal).
+    /// P(goal), the product of the factors.
     pub fn value(&self) -> f32 {
         self.factors.iter().product()
     }

@@ -27,7 +27,7 @@ pub struct Fates {
 /// Passes whose P(receive) lay in one tenth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
-    /// Passes kicked.
+    /// Number of passes kicked.
     pub passes: u32,
     /// Sum of their P(receive).
     pub predicted: f64,
@@ -38,19 +38,19 @@ pub struct Bin {
 /// All passes of a team.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PassTally {
-    /// Along the ground.
+    /// Passes along the ground.
     pub flat: Fates,
-    /// Through the air.
+    /// Passes through the air.
     pub chip: Fates,
     /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in none.
     pub calibration: [Bin; BINS],
 }
 
-/// Tenths.
+/// Number of calibration bins: tenths of P(receive).
 pub const BINS: usize = 10;
 
 impl Fates {
-    /// All of them.
+    /// Number of all passes.
     pub fn ordered(&self) -> u32 {
         self.kicked() + self.no_kick
     }

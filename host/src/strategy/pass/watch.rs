@@ -22,13 +22,13 @@ pub struct Ordered {
     pub passer: RobotId,
     /// The robot that shall receive it.
     pub receiver: RobotId,
-    /// x0.
+    /// x0: place of the ball at the order.
     pub from: Point<Field>,
-    /// x*.
+    /// x*: place of reception.
     pub to: Point<Field>,
-    /// T_b, s.
+    /// T_b: predicted time of the ball from x0 to x*, s.
     pub flight: f32,
-    /// Through the air.
+    /// Whether it is a chip.
     pub chip: bool,
     /// P(receive), as rated.
     pub likely: f32,
@@ -72,7 +72,7 @@ pub enum Verdict {
     },
     /// It left the field before any robot touched it.
     Out {
-        /// The place.
+        /// Where it left the field.
         at: Point<Field>,
     },
     /// The ball never left the passer.
@@ -112,7 +112,7 @@ struct Flight {
 }
 
 impl PassWatch {
-    /// Starts with the order.
+    /// A watch that starts with the order.
     pub fn new(ordered: Ordered) -> Self {
         Self { ordered, flight: None }
     }

@@ -16,7 +16,7 @@ pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
 pub struct Opening {
     /// That place.
     pub from: Point<Attack>,
-    /// Direction of the bisector.
+    /// Direction of the goal's bisector.
     pub middle: Angle,
     /// Half the angle between the posts, rad.
     pub half: f32,
@@ -25,9 +25,9 @@ pub struct Opening {
 /// A range of directions, rad from the opening's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Its right end.
+    /// Its right end, rad.
     pub right: f32,
-    /// Its left end.
+    /// Its left end, rad.
     pub left: f32,
 }
 

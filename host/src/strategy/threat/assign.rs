@@ -90,7 +90,7 @@ struct Giving<'v> {
 impl Giving<'_> {
     fn give(&mut self, robot: RobotId, at: Point<Attack>, guards: Guards) {
         let at = if robot == self.view.keeper { at } else { super::lawful(self.view, at, self.settings) };
-        // One a robot.
+        // At most one per robot.
         let _ = self.given.push(Assignment { robot, at, guards });
     }
 
@@ -226,7 +226,7 @@ impl Giving<'_> {
             let Danger { open, time_to_shoot, .. } = position.danger;
             let guards = Guards::SecondLevel { opponent, blocks, rank, open, time_to_shoot };
             self.give(robot, place.unwrap_or(position.at), guards);
-            // One a robot.
+            // At most one per robot.
             let _ = kept.push(Kept { robot, opponent, blocks });
         }
         if let Some(spare) = spare {

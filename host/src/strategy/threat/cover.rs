@@ -32,13 +32,13 @@ pub enum Case {
 /// The earlier decision, for hysteresis, so that small changes do not reverse it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Before {
-    /// The placement.
+    /// The earlier placement.
     pub case: Case,
     /// Whether the post at +y counted as the nearer one.
     pub upper_post: bool,
 }
 
-/// The placement.
+/// Places of keeper and primary defenders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
     /// Its case.

@@ -19,7 +19,7 @@ use super::{Memory, Settings, lawful};
 pub struct Danger {
     /// The opponent.
     pub opponent: RobotId,
-    /// Where it is.
+    /// Its place.
     pub at: Point<Attack>,
     /// Whether it is near to our side.
     pub near: bool,
@@ -45,7 +45,7 @@ pub enum Blocks {
 /// A position to be given to a defender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Its opponent.
+    /// The second-level threat.
     pub danger: Danger,
     /// Its shot, or the pass to it.
     pub blocks: Blocks,
@@ -76,7 +76,7 @@ pub fn dangers(
         if threat.receiver() == Some(robot.id) || holder == Some(robot.id) || keeper_at_home {
             continue;
         }
-        // As many as robots.
+        // At most one per robot.
         let _ = dangers.push(danger(view, threat.at, cover, robot, is_near, settings));
     }
     memory.near = near;

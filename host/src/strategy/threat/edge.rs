@@ -17,7 +17,7 @@ pub struct Edge {
     ahead: f32,
     /// From the axis to the centres of the round corners.
     beside: f32,
-    /// Of the corners.
+    /// Radius of the corners, m.
     radius: f32,
 }
 
@@ -108,7 +108,7 @@ impl Edge {
     }
 }
 
-/// Beyond any field, m.
+/// A distance beyond any field, m.
 const FAR: f32 = 32.0;
 /// 32 m halved this often: down to 1 µm.
 const HALVINGS: u32 = 25;

@@ -30,7 +30,7 @@ pub(super) enum Air {
     Hopping(Flight),
 }
 
-/// The last kick.
+/// The last kick of the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kicked {
     pub(super) by: Option<Who>,

@@ -40,7 +40,7 @@ pub struct BallCounts {
     pub bounces: u64,
 }
 
-/// All balls.
+/// Tracks of all balls.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balls {
     tracks: [Option<Track>; TRACKS_MAX],

@@ -37,7 +37,7 @@ pub(super) struct Turn {
     pub(super) gap: f32,
 }
 
-/// A ball.
+/// Track of one ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
     pub(super) plane: Plane,
