@@ -141,7 +141,7 @@ fn noise(packets: &[(Instant, WrapperPacket)]) {
             }
         }
         sizes.sort_by(f64::total_cmp);
-        // A normal's median size is 0.6745 of its deviation.
+        // A normal variable's median absolute value is 0.6745 of its deviation.
         sizes.get(sizes.len() / 2).map_or(0.0, |middle| middle / 0.6745 / 6.0_f64.sqrt())
     };
     println!(

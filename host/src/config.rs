@@ -60,7 +60,7 @@ pub struct TeamSettings {
     pub vision: Option<SocketAddr>,
     /// Multicast group and port of the referee.
     pub referee: Option<SocketAddr>,
-    /// The only referee that is obeyed: see [`SourcePin`].
+    /// The only referee that robots obey: see [`SourcePin`].
     pub referee_source: Option<String>,
     /// `halt` or `go-on`: see [`OnSilence`].
     pub referee_silence: Option<String>,
@@ -135,14 +135,14 @@ pub struct TeamConfig {
     pub game_controller: Option<SocketAddr>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
-    /// Deceleration of a rolling ball, m/s²; none: vision's.
+    /// Deceleration of a rolling ball, m/s²; none: from vision.
     pub roll: Option<f32>,
 }
 
 /// Links to the robots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RobotLink {
-    /// Brains of our own drive a simulator on that host.
+    /// Our virtual robots, in a simulator on that host.
     Simulator(String),
     /// A base station, or robots' own network, at this address: a datagram is a frame.
     Udp(String),
@@ -155,7 +155,7 @@ pub enum RobotLink {
     },
 }
 
-/// What is wrong with a team's settings, and what would be right.
+/// An error in a team's settings, with its remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfigError {
     /// The key or flag.
@@ -269,7 +269,7 @@ impl TeamSettings {
     }
 }
 
-/// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
+/// Range of a kicker's gain (ball speed over speed ordered), as [`crate::learned`] bounds it.
 pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
 /// Deceleration of a rolling ball on a field surface, m/s²: as [`crate::learned`] bounds it.
 const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
@@ -327,8 +327,8 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75
-/// for one of eleven (80).
+/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
+/// 75 for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `field_geometry`: field geometry from vision. Geometry packets, merged.
+//! `field_geometry`: field geometry from vision, merged from its geometry packets.
 //!
 //! Simulators send one camera's calibration a packet (trap 2), leave the defence area out, send lines in any
 //! order and dummies for a camera's rotation (trap 8). The defence area is taken from its own numbers, else
@@ -18,8 +18,8 @@ use ssl::vision::{GeometryData, GeometryFieldSize};
 pub use area::AreaSource;
 pub use camera::Camera;
 
-/// Cameras have numbers below this, twice as many as any field has: a camera of another number is invented,
-/// and would take the place of a genuine one.
+/// Cameras have numbers below this, twice as many as any field has: a larger number is not genuine, and would
+/// take memory.
 pub const CAMERAS_MAX: u32 = 16;
 
 /// Width of the goal substitution area that the game controller (2026) assumes where vision does not send it,
@@ -95,17 +95,17 @@ impl VisionGeometry {
         self.chip
     }
 
-    /// The ball's radius, m: vision's, else the rules'.
+    /// The ball's radius, m: from vision, else from the rules.
     pub fn ball_radius(&self) -> f32 {
         self.ball_radius.unwrap_or(limits::BALL_RADIUS)
     }
 
-    /// The largest radius of a robot, m: vision's, else the rules'.
+    /// The largest radius of a robot, m: from vision, else from the rules.
     pub fn robot_radius(&self) -> f32 {
         self.robot_radius.unwrap_or(limits::ROBOT_RADIUS)
     }
 
-    /// Takes a geometry packet. A field that cannot be refuses all of it.
+    /// Takes a geometry packet. An implausible field refuses the whole packet.
     pub fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
         let field = field_of(&data.field).map_err(GeometryFault::Field)?;
         let mut news = News { field: self.field != Some(field), ..News::default() };

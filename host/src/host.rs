@@ -49,7 +49,7 @@ pub struct HostSettings {
     pub defending: GoalEnd,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
-    /// Deceleration of a rolling ball, m/s²; none: vision's, or the league's usual.
+    /// Deceleration of a rolling ball, m/s²; none: from vision, or the league's default.
     pub roll: Option<f32>,
     /// It uses the learned gains and deceleration; it learns in either case.
     pub learns: bool,
@@ -118,7 +118,7 @@ pub struct Host {
     books: Bookkeeper,
     requests: Requests,
     learned: Learned,
-    /// The deceleration of a rolling ball by which it plays, where that is not vision's.
+    /// The deceleration of a rolling ball that it uses, where that is not from vision.
     roll: Option<f32>,
 }
 
@@ -204,7 +204,7 @@ impl Host {
         self.radio.poll_packet()
     }
 
-    /// The next request to the game controller, for its port for teams.
+    /// The next request to send to the game controller's port for teams.
     pub fn poll_request(&mut self) -> Option<Request> {
         self.requests.poll()
     }
@@ -389,7 +389,7 @@ impl Host {
         playing
     }
 
-    /// The next pass of the case that our robots play, where the bridge is played.
+    /// The next pass of the case that our robots play, where the tactics include the bridge.
     fn proposed(&self, now: Instant, flip: Flip) -> Option<CasePass> {
         if !self.settings.tactics.bridge {
             return None;

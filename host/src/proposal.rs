@@ -10,7 +10,7 @@ use rules::League;
 use crate::strategy::Flip;
 use crate::strategy::pass::bridge::CasePass;
 
-/// The cases that come with a league; robots that carry others are not understood.
+/// The cases that come with a league; cases of robots with another case base cannot be looked up.
 pub fn cases_of(league: League) -> CaseBase<'static> {
     case_library::league(league.name()).map_or_else(CaseBase::default, case_library::League::base)
 }
@@ -120,11 +120,11 @@ mod tests {
             // A team that defends the goal at +x attacks towards −x.
             let by_hand = Point::<Attack>::new(at.x as f32 * -0.001, at.y as f32 * -0.001);
             assert!(found.at.distance(by_hand) < 1e-3, "case {id}: {found:?}, by hand {by_hand:?}");
-            // Once it is done there is another one, or none.
+            // Once it is done the proposal is another one, or none.
             assert!(find(&told(Progress::Execute { done: 2 })).is_none_or(|next| next != found), "case {id}");
             // A robot that the host called away, or that has ended, is not a passer of any case.
             assert_eq!(find(&told(Progress::Idle)), None);
-            // Robots with another case base are not understood.
+            // Cycles of robots with another case base are ignored.
             let mut strangers = told(Progress::Execute { done: 1 });
             for (_, beacon) in &mut strangers {
                 beacon.case_base ^= 1;

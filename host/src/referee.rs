@@ -59,7 +59,7 @@ pub const HALT_AFTER: Duration = Duration::millis(2_000);
 /// HALT.
 const SOURCES_MAX: usize = 8;
 
-/// What robots do while nothing comes from a referee that was received before. Before the first packet they
+/// Behaviour of robots during silence of a referee that was received before. Before the first packet they
 /// halt in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnSilence {
@@ -146,7 +146,8 @@ impl Listener {
         self.sources.first().map_or(&self.none.0, |source| &source.game)
     }
 
-    /// The state of the game by the commands of the source that is followed, with the ball's part in it.
+    /// The state of the game by the commands of the source that is followed, with the effects of the ball's
+    /// motion.
     pub fn state(&self) -> &GameState {
         self.sources.first().map_or(&self.none.1, |source| &source.state)
     }
@@ -183,7 +184,7 @@ impl Listener {
         ticked
     }
 
-    /// A packet that came `from` there at `now`; `ball` is where it is seen then.
+    /// Takes a packet that came from `from` at `now`; `ball` is the ball's place then.
     pub fn hear(
         &mut self,
         packet: &Referee,

@@ -42,13 +42,13 @@ pub struct Ball {
     pub climb: f32,
     /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
     pub rolls_below: f32,
-    /// Its last kick touched the ground once already: later bounces take less.
+    /// Whether its last kick has touched the ground once: later bounces lose less.
     pub bounced: bool,
-    /// 0 (lost in a moment) to 1 (seen just now, and often).
+    /// Confidence, 0 (about to be dropped) to 1 (seen just now, and often).
     pub confidence: f32,
     /// When a camera last saw it.
     pub seen: Instant,
-    /// The last kick, while the ball still moves by it.
+    /// The last kick, while the ball's motion is due to it.
     pub kicked: Option<Kick>,
 }
 
@@ -85,7 +85,7 @@ pub struct Robot {
     pub velocity: Vector<Field>,
     /// Its angular velocity, rad/s, counter-clockwise.
     pub angular: f32,
-    /// 0 (gone in a moment) to 1 (seen just now, and often).
+    /// Confidence, 0 (about to be dropped) to 1 (seen just now, and often).
     pub confidence: f32,
     /// When a camera last saw it.
     pub seen: Instant,
@@ -261,8 +261,8 @@ impl Robot {
 /// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
 /// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted
-/// height some 10.
+/// Height of a ball's lower edge above which it is in flight, m: a kicker's plate is some 20 mm high, noise
+/// of a fitted height some 10.
 const FLIES_ABOVE: f32 = 0.03;
 /// Gravity, m/s².
 pub(crate) const GRAVITY: f32 = 9.81;

@@ -76,7 +76,7 @@ fn telemetry(robot: &mut Link, now: u64) -> Vec<u8> {
     robot.seal(&TeamMessage::Telemetry(telemetry)).to_vec()
 }
 
-/// The host knows the robot from `now` on, for a second.
+/// Makes the robot known to the host from `now` on, for a second.
 fn join(host: &mut Host, robot: &mut Link, now: u64) {
     for _ in 0..2 {
         let packet = telemetry(robot, now);
@@ -93,7 +93,7 @@ fn read(packet: &[u8]) -> Option<HostMessage> {
     overhear_host(packet, TeamId::of(Colour::Blue), &keys, three()).ok()
 }
 
-/// Phases of the world's parts that wait in a host.
+/// Phases of the world's parts that the host has queued.
 fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
     let mut phases = Vec::new();
     while let Some((_, packet)) = host.poll_packet() {

@@ -28,7 +28,7 @@ pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
     format!("{given} assignments")
 }
 
-/// Plans of free kicks, half of the opponents at a robot of ours.
+/// Plans of free kicks, with half of the opponents at one of our robots each.
 pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let value = ByPassLocation::new(&kicks);
@@ -52,7 +52,7 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let value = ByPassLocation::new(&kicks);
     let mut random = Random::new(3);
-    // A free kick that is worth coercing for; most are not.
+    // A free kick for which coercing is worth it; for most it is not.
     let (mut view, mut planner) = loop {
         let view = random.free_kick(league, 6);
         let mut planner = Planner::new(coerce::Settings::of(league), Models::default());

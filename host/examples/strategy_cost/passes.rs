@@ -30,7 +30,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
     format!("mean {:.5}, {chips} chips", sum / f64::from(count))
 }
 
-/// Seeks among `count` places, a search of [`SAMPLES`] a scene: what the team does at every moment.
+/// Searches among `count` places, [`SAMPLES`] per scene: the search of the team in one snapshot.
 pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut random = Random::new(1);
@@ -50,5 +50,5 @@ pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
 
 /// Consecutive snapshots over which one search continues.
 const MOMENTS: u32 = 8;
-/// Places rated in a row at one moment, as a search does; the moment's own part is in their cost.
+/// Places rated in a row in one snapshot, as a search does; the snapshot's own part is in their cost.
 const PLACES: u32 = 200;

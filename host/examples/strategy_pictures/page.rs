@@ -143,7 +143,7 @@ impl Panel {
         self.svg.text(at, text, anchor, Font { size, fill, bold: false, halo: None });
     }
 
-    /// Text at a place of the field, readable over anything.
+    /// Text at a place of the field, readable over any background.
     pub(crate) fn note(&mut self, at: Point<Attack>, up: f64, text: &str, anchor: Anchor) {
         let ([x, y], ink) = (self.at(at), self.colors.ink);
         self.svg.text(

@@ -25,12 +25,12 @@ pub(super) struct Area {
     pub(super) form: AreaForm,
 }
 
-/// Both stretches along the goal line; the length of either is the area's width.
+/// Both lines parallel to the goal line; the length of either is the area's width.
 const FRONTS: [(&str, FieldShapeType); 2] = [
     ("LeftPenaltyStretch", FieldShapeType::LeftPenaltyStretch),
     ("RightPenaltyStretch", FieldShapeType::RightPenaltyStretch),
 ];
-/// The four stretches from the goal line into the field; the length of each is the area's depth.
+/// The four lines from the goal line into the field; the length of each is the area's depth.
 const SIDES: [(&str, FieldShapeType); 4] = [
     ("LeftFieldLeftPenaltyStretch", FieldShapeType::LeftFieldLeftPenaltyStretch),
     ("LeftFieldRightPenaltyStretch", FieldShapeType::LeftFieldRightPenaltyStretch),

@@ -1,4 +1,4 @@
-//! `camera`: camera positions. Balls in the air are seen off their place, along the line from the camera.
+//! `camera`: camera positions. Needed as balls in the air are seen displaced, along the line from the camera.
 
 use ssl::vision::GeometryCameraCalibration;
 

@@ -145,8 +145,7 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     data.calib[0].derived_camera_world_tx = None;
     let news = geometry.hear(&data).unwrap();
     assert_eq!((news.cameras, news.cameras_refused), (0, 1));
-    // A rotation that is one: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y,
-    // −z).
+    // A valid rotation: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
     let real = GeometryCameraCalibration {
         q0: 1.0,
         q1: 0.0,
@@ -190,7 +189,7 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
     // 0 means "not set".
     (size.penalty_area_depth, size.penalty_area_width) = (Some(0), Some(0));
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
-    // Without the side, the front's distance from the goal line.
+    // Without the side: the front's distance from the goal line.
     size.field_lines.truncate(1);
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     // Named by type only.

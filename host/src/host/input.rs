@@ -11,7 +11,7 @@ use crate::tracking;
 pub enum Input<'a> {
     /// A datagram of the vision.
     Vision(&'a [u8]),
-    /// A datagram of the referee, and where it came from.
+    /// A datagram of the referee, and its sender.
     Referee(&'a [u8], SenderAddress),
     /// A frame of a robot.
     Robot(&'a [u8]),
@@ -47,7 +47,7 @@ pub struct Undecodable {
     pub vision: u64,
     /// Number on the referee's port.
     pub referee: u64,
-    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look
-    /// like that.
+    /// Number on vision's port that are decodable, but have neither camera frame nor field: possibly another
+    /// program's messages.
     pub empty: u64,
 }

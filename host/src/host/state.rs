@@ -15,12 +15,12 @@ use crate::tracking::Tracker;
 use crate::world::World;
 
 impl Host {
-    /// The field as it was when it was last planned for.
+    /// The field as it was at the last planning.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// What was counted of our passes, free kicks and roles.
+    /// Counts of our passes, free kicks and roles.
     pub fn tally(&self) -> &PlayTally {
         self.books.tally()
     }
@@ -85,7 +85,7 @@ impl Host {
         self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
     }
 
-    /// What it has learned of its robots and the field.
+    /// The values learned of its robots and the field.
     pub fn learned(&self) -> &Learned {
         &self.learned
     }

@@ -29,7 +29,7 @@ struct Roll {
 }
 
 impl Friction {
-    /// The field as the newest camera frame showed it.
+    /// Takes the field at the newest camera frame.
     pub(super) fn see(&mut self, world: &World) {
         let Some(ball) = world.ball.filter(|ball| ball.height <= 0.0 && ball.climb <= 0.0) else {
             self.end();
@@ -88,7 +88,7 @@ impl Roll {
         self.squares += s * s;
     }
 
-    /// By least squares, where it rolled for long enough and as a ball does.
+    /// By least squares, where it rolled for long enough and its deceleration is plausible.
     fn deceleration(&self) -> Option<f32> {
         if self.newest.since(self.began).0 < SHORTEST.0 || self.times[0] < PLACES {
             return None;
@@ -127,9 +127,9 @@ const SHORTEST: Duration = Duration::millis(500);
 const LONGEST: Duration = Duration::millis(1_500);
 /// Number of camera frames needed.
 const PLACES: f64 = 20.0;
-/// Cosine of the turn that ends a roll: 6°, which is what noise makes of the slowest.
+/// Cosine of the turn that ends a roll: 6°, the noise of the slowest.
 const STRAIGHT: f32 = 0.994;
-/// Places farther off the parabola were no free roll, m (root of the mean square).
+/// Larger deviations from the parabola are no free roll, m (root of the mean square).
 const ON_PARABOLA: f64 = 0.008;
 /// Deceleration of a rolling ball on field surfaces, m/s².
 const LEAST_M_S2: f32 = 0.05;

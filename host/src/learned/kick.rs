@@ -120,7 +120,7 @@ impl Watched {
         }
     }
 
-    /// Ball speed at the kick over speed ordered, if the ball went straight on and the ratio is a kicker's.
+    /// Ball speed at the kick over speed ordered, if the ball moved straight and the ratio is plausible.
     fn gain(&self) -> Option<f32> {
         let [n, t, tt, s, ts, ss] = self.sums;
         let spread = n * tt - t * t;
@@ -135,7 +135,7 @@ impl Watched {
     }
 }
 
-/// Samples kept for each robot: a half's kicks, so that a battery that sinks is followed.
+/// Samples kept for each robot: a half's kicks, so that a falling battery voltage is followed.
 const KEPT: usize = 15;
 /// Number of kicks needed: of three, two with the same error determine the median.
 const LEAST: usize = 5;
@@ -153,7 +153,7 @@ const FROM: Duration = Duration::millis(50);
 const TO: Duration = Duration::millis(250);
 /// Camera frames needed in that time.
 const PLACES: f32 = 6.0;
-/// Slower orders are touches of the dribbler as much as kicks, m/s.
+/// Slower orders may be touches of the dribbler instead of kicks, m/s.
 const SLOWEST: f32 = 1.5;
 /// A ball that leaves its line by more has hit something, m (root of the mean square).
 const STRAIGHT: f32 = 0.02;

@@ -2,8 +2,8 @@
 //! mm: at any constant acceleration the second takes three times as long as the first, which gives
 //! t₀ = (3 t₁ − t₂) / 2. m, s.
 //!
-//! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and
-//! motors are.
+//! Times of places are those of the camera frames, so that the result excludes vision's own delay; it
+//! includes radio, brain and motors.
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive};
@@ -105,7 +105,7 @@ impl Robot {
         let goes = to.is_some_and(|to| to.distance(place) > FAR_OFF);
         let Some((from, since)) = self.rests else { return };
         match (goes, self.start) {
-            // It has rested without an order to go for long enough, and now has one.
+            // It has stood still without an order to move for long enough, and now has one.
             (true, None) if self.was_idle && at.since(since) >= RESTS_FOR => {
                 self.start = Some(Start { ordered: now, from, newest: (0.0, signed(now, at)), near: None });
             }
@@ -130,15 +130,15 @@ const LEAST: usize = 3;
 const STILL: f32 = 0.008;
 /// ... and for this time.
 const RESTS_FOR: Duration = Duration::millis(300);
-/// A place farther off lets it start with its full acceleration, m.
+/// Least distance of the place ordered at which it starts with its full acceleration, m.
 const FAR_OFF: f32 = 0.4;
-/// The marks by which the onset is known, m: above the noise, and nine times that.
+/// The distances moved from which the onset is computed, m: above the noise, and nine times that.
 const NEAR: f32 = 0.010;
 const FAR: f32 = 0.090;
-/// No robot needs longer from order to motion, s; with less than none the clocks are wrong.
+/// Range of plausible latencies from order to motion, s; a clearly negative one is an error of the clocks.
 const ONSET_MIN: f32 = -0.03;
 const ONSET_MAX: f32 = 0.3;
-/// A robot that has not gone 90 mm by then is held up, s after the order.
+/// A robot that has not moved 90 mm by then is obstructed, s after the order.
 const GIVEN_UP: f32 = 0.8;
 
 #[cfg(test)]

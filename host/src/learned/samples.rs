@@ -35,7 +35,7 @@ impl<const N: usize> Default for Samples<N> {
 }
 
 impl<const N: usize> Samples<N> {
-    /// Adds a sample; the oldest is dropped. NaN is ignored.
+    /// Adds a sample; the oldest is dropped. A value that is not finite is ignored.
     pub(super) fn add(&mut self, value: f32) {
         if value.is_finite() {
             self.values[self.next] = value;

@@ -3,7 +3,7 @@
 //! go back to it.
 //!
 //! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]).
-//! Only then it is commanded, addressed by snapshots, relayed and given to the strategy. Before, it is
+//! Only then it is commanded, addressed by snapshots, relayed and used by the strategy. Before, it is
 //! welcomed, at most every [`STRANGER_EVERY`].
 //!
 //! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
@@ -48,7 +48,7 @@ pub const PERIOD_MAX: Duration = Duration(16_600);
 pub const REPEAT_MAX: Duration = Duration::millis(500);
 /// A robot is present if its telemetry came within this time; it comes ten times a second.
 pub const PRESENT: Duration = Duration::millis(1_000);
-/// Robots are welcomed again this often, so that a lost welcome only delays.
+/// Interval of repeated welcomes, so that a lost welcome causes only a delay.
 const WELCOME_EVERY: Duration = Duration::millis(100);
 /// A robot that has not named our epoch is welcomed at most this often: replayed frames of robots cause no
 /// higher rate.
@@ -284,7 +284,7 @@ impl Radio {
     }
 
     fn transmit(&mut self, now: Instant) {
-        // Taken out so that parts of it can be read while packets are queued.
+        // Moved out so that parts of it can be read while packets are queued.
         let Some(mut latest) = self.latest.take() else { return };
         self.free = self.free.max(now - EARLY) + PERIOD_MIN;
         self.last = Some(now);

@@ -18,7 +18,7 @@ pub struct Situation {
     pub us: Colour,
     /// The phase, by side (ours or theirs).
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed, while that matters.
+    /// Where the ball is to be placed, during placement.
     pub placement: Option<Point<Field>>,
 }
 

@@ -28,7 +28,7 @@ const TRIP_MAX: Duration = Duration::millis(1_000);
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     heard_at: Option<Instant>,
-    /// When telemetry came last that named our epoch.
+    /// When the last telemetry came that named our epoch.
     present_at: Option<Instant>,
     telemetry: Option<(Instant, Telemetry)>,
     life: Option<Life>,
@@ -134,7 +134,7 @@ impl Quality {
         self.start_up
     }
 
-    /// How often it was seen to boot, the first time included.
+    /// Number of boots seen, including the first.
     pub fn lives(&self) -> u32 {
         self.lives
     }
@@ -208,7 +208,7 @@ impl Quality {
         self.welcomed = Some(now);
     }
 
-    /// Closes seconds that are over; those without a frame count as empty.
+    /// Closes the seconds that have passed; those without a frame count as empty.
     fn roll(&mut self, now: Instant) {
         let begin = *self.window.begin.get_or_insert(now);
         let mut over = now.since(begin).0 / SECOND.0;
@@ -216,7 +216,7 @@ impl Quality {
             return;
         }
         self.window.begin = Some(begin + SECOND * over);
-        // Bounded: a robot that was off for an hour was off, not slow.
+        // Bounded: a robot that was off for an hour does not count as slow.
         over = over.min(10);
         for _ in 0..over {
             self.rate.add(f64::from(self.window.bytes) * 8.0 * 1e-3);

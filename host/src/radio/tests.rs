@@ -78,7 +78,7 @@ fn tell(link: &mut Link, now: Instant) -> Packet {
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// Telemetry, welcome, telemetry: the robot is present.
+/// Makes the robot present: telemetry, welcome, telemetry.
 fn join(radio: &mut Radio, link: &mut Link, n: u8, now: Instant) {
     assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Stranger { .. })));
     let welcome = fetch(radio);
@@ -202,7 +202,7 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
             assert_eq!(fresh.present(now).collect::<Vec<_>>(), [id(3)]);
         }
         assert!(fresh.quality(id(2)).is_none());
-        // 600 ms of recordings, a welcome in 20 ms at most.
+        // 600 ms of replayed frames, a welcome in 20 ms at most.
         assert!(
             (1..=31).contains(&welcomes) && commands > 50,
             "{welcomes} welcomes, {commands} commands to robot 3"

@@ -124,7 +124,7 @@ impl fmt::Display for RadioWarning {
 /// Frames of a kind, counted as they come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rising {
-    /// The first frame after nothing came for [`OVER`].
+    /// The first frame after a pause of [`OVER`].
     since: Option<Instant>,
     window: Option<Instant>,
     latest: Option<Instant>,
@@ -285,7 +285,7 @@ mod tests {
             }
             let expected = if why == Why::Stranger { 3_000..=4_500 } else { 0..=1_000 };
             assert!(reported.is_some_and(|at| expected.contains(&at)), "{why:?}: {reported:?}");
-            // One in a second is a bit that flipped; a reboot brings the counts back to nothing.
+            // One in a second is a bit that flipped; a reboot resets the counts to 0.
             let mut refusals = Refusals::default();
             for n in 0..60_u64 {
                 counts[why.kind()] = if n < 30 { (n / 10) as u16 } else { 0 };

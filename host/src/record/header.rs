@@ -53,7 +53,7 @@ pub struct HostHeader {
     pub keeper: u8,
     /// Ball speed over speed ordered, by robot.
     pub kick: Vec<f32>,
-    /// Deceleration of a rolling ball that was set, m/s².
+    /// Configured deceleration of a rolling ball, m/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub roll: Option<f32>,
     /// Whether it played by what it learned.
@@ -77,7 +77,7 @@ pub struct HostHeader {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_source: Option<String>,
     /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command
-    /// stood.
+    /// was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_silence: Option<String>,
     /// Whether frames were sealed with a key other than zeros.

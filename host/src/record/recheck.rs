@@ -1,5 +1,5 @@
 //! `recheck`: replay check of a host's decisions. Feeds a trace's inputs to hosts built from its header and
-//! holds every packet they send to the record, byte for byte (docs/architecture.md §7.4).
+//! compares every packet they send with the record, byte for byte (docs/architecture.md §7.4).
 
 use std::collections::VecDeque;
 use std::fmt;

@@ -165,7 +165,7 @@ mod tests {
     use crate::record::header::HostHeader;
     use crate::record::trace::{End, Reader};
 
-    /// What the cameras and the referee of a real game sent, with its time.
+    /// Packets of the cameras and the referee of a real game, with their times.
     fn packets() -> Vec<(Instant, MessageKind, Vec<u8>)> {
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/ssl/tests/data");
         let log = ssl::log::open(&data.join("erforce_divB_realistic_22s.log.gz")).unwrap();

@@ -46,7 +46,7 @@ pub enum Kind {
     Timeout,
     /// The host sent a frame: the first byte is the robot it is for, 255 for all.
     Sent,
-    /// The recorder could not keep up: what follows is not recorded. Nothing comes after it.
+    /// The recorder could not keep up: later events are not recorded. No record follows it.
     Lost,
     /// The operator halted the host's robots.
     Halt,
@@ -60,7 +60,7 @@ impl Kind {
         Self::ALL.get(usize::from(byte)).copied()
     }
 
-    /// Whether it is something that came to the host.
+    /// Whether it is an input of the host.
     pub fn is_input(self) -> bool {
         !matches!(self, Self::Sent | Self::Lost)
     }
@@ -158,7 +158,7 @@ pub enum End {
         /// Time of the last whole record.
         last: Option<Instant>,
     },
-    /// At a record that cannot be one, or that cannot be read.
+    /// At a record that is invalid, or cannot be read.
     Broken {
         /// Where it starts, bytes of the uncompressed trace.
         at: u64,
@@ -312,7 +312,7 @@ impl<R: Read> Reader<R> {
     }
 }
 
-/// Takes the sender from the beginning of a referee's record.
+/// Takes the sender from the start of a referee's record.
 fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
     let (sender, packet) = bytes.split_first_chunk()?;
     let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());

@@ -1,5 +1,5 @@
-//! `game`: game state as the referee reports it. Phase, stage, times, teams and sides, as the newest packet
-//! and the state of the game have them. SI, field frame; times left in s.
+//! `game`: game state as the referee reports it. Phase, stage, times, teams and sides, from the newest packet
+//! and the state of the game. SI, field frame; times left in s.
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::RobotId;
@@ -36,7 +36,7 @@ pub struct Game {
     pub status: String,
     /// Yellow's and blue's account, in this order.
     pub teams: [TeamAccount; 2],
-    /// What the newest packet calls the designated position, in any phase.
+    /// The designated position of the newest packet, in any phase.
     designated: Option<Point<Field>>,
     next_command: Option<i32>,
 }
@@ -135,7 +135,7 @@ impl Game {
         self.phase = phase;
         let placing = matches!(self.phase, Phase::BallPlacement(_));
         self.placement = self.designated.filter(|_| placing);
-        // What follows is not known where another phase is imposed.
+        // The next phase is unknown where another phase is imposed.
         let next = self.next_command.filter(|_| phase == state.phase()).and_then(words::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }

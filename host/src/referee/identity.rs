@@ -94,7 +94,7 @@ impl fmt::Display for SourceKey {
     }
 }
 
-/// The one referee that the operator wants obeyed (`--referee-source`).
+/// The only referee that robots obey (`--referee-source`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SourcePin {
     /// Every source on this machine: a restart of the controller changes its port and its identifier, not

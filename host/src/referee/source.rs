@@ -34,18 +34,18 @@ pub const HOLD: Duration = WINDOW;
 /// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`]
 /// of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
-/// Packets that are not in order are reported for this time after the last one, and belong to one spell.
+/// Packets that are not in order are reported for this time after the last one, and count as one period.
 const REPORTED: Duration = SILENCE;
 /// The same packet once more within this time is a copy.
 const COPY: Duration = Duration::millis(150);
-/// Packets that are remembered to know copies: [`COPY`] at ten times the controller's rate.
+/// Number of packets kept to recognise copies: [`COPY`] at ten times the controller's rate.
 const REMEMBERED: usize = 64;
 /// The old commands with which the controller announces a goal, once each.
 const GOALS: [i32; 2] = [Wire::GoalYellow as i32, Wire::GoalBlue as i32];
-/// A command without a time, as the controller's first HALT, is taken for new, µs.
+/// A command without a time, as the controller's first HALT, counts as new, µs.
 const NO_TIME: u64 = 0;
 
-/// How strict a command is. Ordered: what restrains more is greater.
+/// Strictness of a command. Ordered: the more restrictive one is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Strictness {
     /// Robots may play.
@@ -76,7 +76,7 @@ pub(super) struct Source {
     pub(super) game: Game,
     /// Its newest command in order.
     pub(super) command: Command,
-    /// Why its last packet out of order was so; none once a clock or counter that stepped is followed.
+    /// Why its last packet was out of order; none once a clock or counter that stepped is followed.
     doubted: Option<Doubted>,
     /// Step of its clock, µs, and when that was followed.
     pub(super) stepped: Option<(i64, Instant)>,
@@ -123,7 +123,7 @@ impl Stamped {
 struct Doubted {
     /// Why the last one was not.
     doubt: Doubt,
-    /// When the first and the last of this spell came.
+    /// When the first and the last packet of this period came.
     first: Instant,
     last: Instant,
 }
@@ -224,8 +224,8 @@ impl Source {
     }
 
     /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets
-    /// that were overtaken, as two networks bring them, nor for a counter that is contradicted for less than
-    /// [`CONFIRM`], as by the league's controller when it resets a match.
+    /// that were overtaken, as is normal with two networks, nor for a counter that is contradicted for less
+    /// than [`CONFIRM`], as by the league's controller when it resets a match.
     pub(super) fn reportable_doubt(&self, now: Instant) -> Option<Doubt> {
         let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
         match doubt {

@@ -48,7 +48,7 @@ pub enum Request {
 /// Events for the operator or the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The controller knows us now; `verified`: by a signature.
+    /// The controller has accepted our registration; `verified`: by a signature.
     Registered {
         /// Whether the registration was verified by a signature.
         verified: bool,
@@ -67,7 +67,7 @@ pub enum Event {
         /// The controller's text.
         reason: String,
     },
-    /// The connection is given up; we connect again after [`RETRY_AFTER`].
+    /// The connection is closed; we connect again after [`RETRY_AFTER`].
     GivenUp(Trouble),
 }
 

@@ -33,7 +33,7 @@ impl Listener {
     }
 }
 
-/// A packet sent `sent` µs after the epoch, its command as old as the packet.
+/// A packet sent `sent` µs after the epoch, its command of the same age.
 fn packet(sent: u64, command: Wire, counter: u32) -> Referee {
     let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
     Referee {

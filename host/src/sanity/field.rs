@@ -117,8 +117,8 @@ pub(super) fn other_field(league: League, told: &FieldSpec) -> Option<OtherField
 
 /// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
 const SEEN: Duration = Duration::millis(170);
-/// Fields are laid out within this share of their size (an estimate; the rules allow 10 %, and the leagues'
-/// differ by a third).
+/// Tolerance of a field's dimensions as a share of its size (an estimate; the rules allow 10 %, and the
+/// leagues' differ by a third).
 const TOLERANCE: f32 = 0.1;
 
 #[cfg(test)]

@@ -147,7 +147,7 @@ struct Lasting {
 }
 
 impl Lasting {
-    /// Whether it has held for long enough, if it `holds` now.
+    /// Whether it has held for long enough; `holds`: whether it holds now.
     fn see(&mut self, now: Instant, holds: bool) -> bool {
         self.since = holds.then(|| self.since.unwrap_or(now));
         self.since.is_some_and(|since| now.since(since) >= LASTS)

@@ -1,5 +1,5 @@
-//! `second_host`: detection of a second host of our team number on our robots' radio. By frames that reach
-//! us, by robots that followed us and now name another, and by the frames that our robots refuse.
+//! `second_host`: detection of a second host of our team number on our robots' radio. Evidence: its frames
+//! received by us, robots that followed us and now name another host, and frames that our robots refuse.
 
 use std::fmt;
 

@@ -111,7 +111,7 @@ fn another_programs_packets_on_visions_port_are_told_within_two_seconds() {
     let mut first = None;
     for ms in (0..5_000).step_by(20) {
         let now = Instant(ms * 1_000);
-        // A message of another kind: its only field is none of vision's, and is skipped.
+        // A message of another kind: its only field is unknown to vision's messages, and is skipped.
         host.handle(now, Input::Vision(&[0x7a, 0x02, 0x08, 0x01]));
         let found = sanity.look(now, &host);
         if !found.is_empty() {

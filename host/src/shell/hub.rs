@@ -17,7 +17,7 @@ use super::udp::bind;
 const GONE: Duration = Duration::from_secs(1);
 /// Time a thread waits between checks whether it shall end.
 const LOOK: Duration = Duration::from_millis(50);
-/// The longest datagram of the simulation protocol that is passed on.
+/// The longest datagram of the simulation protocol that is forwarded.
 const LEN_MAX: usize = 8192;
 
 /// Two threads between robots' processes and a simulator; they end when this is dropped.
@@ -31,7 +31,7 @@ pub(super) struct Hub {
 type Known = Arc<Mutex<Vec<(SocketAddr, Instant)>>>;
 
 impl Hub {
-    /// Between processes on this machine and the simulator at that address.
+    /// Forwards between processes on this machine and the simulator at that address.
     pub(super) fn start(simulator: SocketAddr) -> Result<Self, LinkError> {
         let system = |error| LinkError::Socket { doing: "open a socket for virtual robots".into(), error };
         let inner = Arc::new(UdpSocket::bind("127.0.0.1:0").map_err(system)?);

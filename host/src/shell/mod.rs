@@ -1,4 +1,4 @@
-//! `shell`: the host's effects: network, serial line, processes, files.
+//! `shell`: the host's input and output: network, serial line, processes, files.
 //!
 //! [`open`] opens the link that a team's settings name; [`Link`] carries whole frames without decoding them.
 //! A [`Radio`](crate::radio::Radio) makes the frames to send and decodes those received. [`key`] reads a
@@ -71,7 +71,7 @@ pub struct LineRate {
 impl LineRate {
     /// Start bit, eight bits, stop bit.
     pub const BITS_PER_BYTE: u64 = 10;
-    /// Bytes of a line beside the frame: COBS and the zero.
+    /// Bytes on the line in addition to the frame: COBS and the zero.
     pub const FRAME_OVERHEAD: u64 = 2;
 
     /// Bits a second that this traffic of one second needs.

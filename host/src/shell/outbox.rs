@@ -34,7 +34,7 @@ pub struct Outbox {
     /// Side frames since the last snapshot went out.
     sides: usize,
     halting: bool,
-    /// What the link still holds is older than a HALT.
+    /// Whether the frames that the link still has are older than a HALT.
     discard: bool,
     counts: OutCounts,
 }
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn halt_that_goes_on_is_sent_to_every_robot_too() {
-        // A HALT every time that one frame goes out: no robot starves behind the first ones.
+        // A HALT after each frame sent: no robot starves behind the first ones.
         let mut outbox = Outbox::default();
         let mut served = [0; 6];
         for number in 0..200 {

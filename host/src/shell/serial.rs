@@ -38,7 +38,7 @@ pub struct SerialLink {
     baud: u32,
     /// When the line has sent all bytes given to it, by its rate.
     busy_until: Instant,
-    /// Writes that found no room, and when that was last reported.
+    /// Number of writes without room, and when that was last reported.
     stuck: (u32, Option<Instant>),
 }
 

@@ -99,7 +99,7 @@ impl SimLink {
         Ok(link)
     }
 
-    /// How often a robot had to be started again, all together.
+    /// Number of restarts of robots' processes in total.
     pub fn restarts(&self) -> u32 {
         self.robots.iter().map(|robot| robot.restarts).sum()
     }

@@ -49,7 +49,7 @@ impl Bench {
         &self.off
     }
 
-    /// The orders of those that are off: where they wait, each at a place of its own.
+    /// The orders of those that are off: each waits at a place of its own.
     pub(super) fn orders(&self, view: &View) -> heapless::Vec<Order, ROBOTS_MAX> {
         let mut free = waiting_places(view);
         let mut orders = heapless::Vec::new();
@@ -143,7 +143,7 @@ const BESIDE: usize = 4;
 const BESIDE_AREA: f32 = 0.35;
 /// From the field's wall to a robot's side, m: the accuracy with which robots stop.
 const FROM_WALL: f32 = 0.05;
-/// From the halfway line, m: the controller takes a robot nearer than its radius for one in the other half.
+/// From the halfway line, m: the controller counts a robot nearer than its radius as in the other half.
 const FROM_HALFWAY_LINE: f32 = 0.3;
 /// Behind the ball at a penalty, m: the rules' 1 m, a body and a margin.
 const BEHIND_PENALTY: f32 = 1.3;

@@ -70,7 +70,7 @@ pub struct Coach {
     /// Another team's open play, where it is not ours.
     rival: Option<Rival>,
     tactics: Tactics,
-    /// How balls are kicked and roll, for what passes are worth.
+    /// Models of kicks and rolling balls, for the values of passes.
     kicks: Kicks,
     searches: Searches,
     threats: threat::Memory,
@@ -88,7 +88,7 @@ pub struct Coach {
     cap: Cap,
     /// A pass ahead was not completed in time at this restart.
     gave_up: bool,
-    /// How near to its place the ball has come in our placement, m, and when.
+    /// The ball's distance to its place in our placement, m, and since when.
     placing: Option<(f32, Instant)>,
     /// Whether opponents have the ball.
     attacked: bool,
@@ -292,7 +292,7 @@ impl Coach {
     }
 }
 
-/// Most robots that are given a place in order: all field players, as behind a penalty of the opponents.
+/// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
 /// A robot's centre this near the ball touches it, m: radii of body and ball, and 0.015 m.
 const TOUCHING: f32 = 0.126;
@@ -307,7 +307,7 @@ const PASS_STOPPED: f32 = 0.3;
 const SETTLED_FROM: f32 = 0.5;
 /// … and no longer than this: to cross half of division A's field and stop.
 const SETTLED_FOR: Duration = Duration::millis(6000);
-/// Searches for places start from it: one seed, one match.
+/// Seed of all searches for places: one seed, one match.
 const SEARCH_SEED: u64 = 1;
 
 #[cfg(test)]

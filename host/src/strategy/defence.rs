@@ -97,8 +97,8 @@ pub fn clearance_beside(
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be
-/// aimless.
+/// Rolls to the target, and no farther than the halfway line: a kick across it and over their goal line counts
+/// as an aimless kick.
 fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
@@ -216,7 +216,7 @@ const KEEPER_OUT: f32 = 0.15;
 pub(super) const LYING: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
 const ON_THE_GROUND: f32 = 0.1;
-/// How far ahead of the ball a clearance to the wing goes, m.
+/// Distance of a clearance to the wing ahead of the ball, m.
 const CLEAR_AHEAD: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
 const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
@@ -273,7 +273,7 @@ mod tests {
             }
             assert!(places[0].distance(places[1]) > 0.18, "{ball:?}: bodies do not touch {places:?}");
         }
-        // Straight ahead: 1.13 m before the goal, a shoulder to either side.
+        // Straight ahead: 1.13 m before the goal, [`SHOULDER`] to either side.
         let (places, _) = defenders(&view((0.0, 0.0), &[], &[]));
         assert!((places[0].x() + 3.37).abs() < 1e-3 && (places[0].y() - SHOULDER).abs() < 1e-2, "{places:?}");
     }

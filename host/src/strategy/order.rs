@@ -135,7 +135,7 @@ pub enum Why {
     },
 }
 
-/// A task in the attack frame; [`Task::directive`] is its form for the wire.
+/// A task in the attack frame; [`Task::directive`] is its form in the protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
     /// Brake and stand still.

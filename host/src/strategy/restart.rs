@@ -22,11 +22,11 @@ const TAKER_WAITS: f32 = 0.7;
 const BEHIND_PENALTY: f32 = 1.45;
 /// From the middle to the first robot that waits at a penalty, m: the taker passes between the teams.
 const PENALTY_FIRST: f32 = 0.3;
-/// Most distance between robots that wait at a penalty, m: a third passes between two of them.
+/// Largest distance between robots that wait at a penalty, m: a third passes between two of them.
 const PENALTY_APART: f32 = 0.6;
 /// From the touch line to the last place of a row behind a penalty, m: a body.
 const PENALTY_INSIDE: f32 = 0.1;
-/// Beside a body that passes between two walls, m.
+/// Margin on either side of a body that passes between two walls, m.
 const ROOM_TO_PASS: f32 = 0.04;
 /// Step by which the direction off the ball is turned, degrees: 24 of them are a full turn.
 const TURN_STEP_DEG: f32 = 15.0;
@@ -93,7 +93,7 @@ pub fn kickoff_spot(view: &View) -> Point<Attack> {
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
 }
 
-/// The ball, where it lies for a restart from `mark`.
+/// The ball's place, where it lies for a restart from `mark`.
 fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
     let ball = view.ball.filter(|_| view.phase != Phase::Stop)?;
     Some(ball.position).filter(|at| at.distance(mark) < NEAR_MARK)
@@ -227,7 +227,7 @@ mod tests {
                 assert!(shooting.x() - at.x() > 1.1, "{league:?}: {at:?}");
                 assert!(view.clamp(*at, 0.1) == *at, "{league:?}: {at:?}");
                 assert!(all[..i].iter().all(|other| other.distance(*at) > 0.3), "{league:?}: {all:?}");
-                // A robot does not have to pass between two that stand already.
+                // A robot does not have to pass between two that are there already.
                 assert!((at.x() - all[0].x()).abs() < 0.01, "{league:?}: {all:?}");
             }
         }

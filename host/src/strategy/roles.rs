@@ -67,15 +67,15 @@ pub fn assign<const N: usize>(
     taken
 }
 
-/// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and
-/// turns.
+/// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
+/// and turns.
 pub const WORTH: f32 = 0.4;
 /// Mean speed of a robot on its path, m/s: teams drive 3 m/s and more, of which this is the average over a
 /// few metres.
 const TYPICAL_SPEED: f32 = 2.0;
-/// m/s²: the 3 to 4.7 m/s² that teams accelerate with.
+/// Acceleration of teams' robots, m/s²: 3 to 4.7.
 const TYPICAL_ACCELERATION: f32 = 3.0;
-/// Time lost in speeding up and braking, s: v/a with the two above.
+/// Time lost by acceleration and braking, s: v/a with the two above.
 const SPEEDING_UP: f32 = 0.65;
 
 #[cfg(test)]

@@ -92,7 +92,7 @@ pub enum Target {
     },
 }
 
-/// Chooses for the robot `taker` with the ball at `ball`.
+/// Chooses the target for the robot `taker` with the ball at `ball`.
 pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
     let (shot, room) = best_shot(view, ball);
     if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
@@ -176,7 +176,7 @@ const GRID: (usize, usize) = (12, 7);
 const APART: f32 = 1.2;
 /// Room above this gives no further value, m.
 const ROOM_GOOD: f32 = 0.7;
-/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much again.
+/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.
 const KEEP_OFF: f32 = 0.4;
 /// Shorter passes gain nothing, longer ones are intercepted by other robots, m.
 const PASS_SHORTEST: f32 = 1.0;
@@ -192,7 +192,7 @@ const ROOM_TO_PASS_BY: f32 = 0.12;
 const INSIDE: f32 = 0.3;
 /// Farther shots are caught, m.
 const SHOOT_WITHIN: f32 = 4.0;
-/// With the ball far ahead there are always places from here on, m: short of the halfway line.
+/// With the ball far ahead the grid of places starts here, m: short of the halfway line.
 const MIDDLE: f32 = -0.5;
 /// Below this value a pass is not played, 0–1.
 const WORTH_PASSING: f32 = 0.2;
@@ -200,8 +200,8 @@ const WORTH_PASSING: f32 = 0.2;
 const POST: f32 = 0.08;
 /// Number of points of the goal tried.
 const SHOTS: usize = 9;
-/// A receiver takes a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off the
-/// field.
+/// A receiver can control a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off
+/// the field.
 const ARRIVE_WITH: f32 = 1.2;
 /// Speed that counts as stopped, m/s.
 const REST_WITH: f32 = 0.2;

@@ -9,7 +9,7 @@ use rules::{Colour, FieldSpec, Phase, Side};
 use super::pass::bridge::CasePass;
 use crate::world::World;
 
-/// Robots of a team that strategy can see: one per id.
+/// Most robots of a team in a view: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
 
 /// Turns between the field and the attack frame: by half a turn, or not at all.
@@ -143,7 +143,7 @@ pub struct View {
     pub theirs_allowed: usize,
     /// Our robots that play a case now, as they report.
     pub in_play: RobotSet,
-    /// The next pass of that case, where the bridge between the papers is played.
+    /// The next pass of that case, where the tactics include the bridge between the papers.
     pub proposal: Option<CasePass>,
     /// Dimensions of the field.
     pub field: FieldSpec,
@@ -245,7 +245,8 @@ impl View {
         view
     }
 
-    /// Whether a robot of ours counts there: outside the goal substitution area behind our goal.
+    /// Whether a robot of ours at `p` counts as on the field: outside the goal substitution area behind our
+    /// goal.
     pub fn counts_for_us(&self, p: Point<Attack>) -> bool {
         self.field.counts(GoalEnd::Negative, Point::new(p.x(), p.y()))
     }

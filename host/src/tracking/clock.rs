@@ -114,7 +114,7 @@ impl Clock {
 const FAR: i64 = 1_000_000;
 /// A clock that jumped far is followed when ours has been silent that long, µs: a dozen frames of 60 Hz.
 const SILENCE_FAR: i64 = 200_000;
-/// One that jumped back a little could be late copies of the clock we follow, so it waits longer, µs.
+/// One that jumped back slightly could be late copies of the clock we follow, so it waits longer, µs.
 const SILENCE_NEAR: i64 = 500_000;
 /// Camera frames in order that confirm another clock.
 const IMAGES_TO_BELIEVE: u32 = 5;

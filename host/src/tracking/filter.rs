@@ -66,13 +66,13 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// First seen there; its speed may be anything of `speed_sigma`, m/s.
+    /// First detected there; standard deviation of its speed `speed_sigma`, m/s.
     pub(super) fn new(position: Point<Field>, sigma: f32, speed_sigma: f32) -> Self {
         let spread = Spread::new(sigma * sigma, speed_sigma * speed_sigma);
         Self { position, velocity: Vector::default(), spread, lag: Vector::default() }
     }
 
-    /// The same place with another velocity, of which `speed_sigma` is known, m/s.
+    /// The same place with another velocity of standard deviation `speed_sigma`, m/s.
     pub(super) fn sent_off(
         position: Point<Field>,
         velocity: Vector<Field>,
@@ -129,7 +129,7 @@ pub(super) struct Turning {
 }
 
 impl Turning {
-    /// First seen pointing there; its rate may be anything of `rate_sigma`, rad/s.
+    /// First detected with that heading; standard deviation of its rate `rate_sigma`, rad/s.
     pub(super) fn new(heading: Angle, sigma: f32, rate_sigma: f32) -> Self {
         Self { heading, rate: 0.0, spread: Spread::new(sigma * sigma, rate_sigma * rate_sigma), lag: 0.0 }
     }

@@ -17,7 +17,7 @@ pub(super) enum Placed {
     Before(usize),
     /// This camera's frame of this moment is there already.
     Repeated,
-    /// Older than the newest by this many µs: too old.
+    /// Older than the newest by this many µs: too old to be inserted.
     Late(Captured),
 }
 

@@ -1,4 +1,4 @@
-//! `robots`: robot tracking. A track per shell number and colour, merged over all cameras.
+//! `robots`: robot tracking. One track per shell number and colour, merged over all cameras.
 //!
 //! A robot is confirmed once it was seen in several camera frames. A detection far from its robot's possible
 //! place is a misread pattern until it stays there while the robot is seen nowhere else; a number read where
@@ -20,7 +20,7 @@ pub struct RobotCounts {
     pub taken: u64,
     /// Seen too seldom yet to be confirmed.
     pub new: u64,
-    /// Farther from the robot of that name than it can have come.
+    /// Farther from the robot of that number than it can have moved.
     pub jumped: u64,
     /// Where another robot stands: a wrong number or colour.
     pub wrong_name: u64,
@@ -264,7 +264,7 @@ const COAST: f32 = 0.25;
 const GONE: f32 = 1.0;
 /// Uncertainty of the heading after extrapolation, rad.
 const LOST_HEADING: f32 = 1.0;
-/// A new robot's speed, m/s, and rate, rad/s, may be anything of that size.
+/// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
 const SPEED_SIGMA: f32 = 2.0;
 const RATE_SIGMA: f32 = 5.0;
 /// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held

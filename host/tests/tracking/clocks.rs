@@ -26,7 +26,7 @@ fn trap_01_simulation_seconds_and_unix_seconds_give_the_same_picture_on_our_cloc
     });
     let [simulated, unix] = pictures;
     let (a, b) = (simulated.ball.unwrap(), unix.ball.unwrap());
-    // f64 holds Unix seconds to a quarter of a microsecond.
+    // f64 resolves Unix seconds to a quarter of a microsecond.
     assert!(a.position.distance(b.position) < 1e-4 && (a.velocity - b.velocity).norm() < 1e-3);
 }
 

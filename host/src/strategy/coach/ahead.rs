@@ -135,7 +135,7 @@ fn times(
     Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
 }
 
-/// A pass that arrives less likely than this is not aimed at.
+/// A pass with a smaller P(receive) is not tried.
 const LIKELY: f32 = 0.3;
 /// A pass whose P(receive) falls below this share of its first value is given up.
 const STILL_LIKELY: f32 = 0.5;

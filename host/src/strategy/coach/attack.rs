@@ -33,7 +33,7 @@ pub(super) struct Intent {
 enum What {
     /// A shot at a point of the goal line, with its P(goal).
     Shot { at: Point<Attack>, goal: f32 },
-    /// A pass to where it is likeliest to become a goal.
+    /// A pass to the place with the greatest P(goal).
     Pass { receiver: RobotId, rating: Rating },
     /// The pass of the case that is played, and the distance from its place.
     OfCase { pass: CasePass, rating: Rating, moved: f32 },
@@ -203,7 +203,7 @@ const CASE_HELD: Duration = Duration::millis(2000);
 const ASKED_AGAIN: Duration = Duration::millis(200);
 /// A ball that moved by more than this is a new situation, m.
 const MOVED: f32 = 0.3;
-/// The receiver may come this much later than the ball, s: as in pass-ahead at restarts.
+/// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
 const TOGETHER: f32 = 0.1;
 /// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
 const LEFT: f32 = 0.15;

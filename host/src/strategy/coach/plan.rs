@@ -38,7 +38,7 @@ impl<'v> Plan<'v> {
             }
             other => other,
         };
-        // One order a robot, and as many places as robots.
+        // At most one order per robot, and as many places as robots.
         let _ = self.orders.push(Order { robot, role, task, why });
     }
 
@@ -51,7 +51,7 @@ impl<'v> Plan<'v> {
         self.orders.iter().filter_map(place).collect()
     }
 
-    /// Takes a robot out of those without an order; false if it is not among them.
+    /// Removes a robot from those without an order; false if it is not among them.
     pub(super) fn take(&mut self, id: RobotId) -> bool {
         let before = self.free.len();
         self.free.retain(|other| *other != id);

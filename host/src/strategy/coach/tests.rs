@@ -1,4 +1,4 @@
-//! Tests: every robot has one sensible order in every phase.
+//! Tests: every robot has one plausible order in every phase.
 
 use super::*;
 use crate::strategy::pass::bridge::{CasePass, RADIUS};
@@ -140,7 +140,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
             .map(|order| order.robot.number())
             .collect::<Vec<_>>()
     };
-    // Ours: our 3 is at it. Theirs: their 2 is, and their 1 is free before our goal.
+    // Ours: our 3 is at the ball. Theirs: their 2 is, and their 1 is free before our goal.
     let ours = view((-0.4, 0.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
     assert_eq!(guards(&Coach::new(Team::Ours, tactics, League::DivisionB).decide(&ours)), [0, 1, 2]);
     let theirs = view((0.9, -1.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
@@ -359,7 +359,7 @@ fn a_placement_that_gets_nowhere_is_given_up_and_everybody_keeps_away() {
     view.placement = Some(Point::new(-1.0, 0.0));
     let places = |orders: &Orders| orders.iter().any(|order| matches!(order.task, Task::PlaceBall { .. }));
     let begun = view.now;
-    // Half a metre each five seconds is progress; none for twelve is not.
+    // 0.5 m in five seconds is progress; no motion for twelve seconds is not.
     for second in 0..40_u64 {
         view.now = Instant(begun.0 + second * 1_000_000);
         let moved = 0.5 * (second.min(20) / 5) as f32;

@@ -118,7 +118,7 @@ pub fn best_attack(
     let mut random = Xoshiro128PlusPlus::seed_from_u64(seed);
     let mut around = (0..SAMPLES).map(|_| {
         let by = gaussian(&mut random);
-        // Within the cell: a sample beyond it is cut to its border.
+        // Within the cell: a sample beyond it is moved to its border.
         let cut = |x: f32, side: f32| (x * side * SPREAD).clamp(-0.5 * side, 0.5 * side);
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });

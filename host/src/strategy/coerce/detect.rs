@@ -27,7 +27,7 @@ pub struct Detected {
 }
 
 impl Detected {
-    /// Whether it follows our robots: these are coerced. All others are taken to follow the ball.
+    /// Whether it follows our robots: these are coerced. All others count as following the ball.
     pub fn follows_robots(&self) -> bool {
         self.tactic == Some(Tactic::Mark)
     }
@@ -115,7 +115,7 @@ impl Detector {
 const MEMORY: f32 = 0.5;
 /// After a gap of this length all estimates restart, s.
 const FORGOTTEN: f32 = 2.0;
-/// A mark as likely as this is one to learn from.
+/// A mark of at least this likelihood updates the distance.
 const SURE: f32 = 0.5;
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ pub struct Settings {
     pub coerce_time: f32,
     /// A coercer within this of its place has arrived, m: a body's diameter.
     pub arrived: f32,
-    /// Opponents are given this long to come after them, s.
+    /// Time in which opponents may follow them, s.
     pub follow_time: f32,
     /// An opponent farther than this from where it is expected was not coerced, m (docs/papers.md D16).
     pub expected_within: f32,
@@ -77,10 +77,10 @@ impl Default for Settings {
     }
 }
 
-/// P(receive) is a tenth above what the ball may leave with (`coach::ahead`), as it falls a little while
-/// passer and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s,
-/// the others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at
-/// once against the zone to 0.82 (134).
+/// P(receive) is a tenth above the least one for a kick (`coach::ahead`), as it falls slightly while passer
+/// and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the
+/// others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at once
+/// against the zone to 0.82 (134).
 const LEAST: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
 /// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
 const COERCE_SHARE: f32 = 0.4;

@@ -145,7 +145,7 @@ impl<'v> Situation<'v> {
     }
 }
 
-/// The tactic that explains a place best, if any is likelier than its threshold.
+/// The tactic that explains a place best, if one exceeds its threshold.
 pub fn detected(likelihoods: &Likelihoods, models: &Models) -> Option<Tactic> {
     let mut best: Option<(Tactic, f32)> = None;
     for ((tactic, likely), alpha) in Tactic::ALL.into_iter().zip(likelihoods).zip(models.alpha) {
@@ -197,7 +197,7 @@ mod tests {
         assert!((found - expected).abs() < 2e-4, "{found}, not {expected}");
     }
 
-    /// Values by Python: `exp(-.5*(x/s)**2)` of the distances worked out beside each.
+    /// Values by Python: `exp(-.5*(x/s)**2)` of the distances computed beside each.
     #[test]
     fn every_model_gives_the_values_computed_by_hand() {
         let view = scene();

@@ -1,4 +1,4 @@
-//! Tests: the planner follows the paper's seven steps. With passes valued by a rule that can be worked out by
+//! Tests: the planner follows the paper's seven steps, with passes valued by a rule that can be computed by
 //! hand.
 
 use super::super::view::tests::view;

@@ -52,7 +52,7 @@ const OFF: f32 = 0.3;
 /// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
 /// first step.
 const ANSWERS: f32 = 0.15;
-/// The ball is ours if we are this much sooner at it, s.
+/// The ball counts as ours if we are this much sooner at it, s.
 const SOONER: f32 = 0.3;
 /// Number of robots that leave their opponents while the ball is ours.
 const FORWARD: usize = 2;

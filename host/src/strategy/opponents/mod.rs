@@ -25,7 +25,7 @@ pub enum Team {
     /// Our own play: cases and the coach.
     #[default]
     Ours,
-    /// The nearest runs for the ball and shoots or clears, a second backs it up.
+    /// The nearest goes for the ball and shoots or clears, a second backs it up.
     Reactive,
     /// Fast man-to-man defence: every robot stays between an opponent and the own goal.
     Marking,
@@ -99,7 +99,7 @@ impl Rival {
     /// Orders in open play for those of `free`, which are removed from it; `barred` must not touch the ball.
     pub(super) fn open_play(&mut self, view: &View, free: &mut Free, barred: Option<RobotId>) -> Orders {
         let mut orders = Orders::new();
-        // One order a robot, and as many places as robots.
+        // At most one order per robot, and as many places as robots.
         let mut order = |free: &mut Free, robot: RobotId, role: Role, task: Task, why: Why| {
             free.retain(|other| *other != robot);
             let _ = orders.push(Order { robot, role, task, why });

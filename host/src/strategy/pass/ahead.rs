@@ -50,8 +50,8 @@ impl Places {
 }
 
 impl Times {
-    /// Estimated for passer and receiver as they are, by `CalcMotion2D` and the turn to their headings,
-    /// whichever takes longer.
+    /// Estimated for passer and receiver at their present states, by `CalcMotion2D` and the turn to their
+    /// headings, whichever takes longer.
     pub fn of(
         places: &Places,
         passer: &Robot,

@@ -25,7 +25,7 @@ pub struct CasePass {
 pub struct Refined {
     /// At the place that the case adapted.
     pub proposed: Rating,
-    /// At the best place within the radius; the proposed one where nothing near is better by
+    /// At the best place within the radius; the proposed one where no place near it is better by
     /// [`WORTH_MOVING`].
     pub best: Rating,
 }
@@ -85,7 +85,7 @@ const SEEDS: u32 = 48;
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
 /// Rounding must not place the outermost ones outside.
 const INSIDE: f32 = 0.999;
-/// Circles around the best place: radius of the first as a share, how many, places on each.
+/// Circles around the best place: radius of the first as a share, their number, and places on each.
 const FIRST_STEP: f32 = 0.125;
 const ROUNDS: u32 = 4;
 const DIRECTIONS: u32 = 8;

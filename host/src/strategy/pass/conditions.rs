@@ -23,7 +23,7 @@ pub fn likely(margin: f32, width: f32) -> f32 {
     }
 }
 
-/// c1: no opponent can reach x faster than the receiver can. Times to x of the two, s.
+/// c1: no opponent can reach x faster than the receiver. Times of both to x, s.
 #[inline]
 pub fn first_there(receiver: f32, soonest_opponent: f32, c: &PassConstants) -> f32 {
     likely(soonest_opponent - receiver, c.time_width)

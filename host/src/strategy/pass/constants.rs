@@ -5,8 +5,7 @@ use geometry::math;
 use motion::trajectory::FreeLimits;
 use rules::League;
 
-/// Everything that the conditions c1–c5 and c1'–c4' and the kicks need to know; [`PassConstants::of`] a
-/// league.
+/// Parameters of the conditions c1–c5 and c1'–c4' and of the kicks; [`PassConstants::of`] a league.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassConstants {
     /// Width of a condition on times, s: margins of this size are e : 1 likely. The differences between
@@ -52,7 +51,7 @@ pub struct PassConstants {
     pub outside_prior: f32,
     /// A shot's speed, m/s: the rules' limit, less a kicker's error of 4 %.
     pub shot_speed: f32,
-    /// Passes along the ground are no faster, m/s: as shots.
+    /// Fastest pass along the ground, m/s: as shots.
     pub pass_fastest: f32,
     /// … and no slower, m/s: below, a ball stays at the dribbler opening (D14).
     pub pass_slowest: f32,
@@ -103,8 +102,7 @@ const TODAY: PassConstants = PassConstants {
     arrival: 2.0,
     chip_slope: 1.0,
 };
-/// What any robot of the league is taken to drive: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its
-/// reasons).
+/// Assumed limits of any robot of the league: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its reasons).
 const ROBOT: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
 /// Ball speed limit, m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;

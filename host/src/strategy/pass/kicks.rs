@@ -86,7 +86,7 @@ impl FlatKick {
             return (NEVER, 0.0);
         }
         let speed = math::sqrt(squared);
-        // (start − speed) / deceleration, without the difference of nearly equal numbers.
+        // (start − speed) / deceleration, without cancellation.
         (before + 2.0 * way / (start + speed).max(1e-6), speed)
     }
 }
@@ -229,7 +229,7 @@ pub const NEVER: f32 = 1e3;
 /// m.
 const CHIPS: usize = 64;
 const CHIP_STEP: f32 = 0.1;
-/// No chip is shorter, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
+/// Shortest chip, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
 const CHIP_SHORTEST: f32 = 1.0;
 /// First estimate of the share of a chip's distance up to the first touch: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22)
 /// of TIGERs' balls.

@@ -1,5 +1,4 @@
-//! `pass`: passes: where, when, to whom, and their outcome (Biswas et al. 2014 §3: pass location and
-//! pass-ahead).
+//! `pass`: place, time, receiver and outcome of passes (Biswas et al. 2014 §3: pass location and pass-ahead).
 //!
 //! | topic | module |
 //! |---|---|

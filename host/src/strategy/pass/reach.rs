@@ -92,7 +92,8 @@ impl Mover {
         (distance, self.velocity.dot(along), along.cross(self.velocity))
     }
 
-    /// Speeding up, cruising, braking; first back from the wrong direction or from beyond.
+    /// Acceleration, constant speed, braking; before that a return from the wrong direction or from an
+    /// overshoot.
     #[inline]
     fn time_along(&self, distance: f32, closing: f32) -> f32 {
         let stop = 0.5 * closing * closing.abs() * self.per_acceleration;

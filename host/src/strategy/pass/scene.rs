@@ -113,7 +113,7 @@ impl<'k> Scene<'k> {
         Self::against(view, kicks, from, passer, receiver, view.theirs.iter())
     }
 
-    /// … against some of them, or where they are expected to be (the optimistic attack of §4.2).
+    /// … against some of them, or at their expected places (the optimistic attack of §4.2).
     pub fn against<'r>(
         view: &View,
         kicks: &'k Kicks,
@@ -126,8 +126,7 @@ impl<'k> Scene<'k> {
         let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
         let others = view.ours.iter().filter(|mate| mate.id != receiver.id && Some(mate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
-        // The field is the same seen from either end, so its areas are where they are in the attack frame
-        // too.
+        // The field is the same seen from either end, so its areas have the same places in the attack frame.
         Self {
             kicks,
             from,
@@ -186,7 +185,7 @@ impl<'k> Scene<'k> {
         Way { from: self.from, along, length, body: self.mouth.body, reaction }
     }
 
-    /// Rates it, if it is worth more than `floor`; finding out that it is not is cheaper.
+    /// Rates it, if its value is above `floor`; below, it costs less.
     pub fn rate_above(&self, at: Point<Attack>, floor: f32) -> Option<Rating> {
         Some(self.weigh(at, floor)).filter(|rating| rating.value() > floor)
     }
@@ -368,7 +367,7 @@ fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
 
 /// m; nearer, directions are undefined.
 const ON_THE_SPOT: f32 = 1e-3;
-/// Farther from the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
+/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
 const KEEPER_MATTERS: f32 = 2.8;
 /// Nine factors in another order differ by less than 10⁻⁶.
 const ROUNDING: f32 = 1.0 + 1e-5;

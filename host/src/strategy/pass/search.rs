@@ -1,5 +1,5 @@
-//! `search`: search for the best receiving place. Random samples near the best of a moment ago, and some
-//! anywhere (Biswas et al. 2014 §3.1; D13).
+//! `search`: search for the best receiving place. Random samples near the previous best, and some anywhere
+//! (Biswas et al. 2014 §3.1; D13).
 //!
 //! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not
 //! jump. This search does the same, except for a tenth of its samples, which cover the whole field; the
@@ -38,7 +38,7 @@ impl Search {
         self.last = None;
     }
 
-    /// Rates `samples` places and the last optimum, and gives the best.
+    /// Rates `samples` places and the last optimum, and returns the best.
     pub fn step(&mut self, scene: &Scene<'_>, samples: u32) -> Rating {
         let anywhere = match self.last {
             Some(_) => samples / GLOBAL_SHARE,
@@ -87,7 +87,7 @@ impl Search {
     }
 }
 
-/// The best so far, or the place `at` where it is worth more.
+/// The best so far, or the place `at` where that has a higher value.
 fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating {
     match best {
         Some(best) => scene.rate_above(at, best.value()).unwrap_or(best),
@@ -140,7 +140,7 @@ impl Searches {
         offers
     }
 
-    /// Forgets all places: another ball, another passer.
+    /// Forgets all places: for another ball or passer.
     pub fn forget(&mut self) {
         self.each.iter_mut().for_each(Search::forget);
     }

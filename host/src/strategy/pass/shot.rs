@@ -1,5 +1,5 @@
 //! `shot`: probability that a shot scores. The paper's c1', c2' and c4' without a pass before (Biswas et al.
-//! 2014 §3.1), so that a shot and a pass are weighed on one scale. Attack frame, SI units.
+//! 2014 §3.1), so that shots and passes are compared on one scale. Attack frame, SI units.
 
 use geometry::{Attack, Point};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -77,7 +77,7 @@ mod tests {
     fn a_closed_goal_keeps_a_tenth_and_a_far_one_hardly_anything() {
         let closed = shot_from((2.5, 0.0), &[(2.7, 0.0)]);
         assert_eq!((closed.angle, closed.factors[1]), (0.0, 0.1));
-        // 0.86 s for 5 m: e^−4.6 of being there before the keeper.
+        // 0.86 s for 5 m: probability e^−4.6 that it is there before the keeper.
         assert!(shot_from((-0.5, 0.0), &[]).value() < 0.02);
     }
 }

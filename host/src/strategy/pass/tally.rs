@@ -42,7 +42,7 @@ pub struct PassTally {
     pub flat: Fates,
     /// Passes through the air.
     pub chip: Fates,
-    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in none.
+    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
     pub calibration: [Bin; BINS],
 }
 
@@ -55,7 +55,7 @@ impl Fates {
         self.kicked() + self.no_kick
     }
 
-    /// Those that left the passer: what the paper's Table 1 calls attempted.
+    /// Those that left the passer: "attempted" in the paper's Table 1.
     pub fn kicked(&self) -> u32 {
         let Self { received, by_mate, intercepted, missed, late, out, .. } = self;
         received + by_mate + intercepted + missed + late + out

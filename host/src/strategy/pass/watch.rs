@@ -253,7 +253,7 @@ impl Flight {
 /// A robot's centre this near the ball may touch it, m: both radii, and the joint error of two positions of
 /// vision.
 const TOUCHING: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.02;
-/// Farther from the passer the ball has left it, m.
+/// At a larger distance from the passer the ball has left it, m.
 const LEFT: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.05;
 /// … when it is faster than this, m/s: slower than any pass, faster than a ball that is pushed along.
 const KICKED: f32 = 0.8;
@@ -265,7 +265,8 @@ const CHANGE_SHARE: f32 = 0.15;
 const STOPPED: f32 = 0.15;
 /// A kick is known by its speed only after a few snapshots, s.
 const MOVES_FOR: f32 = 0.3;
-/// Within this distance of x* a receiver is there, and a ball comes to it, m: two robots' radii and the ball.
+/// Distance from x* within which a receiver counts as there, and a ball as arrived, m: two robots' radii and
+/// the ball.
 const THERE: f32 = 0.2;
 /// A pass that has not left by then counts as not kicked: the time in which it may be searched
 /// ([`super::ahead::SEARCH_TIME`]), and a second for the kick.

@@ -8,7 +8,7 @@ use geometry::{Angle, Attack, Point, Vector, math};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
 /// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is
-/// stopped.
+/// blocked.
 pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
 
 /// The goal as seen from a place.
@@ -45,7 +45,7 @@ impl Span {
 
 impl Opening {
     /// The goal with its middle at `goal` and `width` m between the posts, seen from `from`; a place on or
-    /// behind its line is taken to be just before it.
+    /// behind its line is moved to just before it.
     pub fn of(from: Point<Attack>, goal: Point<Attack>, width: f32) -> Self {
         let before = if goal.x() < 0.0 {
             from.x().max(goal.x() + BEFORE_LINE)
@@ -163,7 +163,7 @@ mod tests {
             for ray in 0..rays {
                 let y = -0.5 + (ray as f32 + 0.5) / rays as f32;
                 let way = geometry::Segment::new(opening.from, Point::new(-4.5, y));
-                // Bodies behind the line do not stand here, so the segment to the goal line decides.
+                // Bodies behind the line do not occur here, so the segment to the goal line decides.
                 if bodies.iter().all(|body| way.distance_to(*body) > BODY) {
                     free += 1;
                     let off = (way.vector().angle() - opening.middle).radians();

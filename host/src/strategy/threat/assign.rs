@@ -19,7 +19,7 @@ type Assignments = heapless::Vec<Assignment, ROBOTS_MAX>;
 struct Primary {
     robot: RobotId,
     place: Point<Attack>,
-    /// Against the first-level threat; else it is spare.
+    /// Whether it is needed against the first-level threat; else it is spare.
     needed: bool,
 }
 
@@ -109,8 +109,8 @@ impl Giving<'_> {
             [place] => {
                 let guard = self.nearest(place, before[0], worth);
                 let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
-                // The spare one is away along the edge where it guards a second-level threat, so it is held
-                // more.
+                // The spare one may be away along the edge to guard a second-level threat, so it is held
+                // longer.
                 let place = cover.spare_place(&self.edge, self.settings);
                 let spare = self.nearest(place, before[1], 2.0 * worth);
                 let spare = spare.map(|robot| Primary { robot: robot.id, place, needed: false });

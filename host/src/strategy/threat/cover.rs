@@ -222,7 +222,7 @@ impl Cover {
         if more <= 0.0 {
             return self.keeper;
         }
-        // Wide gaps count far more than narrow ones, but none alone: which is the widest may change with
+        // Wide gaps count far more than narrow ones, but none exclusively: the widest one may change with
         // noise.
         let (weight, off) = gaps.iter().fold((0.0, 0.0), |(weight, off), gap| {
             let cubed = gap.width() * gap.width() * gap.width();

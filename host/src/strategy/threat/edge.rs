@@ -2,8 +2,8 @@
 //! along the edge of the defense area"). Attack frame, m.
 //!
 //! The edge is the line that bodies' centres may stand on: the area's border, moved outwards. For the box of
-//! today that is a box with round corners, for the quarter circles of 2013 two larger quarter circles: one
-//! shape with other numbers.
+//! today that is a box with round corners, for the quarter circles of 2013 two larger quarter circles: the
+//! same shape with other dimensions.
 
 use geometry::{Attack, Point, Vector, math};
 use rules::{AreaForm, FieldSpec};

@@ -131,7 +131,7 @@ mod tests {
                         let place = lawful(&view, at, &settings);
                         let body = Point::<Field>::new(place.x(), place.y());
                         let offence = rules.offence(body, ROBOT_RADIUS);
-                        // Their own half at a kick-off is far from some of these places: only ours is
+                        // Their own half at a kick-off is far from some of these places: so only our half is
                         // searched.
                         let ours = !matches!(phase, Phase::Kickoff(_)) || at.x() < 0.9;
                         assert!(

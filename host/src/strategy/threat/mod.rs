@@ -64,7 +64,7 @@ pub struct Settings {
     pub axis: f32,
     /// Opponents with x below this are near to our goal, m: in our half.
     pub near: f32,
-    /// One that was near stays so until it is this much farther, m.
+    /// Hysteresis: one that was near stays so until it is this much farther, m.
     pub near_hold: f32,
     /// Greater open angles count as equal, rad: 10°, above it shots do not improve.
     pub open_enough: f32,
@@ -74,8 +74,8 @@ pub struct Settings {
     pub time_worth: f32,
     /// Acceleration of opponents and our defenders, m/s²: values that teams publish (3 to 4.7).
     pub acceleration: f32,
-    /// From an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a tick of
-    /// ours and theirs more.
+    /// Delay from an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a
+    /// tick of ours and theirs more.
     pub latency: f32,
     /// A defender is no nearer to its opponent's centre than this, m: two bodies and room to brake.
     pub clear: f32,
@@ -229,7 +229,8 @@ struct Kept {
     blocks: Blocks,
 }
 
-/// The defence by our keeper and those of our robots that are in `team`; `memory` is this function's own.
+/// The defence by our keeper and those of our robots that are in `team`; `memory` is changed only by this
+/// function.
 pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &Settings) -> Defence {
     let threat = receiving::first_level(view, memory.threat, settings);
     let players = view.ours.iter().filter(|robot| robot.id != view.keeper && team.has(robot.id)).count();

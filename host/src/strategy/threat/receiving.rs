@@ -54,7 +54,7 @@ pub enum Because {
         /// Equation 6, s.
         risk: f32,
     },
-    /// No ball is seen: where it was last, or the field's middle.
+    /// The ball is not visible: its last place, or the field's middle.
     BallUnseen,
 }
 

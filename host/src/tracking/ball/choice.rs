@@ -50,7 +50,7 @@ impl Balls {
             track.see(&glimpse, models, around.sigma);
             return;
         }
-        // A new one; where there is no room, the one unseen the longest makes it.
+        // A new track; without room it replaces the one unseen the longest.
         let room = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
         let seen_last = |track: &Option<Track>| track.map_or(Captured::MIN, |track| track.seen);
         if let Some((_, place)) = room.min_by_key(|(_, track)| seen_last(track)) {

@@ -1,4 +1,4 @@
-//! `flight`: detection of chipped balls, and prediction of where they come down. m, m/s, s.
+//! `flight`: detection of chipped balls, and prediction of their landing. m, m/s, s.
 //!
 //! Vision assumes that every ball lies on the field surface: one at height z below a camera at (c, H) appears
 //! at a = c + (p − c) · H / (H − z), which is the same as p + (a − c) · z / H = a. With p = p₀ + v t and z =
@@ -241,7 +241,7 @@ pub(super) const SHARP: f32 = 0.008;
 pub(super) const VAGUE: f32 = 0.03;
 /// Uncertainty of the kick's place, m.
 const FROM_SIGMA: f32 = 0.01;
-/// Climbs that are flights, m/s: slower ones stay below 50 mm; a kick of 10 m/s straight up is no robot's.
+/// Climbs that are flights, m/s: slower ones stay below 50 mm; no robot kicks straight up with 10 m/s.
 const CLIMB_MIN: f32 = 1.0;
 const CLIMB_MAX: f32 = 10.0;
 /// No kicker launches a ball more steeply than this (tangent of 76°; chippers are built for 45°, and a
@@ -250,8 +250,8 @@ const STEEPEST: f32 = 4.0;
 /// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
 /// configured; the noise of cameras that disagree is larger).
 const FIT_MAX: f32 = 6.0;
-/// A flat kick explains as well unless its summed squared error is worse by this, in variances (times the
-/// flight's own mean): 1 in 10⁶ by chance.
+/// A flat kick is accepted unless its summed squared error is worse by this, in variances (times the flight's
+/// own mean): 1 in 10⁶ by noise.
 const FLAT_WORSE: f32 = 25.0;
 /// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
 const SLIDE_MORE: f32 = 1.5;

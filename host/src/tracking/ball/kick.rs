@@ -282,7 +282,7 @@ fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
         return sliding;
     }
     // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for
-    // v by two steps of Newton's from the speed of a ball that lost nothing.
+    // v by two steps of Newton's starting from the speed of a ball without losses.
     let (c, a) = (models.ground.switch, models.ground.slide);
     let mut speed = way / time;
     for _ in 0..NEWTON_STEPS {
@@ -304,7 +304,7 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
 
-/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with room for
+/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with a margin for
 /// noise.
 const TOUCH: f32 = 0.125;
 /// A robot this near can have turned the ball, m: hull, ball, and 7 cm of motion of the robot since.

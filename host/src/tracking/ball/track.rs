@@ -163,11 +163,11 @@ const FREEDOM: Freedom = Freedom { calm: 0.02, changing: 8.0 };
 const SURPRISE_MAX: f32 = 20.0;
 /// ... and it is farther than this off, m: noise between cameras is no turn.
 const STRANGE_MIN: f32 = 0.012;
-/// A new ball's speed may be anything of that size, m/s.
+/// Standard deviation of a new ball's speed, m/s.
 const SPEED_SIGMA: f32 = 2.0;
 /// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
 const SPEED_UNSURE: f32 = 0.3;
-/// No ball is faster, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
+/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
 const SPEED_MAX: f32 = 15.0;
 /// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
 /// to a time (s).

@@ -88,7 +88,7 @@ fn the_opponents_area_is_worthless_today_and_the_best_place_in_2013() {
         scene.rate(Point::new(league.field().length * 0.5 - 0.5, 0.0))
     };
     let today = rate(League::DivisionB);
-    // 0.5 m deep inside: −0.5 − 0.2 = −0.7 m of margin, 1/(1 + exp(0.7/0.15)) = 0.009315.
+    // 0.5 m inside: −0.5 − 0.2 = −0.7 m of margin, 1/(1 + exp(0.7/0.15)) = 0.009315.
     assert_eq!(today.spoiler.0, Spoiler::TheirArea);
     all_close(&[today.receive_factors[4], today.goal_factors[3]], &[0.009_315, 0.7]);
     let paper = rate(League::Ssl2013);

@@ -9,7 +9,7 @@ fn who(colour: Colour, id: u8) -> Who {
     Who { colour, id: RobotId::new(id).unwrap() }
 }
 
-/// A pass by blue 1 from the middle to blue 2 at (2, 0), kicked at 0.2 s with 2.5 m/s; rolling evenly.
+/// A pass by blue 1 from the middle to blue 2 at (2, 0), kicked at 0.2 s with 2.5 m/s; at constant speed.
 struct Play {
     robots: Vec<(Who, Point<Field>)>,
     ball: Box<dyn Fn(f32) -> Seen>,

@@ -31,7 +31,7 @@ fn one_defender_suffices_where_the_open_angle_is_narrow() {
     let (view, cover) = at(League::DivisionB, (-4.2, 2.5), 2);
     assert_eq!(cover.case, Case::Defender);
     assert_eq!(cover.keeper, view.our_goal() + Vector::new(0.125, 0.0));
-    // On the bisector: its direction from the threat is the opening's middle.
+    // It is on the bisector: its direction from the threat is the opening's middle.
     let off = (cover.opening.from.direction_to(cover.primaries[0]) - cover.opening.middle).abs();
     assert!(off < 1e-3 && cover.uncovered == 0.0 && free_rays(&view, &cover) == 0.0, "{cover:?}");
 }
