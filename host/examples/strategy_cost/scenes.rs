@@ -26,7 +26,7 @@ impl Random {
         Point::new(self.within(x), self.within(y))
     }
 
-    /// Robots of both teams, equally many, at random places, half of them moving; the ball at rest.
+    /// Robots of both teams, equally many, at random places, half of them moving; the ball lies still.
     pub(crate) fn view(&mut self, league: League, robots: u8) -> View {
         let nowhere = (0..robots).map(|_| Point::default());
         let mut view = View::still(league.field(), Point::default(), nowhere.clone(), nowhere);

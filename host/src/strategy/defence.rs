@@ -273,7 +273,7 @@ mod tests {
             }
             assert!(places[0].distance(places[1]) > 0.18, "{ball:?}: bodies do not touch {places:?}");
         }
-        // Straight ahead: 1.13 m before the goal, [`SHOULDER`] to either side.
+        // Straight ahead: 1.13 m before the goal, `SHOULDER` to either side.
         let (places, _) = defenders(&view((0.0, 0.0), &[], &[]));
         assert!((places[0].x() + 3.37).abs() < 1e-3 && (places[0].y() - SHOULDER).abs() < 1e-2, "{places:?}");
     }

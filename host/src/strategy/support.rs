@@ -63,7 +63,7 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
         })
 }
 
-/// The best target of a ball at rest: a shot with room, else the best teammate, else ahead along the freest
+/// The best target of a ball that lies still: a shot with room, else the best teammate, else ahead along the freest
 /// path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
