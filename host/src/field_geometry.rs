@@ -18,8 +18,8 @@ use ssl::vision::{GeometryData, GeometryFieldSize};
 pub use area::AreaSource;
 pub use camera::Camera;
 
-/// Cameras have numbers below this, twice as many as any field has: a larger number is not genuine, and would
-/// take memory.
+/// Cameras have numbers below this, twice as many as any field has: another number is not genuine, and would
+/// take the place of a genuine camera.
 pub const CAMERAS_MAX: u32 = 16;
 
 /// Width of the goal substitution area that the game controller (2026) assumes where vision does not send it,

@@ -97,8 +97,8 @@ pub fn clearance_beside(
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// Rolls to the target, and no farther than the halfway line: a kick across it and over their goal line counts
-/// as an aimless kick.
+/// Rolls to the target, and no farther than the halfway line: a kick across it and over their goal line
+/// counts as an aimless kick.
 fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }

@@ -63,8 +63,8 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
         })
 }
 
-/// The best target of a ball that lies still: a shot with room, else the best teammate, else ahead along the freest
-/// path.
+/// The best target of a ball that lies still: a shot with room, else the best teammate, else ahead along the
+/// freest path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// Shoot at this point of the goal.
