@@ -1,8 +1,9 @@
-//! `host_cost`: instruction count of a host. A recorded match's inputs, fed again image by image.
+//! `host_cost`: instruction count of a host that processes a recorded match frame by frame.
 //!
-//! `cargo run --release -p host --example host_cost -- FILE.trace` feeds the recording's first host. A round is everything
-//! from one packet of vision to the next: tracking, the referee's packets, robots' frames, deadlines, planning where it is due,
-//! and the commands encoded and sealed. `cargo xtask bench game` counts each call of [`count_this_round`] under callgrind.
+//! `cargo run --release -p host --example host_cost -- FILE.trace` feeds the recording's first host. A round
+//! is everything from one packet of vision to the next: tracking, the referee's packets, robots' frames,
+//! deadlines, planning where it is due, and the commands encoded and sealed. `cargo xtask bench game` counts
+//! each call of [`count_this_round`] under callgrind.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -51,7 +52,7 @@ fn feed(file: &str) -> Result<String, Box<dyn std::error::Error>> {
     Ok(format!("{rounds} rounds, {packets} packets of {bytes} bytes to the robots"))
 }
 
-/// What one image sets going: how many packets it ends in, and their bytes.
+/// Processes the inputs of one camera frame; returns the number of packets sent and their bytes.
 #[inline(never)]
 fn count_this_round(host: &mut Host, round: &[Record]) -> (u64, u64) {
     let (mut packets, mut bytes) = (0, 0);

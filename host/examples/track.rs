@@ -1,11 +1,11 @@
-//! `track`: statistics of tracking on a recorded match. Rates and delays of the cameras, what became of
-//! images and objects, noise.
+//! `track`: statistics of tracking on a recorded match: rates and delays of the cameras, results of camera
+//! frames and objects, noise.
 //!
 //! ```sh
 //! cargo run --release -p host --example track -- protocol/ssl/tests/data/grsim_divB_noisy_64s.log.gz
 //! ```
-//! `--times N` feeds the recording N times and prints nothing else than the sum of positions: for counting instructions
-//! (`valgrind --tool=callgrind`, N and 2 N, the difference divided by the images).
+//! `--times N` feeds the recording N times and prints only the sum of positions: for counting instructions
+//! (`valgrind --tool=callgrind`, N and 2 N, the difference divided by the camera frames).
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ fn packets(path: &std::path::Path) -> Result<Vec<(Instant, WrapperPacket)>, ssl:
     Ok(packets)
 }
 
-/// Every packet, and a picture of now after each.
+/// Every packet, and the tracked world after each.
 fn feed(packets: &[(Instant, WrapperPacket)]) -> f32 {
     let mut tracker = Tracker::default();
     let mut sum = 0.0;
@@ -104,11 +104,12 @@ fn report(packets: &[(Instant, WrapperPacket)]) {
     noise(packets);
 }
 
-/// When, s, and where, mm and rad.
+/// Time, s, and place, mm and rad.
 type Glimpse = (f64, [f64; 3]);
 
-/// Noise from second differences of neighbouring images of one camera: a body that holds its speed leaves only noise, whose
-/// second difference has six times its variance; the median of sizes is not moved by those that do not.
+/// Noise from second differences of consecutive frames of one camera: for a body at constant speed they
+/// contain only noise, with six times its variance; the median of their absolute values is not affected by
+/// the few bodies that accelerate.
 fn noise(packets: &[(Instant, WrapperPacket)]) {
     let images = || packets.iter().filter_map(|(_, packet)| packet.detection.as_ref());
     let robots = |image: &DetectionFrame| -> Vec<(u32, f64, DetectionRobot)> {
@@ -140,7 +141,7 @@ fn noise(packets: &[(Instant, WrapperPacket)]) {
             }
         }
         sizes.sort_by(f64::total_cmp);
-        // A normal's median size is 0.6745 of its deviation.
+        // A normal variable's median absolute value is 0.6745 of its deviation.
         sizes.get(sizes.len() / 2).map_or(0.0, |middle| middle / 0.6745 / 6.0_f64.sqrt())
     };
     println!(

@@ -5,21 +5,21 @@
 //! colour = "blue"                 # blue or yellow; the referee may change sides, not colours
 //! league = "division-b"           # ssl-2013, division-b or division-a
 //! keeper = 0
-//! interface = "192.168.1.7"       # whose address hears multicast; left out: every interface
+//! interface = "192.168.1.7"       # interface for multicast; left out: every interface
 //! robots = "sim://127.0.0.1"      # sim://HOST, udp://HOST:PORT or serial:DEVICE[:BAUD]
 //! key_file = "team.key"           # 32 hexadecimal digits; may be left out for sim:// only
-//! insecure_zero_key = false       # true: real robots may be led with the key of zeros, which is public
+//! insecure_zero_key = false       # true: real robots may use the key of zeros, which is public
 //! vision = "224.5.23.2:10006"
 //! referee = "224.5.23.1:10003"
-//! referee_source = "192.168.1.5"  # the only referee obeyed: address or identifier; left out: the strictest of all
-//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command stands
+//! referee_source = "192.168.1.5"  # only referee obeyed: address or identifier; left out: the strictest
+//! referee_silence = "halt"        # after 2 s without a referee; "go-on": its last command is kept
 //! tracker = "224.5.23.2:10010"
-//! game_controller = "127.0.0.1:10008"   # the team's port; left out: nobody is told anything
+//! game_controller = "127.0.0.1:10008"   # the team's port; left out: no messages to the controller
 //!
-//! [[calibration]]                 # what a robot does otherwise than it is told
+//! [[calibration]]                 # how a robot deviates from what is ordered
 //! robot = 3
 //! kick = 1.06                     # balls leave this much faster than ordered
-//! latency_ms = 45                 # from an order to its motion; shown, not used
+//! latency_ms = 45                 # from an order to its motion; displayed, not used
 //!
 //! [ball]
 //! roll = 0.41                     # deceleration of a rolling ball, m/s²; left out: vision's
@@ -36,39 +36,39 @@ use serde::Deserialize;
 
 use crate::referee::{OnSilence, SourcePin};
 
-/// A team's settings: as a file or flags give them, everything may be left out.
+/// A team's settings: from a file or flags; every field is optional.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TeamSettings {
-    /// The team's name.
+    /// The team's name, as registered with the game controller.
     pub name: Option<String>,
     /// `blue` or `yellow`.
     pub colour: Option<String>,
-    /// The league's name.
+    /// The league's name: `ssl-2013`, `division-b` or `division-a`.
     pub league: Option<String>,
-    /// The keeper's number.
+    /// The keeper's number, 0–15.
     pub keeper: Option<u8>,
-    /// Address of the interface that hears multicast.
+    /// Address of the interface on which multicast is received.
     pub interface: Option<IpAddr>,
-    /// Where robots are: see [`RobotLink`].
+    /// Address of the robots: see [`RobotLink`].
     pub robots: Option<String>,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
-    /// Real robots may be led with the key of zeros.
+    /// Real robots may be commanded with the key of zeros.
     pub insecure_zero_key: Option<bool>,
-    /// Vision's group.
+    /// Multicast group and port of vision.
     pub vision: Option<SocketAddr>,
-    /// The referee's group.
+    /// Multicast group and port of the referee.
     pub referee: Option<SocketAddr>,
-    /// The only referee that is obeyed: see [`SourcePin`].
+    /// The only referee that robots obey: see [`SourcePin`].
     pub referee_source: Option<String>,
     /// `halt` or `go-on`: see [`OnSilence`].
     pub referee_silence: Option<String>,
-    /// Where tracker packets go.
+    /// Address to which tracker packets are sent.
     pub tracker: Option<SocketAddr>,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
-    /// What robots do otherwise than told.
+    /// Deviations of the robots from what is ordered.
     #[serde(default)]
     pub calibration: Vec<Calibration>,
     /// How the ball moves on this field.
@@ -84,16 +84,16 @@ pub struct BallSettings {
     pub roll: Option<f32>,
 }
 
-/// What one robot does otherwise than it is told.
+/// How one robot deviates from what is ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
-    /// Which.
+    /// Its number.
     pub robot: u8,
     /// Ball speed over speed ordered.
     #[serde(default = "one")]
     pub kick: f32,
-    /// From an order to its motion, ms: told by `control --learned`, used by nothing yet.
+    /// Latency from an order to its motion, ms: written by `control --learned`, not used yet.
     #[serde(default)]
     pub latency_ms: Option<f32>,
 }
@@ -107,58 +107,58 @@ fn one() -> f32 {
 pub struct TeamConfig {
     /// As the game controller knows it.
     pub name: String,
-    /// Our colour.
+    /// The colour our robots play with.
     pub colour: Colour,
-    /// The league played.
+    /// The league, which sets field and rules.
     pub league: League,
-    /// The keeper, until the referee says another.
+    /// The keeper, until the referee names another.
     pub keeper: RobotId,
-    /// Whose address hears multicast; `None`: every interface that can.
+    /// Address of the interface on which multicast is received; `None`: every interface that supports it.
     pub interface: Option<IpAddr>,
     /// Where the robots are.
     pub robots: RobotLink,
     /// The file of the team's key.
     pub key_file: Option<PathBuf>,
-    /// Real robots may be led with the key of zeros, which is public.
+    /// Real robots may be commanded with the key of zeros, which is public.
     pub insecure_zero_key: bool,
-    /// Vision's group.
+    /// Multicast group and port of vision.
     pub vision: SocketAddr,
-    /// The referee's group.
+    /// Multicast group and port of the referee.
     pub referee: SocketAddr,
     /// The only referee that is obeyed; none: the strictest of all.
     pub referee_source: Option<SourcePin>,
     /// What robots do when the referee falls silent.
     pub referee_silence: OnSilence,
-    /// Where tracker packets go.
+    /// Address to which tracker packets are sent.
     pub tracker: SocketAddr,
     /// The game controller's port for teams.
     pub game_controller: Option<SocketAddr>,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
-    /// Deceleration of a rolling ball, m/s²; none: vision's.
+    /// Deceleration of a rolling ball, m/s²; none: from vision.
     pub roll: Option<f32>,
 }
 
-/// How robots are reached.
+/// Links to the robots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RobotLink {
-    /// Brains of our own drive a simulator on that host.
+    /// Our virtual robots, in a simulator on that host.
     Simulator(String),
     /// A base station, or robots' own network, at this address: a datagram is a frame.
     Udp(String),
     /// A base station at a serial line: frames between zero bytes (COBS).
     Serial {
-        /// The line's name.
+        /// The line's device, such as `/dev/ttyUSB0`.
         device: String,
         /// Bits a second.
         baud: u32,
     },
 }
 
-/// What is wrong with a team's settings, and what would be right.
+/// An error in a team's settings, with its remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfigError {
-    /// Which key or flag.
+    /// The key or flag.
     pub key: String,
     /// What is wrong, and what to write.
     pub words: String,
@@ -176,7 +176,7 @@ fn error(key: &str, words: impl Into<String>) -> ConfigError {
     ConfigError { key: key.to_owned(), words: words.into() }
 }
 
-/// What is wrong in a file of settings, and where; of a long line its begin.
+/// Error text for a file of settings, with its place; of a long line only the start.
 fn place_of(text: &str, broken: &toml::de::Error) -> String {
     let what = excerpt(broken.message(), MESSAGE_LEN);
     let before = broken.span().and_then(|span| text.get(..span.start));
@@ -185,18 +185,18 @@ fn place_of(text: &str, broken: &toml::de::Error) -> String {
     format!("line {}: {what}: `{}`", number + 1, excerpt(line.trim(), LINE_LEN))
 }
 
-/// As much of an error in a file of settings as is shown, characters.
+/// Longest part of an error in a file of settings that is printed, characters.
 const MESSAGE_LEN: usize = 300;
-/// As much of its line.
+/// Longest part of its line that is printed, characters.
 const LINE_LEN: usize = 80;
 
 impl TeamSettings {
-    /// Reads `team.toml`.
+    /// Reads `team.toml`; unknown keys are errors.
     pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
         toml::from_str(text).map_err(|broken| error("team.toml", place_of(text, &broken)))
     }
 
-    /// These settings where they say something, else those.
+    /// These settings; where one is missing, that of `below`.
     #[must_use]
     pub fn over(self, below: Self) -> Self {
         Self {
@@ -219,7 +219,7 @@ impl TeamSettings {
         }
     }
 
-    /// Complete and checked; what was left out is the league's usual.
+    /// Complete and checked; defaults of the league for missing fields.
     pub fn complete(self) -> Result<TeamConfig, ConfigError> {
         let league = match self.league.as_deref() {
             None => League::DivisionB,
@@ -269,9 +269,9 @@ impl TeamSettings {
     }
 }
 
-/// What kickers do, as a share of the speed ordered: as [`crate::learned`] bounds it.
+/// Range of a kicker's gain (ball speed over speed ordered), as [`crate::learned`] bounds it.
 pub(crate) const KICK_RANGE: std::ops::RangeInclusive<f32> = 0.4..=2.0;
-/// What carpets do, m/s²: the same.
+/// Deceleration of a rolling ball on a field surface, m/s²: as [`crate::learned`] bounds it.
 const ROLL_RANGE: std::ops::RangeInclusive<f32> = 0.05..=1.5;
 const LEAGUES: [League; 3] = [League::Ssl2013, League::DivisionB, League::DivisionA];
 
@@ -327,7 +327,8 @@ impl RobotLink {
     }
 }
 
-/// Bits a second where none are named: carries 100 snapshots a second for a team of six (some 50 kB/s) and 75 for one of eleven (80).
+/// Default baud rate, bits a second: it carries 100 snapshots a second for a team of six (some 50 kB/s) and
+/// 75 for one of eleven (80).
 const BAUD: u32 = 1_000_000;
 
 #[cfg(test)]

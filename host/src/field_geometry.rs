@@ -1,9 +1,9 @@
-//! `field_geometry`: field geometry from vision. Geometry packets, merged.
+//! `field_geometry`: field geometry from vision, merged from its geometry packets.
 //!
-//! Simulators send one camera's calibration a packet (trap 2), leave the defence area out, send lines in any order and
-//! dummies for a camera's rotation (trap 8). The defence area is taken from its own numbers, else from its lines, else from the
-//! division whose length is nearest, and [`AreaSource`] says which. Numbers that no field can have are refused
-//! ([`GeometryFault`]); what was known before stands. SI, field frame.
+//! Simulators send one camera's calibration a packet (trap 2), leave the defence area out, send lines in any
+//! order and dummies for a camera's rotation (trap 8). The defence area is taken from its own numbers, else
+//! from its lines, else from the division whose length is nearest, and [`AreaSource`] states which. Numbers
+//! that no field can have are refused ([`GeometryFault`]); the previous geometry is kept. SI, field frame.
 
 mod area;
 mod camera;
@@ -18,14 +18,15 @@ use ssl::vision::{GeometryData, GeometryFieldSize};
 pub use area::AreaSource;
 pub use camera::Camera;
 
-/// Cameras have numbers below this, twice as many as any field has: a camera of another number is invented, and would take
-/// the place of a genuine one.
+/// Cameras have numbers below this, twice as many as any field has: another number is not genuine, and would
+/// take the place of a genuine camera.
 pub const CAMERAS_MAX: u32 = 16;
 
-/// The goal substitution area that the game controller (2026) takes a field to have of which vision does not tell it, m.
+/// Width of the goal substitution area that the game controller (2026) assumes where vision does not send it,
+/// m.
 const SUBSTITUTION_UNTOLD: f32 = 0.3;
 
-/// What vision said of the field so far.
+/// The geometry that vision has sent so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct VisionGeometry {
     field: Option<(FieldSpec, AreaSource)>,
@@ -39,22 +40,22 @@ pub struct VisionGeometry {
 /// What a geometry packet changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct News {
-    /// The field is another than before, or known for the first time.
+    /// The field differs from before, or known for the first time.
     pub field: bool,
-    /// So many cameras are new or hang elsewhere.
+    /// Number of cameras that are new or have moved.
     pub cameras: usize,
-    /// So many cameras were refused: no place, or not a finite one.
+    /// Number of cameras refused: no position, or not a finite one.
     pub cameras_refused: usize,
     /// A model of the ball is new.
     pub models: bool,
-    /// So many models were refused: no ball moves like that.
+    /// Number of models refused: implausible for a ball.
     pub models_refused: usize,
 }
 
 /// Why a geometry packet was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GeometryFault {
-    /// A measure of the field is nonsense.
+    /// A dimension of the field is invalid.
     Field(FieldFault),
 }
 
@@ -69,7 +70,7 @@ impl std::fmt::Display for GeometryFault {
 impl std::error::Error for GeometryFault {}
 
 impl VisionGeometry {
-    /// The field, once vision told it.
+    /// The field, once vision has sent it.
     pub fn field(&self) -> Option<&FieldSpec> {
         self.field.as_ref().map(|(field, _)| field)
     }
@@ -79,32 +80,32 @@ impl VisionGeometry {
         self.field.map(|(_, source)| source)
     }
 
-    /// The cameras, by id.
+    /// The cameras, by their numbers.
     pub fn cameras(&self) -> &BTreeMap<u32, Camera> {
         &self.cameras
     }
 
-    /// How the ball moves along the ground here, if vision said.
+    /// Model of the ball on the ground, if vision has sent one.
     pub fn ground(&self) -> Option<BallModel> {
         self.ground
     }
 
-    /// How the ball bounces here, if vision said.
+    /// Model of the ball's bounces, if vision has sent one.
     pub fn chip(&self) -> Option<ChipModel> {
         self.chip
     }
 
-    /// The ball's radius, m: vision's, else the rules'.
+    /// The ball's radius, m: from vision, else from the rules.
     pub fn ball_radius(&self) -> f32 {
         self.ball_radius.unwrap_or(limits::BALL_RADIUS)
     }
 
-    /// The largest radius of a robot, m: vision's, else the rules'.
+    /// The largest radius of a robot, m: from vision, else from the rules.
     pub fn robot_radius(&self) -> f32 {
         self.robot_radius.unwrap_or(limits::ROBOT_RADIUS)
     }
 
-    /// Takes a geometry packet. A field that cannot be refuses all of it.
+    /// Takes a geometry packet. An implausible field refuses the whole packet.
     pub fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
         let field = field_of(&data.field).map_err(GeometryFault::Field)?;
         let mut news = News { field: self.field != Some(field), ..News::default() };
@@ -135,7 +136,7 @@ impl VisionGeometry {
                 Some(model) => news.models |= self.chip.replace(model) != Some(model),
             }
         }
-        // Radii that are told are believed within what fits on the field at all.
+        // Radii that are sent are used within what is possible on the field.
         let radius = |mm: Option<f32>, least: f32, most: f32| {
             mm.map(|mm| mm / 1000.0).filter(|radius| (least..=most).contains(radius))
         };
@@ -145,7 +146,7 @@ impl VisionGeometry {
     }
 }
 
-/// The division whose field is nearest in length: what is left out is taken from it.
+/// The division whose field is nearest in length: missing values are taken from it.
 fn nearest_division(length: f32) -> League {
     let off = |league: League| (league.field().length - length).abs();
     if off(League::DivisionA) < off(League::DivisionB) { League::DivisionA } else { League::DivisionB }
@@ -167,9 +168,10 @@ fn field_of(size: &GeometryFieldSize) -> Result<(FieldSpec, AreaSource), FieldFa
         length,
         width,
         margin,
-        // The newest message tells both; a 0 is what older programs send for "not told".
+        // The newest message has both; older programs send 0 for "not set".
         goal_line_margin: told(size.boundary_width_goal_line).unwrap_or(margin),
-        // Here 0 is an answer: no such area. Untold, the game controller takes its own default, the same in both divisions.
+        // Here 0 is a value: no such area. If it is not sent, the game controller takes its own default, the
+        // same in both divisions.
         goal_substitution: size.goal_substitution_area_width.map_or(SUBSTITUTION_UNTOLD, metres),
         goal_width: metres(size.goal_width),
         goal_depth: metres(size.goal_depth),

@@ -1,8 +1,9 @@
 //! `host`: sans-IO core of the host: datagrams and times in, packets out (docs/architecture.md §3.1).
 //!
-//! One mutation, then drain: after every [`Host::handle`] call [`Host::poll_packet`] until `None`, then ask [`Host::poll_timeout`] when
-//! to come back. It plans on the arrival of an image, not on a beat of its own: waiting for one would make every command half a
-//! period older. Same inputs at the same times, same packets: a trace of the inputs is a recording of the decisions.
+//! Call protocol: after every [`Host::handle`] call [`Host::poll_packet`] until `None`, then ask
+//! [`Host::poll_timeout`] for the next deadline. It plans when a camera frame arrives, not on a period of its
+//! own: that would make every command half a period older. The same inputs at the same times give the same
+//! packets: a trace of the inputs is a recording of the decisions.
 
 mod calibration;
 mod input;
@@ -35,37 +36,38 @@ use crate::world::{Ball, World};
 
 pub use input::{Input, Undecodable, Verdict};
 
-/// What is fixed for a host's life.
+/// Settings that are fixed while a host runs.
 #[derive(Clone, Debug)]
 pub struct HostSettings {
-    /// Our colour.
+    /// The colour our robots play with.
     pub us: Colour,
-    /// The league: its field until vision tells of another, and its limits.
+    /// The league: its field until vision sends another, and its limits.
     pub league: League,
     /// Our keeper, until the referee names one.
     pub keeper: RobotId,
-    /// The goal we defend, until the referee says.
+    /// The goal we defend, until the referee reports it.
     pub defending: GoalEnd,
     /// Ball speed over speed ordered, by robot.
     pub kick: [f32; RobotId::COUNT],
-    /// Deceleration of a rolling ball, m/s²; none: vision's, or the league's usual.
+    /// Deceleration of a rolling ball, m/s²; none: from vision, or the league's default.
     pub roll: Option<f32>,
-    /// It plays by what it learns of kickers and ball; it learns in either case.
+    /// It uses the learned gains and deceleration; it learns in either case.
     pub learns: bool,
     /// The only referee that is obeyed; none: every one, the strictest first.
     pub referee: Option<SourcePin>,
     /// What robots do when the referee falls silent.
     pub referee_silence: OnSilence,
-    /// Who decides open play.
+    /// Which team decides open play: ours or an opponent team.
     pub team: Team,
-    /// The radio's.
+    /// Settings of the radio.
     pub radio: RadioSettings,
     /// Which of the second paper's tactics it plays.
     pub tactics: Tactics,
 }
 
 impl HostSettings {
-    /// A team on a league's own field with robots that do as they are told; `epoch` must rise with every start.
+    /// A team on a league's own field with robots that execute orders without deviation; `epoch` must rise
+    /// with every start.
     pub fn new(us: Colour, league: League, epoch: u32) -> Self {
         Self {
             us,
@@ -84,14 +86,14 @@ impl HostSettings {
     }
 }
 
-/// Orders that take the place of the coach's: whom, its duty, and what to do.
+/// Orders that replace the coach's: robot, its role, and its directive.
 pub type Drill = heapless::Vec<(RobotId, Duty, Directive), { RobotId::COUNT }>;
 
-/// A team's host.
+/// The host of one team: all state from vision to radio.
 #[derive(Clone, Debug)]
 pub struct Host {
     settings: HostSettings,
-    /// The case base in the robots, to look up what they say they play.
+    /// The case base in the robots, to look up the case that they report.
     cases: CaseBase<'static>,
     tracker: Tracker,
     geometry: VisionGeometry,
@@ -105,7 +107,7 @@ pub struct Host {
     planned: Option<Instant>,
     /// When the newest camera frame came.
     imaged: Option<Instant>,
-    /// When it was last planned because of the referee.
+    /// When it last planned because of the referee.
     replanned: Option<Instant>,
     /// The referee's phase in the newest orders.
     ordered: Phase<Colour>,
@@ -116,11 +118,11 @@ pub struct Host {
     books: Bookkeeper,
     requests: Requests,
     learned: Learned,
-    /// The deceleration of a rolling ball by which it plays, where that is not vision's.
+    /// The deceleration of a rolling ball that it uses, where that is not from vision.
     roll: Option<f32>,
 }
 
-/// What a robot of ours last said of itself.
+/// Newest reports of one of our robots.
 #[derive(Clone, Debug, Default)]
 struct Known {
     beacon: Option<(Instant, Beacon)>,
@@ -166,7 +168,7 @@ impl Host {
         host
     }
 
-    /// Something came, or a deadline has.
+    /// Handles an input or a deadline.
     pub fn handle(&mut self, now: Instant, input: Input<'_>) -> Verdict {
         match input {
             Input::Vision(bytes) => self.see(now, bytes),
@@ -183,7 +185,7 @@ impl Host {
         }
     }
 
-    /// Our robots halt, whatever the referee says, until the end.
+    /// Halts our robots for the rest of the run, independent of the referee.
     fn halt(&mut self, now: Instant) {
         if !std::mem::replace(&mut self.halted, true) {
             self.radio.hasten(now);
@@ -191,8 +193,8 @@ impl Host {
         self.plan(now);
     }
 
-    /// From the next plan on robots get these orders and no others, whatever the coach decides; `None`: the coach's again. Phase and
-    /// governor bind them as ever. For drills of single skills.
+    /// From the next plan on robots get these orders and no others, independent of the coach; `None`: the
+    /// coach's again. Phase and governor bind them as ever. For drills of single skills.
     pub fn drill(&mut self, orders: Option<Drill>) {
         self.drill = orders;
     }
@@ -202,12 +204,12 @@ impl Host {
         self.radio.poll_packet()
     }
 
-    /// The next request to the game controller, for its port for teams.
+    /// The next request to send to the game controller's port for teams.
     pub fn poll_request(&mut self) -> Option<Request> {
         self.requests.poll()
     }
 
-    /// When [`Input::Timeout`] is wanted, if nothing comes before.
+    /// When the next [`Input::Timeout`] is due, unless another input comes before.
     pub fn poll_timeout(&self) -> Option<Instant> {
         self.radio.poll_timeout()
     }
@@ -219,7 +221,7 @@ impl Host {
         };
         self.undecodable.empty += u64::from(packet.geometry.is_none() && packet.detection.is_none());
         if let Some(data) = &packet.geometry {
-            // What cannot be a field is told by the geometry's own counts; the field before stands.
+            // A field that is refused is counted by the geometry; the previous field is kept.
             let _told = self.geometry.hear(data);
         }
         let heard = self.tracker.handle(&packet, now);
@@ -268,19 +270,19 @@ impl Host {
         }
     }
 
-    /// Orders because the referee's phase changed. Not oftener than camera frames would give them, HALT aside: who forges
-    /// packets in turns shall not keep the processor busy.
+    /// Orders because the referee's phase changed. At most at the rate of camera frames, except for HALT:
+    /// alternating forged packets must not load the processor.
     fn replan(&mut self, now: Instant) {
         self.replanned = Some(now);
         self.plan(now);
     }
 
-    /// Orders for the field as it is now, and out with them.
+    /// Plans orders for the present field and sends them.
     fn plan(&mut self, now: Instant) {
         self.planned = Some(now);
         let picture = self.tracker.picture();
         self.world = picture.at(now);
-        // Only a ball that is seen can be seen to move: where a hidden one is put is a guess.
+        // Only a visible ball counts as moved: the place of a hidden one is an estimate.
         self.listener.tick(now, plainly_seen(now, self.world.ball));
         self.remember_ball(now);
         let us = self.settings.us;
@@ -322,7 +324,7 @@ impl Host {
         self.radio.offer(now, &self.world, situation, &commands);
     }
 
-    /// Robots of our colour on the field that have said nothing since this host began.
+    /// Number of robots of our colour on the field that have not reported since this host started.
     fn strangers(&self, field: &FieldSpec, defending: GoalEnd) -> usize {
         let stands = |robot: &&crate::world::Robot| field.counts(defending, robot.pose.position);
         let silent = |robot: &&crate::world::Robot| {
@@ -332,7 +334,7 @@ impl Host {
         self.world.ours(self.settings.us).filter(stands).filter(silent).count()
     }
 
-    /// A ball that no camera sees is put where it must be.
+    /// Estimates the place of a ball that no camera sees.
     fn remember_ball(&mut self, now: Instant) {
         let feels = |robot: RobotId| {
             let told = &self.robots[robot.index()].telemetry;
@@ -355,12 +357,12 @@ impl Host {
         }
     }
 
-    /// How many robots the referee lets a team have.
+    /// Number of robots the referee allows a team.
     fn allowed(&self, team: Colour) -> usize {
         self.listener.game().team(team).robots_allowed.map_or(RobotId::COUNT, |n| n as usize)
     }
 
-    /// Robots that hear us and stand.
+    /// Robots that receive the host and are upright.
     fn fit(&self, now: Instant) -> RobotSet {
         let mut fit = RobotSet::default();
         for robot in self.radio.present(now) {
@@ -372,7 +374,7 @@ impl Host {
         fit
     }
 
-    /// Robots that play a case now, by their own words.
+    /// Robots that play a case now, as they report.
     fn in_play(&self, now: Instant) -> RobotSet {
         let mut playing = RobotSet::default();
         for robot in RobotId::all() {
@@ -387,7 +389,7 @@ impl Host {
         playing
     }
 
-    /// The next pass of the case that our robots play, where the bridge is played.
+    /// The next pass of the case that our robots play, where the tactics include the bridge.
     fn proposed(&self, now: Instant, flip: Flip) -> Option<CasePass> {
         if !self.settings.tactics.bridge {
             return None;
@@ -401,27 +403,28 @@ impl Host {
     }
 }
 
-/// Where a ball is that cameras see; where one that they do not see is taken to be is a guess.
+/// The ball's place if cameras see it; the estimated place of a hidden ball does not count.
 fn plainly_seen(now: Instant, ball: Option<Ball>) -> Option<Point<geometry::Field>> {
     ball.filter(|ball| now.since(ball.seen) < PLAINLY && ball.confidence > SURE).map(|ball| ball.position)
 }
 
-/// The limits of a league that has none of its own.
+/// The limits used for a league that defines none.
 const LIMITS: Limits = match League::DivisionB.limits() {
     Some(limits) => limits,
     None => panic!("division B has limits"),
 };
-/// Not oftener than this it is planned: four cameras that look at once give one plan, not four; half a period of 100 Hz.
+/// Minimum time between plans: four cameras that look at once give one plan, not four; half a period of 100
+/// Hz.
 const PLAN_EVERY: Duration = Duration::millis(5);
-/// What a robot told of itself longer ago is not counted on.
+/// Age from which a robot's telemetry is ignored.
 const TELEMETRY_LEASE: Duration = Duration::millis(300);
-/// Share by which a ball must roll otherwise before tables are made anew.
+/// Relative change of the ball's deceleration from which tables are computed again.
 const ROLL_CHANGES: f32 = 0.05;
-/// A ball that was not seen for longer is hidden: the cameras' delay and a few images.
+/// A ball not seen for this time counts as hidden: the cameras' delay and a few frames.
 const PLAINLY: Duration = Duration::millis(120);
 /// The tracker's confidence in a ball that it has followed for a tenth of a second.
 const SURE: f32 = 0.6;
-/// As long as robots hold each other for present.
+/// Time for which robots count each other as present after a beacon.
 const BEACON_LEASE: Duration = Duration::millis(400);
 
 #[cfg(test)]

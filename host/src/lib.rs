@@ -1,9 +1,10 @@
 //! `host`: the host of a Small Size team: vision and referee in, commands to robots out. Runs on the PC.
 //!
-//! Sans-IO: bytes and times come from the caller, frames go back to it; sockets and serial lines are the shell's.
+//! Sans-IO: bytes and times come from the caller, frames go back to it; sockets and serial lines belong to
+//! the shell.
 //!
-//! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl` only. Same input,
-//! same decisions.
+//! **Invariants.** It never links `brain` or `hil-sim`: it knows robots by `protocol` and the field by `ssl`
+//! only. Same input, same decisions.
 #![forbid(unsafe_code)]
 
 pub mod config;

@@ -1,4 +1,4 @@
-//! `proposal`: the pass proposed by the case that our robots play. What they say of their cycle, looked up in
+//! `proposal`: the pass proposed by the case that our robots play: the cycle that they report, looked up in
 //! the case base that they carry (docs/papers.md §8: the case is the intent). From the field to the attack
 //! frame, m.
 
@@ -10,13 +10,13 @@ use rules::League;
 use crate::strategy::Flip;
 use crate::strategy::pass::bridge::CasePass;
 
-/// The cases that come with a league; robots that carry others are not understood.
+/// The cases that come with a league; cases of robots with another case base cannot be looked up.
 pub fn cases_of(league: League) -> CaseBase<'static> {
     case_library::league(league.name()).map_or_else(CaseBase::default, case_library::League::base)
 }
 
-/// Of the newest cycle that robots with this case base tell of. None where they play no case, where its next leg is no pass, or where
-/// its passer is not, or no longer, at it.
+/// The pass of the newest cycle that robots with this case base report. `None` where they play no case, where
+/// its next leg is no pass, or where its passer is not, or no longer, at it.
 pub(crate) fn proposal(base: &CaseBase<'_>, told: &[(RobotId, &Beacon)], flip: Flip) -> Option<CasePass> {
     let told = || told.iter().copied().filter(|(_, beacon)| beacon.case_base == base.hash());
     let newest = told().filter_map(|(_, beacon)| beacon.cycle.as_ref()).fold(None, newer)?;
@@ -27,7 +27,7 @@ pub(crate) fn proposal(base: &CaseBase<'_>, told: &[(RobotId, &Beacon)], flip: F
             told().find(|(id, beacon)| *id == robot && beacon.cycle.as_ref() == Some(newest))?;
         Some(beacon.progress)
     };
-    // Whoever has not heard of the cycle yet has done nothing in it.
+    // A robot that has not received the cycle yet has done nothing in it.
     let done = |robot: RobotId| match progress(robot) {
         Some(Progress::Execute { done }) => usize::from(done),
         Some(Progress::WaitEnd { .. }) => usize::MAX,
@@ -120,11 +120,11 @@ mod tests {
             // A team that defends the goal at +x attacks towards −x.
             let by_hand = Point::<Attack>::new(at.x as f32 * -0.001, at.y as f32 * -0.001);
             assert!(found.at.distance(by_hand) < 1e-3, "case {id}: {found:?}, by hand {by_hand:?}");
-            // Once it is done there is another one, or none.
+            // Once it is done the proposal is another one, or none.
             assert!(find(&told(Progress::Execute { done: 2 })).is_none_or(|next| next != found), "case {id}");
-            // Who was called away by the host, or has ended, passes in no case.
+            // A robot that the host called away, or that has ended, is not a passer of any case.
             assert_eq!(find(&told(Progress::Idle)), None);
-            // Robots with another case base are not understood.
+            // Cycles of robots with another case base are ignored.
             let mut strangers = told(Progress::Execute { done: 1 });
             for (_, beacon) in &mut strangers {
                 beacon.case_base ^= 1;

@@ -1,23 +1,26 @@
-//! `referee`: the game controller's packets become the one [`Game`] that robots obey. Times: µs of the host's clock.
+//! `referee`: merges the game controller's packets into the one [`Game`] that robots obey. Times: µs of the
+//! host's clock.
 //!
-//! [`Listener::hear`] takes packets with their sender, [`Listener::tick`] the time and the ball. The rules, all of them on the
-//! side of standing still, because league multicast carries no proof of who sent it:
+//! [`Listener::hear`] takes packets with their sender, [`Listener::tick`] the time and the ball. All rules
+//! prefer standing still, because league multicast carries no proof of its sender:
 //!
-//! - **Within one source** packets count by stamp and counter, but HALT and STOP count by arrival, whatever their stamp
-//!   (`source`). Stamps are held to our own clock within [`WINDOW`]; a referee's clock that steps is followed within that
-//!   time, and reported.
-//! - **Several sources** ([`SourceKey`]: identifier and sender's address). The first is followed: its sheet (sides, cards,
-//!   keeper, places) counts until it has been silent for [`SILENCE`]. Of what the sources say the strictest command is
-//!   obeyed, HALT before STOP and timeouts before everything else. Where two disagree and neither is stricter, ours is STOP
-//!   after [`WINDOW`]: neither can be trusted to let robots play. [`Listener::warnings`] reports every disagreement with
-//!   both addresses; [`SourcePin`] ends it.
-//! - **HALT that ends without a STOP** of the source that is followed (the other source fell silent, a late copy) is left
-//!   through [`GRACE`] of STOP: people may stand on the field.
-//! - **Silence is not loss** (trap 5). The phase stands for [`HALT_AFTER`]; then robots halt ([`OnSilence::Halt`]) or go on by it
-//!   ([`OnSilence::GoOn`]). [`Listener::silence`] says how long nothing came.
+//! - **Within one source** packets count by stamp and counter, but HALT and STOP count by arrival,
+//!   independent of their stamp (`source`). Stamps are held to our own clock within [`WINDOW`]; a referee's
+//!   clock that steps is followed within that time, and reported.
+//! - **Several sources** ([`SourceKey`]: identifier and sender's address). The first is followed: its sheet
+//!   (sides, cards, keeper, places) counts until it has been silent for [`SILENCE`]. Of the sources' commands
+//!   the strictest is obeyed, HALT before STOP and timeouts before everything else. Where two disagree and
+//!   neither is stricter, ours is STOP after [`WINDOW`]: neither can be trusted to let robots play.
+//!   [`Listener::warnings`] reports every disagreement with both addresses; [`SourcePin`] ends it.
+//! - **HALT that ends without a STOP** of the source that is followed (the other source fell silent, a late
+//!   copy) is left through [`GRACE`] of STOP: staff may be on the field.
+//! - **Silence is not loss** (trap 5). The phase is kept for [`HALT_AFTER`]; then robots halt
+//!   ([`OnSilence::Halt`]) or continue by it ([`OnSilence::GoOn`]). [`Listener::silence`] returns the time
+//!   without a packet.
 //!
-//! Only a change of command or counter is a command, and what the same command with a new counter means is for
-//! [`rules::state`] to say (trap 4). The referee's clock is Unix time, µs; ages of commands are differences on it.
+//! Only a change of command or counter is a command, and [`rules::state`] defines what the same command with
+//! a new counter means (trap 4). The referee's clock is Unix time, µs; ages of commands are differences on
+//! it.
 
 mod game;
 mod identity;
@@ -45,30 +48,34 @@ pub use verdict::{Counts, Doubt, Taken, Verdict};
 pub use warning::Warning;
 pub use words::{command_of, stage_of};
 
-/// The operator is told that the referee is silent after this: it sends every 25 ms, pauses of 1.6 s were recorded on a
-/// loaded machine, and twice that is no pause any more. A source that is silent longer has no say.
+/// The silence of the referee is reported to the operator after this: it sends every 25 ms, pauses of 1.6 s
+/// were recorded on a loaded machine, and twice that is no pause any more. A source that is silent longer is
+/// ignored.
 pub const SILENCE: Duration = Duration::millis(3_000);
-/// Where robots halt for want of a referee, they do so after this: 80 packets of the controller, and more than the longest pause
-/// recorded on a loaded machine (1.6 s).
+/// Time without a referee after which robots halt, if so configured: 80 packets of the controller, and more
+/// than the longest pause recorded on a loaded machine (1.6 s).
 pub const HALT_AFTER: Duration = Duration::millis(2_000);
-/// Sources that are told apart. When full, the least strict one makes room, so that no flood of sources hides a HALT.
+/// Number of sources kept. When full, the least strict one is replaced, so that no flood of sources hides a
+/// HALT.
 const SOURCES_MAX: usize = 8;
 
-/// What robots do while nothing comes from a referee that was received before. Before the first packet they halt in any case.
+/// Behaviour of robots during silence of a referee that was received before. Before the first packet they
+/// halt in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnSilence {
     /// They halt after [`HALT_AFTER`], and play again after a STOP of [`GRACE`] when it is back.
     #[default]
     Halt,
-    /// They go on by its last command: for test days on which the controller is started for a command and ended.
+    /// They continue by its last command: for test days on which the controller is started for a command and
+    /// ended.
     GoOn,
 }
 
 impl OnSilence {
-    /// Both, with their words in `team.toml` and on the command line.
+    /// Both, with their names in `team.toml` and on the command line.
     pub const ALL: [(&'static str, Self); 2] = [("halt", Self::Halt), ("go-on", Self::GoOn)];
 
-    /// The word for it.
+    /// Its name in `team.toml` and on the command line.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Halt => "halt",
@@ -77,7 +84,7 @@ impl OnSilence {
     }
 }
 
-/// Receives the referee's packets.
+/// Receives the referee's packets and merges their sources.
 #[derive(Clone, Debug)]
 pub struct Listener {
     limits: Limits,
@@ -85,11 +92,11 @@ pub struct Listener {
     pin: Option<SourcePin>,
     /// The first is followed.
     sources: Vec<Source>,
-    /// Sources that the pin excludes, with their newest packets; as many as [`SOURCES_MAX`].
+    /// Sources that the pin excludes, with their newest packets; at most [`SOURCES_MAX`].
     excluded: Vec<(SourceKey, Instant)>,
-    /// What others or packets out of order impose on the source that is followed.
+    /// Strictness imposed on the source that is followed, by other sources or packets out of order.
     imposed: Strictness,
-    /// Sources disagree and neither is stricter, since.
+    /// Since when sources disagree and neither is stricter.
     undecided: Option<Instant>,
     /// STOP until then, because an imposed HALT ended.
     still_until: Instant,
@@ -101,16 +108,17 @@ pub struct Listener {
 /// How long the referee has sent nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Silence {
-    /// Nothing was ever received, for so long.
+    /// Nothing was ever received, for this time.
     Never(Duration),
-    /// It was received this long ago, which is nothing to worry about.
+    /// The newest packet was received this long ago: normal.
     Heard(Duration),
-    /// It has been silent for so long that the operator should know. Its last command stands.
+    /// It has been silent long enough to warn the operator. Its last command is kept.
     Silent(Duration),
 }
 
 impl Listener {
-    /// Starts to listen at `now`, to every source or only to the pinned one; a silent referee's last command stands.
+    /// Starts to listen at `now`, to every source or only to the pinned one; a silent referee's last command
+    /// is kept.
     pub fn new(limits: Limits, pin: Option<SourcePin>, now: Instant) -> Self {
         Self {
             limits,
@@ -127,7 +135,7 @@ impl Listener {
         }
     }
 
-    /// The same, and that is what happens when the referee falls silent.
+    /// The same with that behaviour when the referee falls silent.
     #[must_use]
     pub fn on_silence(self, on_silence: OnSilence) -> Self {
         Self { on_silence, ..self }
@@ -138,12 +146,13 @@ impl Listener {
         self.sources.first().map_or(&self.none.0, |source| &source.game)
     }
 
-    /// The state of the game by the commands of the source that is followed, with the ball's part in it.
+    /// The state of the game by the commands of the source that is followed, with the effects of the ball's
+    /// motion.
     pub fn state(&self) -> &GameState {
         self.sources.first().map_or(&self.none.1, |source| &source.state)
     }
 
-    /// How many packets came to what.
+    /// Numbers of packets by verdict.
     pub fn counts(&self) -> Counts {
         self.counts
     }
@@ -153,7 +162,7 @@ impl Listener {
         self.sources.first().map(|source| &source.key)
     }
 
-    /// How long nothing came.
+    /// Time without a packet.
     pub fn silence(&self, now: Instant) -> Silence {
         match self.sources.first() {
             None => Silence::Never(now.since(self.started)),
@@ -175,7 +184,7 @@ impl Listener {
         ticked
     }
 
-    /// A packet that came `from` there at `now`; `ball` is where it is seen then.
+    /// Takes a packet that came from `from` at `now`; `ball` is the ball's place then.
     pub fn hear(
         &mut self,
         packet: &Referee,
@@ -222,8 +231,9 @@ impl Listener {
         }
     }
 
-    /// A new source. Where there is no room the least strict one goes, the longest silent first, but never the one that is
-    /// followed; a newcomer that is less strict than all of them is not admitted, since what it says would not be obeyed.
+    /// A new source. Where there is no room the least strict one goes, the longest silent first, but never
+    /// the one that is followed; a newcomer that is less strict than all of them is not admitted, since its
+    /// commands would not be obeyed.
     fn admit(&mut self, source: Source, now: Instant) {
         if self.sources.len() < SOURCES_MAX {
             self.sources.push(source);
@@ -261,12 +271,12 @@ impl Listener {
         }
     }
 
-    /// Who is followed now, and what is imposed on it.
+    /// Chooses the source that is followed, and the strictness imposed on it.
     fn settle(&mut self, now: Instant) {
         let audible = |source: &Source| now.since(source.heard) < SILENCE;
         let successor = self.sources.iter().position(audible).filter(|place| *place > 0);
         if let Some(place) = successor {
-            // It has been silent, and somebody else is there: those before it have no say any more.
+            // It has been silent, and another source is active: those before it are dropped.
             self.sources.drain(..place);
         }
         let mut place = 0;
@@ -276,7 +286,8 @@ impl Listener {
         });
         let Some((followed, others)) = self.sources.split_first_mut() else { return };
         let own = Strictness::of(followed.command);
-        // One that agrees imposes only what came out of order; one that does not, all that it says.
+        // A source that agrees imposes only what came out of order; one that disagrees imposes its
+        // strictness.
         let imposes = |other: &Source| {
             if other.command == followed.command { other.restraint(now) } else { other.strictness(now) }
         };

@@ -1,7 +1,8 @@
-//! `requests`: what our team asks of the game controller by itself: a keeper that can play, a substitution, the advantage.
+//! `requests`: automatic requests of our team to the game controller: a keeper that can play, a substitution,
+//! the advantage.
 //!
-//! Sans-IO: [`Requests::look`] takes what strategy sees, [`Requests::poll`] gives what is to be sent on the controller's port for
-//! teams ([`crate::referee::team_port`]). SI, attack frame.
+//! Sans-IO: [`Requests::look`] takes the strategy's view, [`Requests::poll`] gives the next request for the
+//! controller's port for teams ([`crate::referee::team_port`]). SI, attack frame.
 
 use std::collections::VecDeque;
 
@@ -12,33 +13,35 @@ use crate::referee::team_port::Request;
 use crate::strategy::View;
 use crate::strategy::view::nearest;
 
-/// What we asked for, and since when something is amiss.
+/// The requests sent, and since when their causes persist.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Requests {
     out: VecDeque<Request>,
     keeper_gone: Option<Instant>,
     keeper_asked: Option<Instant>,
     crowded: Option<Instant>,
-    /// A substitution was asked for, for the robots that are too many now.
+    /// A substitution was requested, for the surplus robots now on the field.
     substitution: bool,
     advantage: bool,
 }
 
 impl Requests {
-    /// Looks at the field as strategy sees it; `left`: substitutions that are free in this half, if the referee says.
+    /// Takes the strategy's view of the field; `left`: substitutions left in this half, if the referee sends
+    /// it.
     pub(crate) fn look(&mut self, view: &View, left: Option<u32>) {
         self.keeper(view);
         self.substitution(view, left);
         self.advantage(view);
     }
 
-    /// The next request to be sent.
+    /// The next request to send.
     pub(crate) fn poll(&mut self) -> Option<Request> {
         self.out.pop_front()
     }
 
-    /// A keeper that is not there (or does not hear us) makes every penalty against us wait, and leaves our goal open: the robot
-    /// nearest to our goal takes over. The controller grants that while the ball is out of play.
+    /// A keeper that is missing (or does not receive the host) delays every penalty against us, and leaves
+    /// our goal open: the robot nearest to our goal takes over. The controller grants that while the ball is
+    /// out of play.
     fn keeper(&mut self, view: &View) {
         if view.our(view.keeper).is_some() || view.ours.is_empty() {
             (self.keeper_gone, self.keeper_asked) = (None, None);
@@ -57,10 +60,12 @@ impl Requests {
         }
     }
 
-    /// A robot too many that cannot leave by itself blocks the game: after [`STUCK`] in a stop our robot handler is to take it out.
+    /// A surplus robot that cannot leave by itself blocks the game: after [`STUCK`] in a stop our robot
+    /// handler is to take it out.
     ///
-    /// Asked once until no robot is too many any more, and only while it is free: where no person answers, every further request would
-    /// halt the game again, and after the fifth each is a foul and every third a card.
+    /// Requested once until there is no surplus robot any more, and only while it is free: where no robot
+    /// handler acts, every further request would halt the game again, and after the fifth each is a foul and
+    /// every third a card.
     fn substitution(&mut self, view: &View, left: Option<u32>) {
         let ours = view.ours.iter().filter(|robot| view.counts_for_us(robot.position)).count();
         let too_many = ours + view.uncommanded > view.allowed;
@@ -82,8 +87,8 @@ impl Requests {
         }
     }
 
-    /// They have a robot too many: we play on while that is good for us (our penalty, or the ball in their half); the
-    /// controller stops the game for it otherwise.
+    /// They have a surplus robot: we continue while that is to our advantage (our penalty, or the ball in
+    /// their half); the controller stops the game for it otherwise.
     fn advantage(&mut self, view: &View) {
         let theirs = view.theirs.iter().filter(|robot| view.counts_for_them(robot.position)).count();
         let attack = match view.phase {
@@ -99,11 +104,12 @@ impl Requests {
     }
 }
 
-/// A keeper is taken for gone after so long: vision loses a robot for less, and the radio's link is up again in half a second.
+/// A keeper counts as missing after this time: vision loses a robot for less, and the radio link is restored
+/// within half a second.
 const GONE: Duration = Duration::millis(2000);
-/// A keeper is asked for again after so long, if the one that was asked for is not named.
+/// A keeper is requested again after this time, if the requested one is not named.
 const ASK_AGAIN: Duration = Duration::millis(3000);
-/// A robot on its way out needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
+/// A robot that is leaving needs less: division A's diagonal at the 1.5 m/s of a stop takes 10 s.
 const STUCK: Duration = Duration::millis(12_000);
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `world`: the world model. The picture that tracking hands to strategy, radio, referee and page. Field
-//! frame; m, m/s, rad, rad/s; times on the host's clock.
+//! `world`: the world model that tracking passes to strategy, radio, referee and page. Field frame; m, m/s,
+//! rad, rad/s; times on the host's clock.
 
 use geometry::{Field, Point, Pose, Vector, math};
 use motion::ball::chip::ChipModel;
@@ -13,57 +13,57 @@ use rules::Colour;
 pub struct World {
     /// The moment, on the host's clock.
     pub time: Instant,
-    /// The ball in play, if it is known where it is.
+    /// The ball in play, if its place is known.
     pub ball: Option<Ball>,
-    /// How balls move here.
+    /// Models of the ball here.
     pub models: BallModels,
     robots: [[Option<Robot>; RobotId::COUNT]; 2],
 }
 
-/// How balls move on this carpet.
+/// Models of the ball on this field surface.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct BallModels {
-    /// On the ground.
+    /// Model of motion on the ground.
     pub ground: BallModel,
     /// In the air and at bounces.
     pub chip: ChipModel,
 }
 
-/// The ball.
+/// State of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Where it is, or above which point it flies.
+    /// Its place, or the point below it while it flies.
     pub position: Point<Field>,
-    /// m above where it lies on the carpet.
+    /// Height above its place on the field surface, m.
     pub height: f32,
-    /// Along the ground, m/s.
+    /// Velocity along the ground, m/s.
     pub velocity: Vector<Field>,
-    /// Upwards, m/s.
+    /// Velocity upwards, m/s.
     pub climb: f32,
     /// It rolls below this speed and slides above it, m/s; infinite where its kick was not seen.
     pub rolls_below: f32,
-    /// Its last kick touched the ground once already: later bounces take less.
+    /// Whether its last kick has touched the ground once: later bounces lose less.
     pub bounced: bool,
-    /// 0 (lost in a moment) to 1 (seen just now, and often).
+    /// Confidence, 0 (about to be dropped) to 1 (seen just now, and often).
     pub confidence: f32,
     /// When a camera last saw it.
     pub seen: Instant,
-    /// The last kick, while the ball still moves by it.
+    /// The last kick, while the ball's motion is due to it.
     pub kicked: Option<Kick>,
 }
 
-/// A ball that somebody sent off.
+/// A kick of the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kick {
-    /// Who was at the ball; `None` where nobody stood near.
+    /// The robot at the ball; `None` where no robot was near.
     pub by: Option<Who>,
-    /// Where it left.
+    /// The place where it left.
     pub from: Point<Field>,
-    /// How fast along the ground, right after the kick, m/s.
+    /// Its velocity along the ground, right after the kick, m/s.
     pub velocity: Vector<Field>,
-    /// How fast upwards, m/s; 0 for a flat kick.
+    /// Its velocity upwards, m/s; 0 for a flat kick.
     pub climb: f32,
-    /// When.
+    /// Time of the kick.
     pub at: Instant,
 }
 
@@ -74,18 +74,18 @@ impl Kick {
     }
 }
 
-/// A robot.
+/// State of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Robot {
-    /// Which.
+    /// Its team and number.
     pub who: Who,
-    /// Where it is and faces.
+    /// Its place and heading.
     pub pose: Pose<Field>,
-    /// m/s.
+    /// Its velocity, m/s.
     pub velocity: Vector<Field>,
-    /// rad/s, counter-clockwise.
+    /// Its angular velocity, rad/s, counter-clockwise.
     pub angular: f32,
-    /// 0 (gone in a moment) to 1 (seen just now, and often).
+    /// Confidence, 0 (about to be dropped) to 1 (seen just now, and often).
     pub confidence: f32,
     /// When a camera last saw it.
     pub seen: Instant,
@@ -97,7 +97,7 @@ impl World {
         Self { time, models, ..Self::default() }
     }
 
-    /// Puts a robot where it says; who was there before under that name is replaced.
+    /// Puts a robot at its place; an earlier one of the same number is replaced.
     pub fn put(&mut self, robot: Robot) {
         self.robots[index(robot.who.colour)][robot.who.id.index()] = Some(robot);
     }
@@ -127,15 +127,16 @@ impl World {
         self.robots.iter().flatten().flatten()
     }
 
-    /// The robot nearest to a point, and how far off its centre is, m; the first of [`Self::robots`] among equals.
+    /// The robot nearest to a point, and the distance of its centre, m; the first of [`Self::robots`] among
+    /// equals.
     pub fn nearest(&self, point: Point<Field>) -> Option<(&Robot, f32)> {
         self.robots()
             .map(|robot| (robot, robot.pose.position.distance(point)))
             .reduce(|best, next| if next.1 < best.1 { next } else { best })
     }
 
-    /// Where everything will be at `time` if nobody changes its mind: delay compensation. The ball goes by its model,
-    /// robots go straight on for at most [`STRAIGHT_MAX`]. A moment before this picture's gives this picture.
+    /// The world at `time` if no robot changes its motion: delay compensation. The ball moves by its model,
+    /// robots straight on for at most [`STRAIGHT_MAX`]. A moment before this world's gives this world.
     pub fn at(&self, time: Instant) -> Self {
         let ahead = time.since(self.time).as_secs_f32();
         if ahead <= 0.0 {
@@ -149,14 +150,14 @@ impl World {
         later
     }
 
-    /// Where the ball comes to rest if nobody meets it.
+    /// The ball's stop position if no robot intercepts it.
     pub fn ball_rest(&self) -> Option<Point<Field>> {
         self.ball.map(|ball| ball.rest(&self.models))
     }
 }
 
 impl Ball {
-    /// One that lies still, told with full confidence.
+    /// A ball at standstill, with full confidence.
     pub fn at_rest(position: Point<Field>, seen: Instant) -> Self {
         Self {
             position,
@@ -171,12 +172,12 @@ impl Ball {
         }
     }
 
-    /// Whether it is off the ground by more than a robot's kicker can ignore.
+    /// Whether it is off the ground by more than a robot's kicker tolerates.
     pub fn flies(&self) -> bool {
         self.height > FLIES_ABOVE
     }
 
-    /// Its way along the ground from here; for a ball in the air, from here as if it were down.
+    /// Its path along the ground from here; for a ball in the air, from here as if it were on the ground.
     pub fn path(&self, models: &BallModels) -> BallPath<Field> {
         models.ground.moving(self.position, self.velocity, self.rolls_below)
     }
@@ -200,19 +201,19 @@ impl Ball {
             velocity: state.ground.velocity,
             height: state.height,
             climb: state.rise,
-            // What hops slides no more: a chip's ball rolls when it stays down.
+            // A bounced ball does not slide any more: a chip's ball rolls when it stays on the ground.
             rolls_below: f32::INFINITY,
             bounced: self.bounced || elapsed + time > self.lands_in() + elapsed,
             ..*self
         }
     }
 
-    /// Where it comes to rest if nobody meets it.
+    /// Its stop position if no robot intercepts it.
     pub fn rest(&self, models: &BallModels) -> Point<Field> {
         if self.is_down() { self.path(models).rest() } else { self.flight(models).0.rest() }
     }
 
-    /// When it comes to rest, s from now.
+    /// Time until it stops, s.
     pub fn rests_in(&self, models: &BallModels) -> f32 {
         if self.is_down() {
             return self.path(models).duration();
@@ -221,7 +222,7 @@ impl Ball {
         path.duration() - elapsed
     }
 
-    /// When it touches the ground next, s from now; 0 on the ground.
+    /// Time until it touches the ground next, s; 0 on the ground.
     pub fn lands_in(&self) -> f32 {
         if self.is_down() {
             return 0.0;
@@ -233,7 +234,7 @@ impl Ball {
         self.height <= 0.0 && self.climb <= 0.0
     }
 
-    /// This hop from its beginning, and how long ago that was, s.
+    /// This hop from its start, and the time since then, s.
     fn flight(&self, models: &BallModels) -> (motion::ball::chip::ChipPath<Field>, f32) {
         let launch = math::sqrt(self.climb * self.climb + 2.0 * GRAVITY * self.height.max(0.0));
         let elapsed = (launch - self.climb) * (1.0 / GRAVITY);
@@ -256,15 +257,17 @@ impl Robot {
     }
 }
 
-/// A robot is not taken to go straight on for longer, s: at 3 m/s² it changes its speed by 0.75 m/s in that time, and no
-/// delay that is worth compensating is longer (capture to motion is 45–65 ms in the league).
+/// Longest time for which a robot is extrapolated straight on, s: at 3 m/s² it changes its speed by 0.75 m/s
+/// in that time, and no delay that is worth compensating is longer (capture to motion is 45–65 ms in the
+/// league).
 pub const STRAIGHT_MAX: f32 = 0.25;
-/// A ball whose lower edge is higher is in flight, m: a kicker's plate is some 20 mm high, noise of a fitted height some 10.
+/// Height of a ball's lower edge above which it is in flight, m: a kicker's plate is some 20 mm high, noise
+/// of a fitted height some 10.
 const FLIES_ABOVE: f32 = 0.03;
-/// m/s².
+/// Gravity, m/s².
 pub(crate) const GRAVITY: f32 = 9.81;
 
-/// The place of a team in an array of two.
+/// The index of a team in an array of two.
 pub(crate) const fn index(colour: Colour) -> usize {
     match colour {
         Colour::Yellow => 0,

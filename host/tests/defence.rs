@@ -1,4 +1,4 @@
-//! `defence`: tests: the threat-based defence is calm on real camera data. The recordings of the league's
+//! `defence`: tests: the threat-based defence is stable on real camera data: recordings of the league's
 //! programs, tracked, and defended against by either team, with and without the defence's memory.
 
 use std::path::Path;
@@ -12,16 +12,16 @@ use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, League, Phase};
 use ssl::log::Packet;
 
-/// What robots did over a recording.
+/// Counts over a recording.
 #[derive(Debug, Default)]
 struct Seen {
-    /// Orders given, one a robot a picture.
+    /// Number of orders, one per robot and world.
     orders: usize,
-    /// How often a robot got another task than in the picture before.
+    /// How often a robot got another task than in the world before.
     changes: usize,
     /// Places in our area that are not the keeper's.
     in_area: usize,
-    /// s.
+    /// Duration, s.
     seconds: f32,
 }
 
@@ -71,7 +71,7 @@ fn count(view: &View, defence: &Defence, before: &mut [Option<Guards>; ROBOTS_MA
     }
 }
 
-/// The same task, whatever its numbers.
+/// The same task, independent of its numbers.
 fn same(a: Guards, b: Guards) -> bool {
     match (a, b) {
         (
@@ -85,7 +85,8 @@ fn same(a: Guards, b: Guards) -> bool {
 #[test]
 fn over_recorded_matches_tasks_do_not_flicker() {
     let field = League::DivisionB.field();
-    // The recorded robots do not go where they are sent, and ER-Force's are all put elsewhere at 1.8 s: tasks have to change.
+    // The recorded robots do not go where they are sent, and ER-Force's are all placed elsewhere at 1.8 s:
+    // tasks have to change.
     for (name, times) in [("grsim_divB_noisy_64s.log.gz", 5), ("erforce_divB_realistic_22s.log.gz", 3)] {
         let (calm, nervous) = (defended(name, field, true), defended(name, field, false));
         println!("{name}: {calm:?}, without a memory {nervous:?}");

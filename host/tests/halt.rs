@@ -1,5 +1,5 @@
-//! `halt`: tests: HALT leaves the host in the call that brings it, and a trace with two referees is decided
-//! the same again.
+//! `halt`: tests: the host sends HALT in the call that receives it, and the replay of a trace with two
+//! referees gives the same decisions.
 
 use host::radio::To;
 use host::record::header::{HostHeader, RecordingHeader};
@@ -64,19 +64,19 @@ fn three() -> RobotId {
     RobotId::new(3).unwrap()
 }
 
-/// Robot 3, as far as the radio goes: a host speaks to robots that it knows.
+/// The radio side of robot 3: a host sends only to robots that it knows.
 fn robot() -> Link {
     Link::new(TeamId::of(Colour::Blue), three(), TeamKey::ZERO.of_robot(three()), 1)
 }
 
-/// Its telemetry.
+/// Telemetry of that robot.
 fn telemetry(robot: &mut Link, now: u64) -> Vec<u8> {
     let mut telemetry = Telemetry::default();
     robot.tell(Instant(now), &mut telemetry);
     robot.seal(&TeamMessage::Telemetry(telemetry)).to_vec()
 }
 
-/// The host knows the robot from `now` on, for a second.
+/// Makes the robot known to the host from `now` on, for a second.
 fn join(host: &mut Host, robot: &mut Link, now: u64) {
     for _ in 0..2 {
         let packet = telemetry(robot, now);
@@ -93,7 +93,7 @@ fn read(packet: &[u8]) -> Option<HostMessage> {
     overhear_host(packet, TeamId::of(Colour::Blue), &keys, three()).ok()
 }
 
-/// Phases of the world's parts that wait in a host.
+/// Phases of the world's parts that the host has queued.
 fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
     let mut phases = Vec::new();
     while let Some((_, packet)) = host.poll_packet() {
@@ -106,7 +106,7 @@ fn phases(host: &mut Host) -> Vec<Phase<rules::Side>> {
 
 #[test]
 fn halt_leaves_in_the_call_that_brings_it_whenever_the_last_snapshot_left() {
-    // So long after a snapshot: the radio's rate would let the next one go after 10 ms.
+    // Time since a snapshot: the radio's rate would let the next one go after 10 ms.
     for after in [0, 1, 5 * MS, 9 * MS, 12 * MS] {
         for by_operator in [false, true] {
             let mut host = Host::new(settings(), Instant(0));
@@ -147,7 +147,7 @@ fn commands_in_turns_at_line_rate_plan_no_oftener_than_camera_frames_do() {
     assert!(sent <= 450, "{sent} snapshots in a second");
 }
 
-/// Inputs with two referees, and what a host says to them.
+/// Inputs with two referees, and the packets a host sends on them.
 fn recorded(settings: HostSettings) -> Vec<Record> {
     let mut host = Host::new(settings, Instant(0));
     let mut records = Vec::new();
@@ -156,7 +156,7 @@ fn recorded(settings: HostSettings) -> Vec<Record> {
         let now = u64::from(step) * 10 * MS;
         let (kind, from, bytes) = match step % 4 {
             0 => (Kind::Referee, machine(1), packet(now, Wire::ForceStart, 1)),
-            // From the second second on another machine says HALT with the same identifier, for a second.
+            // From the second second on another machine sends HALT with the same identifier, for a second.
             1 if (100..200).contains(&step) => (Kind::Referee, machine(2), packet(now, Wire::Halt, 1)),
             2 => (Kind::Robot, SenderAddress::INTERNAL, telemetry(&mut robot, now)),
             _ => (Kind::Vision, SenderAddress::INTERNAL, camera_frame(step, now)),

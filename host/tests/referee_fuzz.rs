@@ -1,5 +1,5 @@
 //! `referee_fuzz`: fuzz tests of the referee listener and of geometry. Packets of the recordings with bits
-//! turned, and with numbers of the referee that no referee would send.
+//! flipped, and with numbers of the referee that no referee would send.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ fn packet(name: &str) -> Vec<u8> {
     std::fs::read(data.join(name)).unwrap()
 }
 
-/// One to three bits of `bytes` are turned.
+/// Flips one to three bits of `bytes`.
 fn turned(bytes: &[u8], random: &mut Xoshiro256PlusPlus) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for _ in 0..=random.next_u32() % 3 {
@@ -65,7 +65,7 @@ fn numbers_that_no_referee_sends_are_survived() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
     let good = Referee::decode(&packet("referee_ball_placement_blue.bin")[..]).unwrap();
     let mut listener = Listener::new(League::DivisionA.limits().unwrap(), None, Instant(0));
-    // Any number, or one near to what was there.
+    // Any number, or one near to the present one.
     let mut any = move |near: u64| match random.next_u32() % 4 {
         0 => random.next_u64(),
         1 => u64::MAX,
@@ -86,10 +86,10 @@ fn numbers_that_no_referee_sends_are_survived() {
         let [x, y] = [any(0), any(0)].map(|bits| f32::from_bits(bits as u32));
         odd.designated_position = Some(ssl::referee::Point { x, y });
         odd.source_identifier = (any(0) % 16 > 0).then(|| "b".into());
-        // Our own clock may do anything too, but mostly goes on.
+        // Our own clock may take any value too, but mostly advances.
         let now = u64::from(round) * 25_000;
         let (now, ball) = (Instant(if any(0) % 64 == 0 { any(now) } else { now }), Some(Point::new(x, y)));
-        // One machine sends most of them, eleven others the rest.
+        // One machine sends most of them, eleven others the remaining ones.
         let machine = if any(0) % 4 == 0 { any(0) as u8 % 12 } else { 1 };
         let from = SenderAddress::new(([10, 0, 0, machine], 40_000).into());
         listener.hear(&odd, from, now, ball);

@@ -46,7 +46,7 @@ fn packets(name: &str) -> Vec<(Instant, WrapperPacket)> {
 
 #[test]
 fn images_pictures_and_tracker_packets_need_no_heap() {
-    // The one with geometry in every packet, and the one with four cameras and geometry now and then.
+    // The one with geometry in every packet, and the one with four cameras and geometry at intervals.
     for name in ["erforce_divB_realistic_22s.log.gz", "grsim_divB_22s.log.gz"] {
         let packets = packets(name);
         let (mut tracker, mut publisher) = (Tracker::default(), Publisher::new("test", "onetwo"));

@@ -13,7 +13,8 @@ use rules::League;
 
 use crate::scenes::{Random, SCENES};
 
-/// The whole defence, over scenes in turn; each is looked at for a while, so that memory has something to hold.
+/// The whole defence over all scenes in turn; each scene is planned for several steps, so that the state kept
+/// between steps matters.
 pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
     let mut random = Random::new(1);
     let scenes: Vec<View> = (0..SCENES).map(|_| random.rolling(league, robots)).collect();
@@ -27,7 +28,7 @@ pub(crate) fn defences(league: League, robots: u8, count: u32) -> String {
     format!("{given} assignments")
 }
 
-/// Plans of free kicks, half of the opponents at a robot of ours.
+/// Plans of free kicks, with half of the opponents at one of our robots each.
 pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let value = ByPassLocation::new(&kicks);
@@ -45,13 +46,13 @@ pub(crate) fn plans(league: League, robots: u8, count: u32) -> String {
     format!("{coercers} coercers, mean value {:.4}", worth / f64::from(count))
 }
 
-/// Ticks of a plan being executed; with `attack` each is the one that plans the attack anew, plan included.
+/// Ticks of a plan being executed; with `attack` each is the tick that replans the attack, planning included.
 pub(crate) fn watches(count: u32, attack: bool) -> String {
     let league = League::DivisionB;
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let value = ByPassLocation::new(&kicks);
     let mut random = Random::new(3);
-    // A free kick that is worth coercing for; most are not.
+    // A free kick for which coercing is worth it; for most it is not.
     let (mut view, mut planner) = loop {
         let view = random.free_kick(league, 6);
         let mut planner = Planner::new(coerce::Settings::of(league), Models::default());
@@ -78,7 +79,7 @@ pub(crate) fn watches(count: u32, attack: bool) -> String {
     format!("{planned} plans, {attacks} attacks, {coercing} ticks of coercing")
 }
 
-/// Takes the free kick.
+/// Number of the robot that takes the free kick.
 const TAKER: RobotId = match RobotId::new(1) {
     Some(id) => id,
     None => RobotId::ZERO,

@@ -15,7 +15,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut random = Random::new(1);
     let (mut sum, mut chips) = (0.0_f64, 0);
-    // As many scenes however many places are rated: they cost the same for N and 2N.
+    // The number of scenes does not depend on the number of places rated: they cost the same for N and 2N.
     let scenes: Vec<View> = (0..SCENES).map(|_| random.view(league, robots)).collect();
     for group in 0..count / PLACES {
         let view = &scenes[(group % SCENES) as usize];
@@ -30,7 +30,7 @@ pub(crate) fn locations(league: League, robots: u8, count: u32) -> String {
     format!("mean {:.5}, {chips} chips", sum / f64::from(count))
 }
 
-/// Seeks among `count` places, a search of [`SAMPLES`] a scene: what the team does at every moment.
+/// Searches among `count` places, [`SAMPLES`] per scene: the search of the team in one snapshot.
 pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
     let kicks = Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default());
     let mut random = Random::new(1);
@@ -48,7 +48,7 @@ pub(crate) fn searches(league: League, robots: u8, count: u32) -> String {
     format!("mean {:.5}", sum / f64::from(count / SAMPLES))
 }
 
-/// Moments in a row at which one search goes on.
+/// Consecutive snapshots over which one search continues.
 const MOMENTS: u32 = 8;
-/// Places rated in a row at one moment, as a search does; the moment's own part is in their cost.
+/// Places rated in a row in one snapshot, as a search does; the snapshot's own part is in their cost.
 const PLACES: u32 = 200;

@@ -1,4 +1,4 @@
-//! `scenes`: random situations for the counts. Everybody somewhere on the field, drawn from a seed; attack
+//! `scenes`: random situations for the counts. All robots at places on the field drawn from a seed; attack
 //! frame, SI.
 
 use geometry::{Attack, Point, Vector};
@@ -26,7 +26,7 @@ impl Random {
         Point::new(self.within(x), self.within(y))
     }
 
-    /// So many against as many somewhere, half of them moving; the ball at rest.
+    /// Robots of both teams, equally many, at random places, half of them moving; the ball lies still.
     pub(crate) fn view(&mut self, league: League, robots: u8) -> View {
         let nowhere = (0..robots).map(|_| Point::default());
         let mut view = View::still(league.field(), Point::default(), nowhere.clone(), nowhere);
@@ -53,7 +53,7 @@ impl Random {
         view
     }
 
-    /// Our free kick: the ball at rest, every second opponent at one of our robots.
+    /// Our free kick: the ball does not move, every second opponent at one of our robots.
     pub(crate) fn free_kick(&mut self, league: League, robots: u8) -> View {
         let mut view = View { phase: Phase::FreeKick(Side::Ours), ..self.view(league, robots) };
         let goal = view.their_goal();

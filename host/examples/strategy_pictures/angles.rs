@@ -10,7 +10,7 @@ use rules::League;
 use crate::page::{BLUE, GAP, GREEN, Panel, RED, YELLOW, finish, lines_of_text, off};
 use crate::scenes;
 
-/// Draws it.
+/// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let field = League::Ssl2013.field();
     let part = [Point::new(-3.3, -1.45), Point::new(-0.35, 1.6)];
@@ -49,7 +49,7 @@ pub(crate) fn draw() -> String {
     finish(&panels, [width, size[1] + 92.0 + 32.0], &legend, "Open angles and the three placements")
 }
 
-/// What every body keeps a shot from, behind it.
+/// The area behind every body that a shot cannot reach.
 fn shadows(panel: &mut Panel, cover: &Cover) {
     let mut svg = Svg::default();
     let bodies = cover.primaries.iter().map(|place| (*place, "#e69f00"));
@@ -69,7 +69,7 @@ fn rays(panel: &mut Panel, cover: &Cover) {
     let mut svg = Svg::default();
     let mut ray = |side: f32, colour: &str, dash: &str| {
         let direction = cover.opening.direction(side);
-        // To the goal line.
+        // Ray length up to the goal line.
         let by = (-3.0 - from.x()) / direction.x();
         let to: Point<Attack> = from + direction * by;
         let style = format!(r#"stroke="{colour}" stroke-width="2.2" stroke-dasharray="{dash}""#);
@@ -78,7 +78,7 @@ fn rays(panel: &mut Panel, cover: &Cover) {
     ray(half, RED, DASHED);
     ray(-half, RED, DASHED);
     ray(0.0, RED, DOTTED);
-    // What others leave; its borders with the posts are drawn already.
+    // The parts of the goal that the others leave open; their borders with the posts are drawn already.
     let rests = match cover.case {
         Case::Defender => angle::Gaps::new(),
         Case::DefenderAndKeeper => cover.opening.gaps(cover.primaries.iter().copied(), f32::INFINITY),

@@ -15,7 +15,7 @@ use rules::League;
 use crate::page::{GAP, GREEN, Panel, RED, YELLOW, finish, lines_of_text};
 use crate::{scenes, tactics};
 
-/// Draws it.
+/// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let league = League::Ssl2013;
     let view = scenes::free_kick();
@@ -48,7 +48,7 @@ pub(crate) fn draw() -> String {
     )
 }
 
-/// Steps 1 and 2.
+/// Steps 1 and 2 of the planner.
 fn optimistic(view: &View, plan: &CapPlan) -> Panel {
     let mut panel = Panel::whole(view.field, [GAP, BELOW], SCALE);
     let most = plan.values.iter().copied().fold(1e-6, f32::max);
@@ -71,7 +71,7 @@ fn optimistic(view: &View, plan: &CapPlan) -> Panel {
     panel
 }
 
-/// Step 3.
+/// Step 3 of the planner.
 fn coerced(view: &View, plan: &CapPlan, left: f64) -> Panel {
     let mut panel = Panel::whole(view.field, [left, BELOW], SCALE);
     let sent = |cell: Cell| plan.coerce.first[cell.index()];
@@ -141,6 +141,6 @@ fn robots(panel: &mut Panel, view: &View, plan: &CapPlan) {
 }
 
 const SCALE: f64 = 104.0;
-/// Room for the words below, px.
+/// Space for the text below, px.
 const BELOW: f64 = 112.0;
 const SEED: u64 = 1;

@@ -7,12 +7,12 @@ use geometry::{Attack, Point};
 use host::strategy::View;
 use rules::{AreaForm, FieldSpec};
 
-/// Colours of the pictures.
+/// Colours of the figures.
 pub(crate) fn colors() -> &'static Colors {
     Theme::Light.colors()
 }
 
-/// A place in mm.
+/// A place of the attack frame in mm.
 pub(crate) fn mm(at: Point<Attack>) -> At {
     [f64::from(at.x()) * 1000.0, f64::from(at.y()) * 1000.0]
 }
@@ -30,7 +30,7 @@ pub(crate) fn in_mm(field: &FieldSpec) -> FieldMm {
     }
 }
 
-/// Lines and goals over what is there, the defence areas as the rules have them.
+/// Lines and goals over the drawing so far, with the rules' defence areas.
 pub(crate) fn lines(svg: &mut Svg, field: &FieldSpec) {
     let style = r##"fill="none" stroke="#ffffff" stroke-width="25""##;
     let (x, y) = (f64::from(field.length) * 500.0, f64::from(field.width) * 500.0);
@@ -80,7 +80,7 @@ pub(crate) fn map(svg: &mut Svg, field: &FieldSpec, cell: f32, value: impl Fn(Po
                 let left = (f64::from(from) * side) - f64::from(field.length) * 500.0;
                 let right = (f64::from(column) * side) - f64::from(field.length) * 500.0;
                 let middle = f64::from(y) * 1000.0;
-                // A little larger, so that no seam shows between them.
+                // Slightly larger, so that no seam is visible between them.
                 let (low, high) = ([left, middle - side * 0.5], [right + 2.0, middle + side * 0.5 + 2.0]);
                 squares.rect(low, high, format_args!(r#"fill="{color}""#));
             }
@@ -90,7 +90,8 @@ pub(crate) fn map(svg: &mut Svg, field: &FieldSpec, cell: f32, value: impl Fn(Po
     svg.group(&squares, r#"shape-rendering="crispEdges""#);
 }
 
-/// From dark violet (0) over blue-green to yellow (1), evenly in brightness: viridis at nine places, in [`SHADES`] steps.
+/// From dark violet (0) over blue-green to yellow (1), evenly in brightness: viridis at nine places, in
+/// [`SHADES`] steps.
 pub(crate) fn shade(value: f64) -> String {
     let step = (value.clamp(0.0, 1.0) * f64::from(SHADES)).round() / f64::from(SHADES);
     let place = step * (VIRIDIS.len() - 1) as f64;
@@ -116,7 +117,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// A bar that tells the shades, from `at` to the right.
+/// A bar with the colour scale, from `at` to the right.
 pub(crate) fn legend(svg: &mut Svg, at: At, length: f64, high: f64, from: &str, to: &str) {
     let colors = colors();
     let steps = f64::from(SHADES);
@@ -135,7 +136,7 @@ pub(crate) fn legend(svg: &mut Svg, at: At, length: f64, high: f64, from: &str, 
     );
 }
 
-/// Ball and robots.
+/// Draws ball and robots.
 pub(crate) fn robots(svg: &mut Svg, view: &View) {
     let colors = colors();
     let edge = r##"stroke="#ffffff" stroke-width="22""##;
@@ -153,7 +154,7 @@ pub(crate) fn robots(svg: &mut Svg, view: &View) {
     }
 }
 
-/// Words above and to the right of a place, readable over anything.
+/// Text above and to the right of a place, readable over any background.
 pub(crate) fn label(svg: &mut Svg, at: Point<Attack>, words: &str) {
     let [x, y] = mm(at);
     let font = Font { size: LETTERS, fill: "#ffffff", bold: true, halo: Some("#1b1b1b") };
@@ -161,13 +162,13 @@ pub(crate) fn label(svg: &mut Svg, at: Point<Attack>, words: &str) {
     svg.text([x + 70.0, y + 110.0], words, Anchor::Start, font);
 }
 
-/// Plain text of a picture.
+/// Plain text of a figure.
 pub(crate) fn text(size: f64) -> Font<'static> {
     Font { size, fill: colors().ink, bold: false, halo: None }
 }
 
-/// Size of a picture's letters, mm.
+/// Font size of a figure, mm.
 pub(crate) const LETTERS: f64 = 190.0;
-/// A robot's radius, mm, and the ball's, drawn larger than its 21.5 mm so that it is seen.
+/// A robot's radius, mm, and the ball's, drawn larger than its 21.5 mm so that it is visible.
 const BODY: f64 = 90.0;
 const BALL: f64 = 55.0;

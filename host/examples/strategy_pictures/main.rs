@@ -1,6 +1,7 @@
 //! `strategy_pictures`: the figures of the second paper, by our own code (Biswas et al. 2014).
 //!
-//! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them; `cargo xtask pictures` keeps those in `docs/strategy`.
+//! `cargo run --release -p host --example strategy_pictures -- FOLDER` writes them to that directory; `cargo
+//! xtask pictures` keeps those in `docs/strategy`.
 
 mod angles;
 mod coercing;
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// A picture's file and what draws it.
+/// A figure's file and the function that draws it.
 type Picture = (&'static str, fn() -> String);
 
 const PICTURES: [Picture; 5] = [

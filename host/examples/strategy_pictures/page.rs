@@ -1,7 +1,7 @@
 //! `page`: layout of the figures. Panels with a field of any league, robots, the ball, and areas of equal
 //! value.
 //!
-//! Places are told in metres of the attack frame, the picture is in px with y up (`drawing`).
+//! Places are given in metres of the attack frame; the figure is in px with y up (`drawing`).
 
 use std::fmt::{Display, Write as _};
 
@@ -10,11 +10,12 @@ use geometry::{Angle, Attack, Point};
 use host::strategy::threat::edge::Edge;
 use rules::FieldSpec;
 
-/// Sans-serif, px.
+/// Font size of sans-serif text, px.
 pub(crate) const TEXT: f64 = 14.0;
 /// Around and between panels, px.
 pub(crate) const GAP: f64 = 16.0;
-/// Opponents' tactics, and whatever else needs four colours told apart by every eye (Okabe and Ito).
+/// Opponents' tactics, and everything else that needs four colours that readers with any colour vision can
+/// distinguish (Okabe and Ito).
 pub(crate) const BLUE: &str = "#0072b2";
 pub(crate) const GREEN: &str = "#009e73";
 pub(crate) const RED: &str = "#d55e00";
@@ -31,7 +32,7 @@ pub(crate) struct Panel {
     high: Point<Attack>,
     /// Lower left corner, px.
     corner: At,
-    /// px per m.
+    /// Scale, px per m.
     scale: f64,
 }
 
@@ -51,7 +52,7 @@ impl Panel {
         Self::new(field, [Point::new(-x, -y), Point::new(x, y)], corner, scale)
     }
 
-    /// px.
+    /// Width and height, px.
     pub(crate) fn size(&self) -> At {
         let size = self.high - self.low;
         [f64::from(size.x()) * self.scale, f64::from(size.y()) * self.scale]
@@ -68,7 +69,7 @@ impl Panel {
         f64::from(metres) * self.scale
     }
 
-    /// Lines, areas and goals.
+    /// Draws lines, areas and goals.
     pub(crate) fn lines(&mut self) {
         let style = format!(r##"fill="none" stroke="#ffffff" stroke-width="{:.1}""##, self.px(0.025));
         let field = self.field;
@@ -93,7 +94,7 @@ impl Panel {
         self.clipped(&svg);
     }
 
-    /// What lies beyond the panel is cut off.
+    /// Parts beyond the panel are cut off.
     pub(crate) fn clipped(&mut self, inner: &Svg) {
         let name = format!("panel-{:.0}-{:.0}", self.corner[0], self.corner[1]);
         self.svg.element(format_args!(r#"<clipPath id="{name}">"#));
@@ -142,7 +143,7 @@ impl Panel {
         self.svg.text(at, text, anchor, Font { size, fill, bold: false, halo: None });
     }
 
-    /// Text at a place of the field, readable over anything.
+    /// Text at a place of the field, readable over any background.
     pub(crate) fn note(&mut self, at: Point<Attack>, up: f64, text: &str, anchor: Anchor) {
         let ([x, y], ink) = (self.at(at), self.colors.ink);
         self.svg.text(
@@ -226,7 +227,7 @@ impl Panel {
     }
 }
 
-/// A point that far off in a direction.
+/// The point at distance `by` from `from` in that direction.
 pub(crate) fn off(from: Point<Attack>, direction: Angle, by: f32) -> Point<Attack> {
     from + geometry::Vector::polar(by, direction)
 }

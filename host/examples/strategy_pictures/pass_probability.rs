@@ -1,6 +1,6 @@
-//! `pass_probability`: figures of pass and goal probabilities. The paper's Figures 2 and 3, and what is
-//! maximised (Biswas et al. 2014 §3.1): c2 for flat passes and for chips, c2', and P(receive) · P(goal) with
-//! the place that the search finds.
+//! `pass_probability`: figures of pass and goal probabilities. The paper's Figures 2 and 3, and the value
+//! that is maximised (Biswas et al. 2014 §3.1): c2 for flat passes and for chips, c2', and P(receive) ·
+//! P(goal) with the place that the search finds.
 
 use drawing::{Anchor, At, Svg, half_extent};
 use geometry::{Attack, Point};
@@ -78,7 +78,7 @@ fn over(svg: &mut Svg, view: &View, best: Option<&Rating>) {
     }
 }
 
-/// With what numbers it was drawn.
+/// The constants it was drawn with.
 fn constants(kicks: &Kicks) -> Vec<String> {
     let c = kicks.constants();
     vec![

@@ -9,7 +9,7 @@ use rules::League;
 
 use crate::page::{GAP, GREEN, Panel, YELLOW, finish, lines_of_text};
 
-/// Draws it.
+/// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let field = League::Ssl2013.field();
     let threshold = Settings::default().risk_threshold;
@@ -66,5 +66,5 @@ pub(crate) fn draw() -> String {
     finish(&panels, [width, size[1] + 92.0 + 32.0], &legend, "Risk of receiving (equation 6)")
 }
 
-/// s.
+/// Levels of risk drawn, s.
 const RISKS: [f32; 6] = [-2.0, -1.5, -1.0, -0.75, -0.5, -0.25];

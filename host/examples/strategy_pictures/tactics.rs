@@ -9,7 +9,7 @@ use host::strategy::coerce::tactics::{Models, Situation, Tactic};
 use crate::page::{BLUE, GAP, GREEN, PURPLE, Panel, RED, TEXT, YELLOW, finish, lines_of_text};
 use crate::scenes;
 
-/// Draws it.
+/// SVG text of the figure.
 pub(crate) fn draw() -> String {
     let view = scenes::free_kick();
     let taker = view.ours[1].id;

@@ -8,15 +8,16 @@ use super::nearest_division;
 /// Where the defence area's size is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AreaSource {
-    /// The packet told it.
+    /// From the packet's own numbers.
     Told,
-    /// The packet's penalty stretches.
+    /// From the packet's penalty stretches.
     Lines,
-    /// Nothing told it: this division's, shrunk with the field where that is smaller. To be told to people.
+    /// The packet has none: this division's, scaled down with the field where that is smaller. To be reported
+    /// to the operator.
     Division(League),
 }
 
-/// A defence area, m.
+/// Size of a defence area, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Area {
     pub(super) depth: f32,
@@ -24,12 +25,12 @@ pub(super) struct Area {
     pub(super) form: AreaForm,
 }
 
-/// Both stretches along the goal line; the length of either is the area's width.
+/// Both lines parallel to the goal line; the length of either is the area's width.
 const FRONTS: [(&str, FieldShapeType); 2] = [
     ("LeftPenaltyStretch", FieldShapeType::LeftPenaltyStretch),
     ("RightPenaltyStretch", FieldShapeType::RightPenaltyStretch),
 ];
-/// The four stretches from the goal line into the field; the length of each is the area's depth.
+/// The four lines from the goal line into the field; the length of each is the area's depth.
 const SIDES: [(&str, FieldShapeType); 4] = [
     ("LeftFieldLeftPenaltyStretch", FieldShapeType::LeftFieldLeftPenaltyStretch),
     ("LeftFieldRightPenaltyStretch", FieldShapeType::LeftFieldRightPenaltyStretch),
@@ -61,8 +62,9 @@ pub(super) fn of(size: &GeometryFieldSize) -> (Area, AreaSource) {
     (Area { depth, width, form: AreaForm::Box }, AreaSource::Division(league))
 }
 
-/// A side's length is the depth as it is painted, whatever the program takes for the goal line (grSim puts it a line's width
-/// inside the field); only where there are no sides the distance of the front from the goal line is.
+/// A side's length is the depth as it is painted, independent of where the program puts the goal line (grSim
+/// puts it a line's width inside the field); only where there are no sides the distance of the front from the
+/// goal line is.
 fn from_lines(size: &GeometryFieldSize) -> Option<Area> {
     let front = FRONTS.iter().find_map(|kind| find(size, *kind))?;
     let width = (front.p1.y - front.p2.y).abs() / 1000.0;
@@ -78,7 +80,7 @@ fn from_lines(size: &GeometryFieldSize) -> Option<Area> {
         );
         Area { depth: depth / 1000.0, width, form: AreaForm::Box }
     };
-    // A stretch of no length tells nothing.
+    // A line of length zero has no information.
     (area.depth > 0.0 && area.width > 0.0).then_some(area)
 }
 

@@ -1,32 +1,32 @@
-//! `camera`: camera positions. Balls in the air are seen off their place, along the line from the camera.
+//! `camera`: camera positions. Needed as balls in the air are seen displaced, along the line from the camera.
 
 use ssl::vision::GeometryCameraCalibration;
 
-/// A camera.
+/// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it hangs, m: along x, y, and height, field frame.
+    /// Its mounting position, m: along x, y, and height, field frame.
     pub position: [f32; 3],
-    /// Where that is from.
+    /// Source of the position.
     pub source: CameraSource,
 }
 
 /// Where a camera's place is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraSource {
-    /// The packet told it.
+    /// The packet contains it.
     Told,
-    /// From rotation and translation.
+    /// Computed from the calibration's rotation and translation.
     Calibration,
 }
 
-/// Farther than this nobody hangs a camera, m.
+/// No camera is mounted farther from the centre than this, m.
 const FARTHEST: f32 = 50.0;
 /// A quaternion whose squared length is off 1 by more is a dummy (simulators send four times 0.7: 1.96).
 const QUATERNION_TOLERANCE: f32 = 0.02;
 
 impl Camera {
-    /// From a calibration; `None` where it tells no place, or none above the ground.
+    /// From a calibration; `None` where it gives no place, or none above the ground.
     pub(super) fn from_wire(c: &GeometryCameraCalibration) -> Option<Self> {
         let told = [c.derived_camera_world_tx, c.derived_camera_world_ty, c.derived_camera_world_tz];
         let camera = if let [Some(x), Some(y), Some(z)] = told {

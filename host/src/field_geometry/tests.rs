@@ -1,4 +1,4 @@
-//! Tests: geometry of the league's own programs, and refusal of nonsense.
+//! Tests: geometry of the league's own programs, and refusal of invalid values.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ fn near(a: f32, b: f32) {
     assert!((a - b).abs() < 1e-6, "{a} is not {b}");
 }
 
-/// The sizes that neither simulator leaves out.
+/// The sizes that both simulators send.
 fn plain(length: i32, width: i32) -> GeometryFieldSize {
     GeometryFieldSize {
         field_length: length,
@@ -145,7 +145,7 @@ fn trap_08_a_cameras_dummy_rotation_is_not_believed() {
     data.calib[0].derived_camera_world_tx = None;
     let news = geometry.hear(&data).unwrap();
     assert_eq!((news.cameras, news.cameras_refused), (0, 1));
-    // A rotation that is one: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
+    // A valid rotation: half a turn about x looks straight down (quaternion (1, 0, 0, 0)): p ↦ (x, −y, −z).
     let real = GeometryCameraCalibration {
         q0: 1.0,
         q1: 0.0,
@@ -186,10 +186,10 @@ fn numbers_of_the_area_come_before_lines_and_lines_before_the_division() {
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     (size.penalty_area_depth, size.penalty_area_width) = (Some(1100), Some(2100));
     assert_eq!(area(&size), (1.1, 2.1, AreaSource::Told));
-    // 0 is "not told".
+    // 0 means "not set".
     (size.penalty_area_depth, size.penalty_area_width) = (Some(0), Some(0));
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
-    // Without the side, the front's distance from the goal line.
+    // Without the side: the front's distance from the goal line.
     size.field_lines.truncate(1);
     assert_eq!(area(&size), (0.8, 1.8, AreaSource::Lines));
     // Named by type only.

@@ -1,4 +1,5 @@
-//! `calibration`: what robots and ball do otherwise than they are told, as it was set or learned, in a host's orders.
+//! `calibration`: deviations of robots and ball from what is ordered, configured or learned, applied to a
+//! host's orders.
 
 use protocol::RobotId;
 use protocol::host::{Directive, KickOrder};
@@ -6,19 +7,19 @@ use protocol::host::{Directive, KickOrder};
 use super::Host;
 
 impl Host {
-    /// Balls roll like that from now on.
+    /// Sets the deceleration of a rolling ball, m/s².
     pub(super) fn roll_with(&mut self, roll: f32) {
         self.roll = Some(roll);
         self.coach.set_ground(self.tracker.set_roll(roll));
     }
 
-    /// By how much that robot kicks harder than it is told: as it was learned, else as it was set.
+    /// Gain of that robot's kicker: the learned value, else the configured one.
     fn kicks_by(&self, robot: RobotId) -> f32 {
         let learned = self.learned.kick(robot).filter(|_| self.settings.learns);
         learned.map_or(self.settings.kick[robot.index()], |known| known.value.clamp(GAIN_MIN, GAIN_MAX))
     }
 
-    /// The same directive for a kicker that kicks harder or softer than it is told.
+    /// The same directive, corrected for a kicker that kicks harder or softer than ordered.
     pub(super) fn calibrated(&self, robot: RobotId, mut directive: Directive) -> Directive {
         let factor = self.kicks_by(robot);
         if factor != 1.0
@@ -31,6 +32,7 @@ impl Host {
     }
 }
 
-/// A learned gain scales a kick's order by 0.8 to 1.7, not farther: what is beyond is a mistake of what was learned, or a broken kicker.
+/// A learned gain scales a kick's order by 0.8 to 1.7, not more: values beyond are an error of learning, or a
+/// broken kicker.
 const GAIN_MIN: f32 = 1.0 / 1.7;
 const GAIN_MAX: f32 = 1.0 / 0.8;

@@ -1,4 +1,4 @@
-//! `input`: what comes to a host, and what became of it.
+//! `input`: inputs of a host, and their results.
 
 use protocol::RobotId;
 use protocol::frame::Refusal;
@@ -6,12 +6,12 @@ use protocol::frame::Refusal;
 use crate::referee::{self, SenderAddress};
 use crate::tracking;
 
-/// What came to the host.
+/// An input of the host.
 #[derive(Clone, Copy, Debug)]
 pub enum Input<'a> {
     /// A datagram of the vision.
     Vision(&'a [u8]),
-    /// A datagram of the referee, and where it came from.
+    /// A datagram of the referee, and its sender.
     Referee(&'a [u8], SenderAddress),
     /// A frame of a robot.
     Robot(&'a [u8]),
@@ -24,17 +24,17 @@ pub enum Input<'a> {
 /// What became of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// An image, or geometry.
+    /// A camera frame or geometry.
     Vision(tracking::Heard),
     /// A packet of the referee.
     Referee(Box<referee::Verdict>),
-    /// A robot spoke.
+    /// A frame of this robot was accepted.
     Robot(RobotId),
-    /// A frame that is not believed.
+    /// A frame that was refused.
     Refused(Refusal),
     /// A datagram that is no message.
     Undecodable,
-    /// A deadline.
+    /// A deadline was handled.
     Timeout,
     /// Our robots halt until the end.
     Halted,
@@ -43,10 +43,11 @@ pub enum Verdict {
 /// Datagrams that were no messages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Undecodable {
-    /// On vision's port.
+    /// Number on vision's port.
     pub vision: u64,
-    /// On the referee's port.
+    /// Number on the referee's port.
     pub referee: u64,
-    /// On vision's port, decodable, but with neither camera frame nor field: another program's messages look like that.
+    /// Number on vision's port that are decodable, but have neither camera frame nor field: possibly another
+    /// program's messages.
     pub empty: u64,
 }

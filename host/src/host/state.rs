@@ -1,4 +1,4 @@
-//! `state`: read access to what the host knows.
+//! `state`: read access to the host's state.
 
 use protocol::host::Telemetry;
 use protocol::team::Beacon;
@@ -15,42 +15,42 @@ use crate::tracking::Tracker;
 use crate::world::World;
 
 impl Host {
-    /// The field as it was when it was last planned for.
+    /// The field as it was at the last planning.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// What was counted of our passes, free kicks and roles.
+    /// Counts of our passes, free kicks and roles.
     pub fn tally(&self) -> &PlayTally {
         self.books.tally()
     }
 
-    /// What everybody was told last, and why.
+    /// The newest orders of all robots, with their reasons.
     pub fn orders(&self) -> &Orders {
         &self.orders
     }
 
-    /// The game as the referee has it.
+    /// The game by the referee's packets.
     pub fn game(&self) -> &referee::Game {
         self.listener.game()
     }
 
-    /// The referee's listener, to look at.
+    /// Read access to the referee's listener.
     pub fn listener(&self) -> &Listener {
         &self.listener
     }
 
-    /// The tracker, to look at and to publish.
+    /// Read access to the tracker, also for publishing.
     pub fn tracker(&self) -> &Tracker {
         &self.tracker
     }
 
-    /// The field: vision's, or the league's until vision has told.
+    /// The field: vision's, or the league's until vision has sent one.
     pub fn field(&self) -> FieldSpec {
         self.geometry.field().copied().unwrap_or_else(|| self.settings.league.field())
     }
 
-    /// The field that vision told, once it did.
+    /// The field that vision sent, once it did.
     pub fn told_field(&self) -> Option<&FieldSpec> {
         self.geometry.field()
     }
@@ -60,12 +60,12 @@ impl Host {
         self.imaged
     }
 
-    /// Whether robots are told to halt now, by the referee or by `Host::halt`.
+    /// Whether robots are ordered to halt now, by the referee or by `Host::halt`.
     pub fn is_halting(&self) -> bool {
         self.halted || self.listener.game().phase == Phase::Halt
     }
 
-    /// The radio, to look at.
+    /// Read access to the radio.
     pub fn radio(&self) -> &Radio {
         &self.radio
     }
@@ -75,17 +75,17 @@ impl Host {
         self.radio.quality(robot)
     }
 
-    /// What a robot of ours last told of itself.
+    /// The newest telemetry of one of our robots.
     pub fn telemetry(&self, robot: RobotId) -> Option<Telemetry> {
         self.robots[robot.index()].telemetry.map(|(_, telemetry)| telemetry)
     }
 
-    /// What a robot of ours last told its mates.
+    /// The newest beacon of one of our robots.
     pub fn beacon(&self, robot: RobotId) -> Option<&Beacon> {
         self.robots[robot.index()].beacon.as_ref().map(|(_, beacon)| beacon)
     }
 
-    /// What it has learned of its robots and the field.
+    /// The values learned of its robots and the field.
     pub fn learned(&self) -> &Learned {
         &self.learned
     }
@@ -95,7 +95,7 @@ impl Host {
         self.undecodable
     }
 
-    /// What is fixed for its life.
+    /// The settings it was created with.
     pub fn settings(&self) -> &HostSettings {
         &self.settings
     }

@@ -1,4 +1,4 @@
-//! What a host does with what it has learned.
+//! Tests: use of the learned values by a host.
 
 use protocol::host::{Directive, KickOrder};
 

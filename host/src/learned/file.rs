@@ -1,5 +1,5 @@
-//! `file`: what was learned, as lines of `team.toml`. They stand between two marks at the end of the file; what stands before them is the
-//! team's own and is not touched.
+//! `file`: the learned values, as lines of `team.toml`. They are between two marks at the end of the file;
+//! the lines before them are the team's own and are not changed.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,12 @@ use protocol::RobotId;
 
 use super::Learned;
 
-/// The first and the last line of what a program wrote.
+/// The first and the last line written by the program.
 const BEGINS: &str = "# --- learned by `onetwo control --learned`; lines before this one are kept ---";
 const ENDS: &str = "# --- end of what was learned ---";
 
-/// The file's text with what is known now in place of what was written before. What is not known keeps its line.
+/// The file's text with the present values in place of those written before. Values not known yet keep their
+/// line.
 pub fn kept(text: &str, learned: &Learned) -> String {
     let (own, before, after) = parts(text);
     let mut out = own.trim_end().to_owned();

@@ -17,7 +17,7 @@ pub(super) struct Friction {
 /// A ball that rolls by itself.
 #[derive(Clone, Copy, Debug)]
 struct Roll {
-    /// Since then; the parabola's time counts from it.
+    /// Start of the roll; the parabola's time counts from it.
     began: Instant,
     from: Point<Field>,
     along: Vector<Field>,
@@ -29,7 +29,7 @@ struct Roll {
 }
 
 impl Friction {
-    /// The field as the newest camera frame showed it.
+    /// Takes the field at the newest camera frame.
     pub(super) fn see(&mut self, world: &World) {
         let Some(ball) = world.ball.filter(|ball| ball.height <= 0.0 && ball.climb <= 0.0) else {
             self.end();
@@ -88,7 +88,7 @@ impl Roll {
         self.squares += s * s;
     }
 
-    /// By least squares, where it rolled for long enough and as a ball does.
+    /// By least squares, where it rolled for long enough and its deceleration is plausible.
     fn deceleration(&self) -> Option<f32> {
         if self.newest.since(self.began).0 < SHORTEST.0 || self.times[0] < PLACES {
             return None;
@@ -112,26 +112,26 @@ impl Roll {
 
 /// Samples kept: a few minutes of play.
 const KEPT: usize = 25;
-/// So many rolls are needed.
+/// Number of rolls needed.
 const LEAST: usize = 5;
-/// No robot's centre is nearer to the ball, m: a radius of 0.09 and what it moves between two frames.
+/// No robot's centre is nearer to the ball, m: a radius of 0.09 and its motion between two frames.
 const CLEAR: f32 = 0.2;
-/// A kicked ball slides for so long at most: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
+/// A kicked ball slides for at most this time: 6.5 m/s × 2/7 at 3.9 m/s² are 0.48 s.
 const SLIDES: Duration = Duration::millis(500);
-/// Slower balls are stopped by a fibre of the carpet, and faster ones may still slide, m/s.
+/// Slower balls are stopped by the fibres of the field surface, and faster ones may still slide, m/s.
 const SLOWEST: f32 = 0.25;
 const FASTEST: f32 = 5.0;
-/// A roll of this time tells its deceleration within 0.05 m/s² where places err by 2 mm.
+/// A roll of this duration gives its deceleration within 0.05 m/s² where places err by 2 mm.
 const SHORTEST: Duration = Duration::millis(500);
 /// A longer one counts as two.
 const LONGEST: Duration = Duration::millis(1_500);
-/// Camera frames needed.
+/// Number of camera frames needed.
 const PLACES: f64 = 20.0;
-/// Cosine of the turn that ends a roll: 6°, which is what noise makes of the slowest.
+/// Cosine of the turn that ends a roll: 6°, the noise of the slowest.
 const STRAIGHT: f32 = 0.994;
-/// Places farther off the parabola were no free roll, m (root of the mean square).
+/// Larger deviations from the parabola are no free roll, m (root of the mean square).
 const ON_PARABOLA: f64 = 0.008;
-/// What carpets do, m/s².
+/// Deceleration of a rolling ball on field surfaces, m/s².
 const LEAST_M_S2: f32 = 0.05;
 const MOST_M_S2: f32 = 1.5;
 
@@ -143,7 +143,8 @@ mod tests {
     use protocol::{RobotId, Who};
     use rules::Colour;
 
-    /// Balls that roll from 2 m/s with that deceleration, seen at 75 Hz with 3 mm of noise; `followed`: a robot is beside the ball.
+    /// Balls that roll from 2 m/s with that deceleration, seen at 75 Hz with 3 mm of noise; `followed`: a
+    /// robot is beside the ball.
     fn learn(deceleration: f32, balls: u64, followed: bool) -> Option<Estimate> {
         let mut learned = Friction::default();
         let mut noise = 99_u32;

@@ -9,7 +9,7 @@ use rules::Colour;
 use super::samples::{Estimate, Samples};
 use crate::world::{Kick, World};
 
-/// All robots' kickers.
+/// Estimates of all robots' kick gains.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Kicks {
     /// The flat kick that a robot was last ordered, m/s, and when.
@@ -29,7 +29,8 @@ struct Watched {
     along: Vector<Field>,
     at: Instant,
     newest: Instant,
-    /// Sums of a straight line through (t, way + what sliding took): number, t, t², way, t·way, way².
+    /// Sums of a straight line through (t, distance + what sliding took): number, t, t², distance,
+    /// t·distance, distance².
     sums: [f32; 6],
 }
 
@@ -57,7 +58,7 @@ impl Kicks {
         }
         let Some(watched) = &mut self.watched else { return };
         if kick.is_none() || ball.height > 0.0 {
-            // It flies, or met something.
+            // It flies, or has hit something.
             self.watched = None;
             return;
         }
@@ -119,7 +120,7 @@ impl Watched {
         }
     }
 
-    /// Ball speed at the kick over speed ordered, if the ball went straight on and the ratio is a kicker's.
+    /// Ball speed at the kick over speed ordered, if the ball moved straight and the ratio is plausible.
     fn gain(&self) -> Option<f32> {
         let [n, t, tt, s, ts, ss] = self.sums;
         let spread = n * tt - t * t;
@@ -134,25 +135,27 @@ impl Watched {
     }
 }
 
-/// Samples kept for each robot: a half's kicks, so that a battery that sinks is followed.
+/// Samples kept for each robot: a half's kicks, so that a falling battery voltage is followed.
 const KEPT: usize = 15;
-/// So many kicks are needed: of three, two that are wrong alike make the median.
+/// Number of kicks needed: of three, two with the same error determine the median.
 const LEAST: usize = 5;
-/// A gain is known when its standard error is at most this (estimate: half of what a pass's speed may err).
+/// A gain is known when its standard error is at most this (estimate: half of the tolerance of a pass's
+/// speed).
 const ERROR: f32 = 0.05;
-/// A kick follows an order within this time: command, radio, and the ball's way to the kicker's plate.
+/// Longest time from an order to its kick: command, radio, and the ball's path to the kicker's plate.
 const ORDERED: Duration = Duration::millis(400);
-/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better known.
+/// Two kicks of one robot are farther apart; the moment of one kick shifts by less while it becomes better
+/// known.
 const SAME: Duration = Duration::millis(200);
-/// The ball is looked at from and to so long after the kick: later than the filter needs, and before rolling changes the deceleration (0.29 s
-/// at 4 m/s).
+/// The ball is observed in this window after the kick: later than the filter needs, and before rolling
+/// changes the deceleration (0.29 s at 4 m/s).
 const FROM: Duration = Duration::millis(50);
 const TO: Duration = Duration::millis(250);
 /// Camera frames needed in that time.
 const PLACES: f32 = 6.0;
-/// Slower orders are touches of the dribbler as much as kicks, m/s.
+/// Slower orders may be touches of the dribbler instead of kicks, m/s.
 const SLOWEST: f32 = 1.5;
-/// A ball that leaves its line by more met something, m (root of the mean square).
+/// A ball that leaves its line by more has hit something, m (root of the mean square).
 const STRAIGHT: f32 = 0.02;
 /// No kicker is softer or harder than this.
 const GAIN_MIN: f32 = 0.4;
@@ -170,7 +173,8 @@ mod tests {
         RobotId::new(4).unwrap()
     }
 
-    /// Kicks of `speed` m/s ordered, seen as `kicked` m/s by a camera of 75 Hz with so much noise, each flying where `chip`.
+    /// Kicks of `speed` m/s ordered, seen as `kicked` m/s by a camera of 75 Hz with noise of `noise`, each
+    /// flying where `chip`.
     fn learn(kicks: &[(f32, f32)], noise: f32, chip: bool) -> Kicks {
         let (mut learned, models) = (Kicks::default(), BallModels::default());
         let mut time = 1_000_000_u64;

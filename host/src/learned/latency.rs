@@ -2,7 +2,8 @@
 //! mm: at any constant acceleration the second takes three times as long as the first, which gives
 //! t₀ = (3 t₁ − t₂) / 2. m, s.
 //!
-//! Times of places are those of the camera frames, so that vision's own delay is not in it; radio, brain and motors are.
+//! Times of places are those of the camera frames, so that the result excludes vision's own delay; it
+//! includes radio, brain and motors.
 
 use geometry::{Field, Point};
 use protocol::host::{Command, Directive};
@@ -12,7 +13,7 @@ use rules::{Colour, Phase, Side};
 use super::samples::{Estimate, Samples};
 use crate::world::World;
 
-/// All robots' latencies.
+/// Estimates of all robots' latencies.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Latencies {
     robots: [Robot; RobotId::COUNT],
@@ -21,19 +22,19 @@ pub(super) struct Latencies {
 #[derive(Clone, Copy, Debug, Default)]
 struct Robot {
     samples: Samples<KEPT>,
-    /// Where it rests, and since when.
+    /// Its stop position, and since when it stands there.
     rests: Option<(Point<Field>, Instant)>,
     /// Its last order was not to go anywhere.
     was_idle: bool,
     start: Option<Start>,
 }
 
-/// It was at rest and has been ordered to go.
+/// It stood still and has been ordered to move.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     ordered: Instant,
     from: Point<Field>,
-    /// Its newest place: way and time, s after the order.
+    /// Its newest place: distance moved, and time, s after the order.
     newest: (f32, f32),
     /// When it had moved by [`NEAR`].
     near: Option<f32>,
@@ -104,7 +105,7 @@ impl Robot {
         let goes = to.is_some_and(|to| to.distance(place) > FAR_OFF);
         let Some((from, since)) = self.rests else { return };
         match (goes, self.start) {
-            // It has rested without an order to go for long enough, and now has one.
+            // It has stood still without an order to move for long enough, and now has one.
             (true, None) if self.was_idle && at.since(since) >= RESTS_FOR => {
                 self.start = Some(Start { ordered: now, from, newest: (0.0, signed(now, at)), near: None });
             }
@@ -123,21 +124,21 @@ fn signed(from: Instant, to: Instant) -> f32 {
 
 /// Samples kept for each robot.
 const KEPT: usize = 15;
-/// So many starts are needed.
+/// Number of starts needed.
 const LEAST: usize = 3;
-/// A robot whose place stays within this rests, m: noise of 3 mm.
+/// A robot whose place stays within this stands still, m: noise of 3 mm.
 const STILL: f32 = 0.008;
-/// ... for so long.
+/// ... and for this time.
 const RESTS_FOR: Duration = Duration::millis(300);
-/// A place farther off lets it start with its full acceleration, m.
+/// Least distance of the place ordered at which it starts with its full acceleration, m.
 const FAR_OFF: f32 = 0.4;
-/// The marks by which the onset is known, m: above the noise, and nine times that.
+/// The distances moved from which the onset is computed, m: above the noise, and nine times that.
 const NEAR: f32 = 0.010;
 const FAR: f32 = 0.090;
-/// No robot needs longer from order to motion, s; with less than none the clocks are wrong.
+/// Range of plausible latencies from order to motion, s; a clearly negative one is an error of the clocks.
 const ONSET_MIN: f32 = -0.03;
 const ONSET_MAX: f32 = 0.3;
-/// A robot that has not gone 90 mm by then is held up, s after the order.
+/// A robot that has not moved 90 mm by then is obstructed, s after the order.
 const GIVEN_UP: f32 = 0.8;
 
 #[cfg(test)]
@@ -152,7 +153,8 @@ mod tests {
         RobotId::new(2).unwrap()
     }
 
-    /// Starts from rest with that acceleration, `latency` s after each order, seen at 60 Hz with 2 mm of noise, 20 ms late.
+    /// Starts from standstill with that acceleration, `latency` s after each order, seen at 60 Hz with 2 mm
+    /// of noise, 20 ms late.
     fn learn(latency: f32, acceleration: f32, starts: usize) -> Option<Estimate> {
         let mut learned = Latencies::default();
         let mut noise = 12_345_u32;

@@ -1,13 +1,15 @@
-//! `learned`: what a host learns of its robots and its field while it plays: how hard each robot kicks, how late it moves, how balls roll.
-//! Online, bounded, and robust: medians of the last samples, each of which is checked against what can be. SI units.
+//! `learned`: online estimates of each robot's kick gain and latency, and of the deceleration of rolling
+//! balls. Bounded and robust: medians of the last samples, each of which is checked against a plausible
+//! range. SI units.
 //!
 //! | module | from | gives |
 //! |---|---|---|
-//! | `kick` | flat kicks that were ordered with a speed, and the ball after them | speed of the ball over speed ordered, by robot |
-//! | `latency` | orders to go that meet a robot at rest, and when it moves | time from the order to the motion, s, by robot |
+//! | `kick` | flat kicks ordered with a speed, and the ball after them | speed of the ball over speed ordered, by robot |
+//! | `latency` | orders to move to robots at standstill, and the start of their motion | time from the order to the motion, s, by robot |
 //! | `friction` | balls that roll with no robot near | their deceleration, m/s² |
 //!
-//! [`Learned::see`] is called with every snapshot. Whether the host also plays by it is for [`crate::HostSettings::learns`] to say.
+//! [`Learned::see`] is called with every snapshot. [`crate::HostSettings::learns`] sets whether the host also
+//! uses the result.
 
 mod file;
 mod friction;
@@ -24,7 +26,7 @@ use crate::world::World;
 pub use file::kept;
 pub use samples::Estimate;
 
-/// What is learned.
+/// The learned values.
 #[derive(Clone, Debug, Default)]
 pub struct Learned {
     kicks: kick::Kicks,
@@ -33,8 +35,8 @@ pub struct Learned {
 }
 
 impl Learned {
-    /// A snapshot of the field as the newest camera frame showed it, not carried forward, and what our robots were ordered at `now`
-    /// because of it, with kicks as they went out.
+    /// A snapshot of the field at the newest camera frame, not extrapolated, and the orders of our robots at
+    /// `now` because of it, with kicks as they went out.
     pub fn see(
         &mut self,
         now: Instant,
@@ -65,7 +67,7 @@ impl Learned {
 
 #[cfg(test)]
 impl Learned {
-    /// With what is known of one robot's kicker.
+    /// With that gain for one robot's kicker.
     pub(crate) fn of_kick(robot: RobotId, gain: f32) -> Self {
         let mut learned = Self::default();
         learned.kicks.know(robot, gain);

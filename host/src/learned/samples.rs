@@ -1,4 +1,5 @@
-//! `samples`: the last few samples of a quantity and their median; a sample that is far off moves it by one place at most.
+//! `samples`: the last few samples of a quantity and their median; a sample that is far off moves it by one
+//! place at most.
 
 /// A quantity as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -7,7 +8,7 @@ pub struct Estimate {
     pub value: f32,
     /// The median of their distances from it.
     pub spread: f32,
-    /// How many there are.
+    /// Number of samples.
     pub samples: usize,
 }
 
@@ -19,7 +20,7 @@ impl Estimate {
     }
 }
 
-/// The last `N` samples.
+/// The last `N` samples of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Samples<const N: usize> {
     values: [f32; N],
@@ -34,7 +35,7 @@ impl<const N: usize> Default for Samples<N> {
 }
 
 impl<const N: usize> Samples<N> {
-    /// One more; the oldest goes. Not a number is none.
+    /// Adds a sample; the oldest is dropped. A value that is not finite is ignored.
     pub(super) fn add(&mut self, value: f32) {
         if value.is_finite() {
             self.values[self.next] = value;
@@ -43,7 +44,7 @@ impl<const N: usize> Samples<N> {
         }
     }
 
-    /// What they come to, where there are at least `least`.
+    /// Their median and spread, where there are at least `least`.
     pub(super) fn estimate(&self, least: usize) -> Option<Estimate> {
         let known = &self.values[..self.count];
         if known.len() < least.max(1) {

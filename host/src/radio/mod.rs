@@ -1,17 +1,20 @@
-//! `radio`: snapshots and commands into frames at the right rate, robots' frames into telemetry and link
-//! quality (docs/architecture.md §3.3, §6.1). Sans-IO: times come from the caller, packets go back to it.
+//! `radio`: packs snapshots and commands into frames at a limited rate, unpacks, robots' frames into
+//! telemetry and link quality (docs/architecture.md §3.3, §6.1). Sans-IO: times come from the caller, packets
+//! go back to it.
 //!
-//! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]). Only then it is commanded,
-//! addressed by snapshots, relayed and given to the strategy. Before, it is welcomed, at most every [`STRANGER_EVERY`].
+//! **Presence.** A robot is present while its telemetry names this host's epoch ([`protocol::host_link`]).
+//! Only then it is commanded, addressed by snapshots, relayed and used by the strategy. Before, it is
+//! welcomed, at most every [`STRANGER_EVERY`].
 //!
-//! **Rate.** A picture goes out as soon as there is a new one, but not more than one in [`PERIOD_MIN`] (100 Hz); one that
-//! comes too early waits its turn, the newest wins. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last goes out
-//! again, carried forward. After [`REPEAT_MAX`] without a new one the radio falls silent: robots brake by themselves, and a
-//! guess that old would be worse.
+//! **Rate.** A new snapshot goes out at once, but at most one per [`PERIOD_MIN`] (100 Hz); one that comes too
+//! early waits, the newest replaces older ones. Where no new one comes for [`PERIOD_MAX`] (60 Hz) the last
+//! goes out again, extrapolated. After [`REPEAT_MAX`] without a new one the radio stops sending: robots brake
+//! by themselves, which is safer than such an old estimate.
 //!
-//! **Relay.** Where robots hear their host but not each other, the host passes each beacon and greeting on, the very bytes.
+//! **Relay.** Where robots receive their host but not each other, the host forwards each beacon and handshake
+//! byte for byte.
 //!
-//! No heap: capacities are named constants, what does not fit is dropped and counted.
+//! No heap: capacities are named constants, packets that do not fit are dropped and counted.
 
 mod picture;
 mod quality;
@@ -33,55 +36,59 @@ pub use quality::{Quality, table};
 pub use tally::Tally;
 pub use warning::{RadioWarning, Why};
 
-/// Not more than one picture in this time: 100 Hz, as fast as the league's cameras and the best published radios.
+/// At most one snapshot in this time: 100 Hz, as fast as the league's cameras and the best published radios.
 pub const PERIOD_MIN: Duration = Duration::millis(10);
-/// A picture may come so much early, so that a camera of 100 Hz that trembles loses none; the next then waits longer.
+/// A snapshot may come early by this time, so that a camera of 100 Hz with jitter loses none; the next then
+/// waits longer.
 pub const EARLY: Duration = Duration::millis(2);
-/// The last picture goes out again after this time: 60 Hz.
+/// The last snapshot goes out again after this time: 60 Hz.
 pub const PERIOD_MAX: Duration = Duration(16_600);
-/// How long a picture is carried forward: half a second, twice the longest blackout of vision that teams report (0.2 s).
+/// Longest time for which a snapshot is extrapolated: half a second, twice the longest blackout of vision
+/// that teams report (0.2 s).
 pub const REPEAT_MAX: Duration = Duration::millis(500);
 /// A robot is present if its telemetry came within this time; it comes ten times a second.
 pub const PRESENT: Duration = Duration::millis(1_000);
-/// Robots are welcomed again this often, so that a lost welcome only delays.
+/// Interval of repeated welcomes, so that a lost welcome causes only a delay.
 const WELCOME_EVERY: Duration = Duration::millis(100);
-/// A robot that has not named our epoch is welcomed at most this often: recordings of robots lead to no more than that.
+/// A robot that has not named our epoch is welcomed at most this often: replayed frames of robots cause no
+/// higher rate.
 pub const STRANGER_EVERY: Duration = Duration::millis(20);
-/// Packets that wait to be fetched: the parts, a command and a welcome for each, and a beacon of each for each other.
+/// Capacity of the queue of outgoing packets: the parts, a command and a welcome for each robot, and each
+/// robot's beacon for each other.
 const OUT_MAX: usize = 320;
 
-/// Who shall receive a packet.
+/// Receivers of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum To {
     /// Every robot of the team.
     All,
-    /// This robot.
+    /// The robot of this number.
     One(RobotId),
 }
 
-/// How robots' beacons reach their mates.
+/// How robots' beacons reach their teammates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relay {
-    /// They hear each other.
+    /// They receive each other directly.
     No,
     /// One at a time: a link that has an address for each robot.
     ToEach,
-    /// All at once: a base station. The speaker hears itself and knows it.
+    /// To all at once: a base station. The sender receives its own frame and ignores it.
     ToAll,
 }
 
-/// What is fixed for a host's life.
+/// Settings that are fixed while a host runs.
 #[derive(Clone, Copy, Debug)]
 pub struct RadioSettings {
-    /// Whose air.
+    /// The team's number on the radio.
     pub team: TeamId,
-    /// The team's key.
+    /// The key from which each robot's key is derived.
     pub key: TeamKey,
-    /// Which life of the host: must rise with every start; seconds of a calendar do.
+    /// The host's epoch: must rise with every start; Unix seconds do.
     pub epoch: u32,
-    /// Who passes beacons on.
+    /// How beacons are forwarded between robots.
     pub relay: Relay,
-    /// How long a packet is on its way: pictures are carried forward by it. 3 ms is what ER-Force takes for theirs.
+    /// One-way latency of a packet: snapshots are extrapolated by it. 3 ms is what ER-Force takes for theirs.
     pub way: Duration,
 }
 
@@ -92,30 +99,30 @@ impl RadioSettings {
     }
 }
 
-/// What a robot said.
+/// A message received from a robot.
 #[allow(clippy::large_enum_variant, reason = "one value at a time, on the stack")]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// To its mates: what it does and knows.
+    /// To its teammates: its state.
     Beacon(RobotId, Beacon),
-    /// To us: how it is.
+    /// To the host: its condition.
     Telemetry(RobotId, Telemetry),
-    /// To its mates: that it lives now.
+    /// To its teammates: its boot epoch.
     Greeting(RobotId),
 }
 
-/// The host's radio.
+/// The host's radio: queue of frames, links to robots, refusals.
 #[derive(Clone, Debug)]
 pub struct Radio {
     settings: RadioSettings,
     link: HostLink,
     latest: Option<Latest>,
-    /// When the next picture may go out.
+    /// When the next snapshot may go out.
     free: Instant,
-    /// When the last one did.
+    /// When the last snapshot went out.
     last: Option<Instant>,
     picture: u8,
-    /// When which picture went out.
+    /// When each snapshot went out, by its number.
     departures: [Option<Instant>; 256],
     robots: [Quality; RobotId::COUNT],
     out: heapless::Deque<(To, Packet), OUT_MAX>,
@@ -123,7 +130,7 @@ pub struct Radio {
     refusals: Refusals,
 }
 
-/// What the strategy said last.
+/// The newest snapshot and commands of the strategy.
 #[derive(Clone, Debug)]
 struct Latest {
     since: Instant,
@@ -135,7 +142,7 @@ struct Latest {
 }
 
 impl Radio {
-    /// A radio that has said and heard nothing.
+    /// A radio that has sent and received nothing.
     pub fn new(settings: RadioSettings) -> Self {
         Self {
             settings,
@@ -152,8 +159,8 @@ impl Radio {
         }
     }
 
-    /// A new picture, and what everybody shall do: goes out now, or as soon as the rate allows. Of two commands for one
-    /// robot the first counts. Fetch packets afterwards.
+    /// Takes a new snapshot and all robots' commands: they go out now, or as soon as the rate allows. Of two
+    /// commands for one robot the first counts. Fetch packets afterwards.
     pub fn offer(&mut self, now: Instant, world: &World, situation: Situation, commands: &[Command]) {
         let mut kept = heapless::Vec::<Command, { RobotId::COUNT }>::new();
         for command in commands {
@@ -174,13 +181,13 @@ impl Radio {
         }
     }
 
-    /// The next snapshot may go out at `now`, whatever the rate: it carries HALT. Once per HALT, so that the rate holds on
-    /// average.
+    /// The next snapshot may go out at `now`, independent of the rate: it carries HALT. Once per HALT, so
+    /// that the rate holds on average.
     pub fn hasten(&mut self, now: Instant) {
         self.free = self.free.min(now);
     }
 
-    /// When to call [`Radio::handle_timeout`]; `None` while there is nothing to say.
+    /// When to call [`Radio::handle_timeout`]; `None` while there is nothing to send.
     pub fn poll_timeout(&self) -> Option<Instant> {
         let latest = self.latest.as_ref()?;
         if latest.fresh {
@@ -195,7 +202,7 @@ impl Radio {
         self.out.pop_front()
     }
 
-    /// A packet came from a robot's side: what it says, or why it is not believed (counted).
+    /// Handles a packet of a robot: returns its message, or why it is refused (counted).
     pub fn handle_packet(&mut self, now: Instant, packet: &[u8]) -> Result<Heard, Refusal> {
         let frame = Frame::parse(packet, self.settings.team);
         let opened = self.link.open(now, packet);
@@ -238,7 +245,7 @@ impl Radio {
         }
     }
 
-    /// How the link to that robot is; `None` until it was heard.
+    /// How the link to that robot is; `None` until a frame of it was received.
     pub fn quality(&self, robot: RobotId) -> Option<&Quality> {
         Some(&self.robots[robot.index()]).filter(|quality| quality.heard_at().is_some())
     }
@@ -248,20 +255,20 @@ impl Radio {
         RobotId::all().filter(move |robot| self.robots[robot.index()].is_present(now))
     }
 
-    /// Frames refused, by [`Refusal::kind`].
+    /// Number of frames refused, by [`Refusal::kind`].
     pub fn refused(&self) -> &[u32; Refusal::KINDS] {
         self.link.refused()
     }
 
-    /// Frames on our air that are nobody's of the team: of others, forged, or broken on the way. What the league's table calls
-    /// interference.
+    /// Frames on our channel of no robot of the team: of others, forged, or corrupted. What the league's
+    /// table calls interference.
     pub fn foreign(&self) -> u32 {
         let refused = self.link.refused();
         let kinds = [Refusal::Version(0), Refusal::Team(TeamId(0)), Refusal::Sender(0), Refusal::Tag];
         kinds.iter().fold(0, |sum, kind| sum.saturating_add(refused[kind.kind()]))
     }
 
-    /// What keeps robots and this host apart now, and what to do about it.
+    /// What prevents communication between robots and this host now, and how to fix it.
     pub fn warnings(&self, now: Instant) -> impl Iterator<Item = RadioWarning> {
         self.refusals.warnings(now, self.link.epoch())
     }
@@ -271,13 +278,13 @@ impl Radio {
         self.last
     }
 
-    /// Packets that nobody fetched in time.
+    /// Packets that the caller did not fetch in time.
     pub fn dropped(&self) -> u32 {
         self.dropped
     }
 
     fn transmit(&mut self, now: Instant) {
-        // Taken out so that parts of it can be read while packets are queued.
+        // Moved out so that parts of it can be read while packets are queued.
         let Some(mut latest) = self.latest.take() else { return };
         self.free = self.free.max(now - EARLY) + PERIOD_MIN;
         self.last = Some(now);
@@ -286,7 +293,8 @@ impl Radio {
         let audience: Audience = self.present(now).collect();
         self.link.set_audience(audience);
         let there = latest.world.at(now + self.settings.way);
-        // Without robots one part goes out to an empty audience: a base station learns the host's address from it.
+        // Without robots one part goes out to an empty audience: a base station learns the host's address
+        // from it.
         let most = if audience.is_empty() { 1 } else { PARTS_MAX };
         for part in
             picture::parts(self.picture, audience.len(), &there, &latest.situation).into_iter().take(most)

@@ -1,5 +1,5 @@
-//! `picture`: the world as parts that fit into frames: ours first, then theirs, lowest number first, spread over as few parts as
-//! hold them. Field frame.
+//! `picture`: packs a snapshot into parts that fit into frames: ours first, then theirs, lowest number first,
+//! spread over as few parts as hold them. Field frame.
 
 use geometry::{Field, Point};
 use protocol::host::{PARTS_MAX, WORLD_ROBOTS_MAX, WireBall, WireRobot, WireWho, WorldPart};
@@ -11,18 +11,18 @@ use crate::world::{Ball, Robot, World};
 /// Robots that fit into a snapshot; more (ghosts, many false detections) are left out from the end.
 pub const PARTS_ROBOTS_MAX: usize = WORLD_ROBOTS_MAX;
 
-/// What the game is like, beside the picture.
+/// The state of the game, beside the snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Situation {
-    /// Our colour.
+    /// The colour our robots play with.
     pub us: Colour,
-    /// The phase, in our words.
+    /// The phase, by side (ours or theirs).
     pub phase: Phase<Side>,
-    /// Where the ball is to be placed, while that matters.
+    /// Where the ball is to be placed, during placement.
     pub placement: Option<Point<Field>>,
 }
 
-/// The parts of a snapshot for so many robots.
+/// The parts of a snapshot for that number of robots.
 pub(super) fn parts(
     picture: u8,
     addressees: usize,

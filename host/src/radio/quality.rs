@@ -1,14 +1,15 @@
-//! `quality`: link quality of a robot. The league's own table of a radio (technical challenge 2026): round
-//! trip, loss, data rate, interference, start-up; and what people look at during a match: silence, battery,
-//! refusals.
+//! `quality`: link quality of a robot. The measures of the league's table for radios (technical challenge
+//! 2026): round trip, loss, data rate, interference, start-up; and those that operators watch during a match:
+//! silence, battery, refusals.
 //!
-//! What is scored there is the quality of the data, so each figure says from what it comes:
-//! - round trip: now − departure of the newest picture the robot had − the robot's silence since; the robot states its
-//!   silence in 0.1 ms, the picture's departure is that of its first part;
-//! - loss down: parts of pictures, by the robot's own counts; loss up: the robot's frames, by their counters;
-//! - data rate: bytes of frames to and from this robot (to all counts for each) in whole seconds, without the link's own
-//!   overhead;
-//! - start-up: from the first frame of the robot's life to its first telemetry that knows a picture.
+//! The table scores the quality of the data, so each measure names its source:
+//! - round trip: now − departure of the newest snapshot the robot had − the robot's silence since; the robot
+//!   states its silence in 0.1 ms, the snapshot's departure is that of its first part;
+//! - loss down: parts of snapshots, by the robot's own counts; loss up: the robot's frames, by their
+//!   counters;
+//! - data rate: bytes of frames to and from this robot (to all counts for each) in whole seconds, without the
+//!   link's own overhead;
+//! - start-up: from the first frame of the robot's epoch to its first telemetry that names a snapshot.
 
 use std::fmt::Write as _;
 
@@ -18,16 +19,16 @@ use protocol::{Duration, Instant, RobotId};
 use super::PRESENT;
 use super::tally::Tally;
 
-/// How long one data-rate sample is.
+/// Duration of one data-rate sample.
 const SECOND: Duration = Duration::millis(1_000);
-/// A round trip longer than this is a picture number that came round again (256 pictures take 2.5 s), not a trip.
+/// A longer round trip is a snapshot number that was used again (256 snapshots take 2.5 s).
 const TRIP_MAX: Duration = Duration::millis(1_000);
 
 /// The link to one robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quality {
     heard_at: Option<Instant>,
-    /// When telemetry came last that named our epoch.
+    /// When the last telemetry came that named our epoch.
     present_at: Option<Instant>,
     telemetry: Option<(Instant, Telemetry)>,
     life: Option<Life>,
@@ -49,7 +50,7 @@ struct Life {
     since: Instant,
 }
 
-/// What came and what did not.
+/// Numbers of frames received and lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Share {
     came: u64,
@@ -72,7 +73,7 @@ struct Window {
 }
 
 impl Quality {
-    /// When it was last heard.
+    /// When its newest frame was received.
     pub fn heard_at(&self) -> Option<Instant> {
         self.heard_at
     }
@@ -87,7 +88,7 @@ impl Quality {
         self.present_at.is_some_and(|at| now.since(at) <= PRESENT)
     }
 
-    /// What it last said of itself, and when.
+    /// Its newest telemetry, and when it came.
     pub fn telemetry(&self) -> Option<&(Instant, Telemetry)> {
         self.telemetry.as_ref()
     }
@@ -98,47 +99,47 @@ impl Quality {
         (telemetry.battery > 0).then(|| f32::from(telemetry.battery) * 0.01)
     }
 
-    /// What it says of its body.
+    /// Its newest report on its body.
     pub fn condition(&self) -> Condition {
         self.telemetry.map_or(Condition::default(), |(_, telemetry)| telemetry.condition)
     }
 
-    /// Round trip, ms.
+    /// Round trips, ms.
     pub fn round_trip(&self) -> &Tally {
         &self.trip
     }
 
-    /// Parts of our pictures that it did not hear, percent.
+    /// Parts of our snapshots that it did not receive, percent.
     pub fn loss_down(&self) -> Option<f64> {
         self.down.lost_percent()
     }
 
-    /// Its frames that we did not hear, percent.
+    /// Its frames that we did not receive, percent.
     pub fn loss_up(&self) -> Option<f64> {
         self.up.lost_percent()
     }
 
-    /// kbit/s of frames, both ways, a value a second.
+    /// kbit/s of frames, both directions, one value per second.
     pub fn data_rate(&self) -> &Tally {
         &self.rate
     }
 
-    /// Frames heard from it, a value a second.
+    /// Frames received from it, one value per second.
     pub fn frame_rate(&self) -> &Tally {
         &self.frames
     }
 
-    /// From its first frame to its first word that it hears us; of its present life.
+    /// Time from its first frame to its first telemetry that names our epoch; of its present epoch.
     pub fn start_up(&self) -> Option<Duration> {
         self.start_up
     }
 
-    /// How often it was seen to boot, the first time included.
+    /// Number of boots seen, including the first.
     pub fn lives(&self) -> u32 {
         self.lives
     }
 
-    /// Frames it refused in this life, of any kind.
+    /// Frames it refused in this epoch, of any kind.
     pub fn refused(&self) -> u32 {
         self.telemetry.map_or(0, |(_, telemetry)| telemetry.refused.iter().copied().map(u32::from).sum())
     }
@@ -149,7 +150,7 @@ impl Quality {
         match &mut self.life {
             Some(life) if life.epoch == epoch => {
                 self.up.came += 1;
-                // Telemetry and beacons may overtake each other; what is late was counted as lost.
+                // Telemetry and beacons may overtake each other; a late frame was counted as lost.
                 if let Some(ahead) = counter.checked_sub(life.counter) {
                     self.up.lost += u64::from(ahead.saturating_sub(1));
                     life.counter = counter;
@@ -169,7 +170,7 @@ impl Quality {
         self.window.bytes += len as u32;
     }
 
-    /// It told of itself; `departed` is when the picture it names went out.
+    /// Takes its telemetry; `departed` is when the snapshot that it names went out.
     pub(super) fn tell(&mut self, now: Instant, telemetry: Telemetry, departed: Option<Instant>) {
         self.present_at = Some(now);
         if telemetry.heard > 0
@@ -190,7 +191,7 @@ impl Quality {
         self.telemetry = Some((now, telemetry));
     }
 
-    /// Something went out to it.
+    /// A frame was sent to it.
     pub(super) fn sent(&mut self, now: Instant, len: usize) {
         if self.heard_at.is_some() {
             self.roll(now);
@@ -198,7 +199,7 @@ impl Quality {
         }
     }
 
-    /// It was not welcomed for that long.
+    /// Whether it has not been welcomed for `every`.
     pub(super) fn wants_welcome(&self, now: Instant, every: Duration) -> bool {
         self.welcomed.is_none_or(|at| now.since(at) >= every)
     }
@@ -207,7 +208,7 @@ impl Quality {
         self.welcomed = Some(now);
     }
 
-    /// Closes seconds that are over; those without a frame count as empty.
+    /// Closes the seconds that have passed; those without a frame count as empty.
     fn roll(&mut self, now: Instant) {
         let begin = *self.window.begin.get_or_insert(now);
         let mut over = now.since(begin).0 / SECOND.0;
@@ -215,7 +216,7 @@ impl Quality {
             return;
         }
         self.window.begin = Some(begin + SECOND * over);
-        // Bounded: a robot that was off for an hour was off, not slow.
+        // Bounded: a robot that was off for an hour does not count as slow.
         over = over.min(10);
         for _ in 0..over {
             self.rate.add(f64::from(self.window.bytes) * 8.0 * 1e-3);

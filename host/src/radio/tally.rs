@@ -1,5 +1,4 @@
-//! `tally`: running statistics of a measure. Count, mean, variance and maximum of a measure, in one pass
-//! (Welford).
+//! `tally`: running statistics: count, mean, variance and maximum of a measure, in one pass (Welford).
 
 /// A measure's summary; its unit is the measure's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,7 +11,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// One more value.
+    /// Adds one value.
     pub fn add(&mut self, value: f64) {
         self.max = if self.count == 0 { value } else { self.max.max(value) };
         self.count = self.count.saturating_add(1);
@@ -21,7 +20,7 @@ impl Tally {
         self.squares += off * (value - self.mean);
     }
 
-    /// How many.
+    /// Number of values.
     pub fn count(&self) -> u32 {
         self.count
     }

@@ -1,4 +1,4 @@
-//! The radio sends as often as it should, to whom it should, and knows how well it is received.
+//! Tests: the radio's rate, its receivers, and its measures of link quality.
 
 use super::*;
 use crate::world::{BallModels, Robot};
@@ -78,7 +78,7 @@ fn tell(link: &mut Link, now: Instant) -> Packet {
     link.seal(&TeamMessage::Telemetry(telemetry))
 }
 
-/// Telemetry, welcome, telemetry: the robot is present.
+/// Makes the robot present: telemetry, welcome, telemetry.
 fn join(radio: &mut Radio, link: &mut Link, n: u8, now: Instant) {
     assert!(matches!(radio.handle_packet(now, &tell(link, now)), Err(Refusal::Stranger { .. })));
     let welcome = fetch(radio);
@@ -91,7 +91,7 @@ fn fetch(radio: &mut Radio) -> Vec<(To, Packet)> {
     std::iter::from_fn(|| radio.poll_packet()).collect()
 }
 
-/// Hands the packets that are for `n` to its link; gives what it believed.
+/// Delivers the packets that are for `n` to its link; returns the messages it accepted.
 fn deliver(link: &mut Link, n: u8, now: Instant, packets: &[(To, Packet)]) -> Vec<HostMessage> {
     let meant = packets.iter().filter(|(to, _)| *to == To::All || *to == To::One(id(n)));
     meant
@@ -142,7 +142,7 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_on
     let mut link = robot(2);
     assert!(radio.handle_packet(ms(1), &link.seal(&beacon())).is_err(), "a beacon proves nothing");
     radio.offer(ms(2), &world(ms(2), 1, 0), situation(), &[stand(2)]);
-    // One part to an empty audience: it tells a base station where the host is, and no robot anything.
+    // One part to an empty audience: a base station learns the host's address from it, no robot uses it.
     let announced = fetch(&mut radio);
     assert_eq!((announced.len(), radio.present(ms(2)).count()), (1, 0));
     assert!(deliver(&mut link, 2, ms(2), &announced).is_empty());
@@ -151,7 +151,7 @@ fn a_robot_is_welcomed_when_its_telemetry_is_first_heard_and_hears_everything_on
     let heard = deliver(&mut link, 2, ms(15), &fetch(&mut radio));
     assert!(matches!(heard[..], [HostMessage::World(_), HostMessage::Command(_)]), "{heard:?}");
     let HostMessage::World(part) = &heard[0] else { unreachable!() };
-    // 1 m/s for the 3 ms of the way.
+    // 1 m/s for a latency of 3 ms.
     assert_eq!(part.robots[0].pose.at.x, 3);
     // It is welcomed again after a while.
     radio.offer(ms(103), &world(ms(103), 1, 0), situation(), &[]);
@@ -202,7 +202,7 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
             assert_eq!(fresh.present(now).collect::<Vec<_>>(), [id(3)]);
         }
         assert!(fresh.quality(id(2)).is_none());
-        // 600 ms of recordings, a welcome in 20 ms at most.
+        // 600 ms of replayed frames, a welcome in 20 ms at most.
         assert!(
             (1..=31).contains(&welcomes) && commands > 50,
             "{welcomes} welcomes, {commands} commands to robot 3"
@@ -210,7 +210,8 @@ fn recorded_frames_of_a_robot_make_a_fresh_host_send_welcomes_and_nothing_else()
     }
 }
 
-/// Offers a picture at each of `times` (µs) for a second and serves every deadline; gives when pictures went out.
+/// Offers a snapshot at each of `times` (µs) for a second and serves every deadline; returns when snapshots
+/// went out.
 fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
     let mut radio = radio(Relay::No);
     let mut link = robot(0);
@@ -225,7 +226,7 @@ fn departures(times: impl Iterator<Item = u64>, until: u64) -> Vec<u64> {
         if now.0 > until {
             return out;
         }
-        // It stays present.
+        // Telemetry keeps it present.
         while told + 100_000 <= now.0 {
             told += 100_000;
             assert!(radio.handle_packet(Instant(told), &tell(&mut link, Instant(told))).is_ok());
@@ -275,7 +276,7 @@ fn a_repeated_picture_is_carried_forward() {
     radio.handle_timeout(due);
     let heard = deliver(&mut link, 0, due, &fetch(&mut radio));
     let [HostMessage::World(part)] = &heard[..] else { panic!("{heard:?}") };
-    // 16.6 ms and 3 ms of way at 1 m/s, in whole millimetres.
+    // 16.6 ms and a latency of 3 ms at 1 m/s, in whole millimetres.
     assert_eq!((part.picture, part.robots[0].pose.at.x), (1, 20));
 }
 
@@ -302,7 +303,7 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
         assert!(radio.handle_packet(ms(2), &telemetry).is_ok());
         assert!(fetch(&mut radio).is_empty());
         assert_eq!(radio.handle_packet(ms(3), &telemetry), Err(Refusal::Counter { seen: 5, last: 5 }));
-        // Once it is no longer present, nothing of it is passed on.
+        // Once it is no longer present, none of its frames is forwarded.
         assert!(radio.handle_packet(ms(1_003), &one.seal(&beacon())).is_ok());
         assert!(fetch(&mut radio).is_empty());
         one = robot(1);
@@ -310,7 +311,8 @@ fn beacons_are_passed_on_unchanged_and_telemetry_is_not() {
     }
 }
 
-/// A robot that tells of itself `held` after each picture; the way takes `way` each way, and of five pictures it hears four.
+/// A robot that sends telemetry `held` after each snapshot; the latency is `way` in each direction, and it
+/// receives four of five snapshots.
 #[test]
 fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     let mut radio = radio(Relay::No);
@@ -329,19 +331,20 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
             Telemetry { battery: 1580, silence: (held.0 / 100) as u16, ..Telemetry::default() };
         link.tell(now, &mut telemetry);
         let packet = link.seal(&TeamMessage::Telemetry(telemetry));
-        // Of ten of its own words one is lost.
+        // Of ten of its own frames one is lost.
         if n % 10 != 1 {
             assert!(radio.handle_packet(now + way + held + way, &packet).is_ok());
         }
     }
     let quality = radio.quality(id(4)).unwrap();
     let near = |value: Option<f64>, truth: f64, off: f64| (value.unwrap() - truth).abs() <= off;
-    // A lost picture is told of before it comes again: telemetry names the newest that came.
+    // A lost snapshot's number is named before it comes again: telemetry names the newest that came.
     assert!(near(quality.round_trip().mean(), 3.0, 1e-6), "{:?}", quality.round_trip());
     assert!(near(quality.round_trip().max(), 3.0, 1e-6));
     assert!(near(quality.loss_down(), 20.0, 0.5), "{:?}", quality.loss_down());
     assert!(near(quality.loss_up(), 12.5, 0.5), "{:?}", quality.loss_up());
-    // 100 pictures of one part (68 B) and a command (24 B), 10 welcomes (29 B), 70 telemetries (59 B) a second.
+    // 100 snapshots of one part (68 B) and a command (24 B), 10 welcomes (29 B), 70 telemetries (59 B) a
+    // second.
     let bits = (100.0 * (part_len(4) + 24.0) + 10.0 * 29.0 + 70.0 * 59.0) * 8.0 * 1e-3;
     assert!(
         near(quality.data_rate().mean(), bits, bits * 0.02),
@@ -357,8 +360,8 @@ fn round_trip_loss_rate_and_start_up_are_those_of_the_link() {
     );
 }
 
-/// Bytes of a part to one robot without placement and ball and with so many robots: header, audience, a tag, variant, picture, part,
-/// parts, phase, two options, a length, eleven bytes a robot.
+/// Bytes of a part to one robot without placement and ball and with that number of robots: header, audience,
+/// a tag, variant, snapshot, part, parts, phase, two options, a length, eleven bytes a robot.
 fn part_len(robots: u8) -> f64 {
     f64::from(11 + 2 + 3 + 1 + 3 + 1 + 2 + 1 + 11 * u32::from(robots))
 }
@@ -393,6 +396,7 @@ fn more_robots_than_fit_are_left_out_and_nobody_fetching_is_no_harm() {
         radio.offer(ms(n * 10), &world(ms(n * 10), 16, 16), situation(), &commands);
     }
     let packets = fetch(&mut radio);
-    // 24 robots in eight parts for an audience of sixteen, as many commands; and sixteen welcomes each 100 ms after the first.
+    // 24 robots in eight parts for an audience of sixteen, as many commands; and sixteen welcomes each 100 ms
+    // after the first.
     assert_eq!((packets.len(), radio.dropped()), (OUT_MAX, (50 * 24 + 4 * 16 - OUT_MAX) as u32));
 }

@@ -1,5 +1,5 @@
-//! `warning`: what an operator should know of robots that refuse this host, or that it refuses, and what to do about it. A matter
-//! is reported while it goes on: five frames within two seconds. Times on the host's clock.
+//! `warning`: reports which robots refuse this host or are refused by it, and how to fix it. A matter is
+//! reported while it persists: five frames within two seconds. Times on the host's clock.
 
 use std::fmt;
 
@@ -7,16 +7,17 @@ use protocol::frame::Refusal;
 use protocol::host::Telemetry;
 use protocol::{Duration, Instant, RobotId, TeamId};
 
-/// How long a count is taken before it is begun again.
+/// Time after which a count restarts.
 const WINDOW: Duration = Duration::millis(1_000);
-/// A matter is over when nothing of it came for so long.
+/// A matter is over when no frame of it came for this time.
 const OVER: Duration = Duration::millis(2_000);
-/// So many frames within [`WINDOW`] are no accident: a line that corrupts one bit in 10⁵ breaks fewer.
+/// Number of frames within [`WINDOW`] that is no accident: a line that corrupts one bit in 10⁵ breaks fewer.
 const MANY: u32 = 5;
-/// Senders are unknown for so long at every start, until each has named its epoch to each (handshakes every 500 ms, some lost).
+/// After every start senders may be unauthenticated for this time, until each has received each other's epoch
+/// (handshakes every 500 ms, some lost).
 const HANDSHAKES: Duration = Duration::millis(3_000);
 
-/// Something that keeps a robot and this host apart.
+/// A cause that prevents communication between a robot and this host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RadioWarning {
     /// The robot follows a host with a later epoch, and refuses this one.
@@ -36,9 +37,9 @@ pub enum RadioWarning {
 /// Why a robot refuses frames, as its telemetry counts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Why {
-    /// They are another version's.
+    /// They are of another protocol version.
     Version,
-    /// They are another team's.
+    /// They are of another team's number.
     Team,
     /// They are of an earlier epoch of the host.
     Epoch,
@@ -123,7 +124,7 @@ impl fmt::Display for RadioWarning {
 /// Frames of a kind, counted as they come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rising {
-    /// The first frame after nothing came for [`OVER`].
+    /// The first frame after a pause of [`OVER`].
     since: Option<Instant>,
     window: Option<Instant>,
     latest: Option<Instant>,
@@ -166,7 +167,7 @@ struct OfRobot {
     follows: Option<(u32, Instant)>,
 }
 
-/// Counts what keeps robots and host apart.
+/// Counts refusals between robots and host.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Refusals {
     robots: [OfRobot; RobotId::COUNT],
@@ -183,7 +184,7 @@ impl Refusals {
         let before = known.told.replace(telemetry.refused).unwrap_or(telemetry.refused);
         for (why, rising) in Why::ALL.into_iter().zip(&mut known.rising) {
             let of = |counts: &[u16; Refusal::KINDS]| counts.get(why.kind()).copied().unwrap_or(0);
-            // After a boot the counts begin again.
+            // After a boot the counts restart from 0.
             rising.add(now, u32::from(of(&telemetry.refused).saturating_sub(of(&before))));
         }
     }
@@ -204,19 +205,20 @@ impl Refusals {
         }
     }
 
-    /// A frame came that names our team's host, with an epoch that is not ours. Ours come back from base stations that repeat them.
+    /// A frame came that names our team's host, with an epoch that is not ours. Ours come back from base
+    /// stations that repeat them.
     pub(super) fn other_host(&mut self, now: Instant, epoch: u32) {
         self.host.0.add(now, 1);
         self.host.1 = epoch;
     }
 
-    /// What goes on now, for a host of that epoch.
+    /// The warnings that apply now, for a host of that epoch.
     pub(super) fn warnings(&self, now: Instant, epoch: u32) -> impl Iterator<Item = RadioWarning> {
         let of_robot = move |(robot, known): (RobotId, &OfRobot)| {
             let later = known.follows.filter(|(host, at)| *host > epoch && now.since(*at) < OVER);
             let later = later.map(|(host, _)| RadioWarning::LaterHost(robot, host));
             let whys = Why::ALL.into_iter().zip(known.rising).filter(move |(why, rising)| {
-                // That it refuses this host's epoch is said already.
+                // That it refuses this host's epoch is reported already.
                 match why {
                     Why::Stranger => rising.goes_on_for(now, HANDSHAKES),
                     Why::Epoch => rising.goes_on(now) && later.is_none(),
@@ -283,7 +285,7 @@ mod tests {
             }
             let expected = if why == Why::Stranger { 3_000..=4_500 } else { 0..=1_000 };
             assert!(reported.is_some_and(|at| expected.contains(&at)), "{why:?}: {reported:?}");
-            // One in a second is a bit that flipped; a reboot brings the counts back to nothing.
+            // One in a second is a bit that flipped; a reboot resets the counts to 0.
             let mut refusals = Refusals::default();
             for n in 0..60_u64 {
                 counts[why.kind()] = if n < 30 { (n / 10) as u16 } else { 0 };

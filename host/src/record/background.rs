@@ -1,8 +1,8 @@
-//! `background`: a [`Recorder`] on a thread of its own behind a bounded queue, so that compressing and a slow disk never hold up
-//! whoever leads robots. Sizes in bytes.
+//! `background`: a [`Recorder`] on a thread of its own behind a bounded queue, so that compression and a slow
+//! disk never delay the control loop. Sizes in bytes.
 //!
-//! Where the disk cannot keep up, league messages are dropped and counted, and the trace ends at the first record that was
-//! dropped, with a mark that says so: what comes after a gap could not be decided again.
+//! Where the disk cannot keep up, league messages are dropped and counted, and the trace ends at the first
+//! record that was dropped, with a mark for it: decisions after a gap could not be replayed.
 
 use std::io;
 use std::sync::Arc;
@@ -20,12 +20,13 @@ use crate::Input;
 use crate::radio::To;
 use crate::referee::SenderAddress;
 
-/// Bytes that wait at most: 16 s of a match (four cameras, eleven robots: 0.5 MB/s), and what memory may grow by.
+/// Bytes that wait at most: 16 s of a match (four cameras, eleven robots: 0.5 MB/s), which bounds the memory
+/// used.
 const QUEUE_MAX: usize = 8 << 20;
 /// What an entry takes beside its bytes.
 const ENTRY_LEN: usize = 96;
 
-/// A recorder that never makes its caller wait.
+/// A recorder that never blocks its caller.
 pub struct BackgroundRecorder {
     queue: Sender<Entry>,
     shared: Arc<Shared>,
@@ -42,7 +43,7 @@ struct Shared {
     failed: AtomicBool,
 }
 
-/// Something to write.
+/// An entry of the queue.
 enum Entry {
     Heard(Instant, MessageKind, Vec<u8>),
     Input(Instant, Colour, Owned),
@@ -109,7 +110,7 @@ impl BackgroundRecorder {
         Ok(Self { queue, shared, room, ended: None, dropped: 0, thread })
     }
 
-    /// A league message was on the network.
+    /// A league message was received from the network.
     pub fn heard(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
         if self.has_room(bytes.len()) {
             self.put(Entry::Heard(now, kind, bytes.to_vec()));
@@ -129,7 +130,7 @@ impl BackgroundRecorder {
         }
     }
 
-    /// The host of that colour sent a frame.
+    /// Time at which the trace has ended because a record was dropped.
     pub fn sent(&mut self, now: Instant, host: Colour, to: To, packet: &Packet) {
         if self.has_record_room(now, 0) {
             self.put(Entry::Sent(now, host, to, packet.clone()));
@@ -151,12 +152,12 @@ impl BackgroundRecorder {
         self.dropped
     }
 
-    /// Bytes that wait.
+    /// Bytes in the queue.
     pub fn waiting(&self) -> usize {
         self.shared.waiting.load(Ordering::Relaxed)
     }
 
-    /// Writes what waits and ends both files; tells the first thing that went wrong.
+    /// Writes what is queued and closes both files; returns the first error.
     pub fn finish(self) -> io::Result<()> {
         drop(self.queue);
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the recorder's thread ended by a fault")))
@@ -181,7 +182,7 @@ impl BackgroundRecorder {
 
     fn put(&mut self, entry: Entry) {
         self.shared.waiting.fetch_add(entry.len(), Ordering::Relaxed);
-        // A thread that is gone has told so by `failed`.
+        // A thread that has ended is reported by `failed`.
         let _ = self.queue.send(entry);
     }
 }
@@ -259,7 +260,7 @@ mod tests {
     fn a_disk_that_stands_still_costs_bounded_memory_and_ends_the_trace_with_a_mark() {
         let (recorder, stem) = recorder("background-full");
         let room = 100_000;
-        // No thread takes anything: a disk that stands still.
+        // No thread takes anything: a disk that blocks.
         let (queue, entries) = channel();
         let shared = Arc::new(Shared::default());
         let thread = thread::spawn(|| Ok(()));
@@ -273,7 +274,7 @@ mod tests {
         let ended = background.trace_ended().unwrap();
         assert!(ended.0 < 60 && background.dropped() > 1_800, "{ended:?} {}", background.dropped());
         background.finish().unwrap();
-        // The disk is back: what waited is whole, and the trace says that it ends.
+        // The disk works again: what was queued is whole, and the trace has its end mark.
         write(recorder, &entries, &shared).unwrap();
         let (kinds, end) = read(&stem);
         assert_eq!((kinds.len() as u64, end), (ended.0, Some(End::Lost { at: ended })));

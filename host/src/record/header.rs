@@ -1,8 +1,8 @@
 //! `header`: header of a trace, as JSON (docs/architecture.md §7.4): the settings from which the hosts of
 //! a recording can be rebuilt.
 //!
-//! A team's key stands in no file that is handed on: the header says only that there was one ([`HostHeader::keyed`]), and whoever
-//! builds the host again brings it.
+//! A team's key is never in a file that is passed on: the header states only that there was one
+//! ([`HostHeader::keyed`]), and the caller that rebuilds the host supplies it.
 
 use std::fmt;
 
@@ -19,72 +19,74 @@ use crate::radio::{RadioSettings, Relay};
 use crate::referee::{OnSilence, SourcePin};
 use crate::strategy::{Tactics, Team};
 
-/// What a trace begins with.
+/// The header of a trace.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordingHeader {
-    /// The program's version.
+    /// Version of the program that recorded.
     pub version: String,
     /// The commit it was built from.
     pub commit: String,
-    /// Where a simulated match had its chance from; none on a real field.
+    /// Random seed of a simulated match; none on a real field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
     /// The league's name.
     pub league: String,
-    /// Which simulated world it was played in; none on a real field, and in recordings from before there were several.
+    /// Name of the simulated world; none on a real field, and in recordings from before there were several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub world: Option<String>,
-    /// Unix time of the hosts' instant 0, µs, where it is known: what their clock shows is since then.
+    /// Unix time of the hosts' instant 0, µs, where it is known: their clock counts from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_unix_us: Option<u64>,
     /// The hosts, by the number that records have.
     pub hosts: Vec<HostHeader>,
 }
 
-/// With what one host began.
+/// The settings one host started with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HostHeader {
-    /// `blue` or `yellow`.
+    /// Its colour: `blue` or `yellow`.
     pub colour: String,
-    /// Its goal until the referee says: `yellow` is the one at −x, `cyan` the one at +x, as in problems.
+    /// Its goal until the referee reports it: `yellow` is the one at −x, `cyan` the one at +x, as in
+    /// problems.
     pub defending: String,
-    /// Its keeper until the referee says.
+    /// Its keeper until the referee names one.
     pub keeper: u8,
     /// Ball speed over speed ordered, by robot.
     pub kick: Vec<f32>,
-    /// Deceleration of a rolling ball that was set, m/s².
+    /// Configured deceleration of a rolling ball, m/s².
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub roll: Option<f32>,
     /// Whether it played by what it learned.
     #[serde(default)]
     pub learns: bool,
-    /// When it began, on its own clock, µs.
+    /// When it started, on its own clock, µs.
     #[serde(default)]
     pub began_us: u64,
-    /// Who decided open play.
+    /// Which team decided open play: ours or an opponent team.
     #[serde(default)]
     pub plays: Team,
     /// The team's number on the radio.
     pub team: u8,
-    /// Which life of the host it was.
+    /// Epoch of the host on the radio.
     pub epoch: u32,
-    /// Who passes beacons on: `no`, `to-each` or `to-all`.
+    /// How beacons were forwarded: `no`, `to-each` or `to-all`.
     pub relay: String,
-    /// How long a packet is on its way, µs.
+    /// One-way latency of a packet, µs.
     pub way_us: u64,
     /// The only referee that was obeyed, as `--referee-source` takes it; none: every one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_source: Option<String>,
-    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command stood.
+    /// What robots did when the referee fell silent, as `--referee-silence` takes it; none: its last command
+    /// was kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub referee_silence: Option<String>,
-    /// Were frames sealed with a key other than zeros?
+    /// Whether frames were sealed with a key other than zeros.
     #[serde(default)]
     pub keyed: bool,
     /// Which tactics it played.
     #[serde(default = "Tactics::none")]
     pub tactics: Tactics,
-    /// The hash of the case base by which it understood its robots, where its tactics asked for one.
+    /// The hash of the case base in which its robots' cases were looked up, where its tactics needed one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cases: Option<String>,
 }
@@ -109,18 +111,18 @@ fn wrong(words: impl Into<String>) -> HeaderError {
 }
 
 impl RecordingHeader {
-    /// As a trace begins with it.
+    /// As JSON, as it is written at the start of a trace.
     pub fn to_json(&self) -> String {
-        // Strings, numbers and lists of them: nothing that JSON cannot say.
+        // Strings, numbers and lists of them: JSON can represent all of it.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// From a trace's first words.
+    /// From the JSON at the start of a trace.
     pub fn from_json(text: &str) -> Result<Self, HeaderError> {
         serde_json::from_str(text).map_err(|error| wrong(error.to_string()))
     }
 
-    /// The league itself.
+    /// The league of that name.
     pub fn league(&self) -> Result<League, HeaderError> {
         [League::Ssl2013, League::DivisionB, League::DivisionA]
             .into_iter()
@@ -138,7 +140,7 @@ fn hash_of_cases(league: League) -> String {
 const RELAYS: [(&str, Relay); 3] = [("no", Relay::No), ("to-each", Relay::ToEach), ("to-all", Relay::ToAll)];
 
 impl HostHeader {
-    /// Of a host that begins at `began`.
+    /// The header of one host that starts at `began`.
     pub fn new(
         (colour, keeper, defending): (Colour, RobotId, GoalEnd),
         kick: &[f32; RobotId::COUNT],
@@ -167,7 +169,7 @@ impl HostHeader {
         }
     }
 
-    /// Of a host with these settings that begins at `began`.
+    /// The header of a host with these settings that starts at `began`.
     pub fn of(settings: &HostSettings, began: Instant) -> Self {
         let who = (settings.us, settings.keeper, settings.defending);
         Self {
@@ -182,7 +184,7 @@ impl HostHeader {
         }
     }
 
-    /// The settings it began with; the key is for the caller to bring.
+    /// The settings it started with; the caller supplies the key.
     pub fn settings(&self, league: League, key: TeamKey) -> Result<HostSettings, HeaderError> {
         let ours = hash_of_cases(league);
         if let Some(theirs) = self.cases.as_ref().filter(|hash| self.tactics.bridge && **hash != ours) {
@@ -214,7 +216,7 @@ impl HostHeader {
             .ok_or_else(|| wrong(format!("referee_silence: `{word}` is none; halt or go-on")))
     }
 
-    /// Its colour.
+    /// The colour of that name.
     pub fn colour(&self) -> Result<Colour, HeaderError> {
         [Colour::Blue, Colour::Yellow]
             .into_iter()
@@ -222,14 +224,14 @@ impl HostHeader {
             .ok_or_else(|| wrong(format!("colour: `{}` is none; blue or yellow", self.colour)))
     }
 
-    /// The goal it began to defend.
+    /// The goal it defended at the start.
     pub fn defending(&self) -> Result<GoalEnd, HeaderError> {
         GoalEnd::from_word(&self.defending).ok_or_else(|| {
             wrong(format!("defending: `{}` is no goal; yellow (−x) or cyan (+x)", self.defending))
         })
     }
 
-    /// Its keeper.
+    /// The keeper of that number.
     pub fn keeper(&self) -> Result<RobotId, HeaderError> {
         RobotId::new(self.keeper)
             .ok_or_else(|| wrong(format!("keeper: {} is no robot; ids are 0 to 15", self.keeper)))
@@ -244,7 +246,7 @@ impl HostHeader {
         })
     }
 
-    /// When it began.
+    /// When it started, on its own clock.
     pub fn began(&self) -> Instant {
         Instant(self.began_us)
     }

@@ -1,5 +1,5 @@
-//! `record`: recording of a match and its use: the league's log file and a trace of every input and packet, written on a thread of its
-//! own, read again, and held against what a host decides on the same inputs.
+//! `record`: recording of a match and its use: the league's log file and a trace of every input and packet,
+//! written on a thread of its own, read back, and compared with a host's decisions on the same inputs.
 
 mod background;
 pub mod header;

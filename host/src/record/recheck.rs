@@ -1,5 +1,5 @@
 //! `recheck`: replay check of a host's decisions. Feeds a trace's inputs to hosts built from its header and
-//! holds every packet they send to the record, byte for byte (docs/architecture.md §7.4).
+//! compares every packet they send with the record, byte for byte (docs/architecture.md §7.4).
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -27,51 +27,51 @@ struct Checked {
     difference: Option<Difference>,
 }
 
-/// What one host was fed, and what became of it.
+/// Counts of one host under check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Inputs fed.
+    /// Number of inputs fed.
     pub inputs: u64,
     /// Packets that were the same.
     pub same: u64,
 }
 
-/// Where record and host part. Times on the host's clock.
+/// Where record and host differ. Times on the host's clock.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Difference {
-    /// Another packet than recorded.
+    /// The host sends another packet than recorded.
     Other {
         /// When it was recorded.
         at: Instant,
         /// How many packets were the same before.
         after: u64,
-        /// The record: the robot it is for (255: all), then the frame.
+        /// The packet recorded: the robot it is for (255: all), then the frame.
         recorded: Vec<u8>,
-        /// What the host says, and when.
+        /// The host's packet, and when it sent it.
         said: (Instant, Vec<u8>),
     },
-    /// The record has a packet that the host does not say.
+    /// The record has a packet that the host does not send.
     Missing {
         /// When it was recorded.
         at: Instant,
         /// How many packets were the same before.
         after: u64,
-        /// For whom: 255 all.
+        /// Receiver: 255 all.
         to: u8,
     },
-    /// The host says a packet that the record has not.
+    /// The host sends a packet that is not in the record.
     Extra {
-        /// When.
+        /// When the host sent it.
         at: Instant,
         /// How many packets were the same before.
         after: u64,
-        /// For whom: 255 all.
+        /// Receiver: 255 all.
         to: u8,
     },
 }
 
 impl Difference {
-    /// When the record and the host part.
+    /// When the record and the host differ first.
     pub fn at(&self) -> Instant {
         match self {
             Self::Other { at, .. } | Self::Missing { at, .. } | Self::Extra { at, .. } => *at,
@@ -118,7 +118,7 @@ impl fmt::Display for Difference {
 }
 
 impl Recheck {
-    /// The hosts of a recording as they began; `key` opens what was sealed with one.
+    /// The hosts of a recording as they started; `key` opens sealed frames.
     pub fn new(header: &RecordingHeader, key: TeamKey) -> Result<Self, HeaderError> {
         let league = header.league()?;
         let build = |host: &crate::record::header::HostHeader| {
@@ -133,7 +133,7 @@ impl Recheck {
         Ok(Self { hosts: header.hosts.iter().map(build).collect::<Result<_, _>>()? })
     }
 
-    /// The next record. False: it is of a host that the header does not tell of.
+    /// Feeds the next record. False: its host is not in the header.
     pub fn feed(&mut self, record: &Record) -> bool {
         let Some(checked) = self.hosts.get_mut(usize::from(record.host)) else { return false };
         match record.kind {
@@ -155,13 +155,14 @@ impl Recheck {
         }
     }
 
-    /// Whether a host said packets that the record has not, after its last input and nowhere before: the record of a match that was
-    /// cut there.
+    /// Whether a host sent packets that are not in the record after its last input, and at no earlier time:
+    /// the record of a match that was cut there.
     pub fn is_unfinished(&self) -> bool {
         self.hosts.iter().any(|checked| checked.difference.is_none() && !checked.said.is_empty())
     }
 
-    /// Host by host, in the header's order: what it was fed, and where it parts from the record.
+    /// Host by host, in the header's order: the numbers of its inputs and packets, and where it differs from
+    /// the record.
     pub fn results(&self) -> impl Iterator<Item = (Counts, Option<&Difference>)> {
         self.hosts.iter().map(|checked| (checked.counts, checked.difference.as_ref()))
     }
@@ -256,7 +257,7 @@ mod tests {
         WrapperPacket { detection: Some(image), ..WrapperPacket::default() }.encode_to_vec()
     }
 
-    /// A second of vision as a host of this header hears it, and what it says.
+    /// A second of vision as input of a host of this header, with the packets that it sends.
     fn recorded() -> Vec<Record> {
         let settings = header().hosts[0].settings(League::DivisionB, TeamKey::ZERO).unwrap();
         let mut host = Host::new(settings, Instant(0));

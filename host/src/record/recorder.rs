@@ -1,11 +1,12 @@
-//! `recorder`: recording of a match. `X.log.gz` for everybody's tools, `X.trace` so that every decision can
-//! be taken again (docs/architecture.md §7.4).
+//! `recorder`: recording of a match: `X.log.gz` for the league's tools, `X.trace` for replaying every
+//! decision (docs/architecture.md §7.4).
 //!
-//! What came and went in a second of the match is in the files when the next one begins: a program that is killed loses no more.
-//! Seconds are counted on the hosts' clock, so that the files of equal matches are equal.
+//! Inputs and packets of one second of the match are in the files when the next second starts: a program that
+//! is killed loses no more. Seconds are counted on the hosts' clock, so that the files of equal matches are
+//! equal.
 //!
-//! The log holds the league's messages at Unix time (what the hosts' clock shows, where the header knows no Unix time); the trace
-//! holds what came to each host and what it sent, at its own clock.
+//! The log holds the league's messages at Unix time (or at the hosts' clock, where the header has no Unix
+//! time); the trace holds each host's inputs and packets, at its own clock.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -22,7 +23,8 @@ use crate::radio::To;
 use crate::record::header::RecordingHeader;
 use crate::record::trace::{Kind, Writer};
 
-/// Both files while they are written. The first error ends the writing, not the match; [`Recorder::finish`] tells it.
+/// Both files while they are written. The first error ends the writing, not the match; [`Recorder::finish`]
+/// returns it.
 pub struct Recorder {
     files: Option<Files>,
     zero_unix_ns: i64,
@@ -32,8 +34,9 @@ pub struct Recorder {
     flush_due: Instant,
 }
 
-/// One flush after the other, of both files. A flush ends a block of the compressed stream: at this interval it costs 0.2 % of a
-/// log's bytes and 0.04 % of a trace's (a match of twelve robots; the tests below hold it under 3 %).
+/// One flush after the other, of both files. A flush ends a block of the compressed stream: at this interval
+/// it costs 0.2 % of a log's bytes and 0.04 % of a trace's (a match of twelve robots; the tests below hold it
+/// under 3 %).
 const FLUSH_EVERY: Duration = Duration::millis(1_000);
 
 struct Files {
@@ -50,7 +53,7 @@ impl Files {
 }
 
 impl Recorder {
-    /// Begins `stem`.log.gz and `stem`.trace, with that header.
+    /// Starts `stem`.log.gz and `stem`.trace, with that header.
     pub fn begin(stem: &Path, header: &RecordingHeader) -> io::Result<Self> {
         let [log, trace] = Self::files(stem);
         let log = LogWriter::create(&log)?;
@@ -74,7 +77,7 @@ impl Recorder {
         })
     }
 
-    /// A league message stood on the network, for everybody to hear: vision, referee or a tracker's.
+    /// A league message was on the network: vision, referee or a tracker's.
     pub fn heard(&mut self, now: Instant, kind: MessageKind, bytes: &[u8]) {
         let at_ns = self.zero_unix_ns.saturating_add((now.0 as i64).saturating_mul(1000));
         self.write(now, |files| files.log.write(at_ns, kind, bytes));
@@ -107,7 +110,7 @@ impl Recorder {
         self.write(now, |files| files.trace.write(now, host, Kind::Sent, &[&[to], packet]));
     }
 
-    /// Records were lost: the trace ends here, and says so. Nothing more may be written to it.
+    /// Records were lost: the trace ends here with a mark for it. Nothing more may be written to it.
     pub fn lost(&mut self, now: Instant) {
         self.write(now, |files| files.trace.write(now, 0, Kind::Lost, &[]));
     }
@@ -117,7 +120,7 @@ impl Recorder {
         self.error.is_some()
     }
 
-    /// Ends both files; tells the first thing that went wrong.
+    /// Closes both files; returns the first error.
     pub fn finish(mut self) -> io::Result<()> {
         if let Some(error) = self.error {
             return Err(error);
@@ -162,7 +165,7 @@ mod tests {
     use crate::record::header::HostHeader;
     use crate::record::trace::{End, Reader};
 
-    /// What the cameras and the referee of a real game sent, with its time.
+    /// Packets of the cameras and the referee of a real game, with their times.
     fn packets() -> Vec<(Instant, MessageKind, Vec<u8>)> {
         let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../protocol/ssl/tests/data");
         let log = ssl::log::open(&data.join("erforce_divB_realistic_22s.log.gz")).unwrap();
@@ -189,7 +192,8 @@ mod tests {
         (Recorder::begin(&stem, &header).unwrap(), stem)
     }
 
-    /// As a host with six robots records a packet: in, and a frame to each robot, which no compression makes shorter.
+    /// As a host with six robots records a packet: in, and a frame to each robot, which no compression makes
+    /// shorter.
     fn record(recorder: &mut Recorder, now: Instant, kind: MessageKind, bytes: &[u8], noise: &mut u64) {
         recorder.heard(now, kind, bytes);
         match kind {
@@ -230,7 +234,7 @@ mod tests {
             }
             looked = now.0 / 730_000;
             seconds += 1;
-            // Read while it is written: what a kill at this moment would leave.
+            // Read while it is written: the file that a kill at this moment would leave.
             let within = |at: u64| at + FLUSH_EVERY.0 + 50_000 >= now.0;
             let trace = fs::read(&trace_file).unwrap();
             let mut reader = Reader::new(MultiGzDecoder::new(&trace[..])).unwrap();

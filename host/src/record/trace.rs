@@ -1,17 +1,18 @@
-//! `trace`: trace file of a match, from which it can be decided again. Everything that came to a host and
-//! everything it said, in order (docs/architecture.md §7.4: `X.trace`).
+//! `trace`: trace file of a match, from which its decisions can be replayed: all inputs and outputs of each
+//! host, in order (docs/architecture.md §7.4: `X.trace`).
 //!
 //! ```text
 //! "ONETWO_TRACE" | version u32 | length u32, header: JSON in UTF-8 | records
 //! record: time u64, µs | host u8 | kind u8 | length u32 | bytes            all integers little endian
 //! ```
-//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the datagram. Version 1 had
-//! no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record of kind [`Kind::Lost`] says that the
-//! recorder could not keep up from then on.
+//! Bytes of a referee's record: the sender's address ([`SenderAddress::to_bytes`], 18 bytes), then the
+//! datagram. Version 1 had no address there; its packets are read as [`SenderAddress::INTERNAL`]'s. A record
+//! of kind [`Kind::Lost`] means that the recorder could not keep up from then on.
 //!
-//! The header says seed, commit and configuration in the words of whoever recorded. A file cut anywhere gives every whole record
-//! before the cut and says that it was cut, and where. Compression is the file's business, not this format's: where it ends before
-//! its own end mark (gzip's checksum) the trace is cut, even if the last record is whole.
+//! The header is JSON with seed, commit and configuration. A file cut anywhere gives every whole record
+//! before the cut, and reports the cut and its place. Compression is done by the file, not by this format:
+//! where the stream ends before its own end mark (gzip's checksum) the trace is cut, even if the last record
+//! is whole.
 
 use std::fmt;
 use std::io::{self, Read, Write};
@@ -32,7 +33,7 @@ pub const RECORD_LEN_MAX: usize = 65_536 + SenderAddress::LEN;
 /// The longest header, bytes.
 pub const HEADER_LEN_MAX: usize = 1 << 20;
 
-/// What a record is.
+/// Kinds of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A datagram of the vision came in.
@@ -45,7 +46,7 @@ pub enum Kind {
     Timeout,
     /// The host sent a frame: the first byte is the robot it is for, 255 for all.
     Sent,
-    /// The recorder could not keep up: what follows is not recorded. Nothing comes after it.
+    /// The recorder could not keep up: later events are not recorded. No record follows it.
     Lost,
     /// The operator halted the host's robots.
     Halt,
@@ -59,35 +60,35 @@ impl Kind {
         Self::ALL.get(usize::from(byte)).copied()
     }
 
-    /// Whether it is something that came to the host.
+    /// Whether it is an input of the host.
     pub fn is_input(self) -> bool {
         !matches!(self, Self::Sent | Self::Lost)
     }
 }
 
-/// Something that came or went.
+/// One input or output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
-    /// When, on the host's clock.
+    /// Time on the host's clock.
     pub at: Instant,
-    /// Which host, where one recording holds several teams'.
+    /// Number of the host, where one recording holds several teams'.
     pub host: u8,
-    /// What.
+    /// Its kind.
     pub kind: Kind,
-    /// Who sent it, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
+    /// The sender, for packets of the referee; [`SenderAddress::INTERNAL`] for everything else.
     pub from: SenderAddress,
     /// Its bytes.
     pub bytes: Vec<u8>,
 }
 
-/// Writes a trace.
+/// Writes a trace record by record.
 #[derive(Debug)]
 pub struct Writer<W: Write> {
     out: W,
 }
 
 impl<W: Write> Writer<W> {
-    /// Begins with the header, which is JSON.
+    /// Starts with the header, which is JSON.
     pub fn new(mut out: W, header: &str) -> io::Result<Self> {
         out.write_all(MAGIC)?;
         out.write_all(&VERSION.to_le_bytes())?;
@@ -111,12 +112,12 @@ impl<W: Write> Writer<W> {
         bytes.iter().try_for_each(|part| self.out.write_all(part))
     }
 
-    /// Writes what is buffered: a reader of what is then in the file finds every record so far.
+    /// Writes what is buffered: a reader of the file then finds every record so far.
     pub fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
 
-    /// Gives back what is written to.
+    /// Returns the underlying writer.
     pub fn into_inner(self) -> W {
         self.out
     }
@@ -133,9 +134,9 @@ pub struct Reader<R: Read> {
     version: u32,
     header: String,
     end: Option<End>,
-    /// Where the next record begins.
+    /// Where the next record starts.
     at: u64,
-    /// When the last one was.
+    /// Time of the last one.
     last: Option<Instant>,
 }
 
@@ -146,20 +147,20 @@ pub enum End {
     Whole,
     /// Where the recorder could not keep up.
     Lost {
-        /// When.
+        /// Time of the gap.
         at: Instant,
     },
-    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or the file was not
-    /// copied whole.
+    /// Within a record, or before the end of the compressed stream: the program that wrote it was killed, or
+    /// the file was not copied whole.
     Cut {
-        /// Where the first record that is missing begins, bytes of the uncompressed trace.
+        /// Where the first missing record starts, bytes of the uncompressed trace.
         at: u64,
-        /// When the last whole record was.
+        /// Time of the last whole record.
         last: Option<Instant>,
     },
-    /// At a record that cannot be one, or that cannot be read.
+    /// At a record that is invalid, or cannot be read.
     Broken {
-        /// Where it begins, bytes of the uncompressed trace.
+        /// Where it starts, bytes of the uncompressed trace.
         at: u64,
         /// What is wrong with it.
         what: String,
@@ -167,7 +168,7 @@ pub enum End {
 }
 
 impl End {
-    /// Did the trace end as it should?
+    /// Whether the trace ended as it should.
     pub const fn is_whole(&self) -> bool {
         matches!(self, Self::Whole)
     }
@@ -199,11 +200,11 @@ impl fmt::Display for End {
 /// Why a file is no trace.
 #[derive(Debug)]
 pub enum TraceError {
-    /// It cannot be read.
+    /// An error while reading.
     Io(io::Error),
-    /// It begins otherwise.
+    /// It does not start as a trace does.
     NotATrace,
-    /// Another version.
+    /// Another version of the format, which is not read.
     Version(u32),
     /// The header is cut, too long or not UTF-8.
     Header,
@@ -263,7 +264,7 @@ impl<R: Read> Reader<R> {
         Ok(Self { from, version, header, end: None, at, last: None })
     }
 
-    /// What was said at its beginning: JSON.
+    /// The header, as JSON.
     pub fn header(&self) -> &str {
         &self.header
     }
@@ -311,7 +312,7 @@ impl<R: Read> Reader<R> {
     }
 }
 
-/// Takes the sender from the beginning of a referee's record.
+/// Takes the sender from the start of a referee's record.
 fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
     let (sender, packet) = bytes.split_first_chunk()?;
     let (sender, packet) = (SenderAddress::from_bytes(*sender), packet.to_vec());
@@ -319,7 +320,7 @@ fn take_sender(bytes: &mut Vec<u8>) -> Option<SenderAddress> {
     Some(sender)
 }
 
-/// As much of `into` as there is.
+/// Fills as much of `into` as there is data.
 fn fill(from: &mut impl Read, into: &mut [u8]) -> io::Result<usize> {
     let mut done = 0;
     while done < into.len() {
@@ -401,7 +402,7 @@ mod tests {
         }
     }
 
-    /// As a recording lies on the disk, with what is flushed after each record.
+    /// A recording as it is on disk, and its lengths after each record was flushed.
     fn zipped() -> (Vec<u8>, Vec<usize>) {
         let zip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         let mut writer = Writer::new(zip, r#"{"seed":7}"#).unwrap();

@@ -1,5 +1,5 @@
-//! `attacks`: tests: HALT wins against forged packets, second referees and clocks that step. The attacks of
-//! the security review in virtual time: a genuine controller at 40 Hz, what an attacker adds, and how long
+//! `attacks`: tests: HALT has priority over forged packets, second referees and clocks that step. The attacks
+//! of the security review in virtual time: a genuine controller at 40 Hz, an attacker's packets, and how long
 //! robots were let play under HALT.
 
 use rules::{Colour, League};
@@ -28,7 +28,7 @@ impl Program {
         Self { identifier, address, counter: 1 }
     }
 
-    /// A packet stamped so far off its sending, µs.
+    /// A packet stamped `off` from its sending, µs.
     fn packet(&self, now: u64, off: i64, command: Wire) -> Referee {
         let stamp = (EPOCH + now).saturating_add_signed(off);
         let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
@@ -49,9 +49,9 @@ fn listener(pin: Option<&str>) -> Listener {
     Listener::new(League::DivisionB.limits().unwrap(), pin.map(SourcePin::of), Instant(0))
 }
 
-/// The controller at 40 Hz from second 0 on, FORCE_START until `halt_at`, HALT from then on, seen for `total`; `clock` is its
-/// clock's error at a time, `more` brings what an attacker sends at a time. Time in which robots were let move under HALT,
-/// from the first HALT that arrived on, µs.
+/// The controller at 40 Hz from second 0 on, FORCE_START until `halt_at`, HALT from then on, seen for
+/// `total`; `clock` is its clock's error at a time, `more` gives an attacker's packets at a time. Returns the
+/// time in which robots were allowed to move under HALT, from the first HALT that arrived on, µs.
 fn play(
     listener: &mut Listener,
     (halt_at, total): (u64, u64),
@@ -83,7 +83,8 @@ fn play(
 #[test]
 fn finding_1_a_spoofed_stamp_of_the_future_does_not_hide_a_halt() {
     for off in [200 * MS, 290 * MS, 310 * MS, 4_900 * MS, 3_600 * S] {
-        // One packet with the controller's identifier and address, 10 ms before HALT; and then one with every fourth.
+        // One packet with the controller's identifier and address, 10 ms before HALT; and then one with every
+        // fourth.
         for again in [false, true] {
             let mut listener = listener(None);
             let mut forger = Program::new("gc", 1);
@@ -115,7 +116,7 @@ fn a_stamp_ahead_of_its_arrival_never_becomes_the_newest() {
     let verdict = hear(&mut listener, S, 4_900_000, Wire::ForceStart, 2);
     assert_eq!(verdict, Verdict::Doubted { doubt: Doubt::Ahead(Duration(4_900_000)), restrains: false });
     assert_eq!(listener.game().phase, Phase::Stop);
-    // What is genuine is followed as before.
+    // Genuine packets are followed as before.
     assert!(matches!(hear(&mut listener, S + PERIOD, 0, Wire::ForceStart, 2), Verdict::Taken(_)));
     assert_eq!(listener.game().phase, Phase::Run);
     let warned = listener.warnings(Instant(S + PERIOD));
@@ -160,7 +161,7 @@ fn finding_1_a_clock_that_steps_does_not_delay_halt_and_is_followed_within_the_w
 fn finding_2_who_speaks_first_every_2_8_s_does_not_keep_halt_out() {
     let mut listener = listener(None);
     let evil = Program::new("evil", 66);
-    // It speaks before the controller does, and goes on every 2.8 s; HALT for 17.5 s at 40 Hz.
+    // It sends before the controller does, and then every 2.8 s; HALT for 17.5 s at 40 Hz.
     let mut first = listener.clone();
     first.hear(&evil.packet(0, 0, Wire::ForceStart), evil.address, Instant(0), None);
     let free = play(
@@ -300,7 +301,7 @@ fn a_late_copy_of_an_old_stop_stands_in_the_way_once_and_briefly() {
     assert_eq!(hear(&mut listener, 0, 0, Wire::Stop, 1), Phase::Stop);
     assert_eq!(hear(&mut listener, S - 50 * MS, S - 50 * MS, Wire::Stop, 1), Phase::Stop);
     assert_eq!(hear(&mut listener, S, S, Wire::ForceStart, 2), Phase::Run);
-    // A copy of what was received already restrains nothing.
+    // A copy of a received packet restrains nothing.
     assert_eq!(hear(&mut listener, S - 50 * MS, S + 10 * MS, Wire::Stop, 1), Phase::Run);
     // The first network lost this one, the second was late.
     assert_eq!(hear(&mut listener, S - PERIOD, S + 20 * MS, Wire::Stop, 1), Phase::Stop);
@@ -328,7 +329,7 @@ fn a_source_that_changes_its_mind_with_every_packet_is_two_programs_and_halts() 
             vec![(forger.clone(), forger.packet(now, 0, Wire::ForceStart))]
         },
     );
-    // It is believed once, until the next genuine packet: 15 ms, and no longer.
+    // It is followed once, until the next genuine packet: 15 ms, and no longer.
     assert!(free <= PERIOD, "{free} µs: {:?}", listener.counts());
 }
 
@@ -370,7 +371,7 @@ fn a_second_source_that_halts_for_ever_halts_us_is_reported_and_leaves_through_s
         assert_eq!(listener.game().phase, Phase::Halt);
         assert!(listener.warnings(Instant(now)).iter().any(Warning::is_urgent));
     }
-    // It is ended; robots do not start by surprise.
+    // Its end: robots do not start without a command.
     let ended = now;
     let mut phases = vec![];
     while now < ended + 10 * S {
@@ -395,7 +396,7 @@ fn no_flood_of_invented_sources_hides_a_halt() {
         (S, 3 * S),
         |_| 0,
         |now| {
-            // 20 new sources every 5 ms, all of which say FORCE_START.
+            // 20 new sources every 5 ms, all of which send FORCE_START.
             let invented = (0..20).map(|_| {
                 number += 1;
                 let [_, a, b, c] = number.to_be_bytes();

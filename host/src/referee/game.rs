@@ -1,5 +1,5 @@
-//! `game`: game state as the referee reports it. Phase, stage, times, teams and sides, as the newest packet
-//! and the state of the game have them. SI, field frame; times left in s.
+//! `game`: game state as the referee reports it. Phase, stage, times, teams and sides, from the newest packet
+//! and the state of the game. SI, field frame; times left in s.
 
 use geometry::{Field, GoalEnd, Point};
 use protocol::RobotId;
@@ -9,17 +9,18 @@ use ssl::referee::{HullColor, MatchType, Referee, TeamInfo};
 
 use super::words;
 
-/// No field reaches farther from its centre than this, m: what lies beyond is no place to put a ball.
+/// No field reaches farther from its centre than this, m: a designated position beyond it is refused.
 const FARTHEST: f32 = 20.0;
 
-/// The game as the referee and the ball have it.
+/// The game by the referee's packets and the ball's motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Game {
-    /// The phase now.
+    /// The phase that is obeyed now.
     pub phase: Phase<Colour>,
-    /// The phase that will follow the current stop, if the referee says.
+    /// The phase after the current stop, if the referee sends it.
     pub next: Option<Phase<Colour>>,
-    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), whatever packets hold (trap 3).
+    /// Where the ball is to be placed; only while it is ([`Phase::BallPlacement`]), even if packets of other
+    /// phases have one (trap 3).
     pub placement: Option<Point<Field>>,
     /// The part of the match.
     pub stage: Stage,
@@ -27,15 +28,15 @@ pub struct Game {
     pub stage_time_left: Option<f32>,
     /// Time left for placement, free kick, kick-off or penalty, s; negative when it ran over.
     pub action_time_left: Option<f32>,
-    /// The goal that blue defends, once that was said.
+    /// The goal that blue defends, once the referee has sent it.
     pub blue_goal: Option<GoalEnd>,
-    /// What kind of match.
+    /// Kind of match: friendly, group phase, elimination.
     pub match_type: MatchType,
-    /// What the referee waits for, in its words.
+    /// What the referee waits for, as it sends it.
     pub status: String,
     /// Yellow's and blue's account, in this order.
     pub teams: [TeamAccount; 2],
-    /// What the newest packet calls the designated position, in any phase.
+    /// The designated position of the newest packet, in any phase.
     designated: Option<Point<Field>>,
     next_command: Option<i32>,
 }
@@ -64,52 +65,53 @@ impl Default for Game {
 pub struct TeamAccount {
     /// Its name; empty while unknown.
     pub name: String,
-    /// Goals.
+    /// Goals scored.
     pub score: u32,
     /// The keeper's number, if it is one a robot can have.
     pub keeper: Option<RobotId>,
-    /// Red cards.
+    /// Number of red cards.
     pub red_cards: u32,
-    /// Yellow cards ever given.
+    /// Number of yellow cards ever given.
     pub yellow_cards: u32,
     /// Time left of each yellow card that still counts, s.
     pub yellow_card_times: Vec<f32>,
     /// Fouls that count towards the next yellow card.
     pub fouls: u32,
-    /// Robots it may have on the field now, if the referee says.
+    /// Robots it may have on the field now, if the referee sends it.
     pub robots_allowed: Option<u32>,
-    /// Time-outs left.
+    /// Number of time-outs left.
     pub timeouts: u32,
     /// Time left for time-outs, s.
     pub timeout_time: f32,
-    /// Whether it may place the ball: it can, and has not failed too often; if the referee does not say, it may.
+    /// Whether it may place the ball: it can, and has not failed too often; if the referee does not send it,
+    /// it may.
     pub may_place: bool,
-    /// Failed placements that count.
+    /// Number of failed placements that count.
     pub placement_failures: u32,
-    /// It asked for a substitution.
+    /// Whether it has requested a substitution.
     pub substitution_wanted: bool,
-    /// It may substitute now.
+    /// Whether it may substitute now.
     pub substitution_allowed: bool,
-    /// Substitutions left in this half, if the referee says.
+    /// Substitutions left in this half, if the referee sends it.
     pub substitutions_left: Option<u32>,
     /// Time left for the running substitution, s.
     pub substitution_time_left: f32,
-    /// Whether its hulls are dark; none where the referee does not say.
+    /// Whether its hulls are dark; none where the referee does not send it.
     pub dark_hulls: Option<bool>,
 }
 
 impl Game {
-    /// A team's account.
+    /// The account of the team of that colour.
     pub fn team(&self, colour: Colour) -> &TeamAccount {
         &self.teams[colour as usize]
     }
 
-    /// The goal that a team defends, once that was said.
+    /// The goal that a team defends, once the referee has sent it.
     pub fn own_goal(&self, colour: Colour) -> Option<GoalEnd> {
         self.blue_goal.map(|goal| if colour == Colour::Blue { goal } else { goal.opposite() })
     }
 
-    /// Takes what a packet says, but for its command.
+    /// Takes all fields of a packet except its command.
     pub(super) fn read(&mut self, packet: &Referee) {
         let place = |mm: f32| mm / 1000.0;
         self.stage = words::stage_of(packet.stage).unwrap_or(self.stage);
@@ -128,18 +130,18 @@ impl Game {
         self.teams[Colour::Blue as usize].read(&packet.blue);
     }
 
-    /// Takes what the state of the game says; `phase` is the one that is obeyed, which may be stricter.
+    /// Takes the state of the game; `phase` is the one that is obeyed, which may be stricter.
     pub(super) fn stands(&mut self, state: &GameState, phase: Phase<Colour>) {
         self.phase = phase;
         let placing = matches!(self.phase, Phase::BallPlacement(_));
         self.placement = self.designated.filter(|_| placing);
-        // What follows is not known where another phase is imposed.
+        // The next phase is unknown where another phase is imposed.
         let next = self.next_command.filter(|_| phase == state.phase()).and_then(words::command_of);
         self.next = next.and_then(|command| command.leads_to(self.phase));
     }
 
-    /// Where the ball is being put, by robots or by people: in ball placement, and in the stop before a free kick or penalty. In other
-    /// phases packets hold a place too, that of what was before (trap 3).
+    /// Where the ball is being put, by robots or by hand: in ball placement, and in the stop before a free
+    /// kick or penalty. In other phases packets hold a place too, that of an earlier phase (trap 3).
     pub fn ball_goes_to(&self) -> Option<Point<Field>> {
         let follows = matches!(self.next, Some(Phase::FreeKick(_) | Phase::PreparePenalty(_)));
         let by_hand = self.phase == Phase::Stop && follows;
@@ -177,7 +179,7 @@ impl TeamAccount {
     }
 }
 
-/// µs → s.
+/// Converts µs to s.
 fn seconds(micros: i64) -> f32 {
     (micros as f64 * 1e-6) as f32
 }

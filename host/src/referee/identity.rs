@@ -1,19 +1,20 @@
-//! `identity`: who sent a referee's packet, and which referee the operator has chosen. A source is the identifier in its
-//! packets *and* the address they came from: the identifier is public and can be forged, and two programs on one machine may
-//! use the same one.
+//! `identity`: sender of a referee's packet, and the referee that the operator has chosen. A source is the
+//! identifier in its packets *and* the address they came from: the identifier is public and can be forged,
+//! and two programs on one machine may use the same one.
 //!
-//! The port belongs to the address. A controller that is restarted gets another port (and usually another identifier), so
-//! for up to [`SILENCE`](super::SILENCE) it stands beside its predecessor and the stricter of the two is obeyed; that costs
-//! a stop of 3 s at most. Without the port two programs on one machine with equal identifiers would be one source that
-//! changes its mind with every packet.
+//! The port belongs to the address. A controller that is restarted gets another port (and usually another
+//! identifier), so for up to [`SILENCE`](super::SILENCE) it stands beside its predecessor and the stricter of
+//! the two is obeyed; that costs a stop of 3 s at most. Without the port two programs on one machine with
+//! equal identifiers would be one source that changes its command with every packet.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv6Addr, SocketAddr};
 
-/// Longest part of a foreign identifier that is shown, characters: a controller's own is a UUID of 36.
+/// Longest part of a foreign identifier that is printed, characters: a controller's own is a UUID of 36.
 const SHOWN_MAX: usize = 48;
 
-/// The network address of a packet's sender. IPv4 addresses in IPv6 clothing are IPv4; scope and flow are dropped.
+/// The network address of a packet's sender. IPv4-mapped IPv6 addresses are stored as IPv4; scope and flow
+/// are dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SenderAddress {
     ip: IpAddr,
@@ -21,17 +22,18 @@ pub struct SenderAddress {
 }
 
 impl SenderAddress {
-    /// The sender of packets that came over no network: a referee in this process, or a recording without addresses.
+    /// The sender of packets that came over no network: a referee in this process, or a recording without
+    /// addresses.
     pub const INTERNAL: Self = Self { ip: IpAddr::V6(Ipv6Addr::UNSPECIFIED), port: 0 };
-    /// Bytes of [`SenderAddress::to_bytes`].
+    /// Length of [`SenderAddress::to_bytes`], bytes.
     pub const LEN: usize = 18;
 
-    /// Of a datagram.
+    /// The address of a datagram's sender.
     pub fn new(address: SocketAddr) -> Self {
         Self { ip: address.ip().to_canonical(), port: address.port() }
     }
 
-    /// The machine.
+    /// The machine's IP address.
     pub const fn ip(self) -> IpAddr {
         self.ip
     }
@@ -48,7 +50,7 @@ impl SenderAddress {
         bytes
     }
 
-    /// From a trace.
+    /// From the bytes of a trace.
     pub fn from_bytes(bytes: [u8; Self::LEN]) -> Self {
         let mut ip = [0; 16];
         ip.copy_from_slice(&bytes[..16]);
@@ -72,7 +74,7 @@ impl fmt::Display for SenderAddress {
     }
 }
 
-/// A referee: what it calls itself and where it sends from.
+/// A referee: its identifier and its address.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceKey {
     /// `source_identifier` of its packets; foreign text, [`fmt::Display`] escapes it.
@@ -92,10 +94,11 @@ impl fmt::Display for SourceKey {
     }
 }
 
-/// The one referee that the operator wants obeyed (`--referee-source`).
+/// The only referee that robots obey (`--referee-source`).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SourcePin {
-    /// Every source on this machine: a restart of the controller changes its port and its identifier, not this.
+    /// Every source on this machine: a restart of the controller changes its port and its identifier, not
+    /// this.
     Machine(IpAddr),
     /// This address with its port.
     Address(SenderAddress),
@@ -104,7 +107,7 @@ pub enum SourcePin {
 }
 
 impl SourcePin {
-    /// From the words of a setting: an IP address, an address with a port, and anything else is an identifier.
+    /// From the text of a setting: an IP address, an address with a port, and anything else is an identifier.
     pub fn of(text: &str) -> Self {
         if let Ok(ip) = text.parse::<IpAddr>() {
             Self::Machine(ip.to_canonical())
@@ -115,7 +118,7 @@ impl SourcePin {
         }
     }
 
-    /// Whether that source is meant.
+    /// Whether it names that source.
     pub fn matches(&self, source: &SourceKey) -> bool {
         match self {
             Self::Machine(ip) => *ip == source.address.ip,

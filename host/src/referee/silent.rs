@@ -1,4 +1,5 @@
-//! A referee that falls silent: when robots halt, when they play again, and what the operator reads. Virtual time, µs.
+//! Tests of a referee that falls silent: when robots halt, when they play again, and the operator's warnings.
+//! Virtual time, µs.
 
 use rules::League;
 use ssl::referee::{Command as Wire, TeamInfo};

@@ -1,16 +1,19 @@
-//! `source`: the packets of one referee in the order in which they count, the game as it tells it, and the restraint that its
-//! packets out of order impose. Times: µs, the host's clock for arrivals, the referee's for stamps.
+//! `source`: the packets of one referee in the order in which they count, the game by these packets, and the
+//! restraint that its packets out of order impose. Times: µs, the host's clock for arrivals, the referee's
+//! for stamps.
 //!
-//! A packet is *in order* when its stamp is within [`WINDOW`] of where the referee's clock should be, not before the newest
-//! stamp, and its counter either belongs to the same command or has risen. Only packets in order change the game.
+//! A packet is *in order* when its stamp is within [`WINDOW`] of where the referee's clock should be, not
+//! before the newest stamp, and its counter either belongs to the same command or has risen. Only packets in
+//! order change the game.
 //!
-//! HALT and STOP out of order restrain all the same, for [`HOLD`] from their arrival, without changing the game underneath.
-//! That is safe in both directions: a genuine HALT whose stamp looks old keeps coming every 25 ms and keeps the robots
-//! standing, while a late copy of an old STOP stands in the way of a newer command once, for 0.3 s. Copies that a second
-//! network brings are known by stamp, command and counter for [`COPY`] and restrain nothing.
+//! HALT and STOP out of order also restrain, for [`HOLD`] from their arrival, without changing the stored
+//! game. That is safe in both directions: a genuine HALT whose stamp seems old is repeated every 25 ms and
+//! keeps the robots halted, while a late copy of an old STOP delays a newer command once, by 0.3 s. Copies
+//! from a second network are recognised by stamp, command and counter for [`COPY`] and restrain nothing.
 //!
-//! A clock or a counter that steps is followed when its packets agree with each other for [`CONFIRM`] and none came in order
-//! meanwhile: two programs that speak as one never get there, and only HALT and STOP of both are obeyed.
+//! A clock or a counter that steps is followed when its packets agree with each other for [`CONFIRM`] and
+//! none came in order meanwhile: two programs with the same identity never reach that, and only HALT and STOP
+//! of both are obeyed.
 
 use std::collections::VecDeque;
 
@@ -25,30 +28,31 @@ use super::stamps::{StampClock, WINDOW};
 use super::verdict::{Doubt, Taken};
 use super::{Game, SILENCE, words};
 
-/// HALT or STOP out of order restrains for so long: 12 periods of the controller, and twice `COPY`, so that a referee
-/// whose stamps stand still restrains without a gap.
+/// Time for which HALT or STOP out of order restrains: 12 periods of the controller, and twice `COPY`, so
+/// that a referee whose stamps stay the same restrains without a gap.
 pub const HOLD: Duration = WINDOW;
-/// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`] of the step.
+/// A clock or counter that stepped is followed after this: 8 packets of the controller, and within [`WINDOW`]
+/// of the step.
 pub const CONFIRM: Duration = Duration::millis(200);
-/// Packets that are not in order are reported for this time after the last one, and belong to one spell.
+/// Packets that are not in order are reported for this time after the last one, and count as one period.
 const REPORTED: Duration = SILENCE;
 /// The same packet once more within this time is a copy.
 const COPY: Duration = Duration::millis(150);
-/// Packets that are remembered to know copies: [`COPY`] at ten times the controller's rate.
+/// Number of packets kept to recognise copies: [`COPY`] at ten times the controller's rate.
 const REMEMBERED: usize = 64;
 /// The old commands with which the controller announces a goal, once each.
 const GOALS: [i32; 2] = [Wire::GoalYellow as i32, Wire::GoalBlue as i32];
-/// A command without a time, as the controller's first HALT, is taken for new, µs.
+/// A command without a time, as the controller's first HALT, counts as new, µs.
 const NO_TIME: u64 = 0;
 
-/// How strict a command is. Ordered: what restrains more is greater.
+/// Strictness of a command. Ordered: the more restrictive one is greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Strictness {
-    /// Robots play.
+    /// Robots may play.
     Play,
     /// STOP or a timeout: slow and away from the ball.
     Stop,
-    /// Robots stand.
+    /// Robots halt.
     Halt,
 }
 
@@ -62,7 +66,7 @@ impl Strictness {
     }
 }
 
-/// One referee.
+/// State of one referee source.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
     pub(super) key: SourceKey,
@@ -72,9 +76,9 @@ pub(super) struct Source {
     pub(super) game: Game,
     /// Its newest command in order.
     pub(super) command: Command,
-    /// Why its last packet out of order was so; none once a clock or counter that stepped is followed.
+    /// Why its last packet was out of order; none once a clock or counter that stepped is followed.
     doubted: Option<Doubted>,
-    /// Its clock stepped by so many µs, and when that was followed.
+    /// Step of its clock, µs, and when that was followed.
     pub(super) stepped: Option<(i64, Instant)>,
     newest: Stamped,
     clock: StampClock,
@@ -85,7 +89,7 @@ pub(super) struct Source {
     recent: VecDeque<(Stamped, Instant)>,
 }
 
-/// What orders a packet.
+/// The fields that order a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Stamped {
     stamp: u64,
@@ -103,8 +107,9 @@ impl Stamped {
         self.command == other.command && self.counter == other.counter
     }
 
-    /// Commands given since `before`; none where the counter contradicts: it fell, or stands though the command changed. A GOAL
-    /// of the league's controller has the counter of the command that it repeats after it.
+    /// Commands given since `before`; none where the counter contradicts: it fell, or is unchanged though the
+    /// command changed. A GOAL of the league's controller has the counter of the command that it repeats
+    /// after it.
     fn steps(self, before: Self) -> Option<u32> {
         // A counter of 2³² commands may wrap; a step back of half of that is a restart.
         let steps = self.counter.wrapping_sub(before.counter);
@@ -118,7 +123,7 @@ impl Stamped {
 struct Doubted {
     /// Why the last one was not.
     doubt: Doubt,
-    /// When the first and the last of this spell came.
+    /// When the first and the last packet of this period came.
     first: Instant,
     last: Instant,
 }
@@ -131,14 +136,14 @@ struct Candidate {
     since: Instant,
 }
 
-/// What became of a packet of one source.
+/// Result of a packet of one source.
 #[derive(Debug)]
 pub(super) enum Outcome {
-    /// In order.
+    /// It is in order and was taken.
     Taken(Taken),
     /// Out of order; `restrains`: it is HALT or STOP, and obeyed.
     Doubted { doubt: Doubt, restrains: bool },
-    /// Known already.
+    /// Received before.
     Copy,
 }
 
@@ -204,7 +209,7 @@ impl Source {
         Outcome::Taken(taken)
     }
 
-    /// How strict this source is now: its newest command in order, and what came out of order.
+    /// How strict this source is now: its newest command in order, and those out of order.
     pub(super) fn strictness(&self, now: Instant) -> Strictness {
         self.restraint(now).max(Strictness::of(self.command))
     }
@@ -218,9 +223,9 @@ impl Source {
         }
     }
 
-    /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets that were overtaken,
-    /// as two networks bring them, nor for a counter that is contradicted for less than [`CONFIRM`], as by the league's controller
-    /// when it resets a match.
+    /// Why packets of it were not in order lately, if that is worth an operator's attention: not for packets
+    /// that were overtaken, as is normal with two networks, nor for a counter that is contradicted for less
+    /// than [`CONFIRM`], as by the league's controller when it resets a match.
     pub(super) fn reportable_doubt(&self, now: Instant) -> Option<Doubt> {
         let Doubted { doubt, first, last } = self.doubted.filter(|one| now.since(one.last).0 < REPORTED.0)?;
         match doubt {
@@ -240,7 +245,7 @@ impl Source {
         self.state.tick(now.0, ball, limits)
     }
 
-    /// Why a packet is not in order, if it is not.
+    /// Why a packet is not in order; `None` if it is.
     fn doubt(&self, came: Stamped, now: Instant) -> Option<Doubt> {
         let ahead = self.clock.ahead(came.stamp, now);
         let by = Duration(ahead.unsigned_abs());
@@ -256,7 +261,7 @@ impl Source {
     /// Whether this packet confirms that clock or counter have stepped.
     fn confirmed(&mut self, came: Stamped, doubt: Doubt, now: Instant) -> bool {
         if matches!(doubt, Doubt::Old(_)) {
-            // It was overtaken on its way: nothing has stepped.
+            // It was overtaken by another packet: nothing has stepped.
             return false;
         }
         if let Some(candidate) = &mut self.candidate
@@ -276,7 +281,7 @@ impl Source {
         false
     }
 
-    /// Follows the candidate.
+    /// Follows the candidate's clock and counter.
     fn step(&mut self, came: Stamped, now: Instant, taken: &mut Taken) {
         let Some(candidate) = self.candidate.take() else { return };
         if !self.clock.fits(came.stamp, now) {
@@ -288,7 +293,7 @@ impl Source {
         self.doubted = None;
     }
 
-    /// HALT and STOP are obeyed whatever their stamp. True: it was one.
+    /// HALT and STOP are obeyed whether their stamp fits or not. True: the packet was one of them.
     fn restrain(&mut self, packet: &Referee, now: Instant) -> bool {
         let until = now + HOLD;
         match Strictness::of(words::command_of(packet.command).unwrap_or(Command::Halt)) {

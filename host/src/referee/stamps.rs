@@ -1,13 +1,14 @@
 //! `stamps`: check of packet stamps against the referee's clock. Compares the difference between stamps with
 //! the difference between arrivals on our own clock, µs, so that the two clocks need not agree.
 //!
-//! A [`StampClock`] is the offset between the two. It follows drift of [`DRIFT_PPM`] and no more: a forged stamp cannot pull it
-//! away faster than 1 ms a second. Right after its start it takes the least delayed packet as the truth, since what lay in a
-//! queue of the system came late.
+//! A [`StampClock`] is the offset between the two. It follows drift of [`DRIFT_PPM`] and no more: a forged
+//! stamp cannot pull it away faster than 1 ms a second. Right after its start it takes the least delayed
+//! packet as reference, since packets queued by the system come late.
 
 use protocol::{Duration, Instant};
 
-/// A stamp may be so far from where it should be: networks delay packets by milliseconds, a loaded machine by tens of them.
+/// Largest deviation of a stamp from its expected value: networks delay packets by milliseconds, a loaded
+/// machine by tens of them.
 pub const WINDOW: Duration = Duration::millis(300);
 /// Drift between two clocks that is followed, parts per million: NTP corrects at 500 at most.
 const DRIFT_PPM: i128 = 1_000;
@@ -22,18 +23,18 @@ pub(super) struct StampClock {
 }
 
 impl StampClock {
-    /// By its first packet.
+    /// Initialised by its first packet.
     pub(super) fn new(stamp: u64, now: Instant) -> Self {
         Self { offset: difference(stamp, now), started: now, followed: now }
     }
 
-    /// How far a stamp that arrives now lies ahead of where it should be, µs; negative: behind.
+    /// Difference of a stamp that arrives now from its expected value, µs; negative: behind.
     pub(super) fn ahead(&self, stamp: u64, now: Instant) -> i64 {
         let ahead = difference(stamp, now) - self.offset;
         ahead.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
     }
 
-    /// Whether it lies within the window.
+    /// Whether the difference is within the window.
     pub(super) fn fits(&self, stamp: u64, now: Instant) -> bool {
         self.ahead(stamp, now).unsigned_abs() <= WINDOW.0
     }

@@ -1,11 +1,12 @@
 //! `team_port`: client of the game controller's port for teams (TCP 10008), without the socket.
 //!
-//! The controller speaks first (a reply with a token), we register under the name it shows, and every request gets a reply, one at a
-//! time. The shell connects where [`TeamPort::wants_connection`] says so, tells [`connected`](TeamPort::connected) and
-//! [`lost`](TeamPort::lost), brings bytes with [`receive`](TeamPort::receive), sends what
-//! [`poll_transmit`](TeamPort::poll_transmit) gives, calls [`tick`](TeamPort::tick) and tells people what
-//! [`poll_event`](TeamPort::poll_event) gives. Requests are unsigned: the controller accepts those unless it was given the
-//! team's public key, and says so. The token of the next message is kept for who signs ([`TeamPort::token`]).
+//! The controller sends first (a reply with a token), the client registers under the name configured there,
+//! and every request gets a reply, one at a time. The shell connects where [`TeamPort::wants_connection`] is
+//! true, reports [`connected`](TeamPort::connected) and [`lost`](TeamPort::lost), passes bytes to
+//! [`receive`](TeamPort::receive), sends the bytes of [`poll_transmit`](TeamPort::poll_transmit), calls
+//! [`tick`](TeamPort::tick) and reports the events of [`poll_event`](TeamPort::poll_event) to the operator.
+//! Requests are unsigned: the controller accepts those unless it has the team's public key, and otherwise
+//! reports the refusal. The token of the next message is kept for a caller that signs ([`TeamPort::token`]).
 
 use std::collections::VecDeque;
 
@@ -20,53 +21,53 @@ use ssl::stream::{FrameReader, MESSAGE_MAX, delimited};
 
 use super::words::team_of;
 
-/// The controller answers within this, or the connection is taken for dead. It answers at once; a loaded machine was seen to
-/// pause for 1.6 s.
+/// The controller answers within this, or the connection is closed. It answers at once; a loaded machine was
+/// seen to pause for 1.6 s.
 pub const REPLY_TIME: Duration = Duration::millis(3_000);
-/// An idle connection is tried this often: a controller that is gone is found out between two stoppages.
+/// An idle connection is checked this often: a controller that is gone is detected between two stoppages.
 pub const PING_EVERY: Duration = Duration::millis(5_000);
-/// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough for a name
-/// that its operator just entered.
+/// Between two attempts to connect or to register: long enough not to fill the controller's log, short enough
+/// for a name that its operator just entered.
 pub const RETRY_AFTER: Duration = Duration::millis(2_000);
 /// What a team may ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// This robot keeps our goal from now on; granted while the ball is out of play or in their half.
+    /// This robot is our goalkeeper from now on; granted while the ball is out of play or in their half.
     Keeper(RobotId),
-    /// We want to substitute a robot at the next chance, or no more.
+    /// We request the substitution of a robot at the next opportunity, or withdraw the request.
     Substitute(bool),
-    /// After a card against them: go on, or stop.
+    /// After a card against them: continue, or stop.
     Advantage {
-        /// Go on.
+        /// Whether the game continues.
         go_on: bool,
     },
-    /// Is anybody there?
+    /// Checks the connection.
     Ping,
 }
 
-/// What people, or the host, are told.
+/// Events for the operator or the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The controller knows us now; `verified`: by a signature.
+    /// The controller has accepted our registration; `verified`: by a signature.
     Registered {
-        /// By a signature.
+        /// Whether the registration was verified by a signature.
         verified: bool,
     },
-    /// It will not have us; we try again after [`RETRY_AFTER`].
+    /// The registration is refused; we try again after [`RETRY_AFTER`].
     RegistrationRefused {
-        /// Its words.
+        /// The controller's text.
         reason: String,
     },
     /// A request was granted.
     Granted(Request),
     /// A request was refused.
     Refused {
-        /// Which.
+        /// The request.
         request: Request,
-        /// Its words.
+        /// The controller's text.
         reason: String,
     },
-    /// The connection is given up; we connect again after [`RETRY_AFTER`].
+    /// The connection is closed; we connect again after [`RETRY_AFTER`].
     GivenUp(Trouble),
 }
 
@@ -77,7 +78,7 @@ pub enum Trouble {
     Closed,
     /// No answer within [`REPLY_TIME`].
     NoAnswer,
-    /// What came is not the protocol of the port for teams.
+    /// The bytes received are not the protocol of the port for teams.
     NotTheTeamPort(String),
 }
 
@@ -95,20 +96,20 @@ impl std::fmt::Display for Trouble {
     }
 }
 
-/// How far a connection is.
+/// State of a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Not connected.
     Apart,
-    /// Connected; the controller speaks first.
+    /// Connected; the controller sends first.
     Greeted,
-    /// We said who we are.
+    /// Our registration was sent.
     Registering,
-    /// It knows us.
+    /// The controller has accepted it.
     Registered,
 }
 
-/// A team's talk with the game controller.
+/// A team's connection with the game controller.
 #[derive(Debug)]
 pub struct TeamPort {
     name: String,
@@ -121,9 +122,9 @@ pub struct TeamPort {
     waiting: VecDeque<Request>,
     /// The request whose reply is awaited.
     asked: Option<Request>,
-    /// When something must have come, if something must.
+    /// When the next reply must have come, if one is due.
     deadline: Option<Instant>,
-    /// When to try again.
+    /// Earliest time of the next attempt.
     retry: Instant,
     /// When the last message went out.
     spoke: Instant,
@@ -148,12 +149,12 @@ impl TeamPort {
         }
     }
 
-    /// How far the connection is.
+    /// State of the connection.
     pub fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// What the signature of the next message would be over.
+    /// The token that a signature of the next message would cover.
     pub fn token(&self) -> Option<&str> {
         self.token.as_deref()
     }
@@ -163,20 +164,20 @@ impl TeamPort {
         self.stage == Stage::Apart && now >= self.retry
     }
 
-    /// The connection is open.
+    /// Handles an opened connection.
     pub fn connected(&mut self, now: Instant) {
         self.forget();
         self.stage = Stage::Greeted;
         self.deadline = Some(now + REPLY_TIME);
     }
 
-    /// The connection was closed, or could not be opened.
+    /// Handles a connection that was closed, or could not be opened.
     pub fn lost(&mut self, now: Instant) {
         self.give_up(Trouble::Closed, now);
     }
 
-    /// Asks for something, as soon as the controller knows us and has answered what was asked before. A request takes
-    /// the place of one of its kind that still waits, so no more wait than there are kinds.
+    /// Sends a request as soon as the client is registered and has the answer to the one before. A request
+    /// takes the place of one of its kind that still waits, so no more wait than there are kinds.
     pub fn ask(&mut self, request: Request, now: Instant) {
         match self.waiting.iter_mut().find(|waiting| same_kind(**waiting, request)) {
             Some(waiting) => *waiting = request,
@@ -185,7 +186,7 @@ impl TeamPort {
         self.send_next(now);
     }
 
-    /// Bytes that came, in any pieces.
+    /// Takes bytes that were received, in pieces of any length.
     pub fn receive(&mut self, bytes: &[u8], now: Instant) {
         if self.stage == Stage::Apart {
             return;
@@ -196,7 +197,7 @@ impl TeamPort {
                 Ok(None) => return,
                 Ok(Some(message)) => match ControllerToTeam::decode(message) {
                     Ok(ControllerToTeam { controller_reply: Some(reply) }) => reply,
-                    // A message of a newer controller that is none of our business.
+                    // A message of a newer controller that the client does not use.
                     Ok(_) => continue,
                     Err(broken) => return self.give_up(Trouble::NotTheTeamPort(broken.to_string()), now),
                 },
@@ -209,7 +210,7 @@ impl TeamPort {
         }
     }
 
-    /// The time is `now`.
+    /// Handles deadlines at `now`.
     pub fn tick(&mut self, now: Instant) {
         if self.deadline.is_some_and(|deadline| now >= deadline) {
             self.give_up(Trouble::NoAnswer, now);
@@ -226,7 +227,8 @@ impl TeamPort {
         self.out.pop_front()
     }
 
-    /// What happened, in order. On [`Event::GivenUp`] and [`Event::RegistrationRefused`] the shell closes the connection.
+    /// Events, in order. On [`Event::GivenUp`] and [`Event::RegistrationRefused`] the shell closes the
+    /// connection.
     pub fn poll_event(&mut self) -> Option<Event> {
         self.events.pop_front()
     }
@@ -260,7 +262,7 @@ impl TeamPort {
                 self.send_next(now);
             }
             Stage::Registered => {
-                // A reply that nobody asked for changes nothing.
+                // A reply without a request changes nothing.
                 match self.asked.take() {
                     None | Some(Request::Ping) => {}
                     Some(request) if rejected => self.events.push_back(Event::Refused { request, reason }),
@@ -296,7 +298,7 @@ impl TeamPort {
     }
 
     fn give_up(&mut self, trouble: Trouble, now: Instant) {
-        // What was asked and not answered is asked again, unless something newer of its kind waits.
+        // A request without an answer is sent again, unless a newer one of its kind waits.
         let asked = self.asked.take();
         if let Some(asked) = asked
             && !self.waiting.iter().any(|waiting| same_kind(*waiting, asked))
@@ -308,7 +310,7 @@ impl TeamPort {
         self.events.push_back(Event::GivenUp(trouble));
     }
 
-    /// Nothing of the connection stays; requests do, but for pings.
+    /// Drops the connection's state; requests are kept, except pings.
     fn forget(&mut self) {
         self.stage = Stage::Apart;
         self.reader = FrameReader::new(MESSAGE_MAX);

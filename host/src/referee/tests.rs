@@ -1,4 +1,4 @@
-//! Tests: the league's own packets become the game that was played. Recordings of the game controller and
+//! Tests: the league's own packets give the game that was played. Recordings of the game controller and
 //! packets made here.
 
 use std::path::PathBuf;
@@ -33,7 +33,7 @@ impl Listener {
     }
 }
 
-/// A packet sent `sent` µs after the epoch, its command as old as the packet.
+/// A packet sent `sent` µs after the epoch, its command of the same age.
 fn packet(sent: u64, command: Wire, counter: u32) -> Referee {
     let team = |name: &str| TeamInfo { name: name.into(), ..TeamInfo::default() };
     Referee {
@@ -76,8 +76,8 @@ fn phases(name: &str) -> (Vec<Phase<Colour>>, Listener) {
 
 #[test]
 fn the_recorded_match_goes_through_its_phases() {
-    // As an independent decoder listed the commands: the second NORMAL_START of each pair changes nothing, the free kick of 20.6 s
-    // is stopped at 27.6 s, before its 10 s are over.
+    // As an independent decoder listed the commands: the second NORMAL_START of each pair changes nothing,
+    // the free kick of 20.6 s is stopped at 27.6 s, before its 10 s are over.
     let (got, listener) = phases("grsim_divB_noisy_64s.log.gz");
     let start = [
         Phase::Halt,
@@ -183,7 +183,7 @@ fn trap_03_a_designated_position_counts_in_ball_placement_only() {
         placed += u32::from(placing);
     }
     assert!(placed > 0);
-    // A place that is none is none.
+    // A position that is not finite or too far is dropped.
     for x in [f32::NAN, f32::INFINITY, 1e9] {
         let mut packet = packet(0, Wire::BallPlacementBlue, 1);
         packet.designated_position = Some(WirePoint { x, y: 0.0 });
@@ -285,7 +285,8 @@ fn a_command_without_a_meaning_is_taken_for_halt() {
 
 #[test]
 fn who_joins_in_the_middle_knows_the_age_of_the_command() {
-    // NORMAL_START was given 8 s before the first packet that we hear: 2 s are left until the ball must be in play.
+    // NORMAL_START was given 8 s before the first packet received: 2 s are left until the ball must be in
+    // play.
     let mut listener = listener();
     let mut first = packet(20 * S, Wire::NormalStart, 7);
     first.command_timestamp -= 8 * S;

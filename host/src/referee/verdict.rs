@@ -1,4 +1,4 @@
-//! `verdict`: what became of a referee's packet, with its evidence. Times: µs.
+//! `verdict`: result of a referee's packet, with its evidence. Times: µs.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use rules::state::{Command, Heard};
 
 use super::identity::SourceKey;
 
-/// How many packets came to what.
+/// Numbers of packets by result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Packets in order, of the source that is followed.
@@ -16,7 +16,7 @@ pub struct Counts {
     pub commands: u64,
     /// Commands that were never received, by the counter.
     pub missed: u64,
-    /// Packets that were overtaken by newer ones on their way.
+    /// Packets that were overtaken by newer ones.
     pub old: u64,
     /// Copies of packets that were received just before.
     pub copies: u64,
@@ -24,7 +24,7 @@ pub struct Counts {
     pub other_source: u64,
     /// Packets of a source that `--referee-source` excludes.
     pub excluded: u64,
-    /// Commands whose number means nothing to us, taken for HALT.
+    /// Commands with an unknown number, taken for HALT.
     pub unknown: u64,
     /// Packets whose stamp or counter does not fit, other than [`Counts::old`].
     pub doubted: u64,
@@ -34,28 +34,28 @@ pub struct Counts {
     pub steps: u64,
 }
 
-/// What came of a packet.
+/// Result of a packet.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// It was followed.
+    /// It was taken.
     Taken(Taken),
     /// It is out of order.
     Doubted {
-        /// Why.
+        /// The reason.
         doubt: Doubt,
-        /// It is HALT or STOP, and restrains for [`HOLD`](super::HOLD) all the same.
+        /// It is HALT or STOP, and restrains for [`HOLD`](super::HOLD) nevertheless.
         restrains: bool,
     },
     /// It was received just before.
     Copy,
     /// Another source sent it than the one that is followed; if it is stricter, it is obeyed.
     OtherSource {
-        /// Which.
+        /// That source.
         source: SourceKey,
     },
     /// `--referee-source` excludes its source.
     Excluded {
-        /// Which.
+        /// That source.
         source: SourceKey,
     },
 }
@@ -63,13 +63,13 @@ pub enum Verdict {
 /// Why a packet is not in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// Its stamp lies ahead of its arrival.
+    /// Its stamp is ahead of its arrival.
     Ahead(Duration),
-    /// Its stamp lies behind its arrival.
+    /// Its stamp is behind its arrival.
     Behind(Duration),
     /// A newer one came before it.
     Old(Duration),
-    /// Its counter fell, or stands though the command changed.
+    /// Its counter fell, or is unchanged though the command changed.
     Counter,
 }
 
@@ -84,19 +84,19 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// What was new in a packet.
+/// Changes by a packet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Taken {
-    /// A command, and what it means.
+    /// A command, and its effect.
     pub command: Option<(Command, Heard)>,
     /// Commands that were never received, by the counter.
     pub missed: u32,
-    /// The counter started again: a new match, or another program.
+    /// The counter restarted: a new match, or another program.
     pub counter_restarted: bool,
-    /// The referee's clock stepped by so many µs; negative: back.
+    /// Step of the referee's clock, µs; negative: back.
     pub clock_stepped: Option<i64>,
     /// This source is followed from now on; inside: the one followed before, if any.
     pub new_source: Option<Option<SourceKey>>,
-    /// The command's number, if it means nothing to us.
+    /// The command's number, if it is unknown.
     pub unknown: Option<i32>,
 }

@@ -1,5 +1,5 @@
-//! `warning`: what an operator must know of the referee's sources, in words for terminal and page. Evidence: sources, commands
-//! and times. Times: µs.
+//! `warning`: warnings to the operator about the referee's sources, as text for terminal and page. Evidence:
+//! sources, commands and times. Times: µs.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use super::identity::{SourceKey, SourcePin};
 use super::verdict::Doubt;
 use super::{HALT_AFTER, Listener, OnSilence, SILENCE};
 
-/// Something that is wrong with the referee's sources now.
+/// A fault of the referee's sources that persists now.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Warning {
     /// Two sources give different commands.
@@ -24,7 +24,7 @@ pub enum Warning {
         other: SourceKey,
         /// Its command.
         others: Command,
-        /// What robots obey.
+        /// The phase that robots obey.
         obeyed: Phase<rules::Colour>,
     },
     /// Two sources agree: one controller on two networks, or two programs.
@@ -36,41 +36,41 @@ pub enum Warning {
     },
     /// Packets of a source are not in order.
     OutOfOrder {
-        /// Which.
+        /// The source.
         source: SourceKey,
-        /// Why.
+        /// The reason.
         doubt: Doubt,
     },
-    /// A source's clock has stepped, and was followed.
+    /// A source's clock has stepped, and the step was followed.
     ClockStepped {
-        /// Which.
+        /// The source.
         source: SourceKey,
-        /// By so many µs; negative: back.
+        /// The step, µs; negative: back.
         by: i64,
     },
     /// Nothing came from the source that is followed, nor from another, for [`HALT_AFTER`] or longer.
     Silent {
-        /// Which was followed.
+        /// The source that was followed.
         source: SourceKey,
-        /// For how long.
+        /// Duration of the silence.
         since: Duration,
-        /// What robots do meanwhile.
+        /// The configured behaviour of robots meanwhile.
         robots: OnSilence,
     },
     /// A source is excluded by `--referee-source`.
     Excluded {
-        /// Which.
+        /// The source.
         source: SourceKey,
-        /// Who is obeyed instead.
+        /// The source that is obeyed instead.
         pin: SourcePin,
     },
 }
 
-/// A step of the clock is reported for so long.
+/// Time for which a step of the clock is reported.
 const STEP_REPORTED: Duration = Duration::millis(5_000);
 
 impl Listener {
-    /// What is wrong with the sources now; empty while one referee sends packets in order.
+    /// The faults of the sources now; empty while one referee sends packets in order.
     pub fn warnings(&self, now: Instant) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let lately = |at: Instant| now.since(at) < SILENCE;
@@ -118,14 +118,14 @@ impl Listener {
     }
 }
 
-/// By what the first of two sources is pinned: its machine, or its address where both are on one.
+/// The pin that selects the first of two sources: its machine, or its address where both are on one.
 fn pin_for(source: &SourceKey, other: &SourceKey) -> String {
     let (one, two) = (source.address, other.address);
     if one.ip() == two.ip() { one.to_string() } else { one.ip().to_string() }
 }
 
 impl Warning {
-    /// What it is about, without its figures: two warnings of one matter are the same one at two times.
+    /// Its identity, without its numbers: warnings with the same text are one warning at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Disagreement { followed, other, .. } => format!("disagreement {followed} {other}"),
@@ -137,7 +137,7 @@ impl Warning {
         }
     }
 
-    /// Whether robots may stand or play because of it, so that it is repeated while it lasts.
+    /// Whether robots may halt or play because of it, so that it is repeated while it lasts.
     pub const fn is_urgent(&self) -> bool {
         !matches!(self, Self::Several { .. })
     }

@@ -1,12 +1,11 @@
-//! `words`: decoding of the referee's commands and stages. The wire's commands and stages in the words of
-//! [`rules`].
+//! `words`: decodes the referee's commands and stages into the types of [`rules`].
 
 use rules::Colour::{self, Blue, Yellow};
 use rules::state::{Command, Stage};
 use ssl::referee as wire;
 
-/// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free kicks since 2020;
-/// GOAL is old too, and came with a stop.
+/// A command's meaning; none for a number that no program of the league sends. Indirect free kicks are free
+/// kicks since 2020; GOAL is obsolete too, and implied a stop.
 pub fn command_of(number: i32) -> Option<Command> {
     let command = wire::Command::try_from(number).ok()?;
     Some(match command {

@@ -1,4 +1,4 @@
-//! What is asked of the controller, and how often.
+//! Tests: requests to the controller, and their rate.
 
 use geometry::Point;
 use protocol::RobotId;
@@ -10,7 +10,7 @@ use crate::strategy::view::tests::view;
 const OURS: [(f32, f32); 4] = [(-4.4, 0.0), (-3.0, 0.5), (-1.0, 0.5), (0.5, 1.5)];
 const THEIRS: [(f32, f32); 4] = [(4.4, 0.0), (2.0, 1.0), (1.0, -1.0), (4.65, 2.0)];
 
-/// Division B's field, with an area behind the goals as vision may tell.
+/// Division B's field, with an area behind the goals as vision may send.
 fn stopped() -> View {
     let mut view = view((1.0, 0.0), &OURS, &THEIRS);
     view.field = FieldSpec { goal_substitution: 0.3, ..League::DivisionB.field() };
@@ -18,7 +18,7 @@ fn stopped() -> View {
     view
 }
 
-/// What is asked for in so many seconds of the same moment, looked at every 0.1 s.
+/// The requests in `seconds` of the same moment, checked every 0.1 s.
 fn asked(requests: &mut Requests, view: &mut View, seconds: f32) -> Vec<Request> {
     let mut asked = Vec::new();
     for _ in 0..(seconds * 10.0) as u32 {

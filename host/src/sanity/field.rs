@@ -11,15 +11,15 @@ use crate::Host;
 /// More robots of a team than its league allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooManyRobots {
-    /// Which team.
+    /// Colour of the team.
     pub team: Colour,
-    /// It is ours.
+    /// Whether the team is ours.
     pub ours: bool,
-    /// So many are inside the lines.
+    /// Number of robots inside the lines.
     pub on_field: usize,
-    /// So many may be.
+    /// Number of robots allowed.
     pub allowed: usize,
-    /// Whose rules these are.
+    /// The league whose rules apply.
     pub league: League,
 }
 
@@ -68,14 +68,14 @@ impl Crowd {
     }
 }
 
-/// A field that vision tells of and that is not the league's.
+/// A field from vision that is not the league's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OtherField {
     /// The league that was chosen.
     pub league: League,
     /// Length and width by vision, m.
     pub told: [f32; 2],
-    /// The league whose field it is, if it is one's.
+    /// The league whose field it is, if it fits one.
     pub fits: Option<League>,
 }
 
@@ -100,7 +100,7 @@ impl fmt::Display for OtherField {
     }
 }
 
-/// What is wrong with the field that vision told, for that league.
+/// Compares the field that vision sent with that league's.
 pub(super) fn other_field(league: League, told: &FieldSpec) -> Option<OtherField> {
     let is = |league: League| {
         let field = league.field();
@@ -115,9 +115,10 @@ pub(super) fn other_field(league: League, told: &FieldSpec) -> Option<OtherField
     (!is(league)).then(other)
 }
 
-/// A robot that was not seen for longer is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
+/// A robot not seen for this time is not counted: ten frames of 60 Hz, and fewer than its track lasts (1 s).
 const SEEN: Duration = Duration::millis(170);
-/// Fields are laid out within this share of their size (an estimate; the rules allow 10 %, and the leagues' differ by a third).
+/// Tolerance of a field's dimensions as a share of its size (an estimate; the rules allow 10 %, and the
+/// leagues' differ by a third).
 const TOLERANCE: f32 = 0.1;
 
 #[cfg(test)]

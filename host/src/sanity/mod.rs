@@ -1,5 +1,5 @@
-//! `sanity`: what on the field, in the network or in this computer does not fit what the host was started with, each with its
-//! evidence and the remedy in words. Sans-IO; times on the host's clock.
+//! `sanity`: checks field, network and computer against the host's settings; each finding has its evidence
+//! and a remedy as text. Sans-IO; times on the host's clock.
 //!
 //! | module | finds |
 //! |---|---|
@@ -7,10 +7,10 @@
 //! | `side` | keepers or teams at the goals that the other team defends |
 //! | `second_host` | another host of the same team number |
 //! | `port` | no camera frames on vision's port, or another program's packets |
-//! | `stall` | this computer, vision or the radio stood still: which of them |
+//! | `stall` | a stall of this computer, vision or the radio |
 //!
-//! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its cause and for as long as
-//! that lasts. A match in which everything fits has none.
+//! [`Sanity::look`] is called at least every [`LOOK_EVERY_MAX`]. A finding is given within two seconds of its
+//! cause and for as long as that lasts. A match without a fault has none.
 
 mod field;
 mod port;
@@ -34,29 +34,29 @@ pub use stall::Stall;
 
 /// [`Sanity::look`] is called at least this often, so that "within two seconds" holds.
 pub const LOOK_EVERY_MAX: Duration = Duration::millis(200);
-/// What is seen on the field must last this long before it is a finding: longer than a misread pattern is believed (0.2 s), and
-/// half of the two seconds.
+/// A fault on the field must last this long before it is a finding: longer than a misread pattern can persist
+/// in tracking (0.2 s), and half of the two seconds.
 const LASTS: Duration = Duration::millis(1_000);
 
-/// Something that does not fit.
+/// A deviation from the settings.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
     /// More robots than the league allows.
     Robots(TooManyRobots),
-    /// Vision tells of a field that is not the league's.
+    /// Vision sends a field that is not the league's.
     Field(OtherField),
     /// The teams stand at each other's goals.
     Side(WrongSide),
-    /// Another host leads, or tries to lead, our robots.
+    /// Another host commands, or tries to command, our robots.
     SecondHost(SecondHost),
-    /// Vision's port brings no camera frames.
+    /// No camera frames come on vision's port.
     VisionPort(VisionPort),
-    /// Something stood still.
+    /// The host, vision or the radio has stalled.
     Stall(Stall),
 }
 
 impl Finding {
-    /// What it is about, without its figures: two findings of one matter are one finding at two times.
+    /// Its identity, without its numbers: findings with the same text are one finding at several times.
     pub fn matter(&self) -> String {
         match self {
             Self::Robots(found) => format!("robots {:?}", found.team),
@@ -68,7 +68,7 @@ impl Finding {
         }
     }
 
-    /// Whose matter it is, in a word that heads a line: `field`, `robots`, `vision`, `radio` or `host`.
+    /// The label that heads its line: `field`, `robots`, `vision`, `radio` or `host`.
     pub const fn heading(&self) -> &'static str {
         match self {
             Self::Robots(_) => "robots",
@@ -79,11 +79,11 @@ impl Finding {
         }
     }
 
-    /// Whether it is said again while it lasts.
+    /// Whether it is repeated while it lasts.
     pub const fn is_urgent(&self) -> bool {
         match self {
             Self::Robots(_) | Self::Side(_) | Self::SecondHost(_) | Self::Stall(_) => true,
-            // A laboratory's own field, or a camera that is not switched on yet: saying it once is enough.
+            // A laboratory's own field, or a camera that is not switched on yet: reported once.
             Self::Field(found) => found.fits.is_some(),
             Self::VisionPort(_) => false,
         }
@@ -103,7 +103,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Looks whether everything fits.
+/// State of all checks.
 #[derive(Clone, Debug, Default)]
 pub struct Sanity {
     looked: Option<Instant>,
@@ -114,16 +114,16 @@ pub struct Sanity {
 }
 
 impl Sanity {
-    /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is the computer's.
-    /// A simulation in virtual time does not call it.
+    /// The host's loop runs now. A program that calls this calls it at least every 100 ms: a longer pause is
+    /// a stall of the computer. A simulation in virtual time does not call it.
     pub fn ran(&mut self, now: Instant) {
         self.stalls.ran(now);
     }
 
-    /// What does not fit now.
+    /// The findings that persist now.
     pub fn look(&mut self, now: Instant, host: &Host) -> Vec<Finding> {
         if self.looked.is_some_and(|last| now < last) {
-            // A recording that is wound back, or a match that begins anew.
+            // A recording that is rewound, or a match that restarts.
             *self = Self::default();
         }
         self.looked = Some(now);
@@ -147,12 +147,12 @@ struct Lasting {
 }
 
 impl Lasting {
-    /// Whether it has held for long enough, if it `holds` now.
+    /// Whether it has held for long enough; `holds`: whether it holds now.
     fn see(&mut self, now: Instant, holds: bool) -> bool {
         self.since = holds.then(|| self.since.unwrap_or(now));
         self.since.is_some_and(|since| now.since(since) >= LASTS)
     }
 }
 
-/// The field is judged by what cameras saw within this time.
+/// The field is checked only with camera frames of this age or newer.
 const SEES: Duration = Duration::millis(300);

@@ -6,14 +6,14 @@ use protocol::{Duration, Instant};
 
 use crate::Host;
 
-/// What comes on vision's port instead of camera frames.
+/// Input on vision's port without camera frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VisionPort {
     /// Nothing at all, since the start.
     Nothing,
     /// Packets that hold neither camera frame nor field: another program's port.
     Foreign {
-        /// How many since the last camera frame.
+        /// Number since the last camera frame.
         packets: u64,
     },
     /// The field's geometry, but no camera frame.
@@ -85,7 +85,7 @@ impl Port {
             return Some(VisionPort::Foreign { packets });
         }
         match frame {
-            // That it came and ceased is a stall.
+            // Frames that came and then stopped are a stall.
             Some(_) => None,
             None if others => Some(VisionPort::NoFrames),
             None => Some(VisionPort::Nothing),
@@ -93,18 +93,19 @@ impl Port {
     }
 }
 
-/// Camera frames are waited for so long after the start, and after the last.
+/// Time without camera frames after which they count as missing, from the start and from the last one.
 const PATIENCE: Duration = Duration::millis(1_000);
-/// Another program that has sent nothing for so long has ended.
+/// Another program that has sent nothing for this time has ended.
 const OVER: Duration = Duration::millis(2_000);
-/// Fewer packets are a program that looks for something.
+/// Fewer packets may come from a program that scans ports.
 const FOREIGN_MIN: u64 = 3;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// What is found every 100 ms of `seconds`, by camera frames and foreign packets a second; geometry where `others`.
+    /// The findings every 100 ms of `seconds`, by camera frames and foreign packets a second; geometry where
+    /// `others`.
     fn found(frames: u64, foreign: u64, others: bool, seconds: u64) -> Vec<Option<VisionPort>> {
         let mut port = Port::default();
         let look = |n: u64| {

@@ -1,5 +1,5 @@
-//! `second_host`: detection of a second host of our team number on our robots' radio. By frames that reach
-//! us, by robots that followed us and now name another, and by the frames that our robots refuse.
+//! `second_host`: detection of a second host of our team number on our robots' radio. Evidence: its frames
+//! received by us, robots that followed us and now name another host, and frames that our robots refuse.
 
 use std::fmt;
 
@@ -8,17 +8,17 @@ use protocol::{Instant, RobotId};
 use crate::Host;
 use crate::radio::{RadioWarning, Why};
 
-/// Another host of our team number, and what shows it.
+/// Another host of our team number, with its evidence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SecondHost {
     /// Its frames reach us: it has this boot epoch.
     Received {
-        /// Its epoch.
+        /// Its boot epoch.
         epoch: u32,
     },
     /// A robot that followed us follows it now.
     TookOver {
-        /// Which robot.
+        /// The robot that changed its host.
         robot: RobotId,
         /// The other host's epoch, later than ours.
         epoch: u32,

@@ -13,22 +13,22 @@ use crate::Host;
 /// The teams stand at each other's goals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongSide {
-    /// The goal that we take for ours.
+    /// The goal that our host defends.
     pub defending: GoalEnd,
-    /// The referee says so; else it is what a host of that colour takes until the referee says.
+    /// The referee has named it; else it is the default of a host of that colour.
     pub told: bool,
-    /// What shows that it is the other.
+    /// Evidence that it is the other.
     pub evidence: SideEvidence,
 }
 
-/// What shows that the other goal is ours.
+/// Evidence that the other goal is ours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SideEvidence {
     /// Our keeper stands in the area that we attack.
     OurKeeper(RobotId),
     /// Their keeper stands in the area that we defend.
     TheirKeeper(RobotId),
-    /// Before a kick-off every robot, so many of ours and of theirs, stands in the half of the other team.
+    /// Before a kick-off all robots (number of ours, of theirs) stand in the half of the other team.
     Halves(usize, usize),
 }
 
@@ -54,7 +54,7 @@ impl fmt::Display for WrongSide {
     }
 }
 
-/// What is looked at.
+/// The robots under check.
 #[derive(Clone, Debug)]
 struct Seen {
     defending: GoalEnd,
@@ -66,7 +66,7 @@ struct Seen {
     robots: [Vec<Point<Field>>; 2],
 }
 
-/// Remembers for how long they have stood there.
+/// State of the checks of the sides.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sides {
     lasting: Lasting,
@@ -152,9 +152,10 @@ fn evidence(seen: &Seen, field: &FieldSpec) -> Option<SideEvidence> {
     swapped.then_some(SideEvidence::Halves(ours.len(), others.len()))
 }
 
-/// After the sides have changed robots have so much of STOP and play to cross the field: 12 m at 1.3 m/s, and as much again.
+/// After the sides have changed robots have this time of STOP and play to cross the field: 12 m at 1.3 m/s,
+/// and as much again.
 const CROSSING: Duration = Duration::millis(20_000);
-/// Halves are judged by at least so many robots of each team.
+/// Least number of robots of each team for a check of the halves.
 const HALVES_MIN: usize = 3;
 /// A robot nearer to the halfway line is in neither half, m.
 const ON_LINE: f32 = 0.1;
@@ -168,7 +169,7 @@ mod tests {
         RobotId::new(n).unwrap()
     }
 
-    /// Teams of four as before a kick-off; `swapped`: at each other's goals.
+    /// Teams of four as before a kick-off; `swapped`: on each other's sides.
     fn seen(swapped: bool, defending: GoalEnd, phase: Phase<rules::Colour>) -> Seen {
         let sign = defending.sign() as f32 * if swapped { -1.0 } else { 1.0 };
         let team = |sign: f32| -> Vec<Point<Field>> {
@@ -184,7 +185,7 @@ mod tests {
         Seen { defending, told: true, phase, keepers, robots }
     }
 
-    /// The first time at which something is found, ms, and what.
+    /// The first time at which something is found, ms, and the finding.
     fn found(seen: impl Fn(u64) -> Seen, ms: u64) -> Option<(u64, WrongSide)> {
         let (mut sides, field) = (Sides::default(), League::DivisionB.field());
         (0..ms)

@@ -1,6 +1,6 @@
-//! `stall`: distinction of stalls of this computer, of vision and of the radio. A stall of one makes the
-//! others look still: a computer that does not run receives nothing, and without vision the host sends
-//! nothing after half a second. So they are looked for in this order.
+//! `stall`: distinction of stalls of this computer, of vision and of the radio. A stall of one appears as a
+//! stall of the others: a computer that does not run receives nothing, and without vision the host sends
+//! nothing after half a second. So they are checked in this order.
 
 use std::fmt;
 
@@ -9,12 +9,12 @@ use protocol::{Duration, Instant};
 use crate::Host;
 use crate::radio::Radio;
 
-/// What stood still, and for how long.
+/// A stall, and its duration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stall {
     /// This computer did not run the host.
     Host {
-        /// For how long.
+        /// Its duration.
         lasted: Duration,
     },
     /// No camera frame comes though the computer runs.
@@ -35,7 +35,7 @@ pub enum Stall {
 }
 
 impl Stall {
-    /// Where: `host`, `vision` or `radio`.
+    /// Its place: `host`, `vision` or `radio`.
     pub const fn place(&self) -> &'static str {
         match self {
             Self::Host { .. } => "host",
@@ -77,7 +77,7 @@ impl fmt::Display for Stall {
     }
 }
 
-/// Remembers when what ran.
+/// Times at which host, vision and radio ran.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Stalls {
     ran: Option<Instant>,
@@ -85,20 +85,20 @@ pub(super) struct Stalls {
     host: Option<(Duration, Instant)>,
     /// Since when snapshots have gone out without a pause.
     sends_since: Option<Instant>,
-    /// What stood still last, and until when that is shown.
+    /// The last stall, and until when it is reported.
     shown: Option<(Stall, Instant)>,
 }
 
-/// What was received when.
+/// Times of the newest frames.
 #[derive(Clone, Copy, Debug, Default)]
 struct Last {
-    /// The newest camera frame.
+    /// Arrival of the newest camera frame.
     frame: Option<Instant>,
     /// The newest frame of any robot.
     robot: Option<Instant>,
     /// The newest snapshot that went out.
     sent: Option<Instant>,
-    /// Of robots whose telemetry is new, the shortest time for which one had received nothing.
+    /// Of robots with new telemetry, the shortest time for which one had received nothing.
     unheard: Option<Duration>,
 }
 
@@ -144,14 +144,14 @@ impl Stalls {
         self.shown.filter(|(_, until)| now < *until).map(|(stall, _)| stall)
     }
 
-    /// Whether the computer has not stood still just now.
+    /// Whether the computer runs, and for long enough after its last stall.
     fn runs_again(&self, now: Instant) -> bool {
         self.host.is_none_or(|(_, since)| now.since(since) >= CATCHES_UP)
     }
 
-    /// What stands still now.
+    /// The stall that persists now.
     fn goes_on(&self, now: Instant, last: &Last) -> Option<Stall> {
-        // What waited while the computer stood still comes within a moment.
+        // Packets queued during a stall of the computer come at once after it.
         let runs_since = self.host.map_or(Instant(0), |(_, since)| since);
         if let Some((lasted, _)) = self.host.filter(|_| !self.runs_again(now)) {
             return Some(Stall::Host { lasted });
@@ -174,32 +174,33 @@ impl Stalls {
     }
 }
 
-/// The host's loop wakes at least every 100 ms; a computer that lets it wait twice as long makes robots brake.
+/// The host's loop wakes at least every 100 ms; at twice that, robots brake.
 const HOST_STALL: Duration = Duration::millis(200);
-/// After a stall of the computer what waited for it is received within this time.
+/// After a stall of the computer queued packets are received within this time.
 const CATCHES_UP: Duration = Duration::millis(300);
 /// Twenty camera frames; teams report blackouts of 0.2 s, which the host bridges.
 const VISION_STALL: Duration = Duration::millis(300);
 /// A robot sends beacons at 20 Hz and telemetry at 10 Hz.
 const RADIO_STALL: Duration = Duration::millis(300);
-/// Robots that are not received for so long were switched off.
+/// Robots not received for this time were switched off.
 const SWITCHED_OFF: Duration = Duration::millis(10_000);
-/// Robots brake at 100 ms; telemetry that says more than twice that is no single gap.
+/// Robots brake at 100 ms; telemetry that reports more than twice that is no single gap.
 const DOWN_STALL: Duration = Duration::millis(250);
-/// Telemetry that is older tells nothing of now; it comes at 10 Hz.
+/// Older telemetry is out of date; it comes at 10 Hz.
 const TELEMETRY_NEW: Duration = Duration::millis(250);
 /// Snapshots go out at 60 Hz or more.
 const SENDS: Duration = Duration::millis(50);
-/// Robots that receive nothing are the radio's matter once snapshots have gone out for so long: [`DOWN_STALL`] and the age of telemetry.
+/// Robots that receive nothing are a stall of the radio once snapshots have gone out for this time:
+/// [`DOWN_STALL`] and the age of telemetry.
 const SENDS_FOR: Duration = Duration::millis(DOWN_STALL.0 / 1_000 + TELEMETRY_NEW.0 / 1_000);
-/// A stall that is over is shown for so long, so that it can be read.
+/// A stall that is over is reported for this time, so that it can be read.
 const SHOWN: Duration = Duration::millis(3_000);
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// What is shown every 100 ms of 20 s, if the given thing stands still from 5 s to `until`, ms.
+    /// The stall reported every 100 ms of 20 s, if the given part stalls from 5 s to `until`, ms.
     fn shown(until: u64, still: &str) -> Vec<(u64, Option<Stall>)> {
         let mut stalls = Stalls::default();
         let mut shown = Vec::new();
@@ -221,7 +222,7 @@ mod tests {
             if !quiet {
                 last.sent = Some(now);
             }
-            // Telemetry comes every 100 ms; between, what it said goes on.
+            // Telemetry comes every 100 ms; between, its last report stays valid.
             let silent = last.sent.map_or(0, |at| now.since(at).0) / 1_000;
             let silent = if stands("down") { ms - 5_000 } else { silent };
             if ms.is_multiple_of(100) {

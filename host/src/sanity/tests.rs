@@ -1,4 +1,4 @@
-//! Findings of a whole host in virtual time: frames of robots and of another host come to it as datagrams.
+//! Findings of a whole host in virtual time: frames of robots and of another host arrive as datagrams.
 
 use protocol::frame::{Refusal, TeamKey};
 use protocol::host::{HostMessage, Telemetry, Welcome};
@@ -11,7 +11,7 @@ use rules::{Colour, League};
 use super::*;
 use crate::{HostSettings, Input};
 
-/// Our epoch.
+/// Boot epoch of our host.
 const EPOCH: u32 = 70;
 
 fn id() -> RobotId {
@@ -22,7 +22,8 @@ fn host() -> Host {
     Host::new(HostSettings::new(Colour::Blue, League::DivisionB, EPOCH), Instant(0))
 }
 
-/// The first time at which a second host is found, ms, with its evidence; every 100 ms `tell` brings what comes to the host.
+/// The first time at which a second host is found, ms, with its evidence; every 100 ms `tell` feeds the host
+/// its inputs.
 fn second_host(mut tell: impl FnMut(u64, &mut Host)) -> Option<(u64, SecondHost)> {
     let (mut host, mut sanity) = (host(), Sanity::default());
     (0..8_000).step_by(100).find_map(|ms| {
@@ -50,7 +51,7 @@ fn frames_of_a_second_host_are_told_within_two_seconds_and_our_own_echo_is_none(
     for (epoch, expected) in [(EPOCH + 9, true), (EPOCH - 9, true), (EPOCH, false)] {
         let mut other = HostLink::new(TeamId::of(Colour::Blue), TeamKey::ZERO, epoch);
         let found = second_host(|ms, host| {
-            // It begins after a second, with ten frames every 100 ms.
+            // It starts after a second, with ten frames every 100 ms.
             for n in 0..10 {
                 let now = Instant((ms + n) * 1_000);
                 let packet = other.seal(now, &HostMessage::Welcome(Welcome { to: id(), life: 1, offset: 0 }));
@@ -97,7 +98,7 @@ fn frames_of_an_earlier_host_that_our_robots_refuse_are_told_within_two_seconds(
 fn robots_that_follow_us_alone_tell_of_no_second_host() {
     let mut robot = robot();
     let found = second_host(|ms, host| {
-        // A few frames of the host before us were still on their way.
+        // A few frames of the previous host were still in transit.
         let refused = if ms < 300 { (ms / 100) as u16 } else { 3 };
         host.handle(Instant(ms * 1_000), Input::Robot(&telemetry(&mut robot, EPOCH, refused)));
     });
@@ -110,7 +111,7 @@ fn another_programs_packets_on_visions_port_are_told_within_two_seconds() {
     let mut first = None;
     for ms in (0..5_000).step_by(20) {
         let now = Instant(ms * 1_000);
-        // A message of another kind: its only field is none of vision's, and is skipped.
+        // A message of another kind: its only field is unknown to vision's messages, and is skipped.
         host.handle(now, Input::Vision(&[0x7a, 0x02, 0x08, 0x01]));
         let found = sanity.look(now, &host);
         if !found.is_empty() {

@@ -1,8 +1,9 @@
-//! `epoch`: the host's boot epoch, larger with every start even where this computer's clock was set back. Seconds since 1970, or one
-//! more than the last that was used, kept in a file per user.
+//! `epoch`: the host's boot epoch, larger with every start even where this computer's clock was set back.
+//! Seconds since 1970, or one more than the last that was used, kept in a file per user.
 //!
-//! Robots refuse every host whose epoch is below that of the host they followed last. The file is one decimal number, replaced as a
-//! whole under a lock, so that neither a power cut nor two starts at once leave it damaged or give one epoch twice.
+//! Robots refuse every host whose epoch is below that of the host they followed last. The file is one decimal
+//! number, replaced as a whole under a lock, so that neither a power cut nor two simultaneous starts damage
+//! it or give one epoch twice.
 
 use std::env;
 use std::fs::{self, File};
@@ -14,16 +15,17 @@ const FILE: &str = "host-epoch";
 /// A number of 32 bits has ten digits.
 const FILE_LEN_MAX: u64 = 16;
 
-/// An epoch, and what is to be said about it.
+/// An epoch, with a warning if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Epoch {
-    /// The epoch.
+    /// The epoch, seconds since 1970 or larger.
     pub epoch: u32,
-    /// It could not be kept, or the clock is behind.
+    /// It could not be stored, or the clock is behind.
     pub warning: Option<String>,
 }
 
-/// Where this user's programs keep what must survive a restart: `$XDG_STATE_HOME/onetwo`, or `~/.local/state/onetwo`.
+/// Where this user's programs keep state that must survive a restart: `$XDG_STATE_HOME/onetwo`, or
+/// `~/.local/state/onetwo`.
 pub fn state_directory() -> Option<PathBuf> {
     let absolute = |name| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let state = absolute("XDG_STATE_HOME").or_else(|| Some(absolute("HOME")?.join(".local/state")))?;

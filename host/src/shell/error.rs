@@ -3,58 +3,58 @@
 use std::fmt;
 use std::io;
 
-/// One variant per thing the people can do something about.
+/// One variant per cause that the operator can fix.
 #[derive(Debug)]
 pub enum LinkError {
-    /// `udp://` names a host that nobody knows.
+    /// `udp://` names a host that cannot be resolved.
     UnknownHost {
-        /// As given.
+        /// The address as configured.
         address: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
-    /// No socket could be had, or it failed.
+    /// A socket could not be opened, or failed.
     Socket {
-        /// What was tried.
+        /// The operation that failed.
         doing: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// The serial line is not there.
     NoSuchLine {
-        /// As given.
+        /// The device as configured.
         device: String,
-        /// Lines that are there.
+        /// Names of the serial lines that exist.
         present: Vec<String>,
     },
-    /// The serial line may not be used by this person.
+    /// This user has no permission for the serial line.
     NotAllowed {
-        /// As given.
+        /// The device as configured.
         device: String,
     },
-    /// The serial line does not do this rate, or failed.
+    /// The serial line does not support this rate, or failed.
     Line {
-        /// As given.
+        /// The device as configured.
         device: String,
-        /// What was tried.
+        /// The operation that failed.
         doing: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// A virtual robot could not be started.
     Start {
-        /// The program.
+        /// Path of the program.
         program: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
     /// A virtual robot ended again and again.
     GivesUp {
-        /// Which.
+        /// Its number.
         robot: u8,
-        /// How it last ended.
+        /// Its last exit status.
         how: String,
-        /// How often.
+        /// Number of exits.
         times: u32,
     },
 }

@@ -1,8 +1,8 @@
-//! `hub`: one simulator socket shared by several robot processes. Through one socket: some simulators answer
-//! only whoever spoke last (ER-Force's does), so what each robot says goes out from here, and what comes back
-//! goes to all.
+//! `hub`: one simulator socket shared by several robot processes. Some simulators (ER-Force's) answer only
+//! the last sender, so the commands of all robots go out through this socket, and its answers go to all of
+//! them.
 //!
-//! Bytes are passed on unread; each process picks its own robot's part.
+//! Bytes are forwarded undecoded; each process picks its own robot's part.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,11 +13,11 @@ use std::time::{Duration, Instant};
 use super::LinkError;
 use super::udp::bind;
 
-/// A robot's process that was silent for so long is gone.
+/// A robot's process that was silent for this time has ended.
 const GONE: Duration = Duration::from_secs(1);
-/// How long a thread waits before it looks whether it shall end.
+/// Time a thread waits between checks whether it shall end.
 const LOOK: Duration = Duration::from_millis(50);
-/// The longest datagram of the simulation protocol that is passed on.
+/// The longest datagram of the simulation protocol that is forwarded.
 const LEN_MAX: usize = 8192;
 
 /// Two threads between robots' processes and a simulator; they end when this is dropped.
@@ -31,7 +31,7 @@ pub(super) struct Hub {
 type Known = Arc<Mutex<Vec<(SocketAddr, Instant)>>>;
 
 impl Hub {
-    /// Between processes on this machine and the simulator at that address.
+    /// Forwards between processes on this machine and the simulator at that address.
     pub(super) fn start(simulator: SocketAddr) -> Result<Self, LinkError> {
         let system = |error| LinkError::Socket { doing: "open a socket for virtual robots".into(), error };
         let inner = Arc::new(UdpSocket::bind("127.0.0.1:0").map_err(system)?);
@@ -46,7 +46,8 @@ impl Hub {
             move || {
                 pass(&inner, &end, |bytes, from| {
                     remember(&known, from);
-                    // Nobody there yet, or a full queue: the next command follows within 10 ms.
+                    // The simulator is not running yet, or a queue is full: the next command follows within
+                    // 10 ms.
                     let _ = outer.send_to(bytes, simulator);
                 });
             }
@@ -66,7 +67,7 @@ impl Hub {
         Ok(Self { address, end, threads })
     }
 
-    /// Where robots' processes find "the simulator".
+    /// Where robots' processes send commands for the simulator.
     pub(super) fn address(&self) -> SocketAddr {
         self.address
     }
@@ -91,7 +92,7 @@ fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> Result<JoinHandle<
 fn pass(socket: &UdpSocket, end: &AtomicBool, mut to: impl FnMut(&[u8], SocketAddr)) {
     let mut bytes = [0; LEN_MAX];
     while !end.load(Ordering::Relaxed) {
-        // A time-out, or somebody who was not there: look again.
+        // A time-out, or a receiver that was not running: try again.
         if let Ok((len, from)) = socket.recv_from(&mut bytes) {
             to(bytes.get(..len).unwrap_or(&[]), from);
         }

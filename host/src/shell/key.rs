@@ -1,4 +1,5 @@
-//! `key`: the team's key file. A file with 32 hexadecimal digits, which nobody else should be able to read.
+//! `key`: the team's key file. A file with 32 hexadecimal digits, which other users should not be able to
+//! read.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -8,12 +9,12 @@ use protocol::frame::TeamKey;
 /// Longest key file that is read, bytes: 32 digits, and room for blanks and line ends around them.
 const KEY_FILE_LEN_MAX: u64 = 4096;
 
-/// A key that was read, and what is to be said about its file.
+/// A key that was read, with a warning about its file if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KeyFile {
-    /// The key.
+    /// The key read.
     pub key: TeamKey,
-    /// Others may read the file, or the key is the one everybody knows.
+    /// Other users may read the file, or the key is the public one of zeros.
     pub warning: Option<String>,
 }
 
@@ -22,16 +23,16 @@ pub struct KeyFile {
 pub enum KeyError {
     /// The file cannot be read.
     Unreadable {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// The system's words.
+        /// The system's error.
         error: std::io::Error,
     },
     /// It does not hold 32 hexadecimal digits.
     Malformed {
-        /// Which.
+        /// Path of the file.
         path: PathBuf,
-        /// What it holds instead; never its text.
+        /// Its content by kind; never its text.
         what: String,
     },
 }
@@ -58,7 +59,7 @@ impl fmt::Display for KeyError {
 
 impl std::error::Error for KeyError {}
 
-/// A path as it can be shown.
+/// A path as it can be printed.
 fn shown(path: &Path) -> String {
     foreign::printable(&path.to_string_lossy()).into_owned()
 }
@@ -78,7 +79,7 @@ pub fn read(path: &Path) -> Result<KeyFile, KeyError> {
     Ok(KeyFile { key, warning })
 }
 
-/// 32 hexadecimal digits, or what is there instead.
+/// Parses 32 hexadecimal digits; the error describes the text found.
 pub fn parse(text: &str) -> Result<TeamKey, String> {
     let digits = text.trim().as_bytes();
     if let Some(at) = digits.iter().position(|digit| !digit.is_ascii_hexdigit()) {

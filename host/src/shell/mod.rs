@@ -1,8 +1,8 @@
-//! `shell`: the host's effects: network, serial line, processes, files.
+//! `shell`: the host's input and output: network, serial line, processes, files.
 //!
-//! [`open`] takes the link that a team's settings name; [`Link`] carries whole frames and knows nothing of what is in them.
-//! A [`Radio`](crate::radio::Radio) says what to send and reads what comes. [`key`] reads a team's key;
-//! [`Recorder`](crate::record::Recorder) keeps a match.
+//! [`open`] opens the link that a team's settings name; [`Link`] carries whole frames without decoding them.
+//! A [`Radio`](crate::radio::Radio) makes the frames to send and decodes those received. [`key`] reads a
+//! team's key; [`Recorder`](crate::record::Recorder) records a match.
 
 pub mod epoch;
 mod error;
@@ -26,28 +26,28 @@ pub use serial::SerialLink;
 pub use sim::{SimLink, SimSettings};
 pub use udp::UdpLink;
 
-/// A way to the robots.
+/// A link to the robots.
 pub trait Link: Send {
-    /// Sends a frame. What cannot be sent at once is lost: news follows within 10 ms.
+    /// Sends a frame. A frame that cannot be sent at once is lost: newer ones follow within 10 ms.
     fn send(&mut self, to: To, packet: &[u8]) -> Result<(), LinkError>;
 
-    /// The next frame that came, waiting for it at most so long; `None` where none came.
+    /// The next frame received, waiting for at most `wait`; `None` where none came.
     fn receive(&mut self, wait: Duration) -> Result<Option<Packet>, LinkError>;
 
-    /// Who has to pass beacons on, over such a link.
+    /// How beacons must be forwarded over such a link.
     fn relay(&self) -> Relay;
 
-    /// Something the people should know, each once: a robot's process that ended, a line that came back.
+    /// A message to the operator, each once: a robot's process that ended, a line that came back.
     fn notice(&mut self) -> Option<String> {
         None
     }
 
-    /// Whether a frame would go out at once: while it would only wait on the way, it waits where newer ones replace it.
+    /// Whether a frame would go out at once: if not, it waits in the outbox, where newer ones replace it.
     fn has_room(&mut self) -> bool {
         true
     }
 
-    /// Throws away what was taken and has not left yet: HALT comes.
+    /// Discards frames taken and not yet sent: HALT comes.
     fn discard(&mut self) {}
 
     /// The rate of a line, where it has one.
@@ -55,14 +55,14 @@ pub trait Link: Send {
         None
     }
 
-    /// What to look at where no robot is heard.
+    /// What to check where no robot is received.
     fn advice(&self) -> String;
 }
 
 /// How fast a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineRate {
-    /// Its name.
+    /// The line's device.
     pub device: String,
     /// Bits a second; a byte takes [`BITS_PER_BYTE`](Self::BITS_PER_BYTE).
     pub baud: u32,
@@ -71,16 +71,16 @@ pub struct LineRate {
 impl LineRate {
     /// Start bit, eight bits, stop bit.
     pub const BITS_PER_BYTE: u64 = 10;
-    /// Bytes of a line beside the frame: COBS and the zero.
+    /// Bytes on the line in addition to the frame: COBS and the zero.
     pub const FRAME_OVERHEAD: u64 = 2;
 
-    /// Bits a second that so much traffic in one second needs.
+    /// Bits a second that this traffic of one second needs.
     pub const fn needed(frames: u64, bytes: u64) -> u64 {
         (bytes + frames * Self::FRAME_OVERHEAD) * Self::BITS_PER_BYTE
     }
 }
 
-/// Opens the link that `settings` name; virtual robots are started as `sim` says.
+/// Opens the link that `settings` name; virtual robots are started with the settings of `sim`.
 pub fn open(link: &RobotLink, sim: impl FnOnce(&str) -> SimSettings) -> Result<Box<dyn Link>, LinkError> {
     Ok(match link {
         RobotLink::Udp(address) => Box::new(UdpLink::open(address)?),

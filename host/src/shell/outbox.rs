@@ -1,12 +1,14 @@
-//! `outbox`: frames that wait for the robots' link. Only the newest snapshot waits, HALT goes before everything, and memory is
-//! bounded. Sans-IO; sizes in bytes of frames.
+//! `outbox`: frames that wait for the robots' link. Only the newest snapshot waits, HALT has priority, and
+//! memory is bounded. Sans-IO; sizes in bytes of frames.
 //!
-//! A *snapshot* is what the host sends at once: parts of the world and a command for every robot. One that has begun to go out is
-//! finished, so that a line that is too slow for all snapshots serves every robot with fewer of them; of those behind it only
-//! the newest waits. *Side frames* (teammates' beacons that are passed on, welcomes) wait beside it, the newest of each sender
-//! and receiver; [`SIDE_PER_SNAPSHOT`] of them go between two snapshots.
+//! A *snapshot* is what the host sends at once: parts of the world and a command for every robot. One whose
+//! sending has started is finished, so that a line that is too slow for all snapshots serves every robot with
+//! fewer of them; of those behind it only the newest waits. *Side frames* (forwarded beacons of teammates,
+//! welcomes) wait beside it, the newest of each sender and receiver; [`SIDE_PER_SNAPSHOT`] of them go between
+//! two snapshots.
 //!
-//! The first snapshot with HALT drops everything that waits, the rest of the snapshot that was going out too.
+//! The first snapshot with HALT drops everything that waits, including the unsent part of the snapshot that
+//! was going out.
 
 use std::collections::VecDeque;
 
@@ -15,16 +17,16 @@ use protocol::link::Packet;
 
 use crate::radio::To;
 
-/// Side frames between two snapshots: beacons come at 20 Hz and snapshots at up to 100 Hz, so that on a fast line none waits,
-/// and on a slow one a team's beacons do not crowd out its snapshots.
+/// Side frames between two snapshots: beacons come at 20 Hz and snapshots at up to 100 Hz, so that on a fast
+/// line none waits, and on a slow one a team's beacons do not displace its snapshots.
 const SIDE_PER_SNAPSHOT: usize = 2;
 /// Side frames that wait at most: the newest of 16 robots for each of 16, and a welcome for each.
 const SIDE_MAX: usize = 272;
 
-/// Frames on their way to a link.
+/// Frames queued for a link.
 #[derive(Debug, Default)]
 pub struct Outbox {
-    /// The rest of the snapshot that is going out.
+    /// The unsent part of the snapshot that is going out.
     going: VecDeque<(To, Packet)>,
     /// The newest snapshot behind it.
     next: Option<Vec<(To, Packet)>>,
@@ -32,28 +34,28 @@ pub struct Outbox {
     /// Side frames since the last snapshot went out.
     sides: usize,
     halting: bool,
-    /// What the link still holds is older than a HALT.
+    /// Whether the frames that the link still has are older than a HALT.
     discard: bool,
     counts: OutCounts,
 }
 
-/// What was put into an outbox, and what became of it.
+/// Counts of frames put into an outbox, and of those dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutCounts {
-    /// Snapshots put in.
+    /// Snapshots added.
     pub snapshots: u64,
-    /// Of these, replaced by newer ones before they began to go out.
+    /// Of these, replaced by newer ones before their sending started.
     pub superseded: u64,
     /// Side frames replaced by newer ones, or dropped because too many waited.
     pub side_dropped: u64,
-    /// Frames put in.
+    /// Frames added.
     pub frames: u64,
-    /// Their bytes.
+    /// Bytes of the frames added.
     pub bytes: u64,
 }
 
 impl Outbox {
-    /// Everything that the host sends at once. `halting`: it says HALT.
+    /// Adds everything that the host sends at once. `halting`: it contains HALT.
     pub fn push(&mut self, batch: Vec<(To, Packet)>, halting: bool) {
         if batch.is_empty() {
             return;
@@ -61,7 +63,7 @@ impl Outbox {
         let from_host = |packet: &Packet| claimed_sender(packet) == Some(Sender::Host);
         self.counts.frames += batch.len() as u64;
         self.counts.bytes += batch.iter().map(|(_, packet)| packet.len() as u64).sum::<u64>();
-        // The host speaks to all in parts of the world only.
+        // The host sends to all only parts of the world.
         let snapshot = batch.iter().any(|(to, packet)| *to == To::All && from_host(packet));
         if !snapshot {
             for frame in batch {
@@ -91,7 +93,7 @@ impl Outbox {
         let sender = claimed_sender(&packet);
         let same = |(known, old): &(To, Packet)| *known == to && claimed_sender(old) == sender;
         if let Some(old) = self.side.iter_mut().find(|old| same(old)) {
-            // It keeps its turn.
+            // It keeps its place in the queue.
             old.1 = packet;
             self.counts.side_dropped += 1;
             return;
@@ -119,17 +121,18 @@ impl Outbox {
         self.going.pop_front()
     }
 
-    /// True once after the first snapshot with HALT came: what the link has taken and not sent is to be thrown away.
+    /// True once after the first snapshot with HALT came: frames that the link has taken and not sent are to
+    /// be discarded.
     pub fn take_discard(&mut self) -> bool {
         std::mem::take(&mut self.discard)
     }
 
-    /// Frames that wait.
+    /// Number of frames that wait.
     pub fn waiting(&self) -> usize {
         self.going.len() + self.next.as_ref().map_or(0, Vec::len) + self.side.len()
     }
 
-    /// What became of what was put in.
+    /// The counts so far.
     pub fn counts(&self) -> OutCounts {
         self.counts
     }
@@ -141,7 +144,7 @@ mod tests {
 
     use super::*;
 
-    /// A frame with that sender's number; `mark` tells it from others.
+    /// A frame with that sender's number; `mark` distinguishes it from others.
     fn frame(to: To, sender: u8, mark: u8) -> (To, Packet) {
         let mut bytes = [0; 40];
         (bytes[2], bytes[39]) = (sender, mark);
@@ -179,7 +182,7 @@ mod tests {
             assert!(outbox.waiting() <= 8 + 8 + 6, "{}", outbox.waiting());
         }
         assert_eq!(taken.len(), 100);
-        // Every snapshot that began was finished, in order, and each was the newest when it began.
+        // Every snapshot whose sending started was finished, in order, and each was the newest at its start.
         let snapshots: Vec<_> = taken.iter().filter(|(_, packet)| packet[2] >= HOST).collect();
         for frames in snapshots.chunks_exact(8) {
             assert!(frames.iter().all(|frame| mark(frame) == mark(frames[0])));
@@ -199,7 +202,7 @@ mod tests {
 
     #[test]
     fn halt_that_goes_on_is_sent_to_every_robot_too() {
-        // A HALT every time that one frame goes out: no robot starves behind the first ones.
+        // A HALT after each frame sent: no robot starves behind the first ones.
         let mut outbox = Outbox::default();
         let mut served = [0; 6];
         for number in 0..200 {

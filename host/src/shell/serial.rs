@@ -1,8 +1,8 @@
 //! `serial`: robots through a base station at a serial line. Frames between zero bytes (`protocol::serial`).
 //!
-//! What the system has taken can neither be replaced nor overtaken, and how much of it waits is not to be learnt everywhere (a
-//! pseudo terminal and some USB adapters always say 0). So the link hands over no more than the line carries at its rate:
-//! at most [`LEAD`] waits behind it, and HALT throws even that away.
+//! Bytes that the system has taken can neither be replaced nor overtaken, and their number is not available
+//! on every system (a pseudo terminal and some USB adapters always report 0). So the link hands over no more
+//! than the line carries at its rate: at most [`LEAD`] waits behind it, and HALT discards even that.
 
 use std::io;
 use std::path::Path;
@@ -15,28 +15,30 @@ use serial2::SerialPort;
 use super::{LineRate, Link, LinkError};
 use crate::radio::{Relay, To};
 
-/// How long a write may wait for room: the time of one picture. What does not fit by then is old.
+/// Longest time a write may wait for room: the period of one snapshot. Bytes that do not fit by then are out
+/// of date.
 const WRITE_MAX: Duration = Duration::from_millis(10);
-/// The line has work for so long in the system's buffer: twice the period in which the link's thread looks, so that the line
-/// does not pause. At 115,200 bit/s these are 35 bytes.
+/// Transmission time kept in the system's buffer: twice the period in which the link's thread checks, so that
+/// the line does not pause. At 115,200 bit/s these are 35 bytes.
 const LEAD: Duration = Duration::from_millis(3);
-/// That the line takes less than its rate is reported this often.
+/// Interval of reports that the line takes less than its rate.
 const STUCK_EVERY: Duration = Duration::from_secs(10);
 
-/// A serial line.
+/// A base station at a serial line.
 #[derive(Debug)]
 pub struct SerialLink {
     device: String,
     port: SerialPort,
     lines: Lines,
-    /// Bytes read and not looked at yet.
+    /// Bytes read and not decoded yet.
     read: Vec<u8>,
-    /// A line broke off: the next begins with a zero, so that the other side finds it.
+    /// A line broke off within a frame: the next frame starts with a zero, so that the receiver
+    /// resynchronises.
     broken: bool,
     baud: u32,
-    /// When the line has sent what it was given, by its rate.
+    /// When the line has sent all bytes given to it, by its rate.
     busy_until: Instant,
-    /// Writes that found no room, and when that was last reported.
+    /// Number of writes without room, and when that was last reported.
     stuck: (u32, Option<Instant>),
 }
 
@@ -61,7 +63,7 @@ impl SerialLink {
         }
     }
 
-    /// The line has so many bytes more to send.
+    /// Accounts for `bytes` more to send.
     fn give(&mut self, bytes: usize) {
         let bits = bytes as u64 * LineRate::BITS_PER_BYTE;
         let takes = Duration::from_micros((bits * 1_000_000).div_ceil(u64::from(self.baud.max(1))));
@@ -91,7 +93,7 @@ impl Link for SerialLink {
                 Ok(())
             }
             Err(error) if error.kind() == io::ErrorKind::TimedOut => {
-                // The line takes less than its rate: what waits there is stale.
+                // The line takes less than its rate: the bytes queued there are out of date.
                 self.stuck.0 = self.stuck.0.saturating_add(1);
                 self.discard();
                 Ok(())
@@ -139,7 +141,8 @@ impl Link for SerialLink {
     }
 
     fn discard(&mut self) {
-        // A line may break off within a frame: the next begins with a zero, so that the other side finds it.
+        // A line may break off within a frame: the next starts with a zero, so that the receiver
+        // resynchronises.
         let _ = self.port.discard_output_buffer();
         self.broken = true;
         self.busy_until = Instant::now();
@@ -196,7 +199,7 @@ mod tests {
 
     const SECOND: Duration = Duration::from_secs(1);
 
-    /// A line whose other end is in our hands.
+    /// A line whose other end is in the test.
     fn pair() -> (SerialPort, SerialLink) {
         let (ours, theirs) = SerialPort::pair().unwrap();
         (ours, SerialLink::over("pair", theirs, 1_000_000))

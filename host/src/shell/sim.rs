@@ -1,9 +1,9 @@
 //! `sim`: link to virtual robots in a simulator. `sim://HOST`: a process each, `onetwo virtual-robot`, that
-//! speaks radio frames with us and the league's simulation protocol with the simulator.
+//! exchanges radio frames with the host and uses the league's simulation protocol with the simulator.
 //!
-//! **Life.** They are started here, each started again a second after it ended, and told of. They end with us, however we
-//! end: the pipe to their standard input closes, and that is their sign. It also brings them the key, which no list of
-//! processes shows.
+//! **Life cycle.** The processes are started here; each is restarted a second after it ended, which is
+//! reported. They end with the host, even if it crashes: the pipe to their standard input closes. The pipe
+//! also carries the key, so that no process list contains it.
 
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -22,31 +22,32 @@ use super::udp::{receive, send};
 use super::{Link, LinkError, key};
 use crate::radio::{Relay, To};
 
-/// A robot that ended is started again after this time; its next life then has a greater epoch, which counts seconds.
+/// A robot that ended is started again after this time; its next epoch is then greater, as epochs count
+/// seconds.
 const RESTART: Duration = Duration::from_millis(1_100);
-/// A robot that ended this often in a row within [`SHORT`] will not do better.
+/// A robot that ended this often in a row within [`SHORT`] is not restarted.
 const GIVE_UP: u32 = 5;
-/// A life shorter than this is none.
+/// A process that ran for less than this counts as failed.
 const SHORT: Duration = Duration::from_secs(3);
-/// How often it is looked whether all live.
+/// Interval of checks whether all processes run.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Which robots to start, and how.
 #[derive(Clone, Debug)]
 pub struct SimSettings {
-    /// The program that has the verb `virtual-robot`; this one, mostly.
+    /// The program that has the verb `virtual-robot`; usually this one.
     pub program: PathBuf,
-    /// Our colour.
+    /// The colour our robots play with.
     pub colour: Colour,
-    /// The league played.
+    /// The league, which sets field and rules.
     pub league: League,
-    /// Which robots.
+    /// Numbers of the robots to start.
     pub robots: Vec<RobotId>,
     /// Where the simulator takes our robots' commands: port 10301 for blue, 10302 for yellow.
     pub simulator: SocketAddr,
-    /// The team's key.
+    /// The team's key, sent to each process.
     pub key: TeamKey,
-    /// More words for each robot's command line: library, settings.
+    /// More arguments for each robot's command line: library, settings.
     pub more: Vec<OsString>,
 }
 
@@ -74,7 +75,7 @@ struct Robot {
 }
 
 impl SimLink {
-    /// Starts all robots.
+    /// Starts the processes of all robots.
     pub fn start(settings: SimSettings) -> Result<Self, LinkError> {
         let system = |error| LinkError::Socket { doing: "open a socket for virtual robots".into(), error };
         let socket = UdpSocket::bind("127.0.0.1:0").map_err(system)?;
@@ -98,12 +99,12 @@ impl SimLink {
         Ok(link)
     }
 
-    /// How often a robot had to be started again, all together.
+    /// Number of restarts of robots' processes in total.
     pub fn restarts(&self) -> u32 {
         self.robots.iter().map(|robot| robot.restarts).sum()
     }
 
-    /// The process of each robot that lives.
+    /// The process of each running robot.
     pub fn processes(&self) -> impl Iterator<Item = (RobotId, u32)> {
         self.robots.iter().filter_map(|robot| Some((robot.id, robot.process.as_ref()?.id())))
     }
@@ -113,7 +114,7 @@ impl SimLink {
         let settings = &self.settings;
         let start = |error| LinkError::Start { program: settings.program.display().to_string(), error };
         let mut command = Command::new(&settings.program);
-        // Ctrl-C in a terminal reaches a whole group: robots must live on until their host has halted them.
+        // Ctrl-C in a terminal reaches a whole group: robots must run until their host has halted them.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut process = command
@@ -127,7 +128,7 @@ impl SimLink {
             .spawn()
             .map_err(start)?;
         if let Some(pipe) = &mut process.stdin {
-            // Where it has ended already, that is seen at the next look.
+            // If it has ended already, the next check detects it.
             let _ = writeln!(pipe, "{}", key::format(&settings.key));
         }
         robot.process = Some(process);
@@ -135,7 +136,7 @@ impl SimLink {
         Ok(())
     }
 
-    /// Sees who has ended, and starts whom it is time for.
+    /// Detects processes that have ended, and starts those that are due.
     fn look(&mut self) -> Result<(), LinkError> {
         let now = Instant::now();
         if now.duration_since(self.looked) < LOOK {
@@ -171,7 +172,7 @@ impl SimLink {
         Ok(())
     }
 
-    /// Learns where a robot is, from a frame under its team's keys.
+    /// Learns a robot's address from a frame under its team's keys.
     fn learn(&mut self, packet: &[u8], from: SocketAddr) {
         let team = TeamId::of(self.settings.colour);
         let Ok(frame) = Frame::parse(packet, team) else { return };
@@ -224,7 +225,7 @@ impl Drop for SimLink {
     fn drop(&mut self) {
         for robot in &mut self.robots {
             if let Some(process) = &mut robot.process {
-                // The closed pipe asks it; the signal does not wait for an answer.
+                // The closed pipe makes it end; the signal does not wait for an answer.
                 drop(process.stdin.take());
                 let _ = process.kill();
                 let _ = process.wait();
@@ -258,7 +259,8 @@ mod tests {
 
     #[test]
     fn a_robot_is_spoken_to_where_its_genuine_frames_come_from() {
-        // `cat` keeps its standard input open and says nothing: it stands for a robot's process (and complains of its words).
+        // `cat` keeps its standard input open and sends nothing: it stands for a robot's process (and
+        // complains about its arguments).
         let mut link = SimLink::start(settings("cat", &[2, 4])).unwrap();
         let robot = UdpSocket::bind("127.0.0.1:0").unwrap();
         let mut end = RobotEnd::new(TeamId::of(Colour::Blue), id(4), TeamKey([3; 16]).of_robot(id(4)), 9);
@@ -281,7 +283,7 @@ mod tests {
         let mut link = SimLink::start(settings("false", &[0])).unwrap();
         let mut error = None;
         for _ in 0..200 {
-            // The second between two lives need not pass in a test.
+            // The second between two starts need not pass in a test.
             for robot in &mut link.robots {
                 robot.since -= RESTART;
             }

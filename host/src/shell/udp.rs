@@ -1,4 +1,4 @@
-//! `udp`: UDP link to robots. A datagram is a frame; one address hears them all: a base station, or the
+//! `udp`: UDP link to robots. A datagram is a frame; one address receives them all: a base station, or the
 //! robots' own broadcast or multicast group.
 
 use std::io;
@@ -11,7 +11,7 @@ use protocol::link::Packet;
 use super::{Link, LinkError};
 use crate::radio::{Relay, To};
 
-/// A socket that speaks to one address and hears everybody; who is genuine the frames themselves tell.
+/// A socket that sends to one address and receives from all; the frames are authenticated by their tags.
 #[derive(Debug)]
 pub struct UdpLink {
     socket: UdpSocket,
@@ -63,7 +63,7 @@ pub(super) fn bind(to: SocketAddr) -> Result<UdpSocket, LinkError> {
         .map_err(|error| LinkError::Socket { doing: format!("open a socket towards {to}"), error })
 }
 
-/// Sends, and forgives what passes: a full queue, or somebody who does not listen yet.
+/// Sends, and ignores temporary errors: a full queue, or a receiver that does not listen yet.
 pub(super) fn send(socket: &UdpSocket, to: SocketAddr, bytes: &[u8]) -> Result<(), LinkError> {
     match socket.send_to(bytes, to) {
         Ok(_) => Ok(()),
@@ -72,12 +72,12 @@ pub(super) fn send(socket: &UdpSocket, to: SocketAddr, bytes: &[u8]) -> Result<(
     }
 }
 
-/// The next datagram that can be a frame, and whose it is.
+/// The next datagram that can be a frame, and its sender.
 pub(super) fn receive(socket: &UdpSocket, wait: Duration) -> Result<Option<(Packet, SocketAddr)>, LinkError> {
     let broken = |error| LinkError::Socket { doing: "receive from robots".into(), error };
     // A time of zero would mean for ever.
     socket.set_read_timeout(Some(wait.max(WAIT_MIN))).map_err(broken)?;
-    // One byte more than a frame has: a longer datagram is seen to be one.
+    // One byte more than a frame has, so that a longer datagram is detected.
     let mut bytes = [0; FRAME_LEN_MAX + 1];
     match socket.recv_from(&mut bytes) {
         Ok((len, from)) => {
@@ -93,7 +93,7 @@ fn passes(kind: io::ErrorKind) -> bool {
     matches!(kind, ConnectionRefused | ConnectionReset | Interrupted | TimedOut | WouldBlock)
 }
 
-/// The shortest wait that a socket can be told.
+/// The shortest wait that a socket accepts.
 const WAIT_MIN: Duration = Duration::from_micros(1);
 
 #[cfg(test)]
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn nobody_listening_is_no_error_and_an_unknown_host_says_what_to_give() {
-        // A port that was just given back: nobody listens there.
+        // A port that was just closed: no socket listens there.
         let free = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
         let mut link = UdpLink::open(&free.to_string()).unwrap();
         for _ in 0..3 {

@@ -1,9 +1,11 @@
-//! `bench`: which of our robots leave the field while we have more of them than we may, and where they wait. Attack frame, m.
+//! `bench`: which of our robots leave the field while there are more than allowed, and where they wait.
+//! Attack frame, m.
 //!
-//! Rules of 2026, chapter on substitution, and the league's game controller, which counts every robot outside the goal
-//! substitution area ([`rules::FieldSpec::goal_substitution_area`]). Where the field has that area (division A, and every field of
-//! which vision tells one) a robot drives there and does not count any more; it needs no person, and comes back by itself. Where there is
-//! none (division B) it waits in the centre substitution area for its robot handler, who may take it out while the game runs.
+//! Rules of 2026, chapter on substitution, and the league's game controller, which counts every robot outside
+//! the goal substitution area ([`rules::FieldSpec::goal_substitution_area`]). Where the field has that area
+//! (division A, and every field for which vision sends one) a robot drives there and does not count any more;
+//! it needs no robot handler, and comes back by itself. Where there is none (division B) it waits in the
+//! centre substitution area for its robot handler, who may take it out while the game runs.
 
 use geometry::{Angle, Attack, GoalEnd, Point};
 use protocol::{Duration, Instant, RobotId};
@@ -22,13 +24,15 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// Who must not play now; `first` goes for the ball or takes our restart, and is sent only where no other robot can be.
+    /// Chooses robots that must not play now; `first` goes for the ball or takes our restart, and is sent
+    /// only where no other robot can be.
     ///
-    /// The keeper is never sent. Who is off stays off, so that a card costs one way out and one way back.
+    /// The keeper is never sent. A robot that is off stays off, so that a card costs one drive out and one
+    /// back.
     pub(super) fn choose(&mut self, view: &View, first: Option<RobotId>) -> &[RobotId] {
         self.off.retain(|id| *id != view.keeper && view.our(*id).is_some());
-        // Robots that never answered cannot leave, and a team that leaves in their place is off the field for nothing: people, who
-        // put them there, carry them off.
+        // Robots that never answered cannot leave, and sending others in their place does not help: staff
+        // placed them there and must remove them.
         let silent = view.uncommanded.saturating_sub(view.strangers);
         let surplus = (view.ours.len() + silent).saturating_sub(view.allowed);
         while self.off.len() < surplus {
@@ -45,7 +49,7 @@ impl Bench {
         &self.off
     }
 
-    /// The orders of those that are off: where they wait, each at a place of its own.
+    /// The orders of those that are off: each waits at a place of its own.
     pub(super) fn orders(&self, view: &View) -> heapless::Vec<Order, ROBOTS_MAX> {
         let mut free = waiting_places(view);
         let mut orders = heapless::Vec::new();
@@ -66,7 +70,7 @@ impl Bench {
         orders
     }
 
-    /// The next one to leave: who can be out soonest, and is not needed at the ball or in a case.
+    /// The next robot to leave: the one that can be out soonest, and is not needed at the ball or in a case.
     fn next(&self, view: &View, first: Option<RobotId>) -> Option<RobotId> {
         let places = waiting_places(view);
         let cost = |robot: &Robot| {
@@ -84,7 +88,7 @@ impl Bench {
     }
 }
 
-/// Where robots may wait now, off the ball and out of the way of a placement.
+/// Where robots may wait now, off the ball and clear of a placement.
 fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     let (half_length, touch) = (view.field.length * 0.5, view.field.width * 0.5);
     let penalty = match view.phase {
@@ -93,16 +97,16 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     };
     let area = view.field.goal_substitution_area(GoalEnd::Negative).is_some();
     let (from, to) = match penalty {
-        // At a penalty the controller wants every robot 1 m behind the ball, wherever else it may be: in the margin they
-        // are in nobody's way.
+        // At a penalty the controller requires every robot 1 m behind the ball, with no other condition: in
+        // the margin they obstruct no robot.
         Some(side) if side == Side::Theirs || !area => {
             let back = if side == Side::Ours { -1.0 } else { 1.0 };
-            // Where the ball will lie: a ball that is still on its way there tells nothing.
+            // Where the ball will lie: the present place of a ball that still moves there has no meaning.
             let x = restart::penalty_spot(view, side == Side::Ours).x() + back * BEHIND_PENALTY;
             let y = touch + view.field.margin * 0.5;
             (Point::new(x, y), Point::new(x + back * SPACING * BESIDE as f32, y))
         }
-        // In the middle of where all of the body is in the area, and beside goal and defence area.
+        // In the middle of where the whole body is in the area, and beside goal and defence area.
         _ if area => {
             let x = half_length + view.field.goal_line_margin - view.field.goal_substitution * 0.5;
             let from = (view.field.goal_width * 0.5 + view.field.goal_wall + limits::ROBOT_RADIUS)
@@ -126,28 +130,28 @@ fn waiting_places(view: &View) -> heapless::Vec<Point<Attack>, PLACES_MAX> {
     both.filter(clear).collect()
 }
 
-/// Fewer robots of ours must have been allowed on the field for so long before one comes back: a robot that vision lost for a
-/// moment calls none back.
+/// Fewer robots of ours must have been allowed on the field for this time before one comes back: a robot that
+/// vision lost for a moment calls none back.
 const RETURN_AFTER: Duration = Duration::millis(1000);
 /// Places on both sides together, at most.
 const PLACES_MAX: usize = 32;
-/// From one waiting robot's centre to the next one's, m: two radii and room for a hand.
+/// From one waiting robot's centre to the next one's, m: two radii and room for a robot handler's hand.
 const SPACING: f32 = 0.25;
 /// Places on each side at a penalty.
 const BESIDE: usize = 4;
-/// From the goal's wall or the defence area to the first place, m: room for those who defend.
+/// From the goal's wall or the defence area to the first place, m: room for defenders.
 const BESIDE_AREA: f32 = 0.35;
-/// From the carpet's wall to a robot's side, m: as exactly as robots stop.
+/// From the field's wall to a robot's side, m: the accuracy with which robots stop.
 const FROM_WALL: f32 = 0.05;
-/// From the halfway line, m: the controller takes a robot nearer than its radius for one in the other half.
+/// From the halfway line, m: the controller counts a robot nearer than its radius as in the other half.
 const FROM_HALFWAY_LINE: f32 = 0.3;
 /// Behind the ball at a penalty, m: the rules' 1 m, a body and a margin.
 const BEHIND_PENALTY: f32 = 1.3;
-/// What it is worth, in m of way, that who goes for the ball goes on.
+/// Cost of replacing the robot that goes for the ball, in m of path.
 const FIRST_COST: f32 = 20.0;
-/// The same for who plays a case.
+/// The same for a robot that plays a case.
 const PLAYING_COST: f32 = 5.0;
-/// No way out is longer, m: twice division A's diagonal.
+/// Longer than every path out of the field, m: twice division A's diagonal.
 const FARTHEST: f32 = 30.0;
 
 #[cfg(test)]

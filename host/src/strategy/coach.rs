@@ -1,10 +1,12 @@
 //! `coach`: the plan for each phase of the game: one order per robot of ours, every time the world model
 //! changes (docs/architecture.md §3.3).
 //!
-//! In open play the keeper guards, two defenders stand before the area, and whoever is first at the ball shoots or passes where that is
-//! worth it; else it and everybody left play cases, which the robots choose among themselves. While the ball is not in play everything is said from here. The coach remembers who had which role (so that nobody
-//! flickers), since when the phase lasts, and who took our restart (it must not touch the ball twice). [`Tactics`] says which parts of
-//! the second paper it uses.
+//! In open play the keeper guards, two defenders stand before the area, and the robot that is first at the
+//! ball shoots or passes where that is worth it; else it and all remaining robots play cases, which the
+//! robots choose among themselves. While the ball is not in play the coach orders every robot. It remembers
+//! which robot had which role (so that roles do not flicker), since when the phase lasts, and which robot
+//! took our restart (it must not touch the ball twice). [`Tactics`] selects which parts of the second paper
+//! it uses.
 
 mod ahead;
 mod attack;
@@ -41,7 +43,7 @@ use plan::Plan;
 pub type Orders = heapless::Vec<Order, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
-/// A pass on its way.
+/// A pass whose ball is moving.
 #[derive(Clone, Copy, Debug)]
 struct Pass {
     receiver: RobotId,
@@ -51,31 +53,31 @@ struct Pass {
     since: Instant,
 }
 
-/// Places for a pass that stand for a while.
+/// Places for a pass that are kept for a while.
 #[derive(Clone, Debug)]
 struct Settled {
     /// Where the ball is, or will be.
     from: Point<Attack>,
     since: Instant,
-    /// With their worth.
+    /// The places with their values, 0–1.
     places: heapless::Vec<(Point<Attack>, f32), ROBOTS_MAX>,
 }
 
-/// Chooses what everybody does; see [`Coach::decide`].
+/// Chooses an order for every robot; see [`Coach::decide`].
 #[derive(Clone, Debug)]
 pub struct Coach {
     team: Team,
     /// Another team's open play, where it is not ours.
     rival: Option<Rival>,
     tactics: Tactics,
-    /// How balls are kicked and roll, for what passes are worth.
+    /// Models of kicks and rolling balls, for the values of passes.
     kicks: Kicks,
     searches: Searches,
     threats: threat::Memory,
     bench: Bench,
     phase: Option<Phase<Side>>,
     since: Instant,
-    /// Who goes for the ball, or takes our restart.
+    /// The robot that goes for the ball, or takes our restart.
     first: Option<RobotId>,
     defenders: [Option<RobotId>; 2],
     others: [Option<RobotId>; OTHERS],
@@ -84,32 +86,32 @@ pub struct Coach {
     /// The pass ahead that our restart is to be.
     ahead: Option<Ahead>,
     cap: Cap,
-    /// A pass ahead did not come off in time at this restart.
+    /// A pass ahead was not completed in time at this restart.
     gave_up: bool,
-    /// How near to its place the ball has come in our placement, m, and when.
+    /// The ball's distance to its place in our placement, m, and since when.
     placing: Option<(f32, Instant)>,
-    /// The ball is theirs.
+    /// Whether opponents have the ball.
     attacked: bool,
-    /// The pass of our restart that is on its way.
+    /// The pass of our restart that is under way.
     pass: Option<Pass>,
     /// Where the ball of our restart lay.
     ball_lay: Option<Point<Attack>>,
-    /// A pass that has just left, until somebody asks.
+    /// A pass that has just left, until the caller takes it.
     sent: Option<Sent>,
-    /// Took our restart; nobody else has touched the ball since.
+    /// The robot that took our restart, until another robot touches the ball.
     barred: Option<RobotId>,
-    /// What the ball of open play is meant for.
+    /// The shot, pass or case chosen for the ball of open play.
     intent: Option<Intent>,
-    /// Whether the ball that lies before our area is the keeper's.
+    /// Whether the ball that is before our area is left to the keeper.
     keepers: Option<bool>,
     /// Where supporters stand while the ball is not in play.
     settled: Option<Settled>,
-    /// Where the ball is cleared to that lies in our area or before it.
+    /// Target of the clearance of a ball in our area or before it.
     clearing: Option<Clearing>,
 }
 
 impl Coach {
-    /// Of that team, by a league's rules; ours plays with these tactics, others with none.
+    /// The coach of `team`, by a league's rules; `tactics` applies to our own team only.
     pub fn new(team: Team, tactics: Tactics, league: League) -> Self {
         Self {
             team,
@@ -141,7 +143,7 @@ impl Coach {
         }
     }
 
-    /// Balls move like that along this field's ground.
+    /// Sets the model of balls on this field's ground.
     pub fn set_ground(&mut self, ground: BallModel) {
         self.kicks = Kicks::new(*self.kicks.constants(), ground, ChipModel::default());
     }
@@ -153,7 +155,7 @@ impl Coach {
         if stands || off.is_empty() {
             return self.direct(view);
         }
-        // Who is off the field takes no part: no role, no pass, no place.
+        // A robot off the field takes no part: no role, no pass, no place.
         let playing = view.without(off);
         let leaving = self.bench.orders(view);
         let mut orders = self.direct(&playing);
@@ -190,7 +192,7 @@ impl Coach {
         plan.orders
     }
 
-    /// Phase, its age, and who must not touch the ball.
+    /// Updates phase, its age, and the robot that must not touch the ball.
     fn remember(&mut self, view: &View) {
         if self.phase != Some(view.phase) {
             let taken = matches!(
@@ -236,7 +238,7 @@ impl Coach {
         }
     }
 
-    /// The pass that has left since this was last asked.
+    /// The pass that has left since the last call.
     pub fn take_sent(&mut self) -> Option<Sent> {
         self.sent.take()
     }
@@ -245,15 +247,16 @@ impl Coach {
         view.now.since(self.since)
     }
 
-    /// Everybody left, to places where a pass can come; off the ball while it is not in play.
+    /// Sends all remaining robots to places where a pass can come; off the ball while it is not in play.
     fn spread(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         let from = view.placement.or(view.ball.map(|ball| ball.position)).unwrap_or_default();
         self.support(plan, from);
     }
 
-    /// Everybody left, to the best places for a pass from `from`. While the ball is not in play they are held for a while: the opponents
-    /// stand where ours are, and ours go where they are not, so that both would run for as long as it lasts.
+    /// Sends all remaining robots to the best places for a pass from `from`. While the ball is not in play
+    /// they are held for a while: the opponents stand where our robots are, and ours go where they are not,
+    /// so that both would move for the whole stop.
     fn support(&mut self, plan: &mut Plan<'_>, from: Point<Attack>) {
         let (view, wanted) = (plan.view, plan.free.len());
         let settled = self.settled.take().filter(|settled| {
@@ -275,7 +278,7 @@ impl Coach {
         });
     }
 
-    /// Robots left to places in order; who had a place keeps it.
+    /// Sends remaining robots to places in order; a robot that had a place keeps it.
     fn fill(&mut self, plan: &mut Plan<'_>, places: &[Point<Attack>], what: impl Fn(usize) -> (Role, Why)) {
         let places: heapless::Vec<_, ROBOTS_MAX> = places.iter().map(|at| plan.kept_off(*at)).collect();
         let wanted = places.len().min(plan.free.len());
@@ -289,22 +292,22 @@ impl Coach {
     }
 }
 
-/// Most robots that are given a place in order: all field players, as behind a penalty of the opponents.
+/// Most robots that get a place in order: all field players, as behind a penalty of the opponents.
 const OTHERS: usize = 10;
-/// A robot's centre this near the ball touches it, m: radii of body and ball, and a centimetre and a half.
+/// A robot's centre this near the ball touches it, m: radii of body and ball, and 0.015 m.
 const TOUCHING: f32 = 0.126;
 /// A pass is not waited for longer: 5 m take 2.5 s.
 const PASS_LASTS: Duration = Duration::millis(3000);
-/// It has not begun before this: the ball is known to have moved, but not yet how fast.
+/// Before this its speed is not used: the ball is known to have moved, but not yet how fast.
 const PASS_BEGINS: Duration = Duration::millis(300);
-/// A ball slower than this goes nowhere any more, m/s.
+/// A ball slower than this counts as stopped, m/s.
 const PASS_STOPPED: f32 = 0.3;
 
-/// Places hold while the ball, or where it is placed, is within this of where it was, m …
+/// Places are kept while the ball, or where it is placed, is within this of where it was, m …
 const SETTLED_FROM: f32 = 0.5;
-/// … and no longer than this: to walk half of division A's field and stand.
+/// … and no longer than this: to cross half of division A's field and stop.
 const SETTLED_FOR: Duration = Duration::millis(6000);
-/// Searches for places start from it: one seed, one match.
+/// Seed of all searches for places: one seed, one match.
 const SEARCH_SEED: u64 = 1;
 
 #[cfg(test)]

@@ -7,19 +7,19 @@ use protocol::host::KickOrder;
 use super::order::{Task, Why};
 use super::view::{Ball, View, nearest};
 
-/// The stretch on which the keeper meets the ball: before the mouth of our goal, post to post.
+/// The line on which the keeper blocks the ball: before the opening of our goal, post to post.
 pub fn keeper_line(view: &View) -> Task {
     let (x, half) = (view.our_goal().x() + KEEPER_OUT, view.field.goal_width * 0.5);
     Task::Block { from: Point::new(x, -half), to: Point::new(x, half) }
 }
 
-/// On the goal line itself, as the rules want it at a penalty.
+/// On the goal line itself, as the rules require at a penalty.
 pub fn keeper_on_goal_line(view: &View) -> Task {
     let (x, half) = (view.our_goal().x(), view.field.goal_width * 0.5);
     Task::Block { from: Point::new(x, -half), to: Point::new(x, half) }
 }
 
-/// What the keeper does in open play: clears a ball that lies in our area, else guards.
+/// The keeper's task in open play: clears a ball that lies in our area, else guards.
 pub fn keeper(view: &View) -> (Task, Why) {
     let Some(ball) = view.ball else { return (keeper_line(view), Why::NoBall) };
     let slow = ball.velocity.norm() < LYING && ball.height < ON_THE_GROUND;
@@ -30,13 +30,13 @@ pub fn keeper(view: &View) -> (Task, Why) {
     (keeper_line(view), Why::OnBallLine { y: crossing(view, &ball) })
 }
 
-/// Where the ball would cross our goal line on its way, or straight to the middle while it does not come.
+/// Where the ball's path would cross our goal line, or the ball's line to the middle while it does not come.
 fn crossing(view: &View, ball: &Ball) -> f32 {
     let (goal, v) = (view.our_goal(), ball.velocity);
     if v.x() < -LYING { ball.position.y() + v.y() * (goal.x() - ball.position.x()) / v.x() } else { goal.y() }
 }
 
-/// Where to clear a ball to, how, and with how much room: to the mate or the wing with the freest way.
+/// Target, kick and room of a clearance: to the teammate or the wing with the freest path.
 pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
     let wings = [1.0_f32, -1.0].map(|side| {
         Point::new(ball.position.x() + CLEAR_AHEAD, side * (view.field.width * 0.5 - CLEAR_INSIDE))
@@ -52,8 +52,8 @@ pub fn clearance(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// The same for a ball that lies before our area: away from the goal, so that the keeper comes up to it from its goal and stays
-/// between the two; turned by up to 30° to where there is room.
+/// The same for a ball that lies before our area: away from the goal, so that the keeper approaches it from
+/// its goal and stays between the two; turned by up to 30° to where there is room.
 pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder, f32) {
     let out = (ball.position - view.our_goal()).unit().unwrap_or(Vector::new(1.0, 0.0));
     let turned = |turn: f32| {
@@ -67,8 +67,8 @@ pub fn clearance_outwards(view: &View, ball: &Ball) -> (Point<Attack>, KickOrder
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// The same for a field player: it may not stand in our area, so the ball goes out where there is room to line up behind it, else along
-/// the area's edge. `off` is how far from the area the robot's centre stays, m.
+/// The same for a field player: it may not stand in our area, so the ball goes out where there is room to
+/// line up behind it, else along the area's edge. `off`: distance of the robot's centre from the area, m.
 pub fn clearance_beside(
     view: &View,
     who: &super::view::Robot,
@@ -97,13 +97,14 @@ pub fn clearance_beside(
     (at, clearing_kick(ball, at, room), room)
 }
 
-/// Rolls to the target, and no farther than the halfway line: across it and over their goal line would be aimless.
+/// Rolls to the target, and no farther than the halfway line: a kick across it and over their goal line
+/// counts as an aimless kick.
 fn clearing_kick(ball: &Ball, at: Point<Attack>, room: f32) -> KickOrder {
     let flat = super::support::push_kick(at.distance(ball.position));
     if room > ROOM_FOR_FLAT { flat } else { KickOrder::Chip(CLEAR_CHIP) }
 }
 
-/// Distance of the nearest opponent from the way of a ball, m; at most a metre.
+/// Distance of the nearest opponent from the path of a ball, m; at most a metre.
 pub fn room_along(view: &View, from: Point<Attack>, to: Point<Attack>) -> f32 {
     let way = geometry::Segment::new(from, to);
     view.theirs.iter().map(|robot| way.distance_to(robot.position)).fold(ROOM_ENOUGH, f32::min)
@@ -131,7 +132,8 @@ pub fn defenders(view: &View) -> ([Point<Attack>; 2], Why) {
     ([edge.point(middle + off), edge.point(middle - off)], Why::OnBallLine { y: crossing(view, &ball) })
 }
 
-/// The edge of our area, grown by [`EDGE`]: from the goal line at −y around to the goal line at +y, by its length.
+/// The edge of our area, grown by [`EDGE`]: from the goal line at −y around to the goal line at +y, by its
+/// length.
 struct Edge {
     goal: Point<Attack>,
     depth: f32,
@@ -148,7 +150,7 @@ impl Edge {
         2.0 * (self.depth + self.half)
     }
 
-    /// How far along the edge a point of it lies, m.
+    /// Distance along the edge of a point on it, m.
     fn along(&self, p: Point<Attack>) -> f32 {
         let (out, y) = (p.x() - self.goal.x(), p.y());
         if out >= self.depth - 1e-4 {
@@ -173,7 +175,7 @@ impl Edge {
     }
 }
 
-/// Where the ray from our goal's middle leaves our area, grown by what keeps a robot out of it.
+/// Where the ray from our goal's middle leaves our area, grown by the distance that keeps a robot outside.
 fn at_edge(view: &View, direction: Vector<Attack>) -> Point<Attack> {
     let (depth, half) = (view.field.penalty_depth + EDGE, view.field.penalty_width * 0.5 + EDGE);
     let (x, y) = (direction.x().max(1e-3), direction.y());
@@ -181,7 +183,7 @@ fn at_edge(view: &View, direction: Vector<Attack>) -> Point<Attack> {
     view.our_goal() + Vector::new(x, y) * share
 }
 
-/// Places between opponents and our goal, for the opponents nearest to it that nobody marks.
+/// Places between opponents and our goal, for the unmarked opponents nearest to it.
 pub fn marks(view: &View) -> heapless::Vec<(Point<Attack>, protocol::RobotId), { super::view::ROBOTS_MAX }> {
     let goal = view.our_goal();
     let danger = |robot: &super::view::Robot| robot.position.distance(goal);
@@ -201,7 +203,7 @@ pub fn marks(view: &View) -> heapless::Vec<(Point<Attack>, protocol::RobotId), {
     them.iter().map(place).collect()
 }
 
-/// Whether an opponent could have the ball before `ours`, s ahead.
+/// Whether an opponent could have the ball before time `ours`, s from now.
 pub fn contested(view: &View, ours: f32) -> bool {
     let Some(ball) = view.ball else { return false };
     nearest(view.theirs.iter(), ball.rest)
@@ -210,46 +212,49 @@ pub fn contested(view: &View, ours: f32) -> bool {
 
 /// The keeper's line lies this far before the goal line, m: a body, so that the posts do not stop it.
 const KEEPER_OUT: f32 = 0.15;
-/// A ball slower than this can be kicked as it lies, m/s.
+/// A ball slower than this can be kicked without stopping it, m/s.
 pub(super) const LYING: f32 = 0.8;
 /// A ball lower than this can be kicked, m: below a robot's height.
 const ON_THE_GROUND: f32 = 0.1;
-/// How far ahead of the ball a clearance to the wing goes, m.
+/// Distance of a clearance to the wing ahead of the ball, m.
 const CLEAR_AHEAD: f32 = 2.5;
 /// A clearance from before the area turns from straight out by this much, rad: 30°.
 const CLEAR_TURN: f32 = core::f32::consts::FRAC_PI_6;
-/// The ways that a field player clears, to either side, in steps of so many degrees: up to 105° from straight out.
+/// Number of directions in which a field player may clear to either side, in steps of [`CLEAR_STEP_DEG`]
+/// degrees: up to 105° from straight out.
 const CLEAR_TURNS: i16 = 7;
 const CLEAR_STEP_DEG: f32 = 15.0;
 /// A step must gain more room than this, m.
 const CLEAR_TURN_COSTS: f32 = 0.02;
-/// So much room must be gained for a metre more to where it lines up.
+/// Room that must be gained per metre of additional path to where it lines up.
 const CLEAR_WAY_COSTS: f32 = 0.6;
 /// Two robots side by side, m.
 const BODIES: f32 = 0.2;
 /// A robot's centre is this far behind the ball where it lines up, m (`brain`'s get_ball).
 const LINES_UP: f32 = 0.165;
-/// How far inside the side line, m.
+/// Distance inside the side line, m.
 const CLEAR_INSIDE: f32 = 0.6;
-/// A mate nearer than this gains nothing from a clearance, m.
+/// A clearance to a teammate nearer than this is not tried, m.
 const CLEAR_AT_LEAST: f32 = 1.2;
-/// With this much room the ball goes along the ground, m: an opponent's reach in the half second that it takes.
+/// From this room on the ball is kicked along the ground, m: an opponent's reach in the half second that it
+/// takes.
 const ROOM_FOR_FLAT: f32 = 0.35;
 /// cm/s, 3-D: at 45° the first hop is v²/g = 1.6 m.
 const CLEAR_CHIP: u16 = 400;
-/// More room than this counts no more, m.
+/// Room above this gives no further value, m.
 const ROOM_ENOUGH: f32 = 1.0;
 /// The ball counts as at least this far before our goal line when defenders place themselves, m.
 const MIN_AHEAD: f32 = 0.15;
-/// Defenders' centres stand this far outside the area, m: a body (0.09) and what tracking and control err by.
+/// Defenders' centres stand this far outside the area, m: a body (0.09) and the error of tracking and
+/// control.
 pub const EDGE: f32 = 0.13;
-/// Each of two defenders stands this far beside the line, m: bodies side by side, with a finger between.
+/// Each of two defenders stands this far beside the line, m: bodies side by side, with a margin between.
 const SHOULDER: f32 = 0.105;
 /// Opponents beyond this are not marked, m: in their own half.
 const MARK_UP_TO: f32 = 0.5;
 /// A marker stands this far from its opponent, m: two bodies and room to brake.
 const MARK_OFF: f32 = 0.35;
-/// An opponent this near the ball plays it: the wall and the defenders look after it, m.
+/// An opponent this near the ball plays it: the wall and the defenders cover it, m.
 const AT_BALL: f32 = 0.4;
 
 #[cfg(test)]
@@ -268,7 +273,7 @@ mod tests {
             }
             assert!(places[0].distance(places[1]) > 0.18, "{ball:?}: bodies do not touch {places:?}");
         }
-        // Straight ahead: 1.13 m before the goal, a shoulder to either side.
+        // Straight ahead: 1.13 m before the goal, `SHOULDER` to either side.
         let (places, _) = defenders(&view((0.0, 0.0), &[], &[]));
         assert!((places[0].x() + 3.37).abs() < 1e-3 && (places[0].y() - SHOULDER).abs() < 1e-2, "{places:?}");
     }

@@ -1,13 +1,14 @@
-//! `strategy`: team strategy: an order for every robot. A team that plays by the rules: keeper, two
-//! defenders, the others by cases (docs/architecture.md §3.3).
+//! `strategy`: an order for every robot, within the rules: keeper, two defenders, the others by cases
+//! (docs/architecture.md §3.3).
 //!
-//! [`view`] is the field as strategy sees it, turned so that we attack towards +x (the one place that flips); [`roles`] says
-//! who is what and keeps it from flickering; [`defence`], [`restart`] and [`support`] say where that is; [`Coach`] chooses among them
-//! by the phase of the game. Every [`Order`] carries why. SI units, attack frame.
+//! [`view`] is the strategy's view of the field, turned so that we attack towards +x (the only module that
+//! flips); [`roles`] assigns the roles without flicker; [`defence`], [`restart`] and [`support`] give the
+//! places; [`Coach`] chooses among them by the phase of the game. Every [`Order`] carries its reason. SI
+//! units, attack frame.
 //!
-//! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its planner of free kicks; [`Tactics`] says which of them the coach
-//! plays.
-//! [`opponents`] are other teams' open play, to measure ours by.
+//! [`pass`] is the second paper's choice and timing of passes, [`threat`] is its defence and [`coerce`] its
+//! planner of free kicks; [`Tactics`] selects which of them the coach plays. [`opponents`] are other teams'
+//! open play, as a reference for ours.
 
 mod bench;
 mod coach;

@@ -11,23 +11,23 @@ use protocol::{CaseId, RobotId};
 use super::threat::Guards;
 use super::view::Flip;
 
-/// What one robot shall do, and why.
+/// The order of one robot, with its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Order {
-    /// Who.
+    /// The robot.
     pub robot: RobotId,
-    /// What it is.
+    /// Its role.
     pub role: Role,
-    /// What it does.
+    /// Its task.
     pub task: Task,
-    /// What decided it.
+    /// The reason.
     pub why: Why,
 }
 
-/// What a robot is in the team at this moment.
+/// A robot's role in the team at this moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Guards the goal; alone may be in our defence area.
+    /// Guards the goal; only the keeper may be in our defence area.
     Keeper,
     /// At the edge of our defence area, between ball and goal: 0 the first, 1 the second.
     Defender(u8),
@@ -35,9 +35,9 @@ pub enum Role {
     Player,
     /// Takes our restart, or places the ball.
     Taker,
-    /// Has the pass of our restart.
+    /// Receives the pass of our restart.
     Receiver,
-    /// Took our restart and must not touch the ball before somebody else has.
+    /// Took our restart and must not touch the ball before another robot has.
     Barred,
     /// Draws an opponent away before our free kick.
     Coercer,
@@ -45,156 +45,156 @@ pub enum Role {
     Support(u8),
     /// Stands between an opponent and our goal.
     Marker(u8),
-    /// Stands in the way of their restart.
+    /// Stands on the line of their restart.
     Wall,
-    /// One too many on the field: waits in a substitution area.
+    /// One of too many on the field: waits in a substitution area.
     Leaving,
 }
 
-/// What decided an order, with its numbers; SI units, attack frame.
+/// The reason of an order, with its numbers; SI units, attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Why {
-    /// The referee's word leaves nothing else.
+    /// The referee's command requires it.
     Referee,
     /// Nearest to the ball: this many seconds away.
     SoonestAtBall {
-        /// s.
+        /// Time to the ball, s.
         seconds: f32,
     },
     /// On the line from the ball to our goal.
     OnBallLine {
-        /// Where that line meets the goal line, m.
+        /// Where that line crosses the goal line, m.
         y: f32,
     },
     /// The ball lies in our area and only the keeper may touch it.
     ClearsArea {
-        /// Room along the way of the ball, m.
+        /// Room along the path of the ball, m.
         room: f32,
     },
     /// The best free place found.
     FreePlace {
-        /// Its worth, 0–1.
+        /// Its value, 0–1.
         worth: f32,
     },
     /// This opponent is nearest to our goal and not marked.
     Marks {
-        /// Whom.
+        /// The opponent.
         opponent: RobotId,
     },
     /// The best target found for the ball.
     BestTarget {
-        /// Room along the way of the ball, m.
+        /// Room along the path of the ball, m.
         room: f32,
     },
     /// Its part in the defence against threats.
     Threat(Guards),
-    /// The likeliest pass found.
+    /// The likeliest pass found, with its probabilities.
     Chances {
         /// P(receive).
         receive: f32,
         /// P(goal | receive).
         goal: f32,
     },
-    /// The pass of a case, refined near the place that the case has for it.
+    /// The pass of a case, refined near the case's place for it.
     OfCase {
-        /// Which case.
+        /// The case.
         case: CaseId,
-        /// What the robot is in it.
+        /// The robot's part in it.
         part: CaseRobot,
-        /// How far from its own place the pass is received, m.
+        /// Distance from the case's own place to where the pass is received, m.
         moved: f32,
         /// P(receive).
         receive: f32,
         /// P(goal | receive).
         goal: f32,
     },
-    /// This opponent follows it and shall be drawn out of the way.
+    /// This opponent follows it and shall be drawn off the path.
     Coerces {
-        /// Whom.
+        /// The opponent.
         marker: RobotId,
     },
     /// Waits until coercers are in place.
     Coercing {
-        /// So many are.
+        /// Number in place.
         arrived: usize,
-        /// Of so many.
+        /// Number of coercers.
         of: usize,
     },
     /// Open play: the robots choose among themselves.
     OpenPlay,
     /// It touched the ball last at our restart.
     DoubleTouch,
-    /// No ball is seen.
+    /// The ball's place is unknown.
     NoBall,
-    /// The team is the one that only stands.
+    /// The team is the one that only stands still.
     Idle,
-    /// The referee lets us have so many.
+    /// The referee allows us fewer robots.
     TooMany {
-        /// How many.
+        /// Number of robots allowed.
         allowed: usize,
     },
 }
 
-/// A task in the attack frame; [`Task::directive`] is its form for the wire.
+/// A task in the attack frame; [`Task::directive`] is its form in the protocol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Task {
-    /// Brake and stand.
+    /// Brake and stand still.
     Stand,
-    /// Be there, facing so.
+    /// Go to a place with a heading.
     GoTo {
-        /// Where.
+        /// The place.
         at: Point<Attack>,
-        /// Facing.
+        /// The heading.
         face: Angle,
     },
-    /// Have the ball, coming up to it so as to look over it at this point.
+    /// Take the ball, approaching it so as to face this point across it.
     GetBall {
-        /// What to face.
+        /// The point to face.
         face: Point<Attack>,
     },
     /// Kick the ball at this point.
     Kick {
-        /// Where to.
+        /// The target.
         at: Point<Attack>,
-        /// How.
+        /// Kind and speed of the kick.
         kick: KickOrder,
     },
-    /// Pass to a mate.
+    /// Pass to a teammate.
     Pass {
-        /// Where it will have the ball.
+        /// Where it will receive the ball.
         at: Point<Attack>,
-        /// Who.
+        /// The receiver.
         receiver: RobotId,
-        /// How.
+        /// Kind and speed of the kick.
         kick: KickOrder,
-        /// Whether the ball may leave now.
+        /// Whether the ball may be kicked now.
         ready: bool,
     },
-    /// Have a pass here.
+    /// Receive a pass.
     Receive {
-        /// Where.
+        /// The place.
         at: Point<Attack>,
-        /// Shoot it on at this point at first touch; nothing: take it.
+        /// Shoot it at this point at first touch; none: stop it.
         then: Option<Point<Attack>>,
     },
-    /// Be where the ball would cross this stretch.
+    /// Stand where the ball would cross this line.
     Block {
-        /// One end.
+        /// One end of the line.
         from: Point<Attack>,
-        /// The other.
+        /// The other end of the line.
         to: Point<Attack>,
     },
-    /// Bring the ball there.
+    /// Bring the ball to a place.
     PlaceBall {
-        /// Where.
+        /// The place.
         at: Point<Attack>,
     },
-    /// Play cases with the mates.
+    /// Play cases with the teammates.
     Gameplay,
 }
 
 impl Task {
-    /// The task in the words of the wire, on the field.
+    /// The task as a directive of the protocol, in the field frame.
     pub fn directive(&self, flip: Flip) -> Directive {
         match *self {
             Self::Stand => Directive::Stand,
@@ -250,7 +250,7 @@ impl fmt::Display for Why {
 }
 
 impl Role {
-    /// What the rules allow a robot of this role beyond others.
+    /// The role under the rules: permissions beyond those of other robots.
     pub fn duty(self) -> Duty {
         match self {
             Self::Keeper => Duty::Keeper,

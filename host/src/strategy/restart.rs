@@ -1,6 +1,6 @@
 //! `restart`: positions while the ball is not in play, and our restarts (rules 2026: stop, kick-off, free
 //! kick, penalty, ball placement). Attack frame, m. The robots' own keep-outs hold the rules to the
-//! centimetre; here stands what is sensible within them.
+//! centimetre; this module chooses places within them.
 
 use geometry::{Angle, Attack, Point, Segment, Vector};
 
@@ -11,34 +11,37 @@ use super::order::{Task, Why};
 use super::support::{self, Target};
 use super::view::{Ball, View};
 
-/// How far everybody stays from a ball that is not in play, m: the rules' 0.5 m, a body, and what robots overshoot by and a ball
-/// kicked at them comes nearer before everybody knows that it is in play (6 m/s for 20 ms).
+/// Distance of robots from a ball that is not in play, m: the rules' 0.5 m, a body, the overshoot of robots,
+/// and the path of a ball kicked at them before all know that it is in play (6 m/s for 20 ms).
 pub const OFF_BALL: f32 = 0.78;
-/// How far behind the ball our taker waits, m.
+/// Distance behind the ball at which our taker waits, m.
 const TAKER_WAITS: f32 = 0.7;
-/// How far behind the mark all robots but taker and keeper are at a penalty, m: the rules' 1 m, a body and a margin, and room for
-/// another robot (0.23 m) to pass in front of the row on its way to its place, or for a ball that lies a little behind the mark.
+/// Distance behind the mark of all robots except taker and keeper at a penalty, m: the rules' 1 m, a body and
+/// a margin, and room for another robot (0.23 m) to pass in front of the row to its place, or for a ball that
+/// lies a little behind the mark.
 const BEHIND_PENALTY: f32 = 1.45;
 /// From the middle to the first robot that waits at a penalty, m: the taker passes between the teams.
 const PENALTY_FIRST: f32 = 0.3;
-/// Most distance between robots that wait at a penalty, m: a third passes between two of them.
+/// Largest distance between robots that wait at a penalty, m: a third passes between two of them.
 const PENALTY_APART: f32 = 0.6;
 /// From the touch line to the last place of a row behind a penalty, m: a body.
 const PENALTY_INSIDE: f32 = 0.1;
-/// Beside a body that passes between two walls, m.
+/// Margin on either side of a body that passes between two walls, m.
 const ROOM_TO_PASS: f32 = 0.04;
-/// Steps by which the way out is turned, degrees: 24 of them are once around.
+/// Step by which the direction off the ball is turned, degrees: 24 of them are a full turn.
 const TURN_STEP_DEG: f32 = 15.0;
-/// How far from the halfway line field players stand at kick-off, m: as far from an opponent as lets them take a pass.
+/// Distance of field players from the halfway line at kick-off, m: far enough from an opponent to receive a
+/// pass.
 const KICKOFF_BACK: f32 = 0.9;
 
-/// Where our taker waits for its restart from `ball`: behind it, as seen from their goal.
+/// Waiting place of our taker for its restart from `ball`: behind it, as seen from their goal.
 pub fn taker_waits(view: &View, ball: Point<Attack>) -> Point<Attack> {
     let back = (ball - view.their_goal()).unit().unwrap_or(Vector::new(-1.0, 0.0));
     view.clamp(ball + back * TAKER_WAITS, -0.1)
 }
 
-/// What our taker does with the target it has; nothing yet: it waits behind the ball for its mates to take their places.
+/// Our taker's task for its target; without one it waits behind the ball until its teammates have taken their
+/// places.
 pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
     let distance = |at: Point<Attack>| at.distance(ball.position);
     match target {
@@ -57,7 +60,7 @@ pub fn take(view: &View, ball: &Ball, target: Option<Target>) -> (Task, Why) {
     }
 }
 
-/// Places of field players at our kick-off: on our half, where the taker can pass to.
+/// Places of field players at our kick-off: on our half, within a pass of the taker.
 pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
     let (x, wing) = (-KICKOFF_BACK, view.field.width * 0.5);
     [
@@ -70,13 +73,14 @@ pub fn kickoff_places(view: &View) -> [Point<Attack>; 6] {
     ]
 }
 
-/// Where the wall stands at their restart: in the way from the ball to our goal.
+/// Place of the wall at their restart: on the line from the ball to our goal.
 pub fn wall(view: &View, ball: &Ball) -> Point<Attack> {
     let home = (view.our_goal() - ball.position).unit().unwrap_or(Vector::new(-1.0, 0.0));
     ball.position + home * OFF_BALL
 }
 
-/// Where a penalty is taken from, ours or theirs: where the referee wants the ball, or lets it lie, else the mark.
+/// Place of a penalty, ours or theirs: where the referee designates the ball's place, or lets it lie, else
+/// the mark.
 pub fn penalty_spot(view: &View, ours: bool) -> Point<Attack> {
     let ahead = if ours { 1.0 } else { -1.0 };
     let mark = Point::new(ahead * (view.field.length * 0.5 - view.field.penalty_mark), 0.0);
@@ -89,14 +93,14 @@ pub fn kickoff_spot(view: &View) -> Point<Attack> {
     view.placement.or_else(|| lies_at(view, mark)).unwrap_or(mark)
 }
 
-/// The ball, where it lies for a restart from `mark`.
+/// The ball's place, where it lies for a restart from `mark`.
 fn lies_at(view: &View, mark: Point<Attack>) -> Option<Point<Attack>> {
     let ball = view.ball.filter(|_| view.phase != Phase::Stop)?;
     Some(ball.position).filter(|at| at.distance(mark) < NEAR_MARK)
 }
 
-/// Robots other than taker and keeper at a penalty from `spot`, `waiting` in number: in a row behind it, each team on its own left, so
-/// that no two are sent to one place.
+/// Places of robots other than taker and keeper at a penalty from `spot`, `waiting` in number: in a row
+/// behind it, each team on its own left, so that no two are sent to one place.
 pub fn behind_penalty(
     view: &View,
     spot: Point<Attack>,
@@ -111,29 +115,31 @@ pub fn behind_penalty(
     view.clamp(at, PENALTY_INSIDE)
 }
 
-/// Whether no robot gets at a ball there: between a goal's back and the wall, where that is too narrow for a body, or off the carpet.
+/// Whether no robot can reach a ball there: between a goal's back and the wall, where that is too narrow for
+/// a body, or off the field surface.
 pub fn is_out_of_reach(view: &View, ball: Point<Attack>) -> bool {
     let field = &view.field;
     let behind = ball.x().abs() - field.length * 0.5 - field.goal_depth;
     let aside = ball.y().abs() - field.goal_width * 0.5 - field.goal_wall;
     let room = field.goal_line_margin - field.goal_depth - field.goal_wall;
     let hidden = behind > 0.0 && aside < 0.0 && room < 2.0 * ROBOT_RADIUS + ROOM_TO_PASS;
-    // A ball pressed against a board is seen a little beyond it.
+    // A ball pressed against a board is seen slightly beyond it.
     let off = behind + field.goal_depth > field.goal_line_margin + PRESSED
         || ball.y().abs() - field.width * 0.5 > field.margin + PRESSED;
     hidden || off
 }
 
-/// A robot reaches a ball this far beyond the carpet's edge, m: as the league's simulators let one be.
+/// A robot reaches a ball this far beyond the field surface's edge, m: as the league's simulators let one be.
 const PRESSED: f32 = 0.03;
 
-/// `at`, moved out of the circle that nobody may be in around the ball, and out of the way of a ball being placed.
+/// `at`, moved out of the circle around the ball that no robot may enter, and off the path of a ball being
+/// placed.
 pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     let Some(ball) = view.ball else { return at };
-    // In the stop before a penalty nobody rolls the ball to its mark: people put it there.
+    // In the stop before a penalty no robot rolls the ball to its mark: the referee's staff places it.
     let penalty = matches!(view.next, Some(Phase::PreparePenalty(_) | Phase::Penalty(_)));
     let by_hand = view.phase == Phase::Stop && penalty;
-    // A ball that rolls is left before it comes.
+    // The place of a rolling ball is left before it arrives.
     let target = view.placement.filter(|_| !by_hand).unwrap_or(ball.rest);
     let spine = Segment::new(ball.position, target);
     let closest = spine.closest_to(at);
@@ -144,7 +150,8 @@ pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
     let home = view.our_goal() - closest;
     let along = spine.vector().unit();
     let out = match (away.unit(), along) {
-        // Beside the way of the ball the shortest way out; on it, to the side that lies nearer the field's middle.
+        // Beside the path of the ball the shortest direction out; on it, to the side nearer to the field's
+        // middle.
         (Some(out), _) => out,
         (None, Some(along)) => {
             let left = Vector::new(-along.y(), along.x());
@@ -152,7 +159,7 @@ pub fn kept_off(view: &View, at: Point<Attack>) -> Point<Attack> {
         }
         (None, None) => home.unit().unwrap_or(Vector::new(-1.0, 0.0)),
     };
-    // Straight out where that is on the carpet, else turned by as little as brings it there.
+    // Straight out where that is on the field surface, else turned by the smallest angle that is.
     let turned = |i: i16| {
         let steps = if i % 2 == 0 { i / 2 } else { -(i / 2) - 1 };
         closest + out.rotated(Angle::degrees(TURN_STEP_DEG * f32::from(steps))) * OFF_BALL
@@ -203,7 +210,7 @@ mod tests {
     fn at_a_penalty_everybody_else_is_a_metre_behind_the_mark_and_no_two_of_both_teams_in_one_place() {
         for league in [League::Ssl2013, League::DivisionB, League::DivisionA] {
             let field = league.field();
-            // The ball still lies somewhere else.
+            // The ball still lies at another place.
             let mut view = View::still(field, Point::new(0.4, -0.6), [], []);
             view.phase = Phase::Stop;
             let robots = if league == League::DivisionA { 10 } else { 5 };
@@ -220,7 +227,7 @@ mod tests {
                 assert!(shooting.x() - at.x() > 1.1, "{league:?}: {at:?}");
                 assert!(view.clamp(*at, 0.1) == *at, "{league:?}: {at:?}");
                 assert!(all[..i].iter().all(|other| other.distance(*at) > 0.3), "{league:?}: {all:?}");
-                // A robot does not have to pass between two that stand already.
+                // A robot does not have to pass between two that are there already.
                 assert!((at.x() - all[0].x()).abs() < 0.01, "{league:?}: {all:?}");
             }
         }
@@ -232,7 +239,7 @@ mod tests {
         (view.phase, view.next) = (Phase::Stop, Some(Phase::PreparePenalty(Side::Ours)));
         view.placement = Some(Point::new(-1.4, 0.05));
         assert_eq!(penalty_spot(&view, true), Point::new(-1.4, 0.05));
-        // Nobody keeps out of the line from the ball to it.
+        // No robot needs to keep off the line from the ball to it.
         let between = Point::new(-2.2, 1.0);
         assert_eq!(kept_off(&view, between), between);
     }

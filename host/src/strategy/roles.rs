@@ -1,24 +1,27 @@
-//! `roles`: role assignment. Few, clear roles, held until a change is worth it, so that nobody turns round
+//! `roles`: role assignment. Few, clear roles, held until a change is worth it, so that no robot turns round
 //! twice a second.
 //!
-//! First who plays the ball (soonest there), then the defenders (nearest to their places), the rest are field players. Robots that
-//! play a case stay field players until it ends. A robot leaves a role only for a gain of [`WORTH`].
+//! First the robot that plays the ball (soonest there), then the defenders (nearest to their places); the
+//! remaining ones are field players. Robots that play a case stay field players until it ends. A robot leaves
+//! a role only for a gain of [`WORTH`].
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
 
 use super::view::{Robot, View};
 
-/// Seconds until `robot` could be at `place`, roughly: at its top speed, after the time it needs to get there.
+/// Estimated time until `robot` could be at `place`, s: at its top speed, after the time it needs to get
+/// there.
 pub fn time_to(robot: &Robot, place: Point<Attack>) -> f32 {
     let way = place - robot.position;
     let distance = way.norm();
     let closing = way.unit().map_or(0.0, |along| robot.velocity.dot(along));
-    // From the closing speed with constant acceleration: a head start, or time lost in turning back.
+    // From the closing speed with constant acceleration: time gained, or time lost in turning back.
     (distance / TYPICAL_SPEED + SPEEDING_UP - closing / TYPICAL_ACCELERATION).max(0.0)
 }
 
-/// Of `robots`, who has least `cost`; `held` has it unless another one gains more than `worth`.
+/// The robot of `robots` with the least `cost`; `held` is kept unless another one is better by more than
+/// `worth`.
 pub fn choose<'r>(
     robots: impl Iterator<Item = &'r Robot>,
     held: Option<RobotId>,
@@ -42,9 +45,10 @@ pub fn choose<'r>(
     }
 }
 
-/// Gives each of `places` to one of `free`, in their order, nearest first; `held` is who had which place.
+/// Gives each of `places` to one of `free`, in their order, nearest first; `held` lists which robot had which
+/// place.
 ///
-/// Returns who has place i; takes them out of `free`.
+/// Returns the robot of place i; removes those robots from `free`.
 pub fn assign<const N: usize>(
     view: &View,
     free: &mut heapless::Vec<RobotId, { super::view::ROBOTS_MAX }>,
@@ -63,13 +67,15 @@ pub fn assign<const N: usize>(
     taken
 }
 
-/// How much sooner another robot must be there to take over a role, s: the time in which a robot brakes and turns.
+/// Time by which another robot must be there sooner to take over a role, s: the time in which a robot brakes
+/// and turns.
 pub const WORTH: f32 = 0.4;
-/// Speed of a robot on its way, m/s: of the 3 m/s and more that teams drive, what is had on average over a few metres.
+/// Mean speed of a robot on its path, m/s: teams drive 3 m/s and more, of which this is the average over a
+/// few metres.
 const TYPICAL_SPEED: f32 = 2.0;
-/// m/s²: the 3 to 4.7 m/s² that teams accelerate with.
+/// Acceleration of teams' robots, m/s²: 3 to 4.7.
 const TYPICAL_ACCELERATION: f32 = 3.0;
-/// Time lost in speeding up and braking, s: v/a with the two above.
+/// Time lost by acceleration and braking, s: v/a with the two above.
 const SPEEDING_UP: f32 = 0.65;
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ use protocol::host::KickOrder;
 use super::defence::room_along;
 use super::view::{ROBOTS_MAX, Robot, View};
 
-/// Places for mates of a robot with the ball at `ball`, best first, apart from each other; with their worth, 0–1.
+/// Places for teammates of a robot with the ball at `ball`, best first, apart from each other; with their
+/// value, 0–1.
 pub fn places(
     view: &View,
     ball: Point<Attack>,
@@ -34,7 +35,8 @@ pub fn places(
     chosen
 }
 
-/// The worth of having the ball at `place` after a pass from `ball`: room on the way, room there, and the goal in sight.
+/// The value of having the ball at `place` after a pass from `ball`: room on the path, room there, and a
+/// clear line to the goal.
 pub fn worth(view: &View, ball: Point<Attack>, place: Point<Attack>) -> f32 {
     let way = room_along(view, ball, place).min(ROOM_GOOD) / ROOM_GOOD;
     let there = view.nearest_theirs(place).map_or(ROOM_GOOD, |(_, d)| d).min(ROOM_GOOD) / ROOM_GOOD;
@@ -61,35 +63,36 @@ fn grid(view: &View, ball: Point<Attack>) -> impl Iterator<Item = Point<Attack>>
         })
 }
 
-/// The best thing to do with a ball at rest: a shot with room, else the best mate, else ahead along the freest way.
+/// The best target of a ball that lies still: a shot with room, else the best teammate, else ahead along the
+/// freest path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// Shoot at this point of the goal.
     Shot {
-        /// Where.
+        /// The point.
         at: Point<Attack>,
-        /// m.
+        /// Room along the path, m.
         room: f32,
     },
-    /// Pass to this mate.
+    /// Pass to this teammate.
     Mate {
-        /// Who.
+        /// Its number.
         id: RobotId,
-        /// Where.
+        /// The place.
         at: Point<Attack>,
-        /// m.
+        /// Room along the path, m.
         room: f32,
     },
-    /// Nobody is free: ahead.
+    /// No teammate is free: ahead.
     Ahead {
-        /// Where to.
+        /// The point.
         at: Point<Attack>,
-        /// m.
+        /// Room along the path, m.
         room: f32,
     },
 }
 
-/// Chooses for the robot `taker` with the ball at `ball`.
+/// Chooses the target for the robot `taker` with the ball at `ball`.
 pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
     let (shot, room) = best_shot(view, ball);
     if room > ROOM_TO_SHOOT && ball.distance(view.their_goal()) < SHOOT_WITHIN {
@@ -115,7 +118,8 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
         _ if room > ROOM_TO_PASS_BY && ball.distance(view.their_goal()) < SHOOT_WITHIN => {
             Target::Shot { at: shot, room }
         }
-        // Into somebody's legs, from beside the touch line, is a ball for them: rather back to whoever is there.
+        // A kick at an opponent's body, from beside the touch line, goes out for them: a pass back to any
+        // teammate there is better.
         Some((mate, _)) if room_along(view, ball, mate.position) > ROOM_TO_PASS_BY => {
             let room = room_along(view, ball, mate.position);
             Target::Mate { id: mate.id, at: mate.position, room }
@@ -133,7 +137,7 @@ pub fn target(view: &View, taker: RobotId, ball: Point<Attack>) -> Target {
     }
 }
 
-/// The point of their goal with the freest way from `ball`, and the room along that way, m.
+/// The point of their goal with the freest path from `ball`, and the room along that path, m.
 pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     let (x, half) = (view.their_goal().x(), view.field.goal_width * 0.5 - POST);
     let mut best = (view.their_goal(), -1.0);
@@ -149,12 +153,12 @@ pub fn best_shot(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     best
 }
 
-/// The kick that brings the ball over `distance` to a mate who can still take it.
+/// The kick that brings the ball over `distance` to a teammate that can still control it.
 pub fn pass_kick(distance: f32) -> KickOrder {
     flat(distance, ARRIVE_WITH)
 }
 
-/// The kick that lets the ball come to rest there.
+/// The kick whose ball stops at `distance`.
 pub fn push_kick(distance: f32) -> KickOrder {
     flat(distance, REST_WITH)
 }
@@ -164,40 +168,42 @@ fn flat(distance: f32, arrival: f32) -> KickOrder {
     KickOrder::Flat((speed * 100.0) as u16)
 }
 
-/// A shot, cm/s: as fast as the rules allow, less what a kicker may err by.
+/// A shot, cm/s: as fast as the rules allow, less a kicker's error.
 pub const SHOT: KickOrder = KickOrder::Flat(620);
 
 const GRID: (usize, usize) = (12, 7);
-/// Mates keep this far apart, m.
+/// Least distance between teammates, m.
 const APART: f32 = 1.2;
-/// More room than this is as good as any, m.
+/// Room above this gives no further value, m.
 const ROOM_GOOD: f32 = 0.7;
-/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much again.
+/// Supporters stay this far off the areas, m: the rules' 0.2 m, a body and as much margin.
 const KEEP_OFF: f32 = 0.4;
-/// Shorter passes gain nothing, longer ones are met by somebody else, m.
+/// Shorter passes gain nothing, longer ones are intercepted by other robots, m.
 const PASS_SHORTEST: f32 = 1.0;
 const PASS_LONGEST: f32 = 5.0;
 /// A pass may go back this far, m.
 const BACKWARDS: f32 = 1.0;
-/// A gap beside the way of a shot, m: bodies of robot and ball (0.11) and what a keeper covers while it flies.
+/// Least room beside the path of a shot, m: bodies of robot and ball (0.11) and the distance a keeper covers
+/// while it flies.
 const ROOM_TO_SHOOT: f32 = 0.2;
-/// Bodies of robot and ball, m: with less than this beside its way the ball hits somebody.
+/// Bodies of robot and ball, m: with less than this beside its path the ball hits a robot.
 const ROOM_TO_PASS_BY: f32 = 0.12;
-/// A mate nearer to a line than this is not passed to, m: what it misses is out.
+/// A teammate nearer to a line than this is no receiver, m: a ball that it misses is out.
 const INSIDE: f32 = 0.3;
 /// Farther shots are caught, m.
 const SHOOT_WITHIN: f32 = 4.0;
-/// With the ball far ahead there are always places from here on, m: short of the halfway line.
+/// With the ball far ahead the grid of places starts here, m: short of the halfway line.
 const MIDDLE: f32 = -0.5;
-/// Below this a pass is rather not played, 0–1.
+/// Below this value a pass is not played, 0–1.
 const WORTH_PASSING: f32 = 0.2;
-/// Shots are aimed this far inside the posts, m: twice the ball's radius, and what a kick scatters by.
+/// Shots are aimed this far inside the posts, m: twice the ball's radius, and the scatter of a kick.
 const POST: f32 = 0.08;
-/// Points of the goal tried.
+/// Number of points of the goal tried.
 const SHOTS: usize = 9;
-/// A receiver takes a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off the field.
+/// A receiver can control a ball of this speed, m/s; one that it misses rolls 2 m farther (v²/0.7), not off
+/// the field.
 const ARRIVE_WITH: f32 = 1.2;
-/// As good as at rest, m/s.
+/// Speed that counts as stopped, m/s.
 const REST_WITH: f32 = 0.2;
 
 #[cfg(test)]
@@ -235,7 +241,8 @@ mod tests {
 
     #[test]
     fn a_pass_over_two_metres_starts_with_the_speed_that_arrives_with_1_2() {
-        // Slides 3.9 m/s² to 5/7 of its speed, then rolls 0.35: v² = (1.44 + 2·0.35·2)/(0.5102 + 0.4898·0.35/3.9) = 5.125
+        // Slides 3.9 m/s² to 5/7 of its speed, then rolls 0.35: v² = (1.44 + 2·0.35·2)/(0.5102 +
+        // 0.4898·0.35/3.9) = 5.125
         assert_eq!(pass_kick(2.0), KickOrder::Flat(226));
         assert!(matches!(push_kick(2.0), KickOrder::Flat(speed) if speed < 170));
     }

@@ -1,12 +1,14 @@
-//! `tactics`: the parts of the second paper that a team plays with. Each can be left out, so that what it is
-//! worth can be measured: an ablation is a setting (docs/papers.md D24).
+//! `tactics`: the parts of the second paper that a team plays with. Each can be switched off, so that its
+//! value can be measured: an ablation is a setting (docs/papers.md D24).
 
 use serde::{Deserialize, Serialize};
 
-/// What the coach uses beyond lawful play. A part that a recording's header does not name was not played.
+/// What the coach uses beyond rule-compliant play. A part that a recording's header does not name was not
+/// played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tactics {
-    /// Keeper and primary defenders by the first-level threat (Biswas et al. 2014 §5.1), not by the ball's line alone.
+    /// Keeper and primary defenders by the first-level threat (Biswas et al. 2014 §5.1), not by the ball's
+    /// line alone.
     #[serde(default)]
     pub threats: bool,
     /// While the ball is theirs, the others against second-level threats (§5.2).
@@ -18,16 +20,17 @@ pub struct Tactics {
     /// Our free kicks by the Coerce and Attack Planner (§4).
     #[serde(default)]
     pub coerce: bool,
-    /// In open play, whoever is first at the ball shoots or passes by P(goal) where that is worth it; else cases are played.
+    /// In open play the robot that is first at the ball shoots or passes by P(goal) where that is worth it;
+    /// else cases are played.
     #[serde(default)]
     pub attack: bool,
-    /// Where a case is played, its next pass as pass location and pass-ahead refine it (docs/papers.md §8).
+    /// Where a case is played, its next pass as refined by pass location and pass-ahead (docs/papers.md §8).
     #[serde(default)]
     pub bridge: bool,
 }
 
 impl Tactics {
-    /// None of them.
+    /// No part.
     pub const NONE: Self = Self {
         threats: false,
         second_level: false,
@@ -36,7 +39,7 @@ impl Tactics {
         attack: false,
         bridge: false,
     };
-    /// All of them.
+    /// All parts.
     pub const ALL: Self = Self {
         threats: true,
         second_level: true,
@@ -46,12 +49,12 @@ impl Tactics {
         bridge: true,
     };
 
-    /// None: what a header of before there were any stands for.
+    /// None: the meaning of a header without tactics.
     pub fn none() -> Self {
         Self::NONE
     }
 
-    /// As [`Tactics::parse`] reads them.
+    /// As text that [`Tactics::parse`] reads.
     pub fn words(&self) -> String {
         let Self { threats, second_level, pass_ahead, coerce, attack, bridge } = *self;
         let named = [
@@ -96,8 +99,9 @@ impl Tactics {
 }
 
 impl Default for Tactics {
-    /// What wins matches. `docs/matches.md` (`cargo xtask matches`) has what each part is worth against our team without it: threats and
-    /// their second level gain goals, attack shots and ground; pass-ahead, coerce and the bridge cannot be told from nothing.
+    /// The parts that win matches. `docs/matches.md` (`cargo xtask matches`) has the value of each part
+    /// against our team without it: threats and their second level gain goals, attack gains shots and ground;
+    /// the effects of pass-ahead, coerce and the bridge are not significant.
     fn default() -> Self {
         Self { threats: true, second_level: true, attack: true, ..Self::NONE }
     }

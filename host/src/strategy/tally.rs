@@ -1,5 +1,4 @@
-//! `tally`: match counters of passes, free kicks and role changes. Counts of a match, for reports
-//! (docs/papers.md D24).
+//! `tally`: match counters of passes, free kicks and role changes. For reports (docs/papers.md D24).
 
 use protocol::{Instant, RobotId};
 use rules::{Colour, FieldSpec, Phase, Side};
@@ -11,22 +10,22 @@ use super::view::{Flip, View};
 use crate::world::World;
 use geometry::{Attack, Point};
 
-/// A restart's pass that has just left, as the coach knows it; attack frame.
+/// A restart's pass that has just left, by the coach's plan; attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sent {
-    /// Who kicked.
+    /// The robot that kicked.
     pub passer: RobotId,
-    /// Who shall have it.
+    /// The robot that shall receive it.
     pub receiver: RobotId,
-    /// x0.
+    /// x0: place of the ball at the kick.
     pub from: Point<Attack>,
-    /// x*.
+    /// x*: place of reception.
     pub to: Point<Attack>,
-    /// T_b, s.
+    /// T_b: predicted time of the ball from x0 to x*, s.
     pub flight: f32,
-    /// Through the air.
+    /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive).
+    /// P(receive) as rated.
     pub likely: f32,
     /// It ends a plan of the Coerce and Attack Planner; whether its receiver coerced before.
     pub planned: Option<bool>,
@@ -35,28 +34,28 @@ pub struct Sent {
 /// Free kicks by the Coerce and Attack Planner: the second paper's Table 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CapTally {
-    /// Passes that left.
+    /// Number of passes that left.
     pub attempts: u32,
-    /// … that the receiver, or another mate, had.
+    /// … that the receiver, or another teammate, received.
     pub successes: u32,
-    /// … whose receiver had coerced somebody before.
+    /// … whose receiver had coerced an opponent before.
     pub reuses: u32,
     /// … of those, that arrived.
     pub reuse_successes: u32,
 }
 
-/// A team's counts.
+/// Counts of one team.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlayTally {
     /// Passes of restarts.
     pub passes: PassTally,
     /// Planned free kicks.
     pub cap: CapTally,
-    /// How often a robot's role changed while the phase did not; places within a role do not count.
+    /// Number of role changes of robots while the phase did not change; places within a role do not count.
     pub role_changes: u32,
 }
 
-/// Counts while a match is played.
+/// Counters updated while a match is played.
 #[derive(Clone, Debug, Default)]
 pub struct Bookkeeper {
     tally: PlayTally,
@@ -66,12 +65,12 @@ pub struct Bookkeeper {
 }
 
 impl Bookkeeper {
-    /// What was counted so far.
+    /// The counts so far.
     pub fn tally(&self) -> &PlayTally {
         &self.tally
     }
 
-    /// The next moment: what was ordered in it, and the pass that began.
+    /// Takes the next snapshot: the orders in it, and the pass that started.
     pub fn note(
         &mut self,
         (world, view, field): (&World, &View, &FieldSpec),

@@ -1,5 +1,5 @@
 //! `view`: the strategy's view of the field. The field turned so that the goal we attack lies at +x
-//! (docs/architecture.md §2.1: the one place that flips). SI.
+//! (docs/architecture.md §2.1: the only module that flips). SI.
 
 use geometry::{Angle, Attack, Field, GoalEnd, Point, Pose, Vector};
 use protocol::quantized::{WirePoint, WirePose};
@@ -9,7 +9,7 @@ use rules::{Colour, FieldSpec, Phase, Side};
 use super::pass::bridge::CasePass;
 use crate::world::World;
 
-/// Robots of a team that strategy can see: one per id.
+/// Most robots of a team in a view: one per id.
 pub const ROBOTS_MAX: usize = RobotId::COUNT;
 
 /// Turns between the field and the attack frame: by half a turn, or not at all.
@@ -24,32 +24,32 @@ impl Flip {
         Self { sign: goal.attack_sign() as f32 }
     }
 
-    /// A place as strategy sees it.
+    /// A place in the attack frame.
     pub fn point(self, p: Point<Field>) -> Point<Attack> {
         Point::new(p.x() * self.sign, p.y() * self.sign)
     }
 
-    /// A velocity as strategy sees it.
+    /// A velocity in the attack frame.
     pub fn vector(self, v: Vector<Field>) -> Vector<Attack> {
         Vector::new(v.x() * self.sign, v.y() * self.sign)
     }
 
-    /// A heading, either way.
+    /// A heading, in either direction.
     pub fn angle(self, heading: Angle) -> Angle {
         if self.sign < 0.0 { heading + Angle::HALF_TURN } else { heading }
     }
 
-    /// A place of strategy's on the field.
+    /// A place of the attack frame on the field.
     pub fn to_field(self, p: Point<Attack>) -> Point<Field> {
         Point::new(p.x() * self.sign, p.y() * self.sign)
     }
 
-    /// The same for the wire.
+    /// The same in the protocol's units.
     pub fn to_wire(self, p: Point<Attack>) -> WirePoint {
         self.to_field(p).into()
     }
 
-    /// A place and a heading for the wire.
+    /// A place and a heading in the protocol's units.
     pub fn pose_to_wire(self, at: Point<Attack>, heading: Angle) -> WirePose {
         Pose { position: self.to_field(at), heading: self.angle(heading) }.into()
     }
@@ -58,18 +58,18 @@ impl Flip {
 /// The ball, in the attack frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// Where it is.
+    /// Its place on the ground.
     pub position: Point<Attack>,
-    /// Where it goes, m/s.
+    /// Its velocity, m/s.
     pub velocity: Vector<Attack>,
-    /// Where it will come to rest if nobody meets it, cut at nothing.
+    /// Its stop position if no robot intercepts it, not cut at lines or walls.
     pub rest: Point<Attack>,
-    /// m above the ground.
+    /// Height above the ground, m.
     pub height: f32,
 }
 
 impl Ball {
-    /// A ball that lies still.
+    /// A ball at standstill.
     pub fn at_rest(position: Point<Attack>) -> Self {
         Self { position, velocity: Vector::default(), rest: position, height: 0.0 }
     }
@@ -80,27 +80,27 @@ impl Ball {
 pub struct Robot {
     /// Its number.
     pub id: RobotId,
-    /// Where it is.
+    /// Its place.
     pub position: Point<Attack>,
-    /// Where it faces.
+    /// Its heading.
     pub heading: Angle,
-    /// Where it goes, m/s.
+    /// Its velocity, m/s.
     pub velocity: Vector<Attack>,
 }
 
 impl Robot {
-    /// A robot that stands, facing the goal we attack.
+    /// A robot that stands still, facing the goal we attack.
     pub fn at_rest(id: RobotId, position: Point<Attack>) -> Self {
         Self { id, position, heading: Angle::ZERO, velocity: Vector::default() }
     }
 }
 
-/// What the referee says, in our words.
+/// State of the game by the referee, by side (ours or theirs).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Game {
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// What will be started next, if the referee says.
+    /// The phase that will start next, if the referee sends it.
     pub next: Option<Phase<Side>>,
     /// Where the ball is to be placed, while it is.
     pub placement: Option<Point<Field>>,
@@ -108,49 +108,49 @@ pub struct Game {
     pub defending: GoalEnd,
     /// Our keeper's number.
     pub keeper: RobotId,
-    /// Theirs.
+    /// Their keeper's number.
     pub their_keeper: RobotId,
 }
 
-/// Everything strategy decides by.
+/// All inputs of the strategy's decisions.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The time, host's clock.
+    /// The time on the host's clock.
     pub now: Instant,
     /// The phase of the game.
     pub phase: Phase<Side>,
-    /// What the referee will start next, if it says.
+    /// The phase that will start next, if the referee sends it.
     pub next: Option<Phase<Side>>,
     /// Where the ball is to be placed, while it is.
     pub placement: Option<Point<Attack>>,
-    /// The ball, if it is seen.
+    /// The ball, if its place is known.
     pub ball: Option<Ball>,
     /// Our robots on the field that can be commanded, by id.
     pub ours: heapless::Vec<Robot, ROBOTS_MAX>,
-    /// How many more of our robots count on the field although they cannot be commanded.
+    /// Number of further robots of ours that count on the field although they cannot be commanded.
     pub uncommanded: usize,
-    /// How many of those have never answered this start of the host: robots that stand about.
+    /// Number of those that have never answered since this start of the host.
     pub strangers: usize,
-    /// Theirs, by id.
+    /// Their robots, by id.
     pub theirs: heapless::Vec<Robot, ROBOTS_MAX>,
-    /// Our keeper's number, as the referee knows it.
+    /// Our keeper's number, by the referee.
     pub keeper: RobotId,
     /// Their keeper's number.
     pub their_keeper: RobotId,
-    /// How many robots the referee lets us have on the field.
+    /// Number of robots the referee allows us on the field.
     pub allowed: usize,
-    /// How many robots the referee lets them have.
+    /// Number of robots the referee allows them.
     pub theirs_allowed: usize,
-    /// Our robots that play a case right now, by what they say.
+    /// Our robots that play a case now, as they report.
     pub in_play: RobotSet,
-    /// The next pass of that case, where the bridge between the papers is played.
+    /// The next pass of that case, where the tactics include the bridge between the papers.
     pub proposal: Option<CasePass>,
-    /// The field's lines.
+    /// Dimensions of the field.
     pub field: FieldSpec,
 }
 
 impl View {
-    /// The field as we, who play in `us`, see it; `fit` says which of our robots can be commanded.
+    /// The field as seen by the team of colour `us`; `fit` lists our robots that can be commanded.
     pub fn of(
         world: &World,
         us: Colour,
@@ -194,8 +194,8 @@ impl View {
         }
     }
 
-    /// A moment made up, for pictures, counts and tests: play runs, a second has passed, everybody rests where they are put, numbered
-    /// from 0; the keepers are 0.
+    /// An artificial snapshot for figures, counts and tests: play runs, a second has passed, all robots stand
+    /// still at the given places, numbered from 0; the keepers are 0.
     pub fn still(
         field: FieldSpec,
         ball: Point<Attack>,
@@ -223,12 +223,12 @@ impl View {
         }
     }
 
-    /// The same, with a limit on how many of us may be on the field.
+    /// The same, with a limit on the number of our robots on the field.
     pub fn allowing(self, robots: usize) -> Self {
         Self { allowed: robots, ..self }
     }
 
-    /// The same, with a limit on how many of them may be on the field.
+    /// The same, with a limit on the number of their robots on the field.
     pub fn allowing_them(self, robots: usize) -> Self {
         Self { theirs_allowed: robots, ..self }
     }
@@ -245,7 +245,8 @@ impl View {
         view
     }
 
-    /// Whether a robot of ours counts there: outside the goal substitution area behind our goal.
+    /// Whether a robot of ours at `p` counts as on the field: outside the goal substitution area behind our
+    /// goal.
     pub fn counts_for_us(&self, p: Point<Attack>) -> bool {
         self.field.counts(GoalEnd::Negative, Point::new(p.x(), p.y()))
     }
@@ -260,12 +261,12 @@ impl View {
         self.ours.iter().find(|robot| robot.id == id)
     }
 
-    /// Middle of our goal's mouth.
+    /// Middle of our goal's opening.
     pub fn our_goal(&self) -> Point<Attack> {
         Point::new(-self.field.length * 0.5, 0.0)
     }
 
-    /// Middle of the mouth of the goal we attack.
+    /// Middle of the opening of the goal we attack.
     pub fn their_goal(&self) -> Point<Attack> {
         Point::new(self.field.length * 0.5, 0.0)
     }
@@ -312,22 +313,22 @@ pub fn nearest<'r>(
 pub struct RobotSet(u16);
 
 impl RobotSet {
-    /// Puts a robot in.
+    /// Adds a robot.
     pub fn insert(&mut self, id: RobotId) {
         self.0 |= 1 << id.number();
     }
 
-    /// Whether it is in.
+    /// Whether it contains that robot.
     pub fn has(self, id: RobotId) -> bool {
         self.0 & (1 << id.number()) != 0
     }
 
-    /// How many are in.
+    /// Number of robots.
     pub fn len(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// Nobody is.
+    /// Whether it contains no robot.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

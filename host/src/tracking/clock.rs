@@ -1,32 +1,33 @@
-//! `clock`: vision's clock on ours. Vision stamps images by a clock of its own: Unix seconds, or a
-//! simulator's seconds from 0 (trap 1), which may run slower than ours, stop, jump and begin anew. µs.
+//! `clock`: offset of vision's clock from ours. Vision stamps camera frames by a clock of its own: Unix
+//! seconds, or a simulator's seconds from 0 (trap 1), which may run slower than ours, stop, jump and restart.
+//! µs.
 //!
-//! Only differences are used. The packet that came quickest of the last few tells how the two clocks lie to each other;
-//! what vision itself needed from image to packet is known from the packet. An image of another time is not believed
-//! until the old clock has fallen silent and the new one has gone on for a few images.
+//! Only differences are used. The packet with the least delay of the last few gives the offset of the two
+//! clocks; vision's own delay from camera frame to packet is in the packet. A frame of another time is not
+//! used until the old clock has fallen silent and the new one has continued for a few frames.
 
 use protocol::{Duration, Instant};
 
 use super::seen::Captured;
 
-/// Whose time is it?
+/// The clock that a time belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Judgement {
     /// The clock we follow.
     Ours,
     /// Another one.
     Foreign,
-    /// Another one, and ours is silent: follow it from now on, and forget what was.
+    /// Another one, and ours is silent: follow it from now on, and reset the state.
     Restart,
 }
 
-/// How vision's clock lies to ours.
+/// Offset of vision's clock from ours.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Clock {
-    /// Image time and arrival of the newest image.
+    /// Time of the newest camera frame, and its arrival.
     newest: Option<(Captured, i64)>,
     rival: Option<Rival>,
-    /// Least difference of clocks seen in the current and in the last stretch.
+    /// Least difference of clocks seen in the current and in the last window.
     least: Option<[i64; 2]>,
     stretch_start: i64,
 }
@@ -38,7 +39,8 @@ struct Rival {
 }
 
 impl Clock {
-    /// Is an image of that time one of the clock we follow? `late` images are judged by [`Self::late`].
+    /// Whether a camera frame of that time is of the clock we follow. `late` frames are judged by
+    /// [`Self::late`].
     pub(super) fn judge(&mut self, captured: Captured, arrived: Instant) -> Judgement {
         let Some((newest, newest_arrived)) = self.newest else { return Judgement::Ours };
         let (ahead, passed) = (captured - newest, arrived.0 as i64 - newest_arrived);
@@ -46,7 +48,7 @@ impl Clock {
         if ahead.abs() <= FAR || told { Judgement::Ours } else { self.foreign(captured, passed, SILENCE_FAR) }
     }
 
-    /// An image that came too late by the clock we follow: does that clock still run?
+    /// Whether the clock we follow still runs, for a camera frame that is too late by it.
     pub(super) fn late(&mut self, captured: Captured, arrived: Instant) -> Judgement {
         let passed = self.newest.map_or(0, |(_, newest_arrived)| arrived.0 as i64 - newest_arrived);
         self.foreign(captured, passed, SILENCE_NEAR)
@@ -67,7 +69,7 @@ impl Clock {
         Judgement::Foreign
     }
 
-    /// Learns from an image of the clock we follow that was not seen before; `sent` is when vision sent it.
+    /// Updates the offset by a new camera frame of the clock we follow; `sent` is when vision sent it.
     pub(super) fn hear(&mut self, captured: Captured, sent: Option<Captured>, arrived: Instant) {
         let arrived = arrived.0 as i64;
         if self.newest.is_none_or(|(newest, _)| captured > newest) {
@@ -81,7 +83,7 @@ impl Clock {
                 *current = difference.min(*current);
             }
             Some([current, last]) => {
-                // After a pause the stretch before says nothing any more.
+                // After a pause the window before is out of date.
                 let just_before = arrived < self.stretch_start + 2 * STRETCH;
                 *last = if just_before { *current } else { difference };
                 *current = difference;
@@ -100,7 +102,7 @@ impl Clock {
         Instant((captured + offset).max(0) as u64)
     }
 
-    /// How long ago the newest image was taken when its packet came.
+    /// Age of the newest camera frame when its packet came.
     pub(super) fn delay(&self) -> Duration {
         let delay =
             |(captured, arrived): (Captured, i64)| Instant(arrived.max(0) as u64).since(self.ours(captured));
@@ -108,18 +110,20 @@ impl Clock {
     }
 }
 
-/// Images of one clock are not farther apart without a reason, µs.
+/// Frames of one clock are not farther apart without a reason, µs.
 const FAR: i64 = 1_000_000;
-/// A clock that jumped far is followed when ours has been silent that long, µs: a dozen images of 60 Hz.
+/// A clock that jumped far is followed when ours has been silent that long, µs: a dozen frames of 60 Hz.
 const SILENCE_FAR: i64 = 200_000;
-/// One that jumped back a little could be late copies of the clock we follow, so it waits longer, µs.
+/// One that jumped back slightly could be late copies of the clock we follow, so it waits longer, µs.
 const SILENCE_NEAR: i64 = 500_000;
-/// Images in order that make another clock believable.
+/// Camera frames in order that confirm another clock.
 const IMAGES_TO_BELIEVE: u32 = 5;
-/// The quickest packet of one to two stretches counts, µs: short enough to follow a simulator that runs at nine tenths of
-/// real time (recorded; off by a tenth of the window at most), long enough to hold eight images of a 60 Hz camera.
+/// Window for the least delay; the last one to two windows count, µs: short enough to follow a simulator that
+/// runs at nine tenths of real time (recorded; off by a tenth of the window at most), long enough to contain
+/// eight frames of a 60 Hz camera.
 const STRETCH: i64 = 150_000;
-/// What vision may need from image to packet, µs; a larger difference is no processing time (recorded: 0 and 10 ms).
+/// Longest time of vision from camera frame to packet, µs; a larger difference is no processing time
+/// (recorded: 0 and 10 ms).
 const PROCESSING_MAX: i64 = 250_000;
 
 #[cfg(test)]
@@ -128,7 +132,8 @@ mod tests {
 
     const TICK: i64 = 16_000;
 
-    /// Images of a clock that shows `start` when ours shows 0 and runs at `rate`, each `delay(i)` µs under way.
+    /// Camera frames of a clock that is at `start` when ours is at 0 and runs at `rate`, each `delay(i)` µs
+    /// in transit.
     fn run(
         clock: &mut Clock,
         start: i64,
@@ -212,7 +217,7 @@ mod tests {
             clock.judge(7_000_000 + 99 * TICK + minute, Instant((99 * TICK + minute) as u64)),
             Judgement::Ours
         );
-        // A single image from the far future is not.
+        // A single frame from the far future is not.
         assert_eq!(
             clock.judge(7_000_000 + 99 * TICK + minute, Instant((100 * TICK) as u64)),
             Judgement::Foreign

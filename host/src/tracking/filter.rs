@@ -1,17 +1,18 @@
 //! `filter`: Kalman filters of position and velocity: one for a point of the plane, one for a heading. m,
 //! m/s, rad, rad/s, s.
 //!
-//! Both know two kinds of motion: calm, and changing. While glimpses scatter around the prediction the filter smooths;
-//! when several in a row lie on one side of it, the body has begun to change its mind and the filter follows quickly.
+//! Both have two models of motion: calm, and changing. While detections scatter around the prediction the
+//! filter smooths; when several in a row lie on one side of it, the body has changed its motion and the
+//! filter follows quickly.
 
 use geometry::{Angle, Field, Point, Vector, math};
 
-/// How freely a velocity changes by itself: white acceleration of this density, m²/s³ (or rad²/s³).
+/// Process noise of a velocity: white acceleration of this density, m²/s³ (or rad²/s³).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Freedom {
-    /// While predictions fit.
+    /// Density while predictions fit.
     pub(super) calm: f32,
-    /// When they lag behind.
+    /// Density when predictions lag behind.
     pub(super) changing: f32,
 }
 
@@ -22,7 +23,7 @@ impl Freedom {
     }
 }
 
-/// How sure position and velocity of one axis are: their covariance.
+/// Covariance of position and velocity of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Spread {
     place: f32,
@@ -41,7 +42,7 @@ impl Spread {
         self.speed += density * dt;
     }
 
-    /// Takes in a measurement of that variance: the shares of the innovation that go to position and velocity.
+    /// Takes a measurement of that variance; returns the shares of the innovation for position and velocity.
     fn measure(&mut self, variance: f32) -> (f32, f32) {
         let inverse = 1.0 / (self.place + variance);
         let (k_place, k_speed) = (self.place * inverse, self.both * inverse);
@@ -55,9 +56,9 @@ impl Spread {
 /// A point and its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
-    /// m.
+    /// Place, m.
     pub(super) position: Point<Field>,
-    /// m/s.
+    /// Velocity, m/s.
     pub(super) velocity: Vector<Field>,
     spread: Spread,
     /// Innovations in units of their deviation, averaged over the last few.
@@ -65,13 +66,13 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// First seen there; its speed may be anything of `speed_sigma`, m/s.
+    /// First detected there; standard deviation of its speed `speed_sigma`, m/s.
     pub(super) fn new(position: Point<Field>, sigma: f32, speed_sigma: f32) -> Self {
         let spread = Spread::new(sigma * sigma, speed_sigma * speed_sigma);
         Self { position, velocity: Vector::default(), spread, lag: Vector::default() }
     }
 
-    /// The same place with another velocity, of which `speed_sigma` is known, m/s.
+    /// The same place with another velocity of standard deviation `speed_sigma`, m/s.
     pub(super) fn sent_off(
         position: Point<Field>,
         velocity: Vector<Field>,
@@ -81,13 +82,13 @@ impl Plane {
         Self { velocity, ..Self::new(position, sigma, speed_sigma) }
     }
 
-    /// Lets time pass, straight on.
+    /// Predicts over `dt`, straight on.
     pub(super) fn pass(&mut self, dt: f32, freedom: Freedom) {
         self.position += self.velocity * dt;
         self.pass_as(dt, self.position, self.velocity, freedom);
     }
 
-    /// Lets time pass with a motion that somebody else worked out.
+    /// Predicts over a step with a motion that the caller computed.
     pub(super) fn pass_as(
         &mut self,
         dt: f32,
@@ -99,13 +100,13 @@ impl Plane {
         self.spread.pass(dt, freedom.at(self.lag.dot(self.lag)));
     }
 
-    /// How far a glimpse is from the prediction, and that distance squared in units of its variance.
+    /// Distance of a detection from the prediction, and that distance squared in units of its variance.
     pub(super) fn surprise(&self, seen: Point<Field>, sigma: f32) -> (Vector<Field>, f32) {
         let off = seen - self.position;
         (off, off.dot(off) / (self.spread.place + sigma * sigma))
     }
 
-    /// Takes a glimpse in.
+    /// Takes a detection.
     pub(super) fn see(&mut self, seen: Point<Field>, sigma: f32) {
         let off = seen - self.position;
         let deviation = math::sqrt(self.spread.place + sigma * sigma);
@@ -119,27 +120,27 @@ impl Plane {
 /// A heading and its rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turning {
-    /// Where it points.
+    /// The heading.
     pub(super) heading: Angle,
-    /// rad/s, counter-clockwise.
+    /// Angular velocity, rad/s, counter-clockwise.
     pub(super) rate: f32,
     spread: Spread,
     lag: f32,
 }
 
 impl Turning {
-    /// First seen pointing there; its rate may be anything of `rate_sigma`, rad/s.
+    /// First detected with that heading; standard deviation of its rate `rate_sigma`, rad/s.
     pub(super) fn new(heading: Angle, sigma: f32, rate_sigma: f32) -> Self {
         Self { heading, rate: 0.0, spread: Spread::new(sigma * sigma, rate_sigma * rate_sigma), lag: 0.0 }
     }
 
-    /// Lets time pass.
+    /// Predicts over `dt`.
     pub(super) fn pass(&mut self, dt: f32, freedom: Freedom) {
         self.heading = self.heading + Angle::new(self.rate * dt);
         self.spread.pass(dt, freedom.at(self.lag * self.lag));
     }
 
-    /// Takes a glimpse in, the short way round.
+    /// Takes a detection, by the smaller angle.
     pub(super) fn see(&mut self, seen: Angle, sigma: f32) {
         let off = (seen - self.heading).radians();
         let deviation = math::sqrt(self.spread.place + sigma * sigma);
@@ -152,11 +153,11 @@ impl Turning {
 
 /// Weight of the newest innovation in the average: about the last three count.
 const LAG_SHARE: f32 = 0.3;
-/// Squared averages below this are chance: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
+/// Squared averages below this are noise: white innovations give 2 · 0.3 / (2 − 0.3) = 0.35 in the mean.
 const LAG_CALM: f32 = 1.2;
-/// Squared averages above this are a change for sure (exp(−4 / 0.35) by chance).
+/// Squared averages above this are certainly a change (probability exp(−4 / 0.35) by noise).
 const LAG_CHANGING: f32 = 4.0;
-/// Rounding never makes a speed surer than 1 mm/s, (m/s)².
+/// Least variance of a speed, against rounding: (1 mm/s)², in (m/s)².
 const SPEED_VARIANCE_MIN: f32 = 1e-6;
 
 #[cfg(test)]

@@ -1,20 +1,21 @@
-//! `tracking`: tracking: camera frames to one world model. [`ssl::vision::WrapperPacket`]s with their time of
-//! arrival go in, a [`World`] comes out, now or carried forward to any moment.
+//! `tracking`: merges camera frames into one world model. Input: [`ssl::vision::WrapperPacket`]s with their
+//! time of arrival; output: a [`World`], now or extrapolated to any moment.
 //!
-//! | question | where |
+//! | topic | module |
 //! |---|---|
-//! | What did the camera claim, without nonsense? | `seen` |
-//! | Whose clock is that, and how does it lie to ours? | `clock` |
-//! | Did we see it before, and where does it belong? | `order` |
-//! | Which robots are there and how do they move? | `robots` |
-//! | Which blob is the ball, who kicked it, does it fly? | `ball` |
-//! | Where do cameras hang, how do balls roll here? | `scene` |
-//! | How is it told to others? | `publish` |
+//! | Valid detections of a camera frame | `seen` |
+//! | Vision's clock, and its offset from ours | `clock` |
+//! | Order of camera frames, without repetitions | `order` |
+//! | Robots and their motion | `robots` |
+//! | Choice of the ball, its kicks and flights | `ball` |
+//! | Positions of cameras, model of the ball | `scene` |
+//! | Tracker packets for other programs | `publish` |
 //!
-//! **Invariants.** Nothing panics on what a packet holds; every image is accounted for in [`Counts`]. Images within 50 ms of
-//! the newest count in the order in which they were taken, so copies and shuffled packets change nothing. After
-//! [`Tracker::new`] and the first packets nothing is allocated. Same packets, same bits. A packet costs some 20,000
-//! instructions, the picture of now included (16,200 with grSim's recording, 23,200 with ER-Force's 11 robots; `track --times`).
+//! **Invariants.** No content of a packet causes a panic; every camera frame is counted in [`Counts`]. Frames
+//! within 50 ms of the newest count in the order in which they were taken, so copies and shuffled packets
+//! change nothing. After [`Tracker::new`] and the first packets nothing is allocated. Same packets, same
+//! bits. A packet costs some 20,000 instructions, including the present world (16,200 with grSim's recording,
+//! 23,200 with ER-Force's 11 robots; `track --times`).
 //!
 //! ```
 //! use host::tracking::Tracker;
@@ -23,7 +24,7 @@
 //!
 //! let mut tracker = Tracker::default();
 //! for i in 0..10 {
-//!     // A ball that rolls along +x with 1 m/s, 60 times a second; vision speaks of mm.
+//!     // A ball that rolls along +x with 1 m/s, 60 times a second; vision sends mm.
 //!     let t = f64::from(i) / 60.0;
 //!     let ball = DetectionBall { confidence: 1.0, x: (t * 1000.0) as f32, ..DetectionBall::default() };
 //!     let image = DetectionFrame { frame_number: i, t_capture: t, balls: vec![ball], ..DetectionFrame::default() };
@@ -64,14 +65,14 @@ use self::seen::{Captured, Frame, captured};
 use crate::field_geometry::VisionGeometry;
 use crate::world::{BallModels, World};
 
-/// What a tracker may be told.
+/// Settings of a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How robots' glimpses scatter.
+    /// Noise of robots' detections.
     pub robots: RobotNoise,
     /// Standard deviation of a ball's coordinate, m.
     pub ball: f32,
-    /// How balls move until a geometry packet tells.
+    /// How balls move until a geometry packet has models.
     pub models: BallModels,
 }
 
@@ -82,57 +83,57 @@ impl Default for Settings {
     }
 }
 
-/// What became of a packet.
+/// Result of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// It holds no image.
+    /// It contains no camera frame.
     NoImage,
-    /// It is the newest image.
+    /// It is the newest camera frame.
     Newest,
-    /// It was put before this many newer ones.
+    /// It was inserted before this number of newer ones.
     Reordered(usize),
-    /// This camera's image of that moment was there already.
+    /// This camera's frame of that moment was there already.
     Repeated,
-    /// It was taken so long before the newest that it counts no more.
+    /// It was taken this long before the newest: too old to count.
     Late(Duration),
-    /// Its time or its camera's number is nonsense.
+    /// Its time or its camera's number is invalid.
     Nonsense,
     /// It is of another clock than the one followed.
     ForeignClock,
-    /// Vision's clock began anew: all was forgotten, and this is the first image.
+    /// Vision's clock restarted: the state was reset, and this is the first camera frame.
     Restarted,
 }
 
-/// How many packets became what.
+/// Numbers of packets by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Packets without an image.
+    /// Packets without a camera frame.
     pub no_image: u64,
-    /// Images that were the newest when they came, restarts included.
+    /// Camera frames that were the newest when they came, restarts included.
     pub newest: u64,
-    /// Images put before newer ones.
+    /// Camera frames inserted before newer ones.
     pub reordered: u64,
-    /// Images seen twice.
+    /// Camera frames received twice.
     pub repeated: u64,
-    /// Images that came too late.
+    /// Camera frames that came too late.
     pub late: u64,
-    /// Images with a time or camera that cannot be.
+    /// Camera frames with an invalid time or camera.
     pub nonsense: u64,
-    /// Images of another clock.
+    /// Camera frames of another clock.
     pub foreign: u64,
-    /// Times that vision's clock began anew.
+    /// Number of restarts of vision's clock.
     pub restarts: u64,
-    /// Fields in packets that no field can be like; what was known stood.
+    /// Implausible fields in packets; the previous field was kept.
     pub geometry_refused: u64,
 }
 
 impl Counts {
-    /// All packets.
+    /// Number of all packets.
     pub fn packets(&self) -> u64 {
         self.no_image + self.images()
     }
 
-    /// All images.
+    /// Number of all camera frames.
     pub fn images(&self) -> u64 {
         self.newest + self.reordered + self.repeated + self.late + self.nonsense + self.foreign
     }
@@ -154,18 +155,18 @@ impl Counts {
     }
 }
 
-/// What became of the objects in images.
+/// Counts of the objects in camera frames, by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Objects {
-    /// Robots.
+    /// Counts of robots.
     pub robots: RobotCounts,
-    /// Balls.
+    /// Counts of balls.
     pub balls: BallCounts,
-    /// Objects that are no place, have no shell number, or are too many for one image.
+    /// Objects without a finite place or a shell number, or too many for one camera frame.
     pub nonsense: u64,
 }
 
-/// All that images change; taken back and worked out again when an image comes late.
+/// All state that camera frames change; restored and computed again when a frame comes late.
 #[derive(Clone, Copy, Debug, Default)]
 struct State {
     robots: Robots,
@@ -182,7 +183,7 @@ impl State {
     }
 }
 
-/// Turns images into a picture.
+/// Turns camera frames into a world model.
 #[derive(Clone, Debug)]
 pub struct Tracker {
     settings: Settings,
@@ -190,7 +191,7 @@ pub struct Tracker {
     clock: Clock,
     timeline: Timeline<State>,
     state: State,
-    /// The image at hand, kept to be read into again.
+    /// The present camera frame, kept to reuse its memory.
     frame: Frame,
     counts: Counts,
 }
@@ -202,7 +203,7 @@ impl Default for Tracker {
 }
 
 impl Tracker {
-    /// Knows nothing yet.
+    /// A tracker without input yet.
     pub fn new(settings: Settings) -> Self {
         let state = State::default();
         Self {
@@ -216,7 +217,7 @@ impl Tracker {
         }
     }
 
-    /// Takes a packet in that came at `arrived`, our clock.
+    /// Takes a packet that came at `arrived`, our clock.
     pub fn handle(&mut self, packet: &WrapperPacket, arrived: Instant) -> Heard {
         if let Some(geometry) = &packet.geometry {
             self.counts.geometry_refused += u64::from(self.scene.hear(geometry).is_err());
@@ -264,12 +265,13 @@ impl Tracker {
         self.timeline.put(&self.frame, &mut self.state, |state, frame| state.see(frame, scene, settings))
     }
 
-    /// Balls roll with that deceleration, m/s², whatever vision says; gives how they move along the ground then.
+    /// Sets the deceleration of a rolling ball, m/s², overriding vision's; returns the resulting model of the
+    /// ground.
     pub fn set_roll(&mut self, roll: f32) -> BallModel {
         self.scene.set_roll(roll)
     }
 
-    /// The field when the newest image was taken; empty before the first.
+    /// The field when the newest camera frame was taken; empty before the first.
     pub fn picture(&self) -> World {
         let at = self.timeline.newest().unwrap_or(0);
         let ours = |captured: Captured| self.clock.ours(captured);
@@ -282,32 +284,33 @@ impl Tracker {
         world
     }
 
-    /// The field as it is, or will be, at `time` of our clock: the picture carried forward.
+    /// The field at `time` of our clock: the newest world extrapolated.
     pub fn world(&self, time: Instant) -> World {
         self.picture().at(time)
     }
 
-    /// When the newest image was taken, s on vision's clock; `None` before the first.
+    /// When the newest camera frame was taken, s on vision's clock; `None` before the first.
     pub fn captured(&self) -> Option<f64> {
         self.timeline.newest().map(|micros| micros as f64 * 1e-6)
     }
 
-    /// How long ago the newest image was taken when its packet came: what vision needed, and the network beyond its best.
+    /// Age of the newest camera frame when its packet came: vision's delay, and the network's beyond its
+    /// least.
     pub fn delay(&self) -> Duration {
         self.clock.delay()
     }
 
-    /// What vision said of field, cameras and ball.
+    /// Geometry of field, cameras and ball from vision.
     pub fn geometry(&self) -> &VisionGeometry {
         &self.scene.geometry
     }
 
-    /// What became of packets so far.
+    /// Counts of packets so far.
     pub fn counts(&self) -> &Counts {
         &self.counts
     }
 
-    /// What became of the objects in images since vision's clock began.
+    /// Counts of the objects in camera frames since vision's clock started.
     pub fn objects(&self) -> Objects {
         Objects {
             robots: self.state.robots.counts,

@@ -1,31 +1,31 @@
-//! `order`: ordering of camera frames. Nothing counts twice, and what comes late within a short window is put
-//! where it belongs: everything after it is worked out again.
+//! `order`: ordering of camera frames. No frame counts twice, and one that comes late within a short window
+//! is inserted at its place: all later ones are processed again.
 //!
-//! So the picture depends on what was seen, not on how the network shuffled it. A team lost a match to the other way:
-//! vision came over cable and wireless at once, and late copies were taken for news.
+//! So the world depends on the frames, not on how the network shuffled them. A team lost a match without
+//! this: vision came over cable and wireless at once, and late copies were processed as new frames.
 
 use heapless::Vec;
 
 use super::seen::{Captured, Frame};
 
-/// What became of an image.
+/// Result of inserting a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placed {
     /// It is the newest.
     Newest,
-    /// It was put before this many newer ones.
+    /// It was inserted before this number of newer ones.
     Before(usize),
-    /// This camera's image of this moment is there already.
+    /// This camera's frame of this moment is there already.
     Repeated,
-    /// Older than the newest by this many µs: too old.
+    /// Older than the newest by this many µs: too old to be inserted.
     Late(Captured),
 }
 
-/// The last images, each with the state before it.
+/// The last camera frames, each with the state before it.
 #[derive(Clone, Debug)]
 pub(super) struct Timeline<S> {
     slots: Box<[Slot<S>]>,
-    /// Slots in use, oldest image first.
+    /// Slots in use, oldest frame first.
     order: Vec<u8, DEPTH>,
 }
 
@@ -45,12 +45,12 @@ impl<S: Copy> Timeline<S> {
         self.order.clear();
     }
 
-    /// When the newest image was taken.
+    /// When the newest camera frame was taken.
     pub(super) fn newest(&self) -> Option<Captured> {
         self.order.last().map(|slot| self.slots[usize::from(*slot)].frame.at)
     }
 
-    /// Puts an image in its place and brings `state` up to date by `apply`.
+    /// Inserts a camera frame at its place and updates `state` by `apply`.
     pub(super) fn put(
         &mut self,
         frame: &Frame,
@@ -70,13 +70,13 @@ impl<S: Copy> Timeline<S> {
         if newest - frame.at > WINDOW || (place == 0 && self.order.is_full()) {
             return Placed::Late(newest - frame.at);
         }
-        // The oldest image makes room; it is not the one to come, or that would be too late.
+        // The oldest frame is dropped; it is not the new one, which would be too late then.
         let (slot, place) = if self.order.is_full() {
             (self.order.remove(0), place - 1)
         } else {
             (self.order.len() as u8, place)
         };
-        // There is room, so it goes in.
+        // There is room, so this cannot fail.
         let _ = self.order.insert(place, slot);
         self.replay(place, frame, state, &mut apply)
     }
@@ -102,16 +102,17 @@ impl<S: Copy> Timeline<S> {
     }
 }
 
-/// How late an image may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes decisions already made.
+/// How late a camera frame may be, µs: three ticks of a 60 Hz camera. Waiting for older ones changes
+/// decisions already made.
 const WINDOW: Captured = 50_000;
-/// Images kept: what eight cameras of 60 Hz take within the window.
+/// Camera frames kept: those of eight cameras of 60 Hz within the window.
 const DEPTH: usize = 24;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A state that tells every order apart: a list of what was applied.
+    /// A state that distinguishes every order: a list of the frames applied.
     type Seen = [(Captured, u32); 40];
 
     fn frame(at: Captured, camera: u32) -> Frame {

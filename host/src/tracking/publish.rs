@@ -11,7 +11,7 @@ use super::Tracker;
 use crate::world::{Ball, Kick, Robot, World};
 use protocol::Who;
 
-/// Makes tracker packets, one of a picture; the packet's space is used again and again.
+/// Makes tracker packets, one per world; the packet's memory is reused.
 #[derive(Clone, Debug)]
 pub struct Publisher {
     packet: TrackerWrapperPacket,
@@ -19,7 +19,7 @@ pub struct Publisher {
 }
 
 impl Publisher {
-    /// Speaks as `uuid`, which others tell sources apart by; `name` is for people.
+    /// Sends as `uuid`, by which others distinguish sources; `name` is for display.
     pub fn new(uuid: &str, name: &str) -> Self {
         let packet =
             TrackerWrapperPacket { uuid: uuid.into(), source_name: Some(name.into()), tracked_frame: None };
@@ -27,11 +27,11 @@ impl Publisher {
         Self { packet, frame: TrackedFrame { capabilities: capabilities.into(), ..TrackedFrame::default() } }
     }
 
-    /// The newest picture as a packet; `None` before the first image.
+    /// The newest world as a packet; `None` before the first camera frame.
     pub fn publish(&mut self, tracker: &Tracker) -> Option<&TrackerWrapperPacket> {
         let captured = tracker.captured()?;
         let world = tracker.picture();
-        // Taken out and put back, so that its lists keep their space.
+        // Taken out and put back, so that its lists keep their memory.
         let mut frame = self.packet.tracked_frame.take().unwrap_or_else(|| self.frame.clone());
         frame.frame_number = self.frame.frame_number;
         self.frame.frame_number = self.frame.frame_number.wrapping_add(1);

@@ -1,8 +1,9 @@
-//! `robots`: robot tracking. A track per shell number and colour, merged over all cameras.
+//! `robots`: robot tracking. One track per shell number and colour, merged over all cameras.
 //!
-//! A robot is believed once it was seen in several images. What is seen far from where its robot can be is a misread
-//! pattern until it stays there while the robot is seen nowhere else; a name read where another robot stands is a wrong
-//! name. An unseen robot coasts, its confidence falls, and after a second it is gone.
+//! A robot is confirmed once it was seen in several camera frames. A detection far from its robot's possible
+//! place is a misread pattern until it stays there while the robot is seen nowhere else; a number read where
+//! another robot stands is a wrong number. An unseen robot is extrapolated, its confidence falls, and after a
+//! second it is dropped.
 
 use geometry::{Angle, Field, Point, Pose, Vector};
 use protocol::{Instant, RobotId, Who};
@@ -12,20 +13,20 @@ use super::filter::{Freedom, Plane, Turning};
 use super::seen::{Captured, RobotSeen};
 use crate::world::{Robot, index};
 
-/// What became of robots that cameras claimed to see, counted.
+/// Counts of robot detections by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct RobotCounts {
     /// Taken into a robot's track.
     pub taken: u64,
-    /// Seen too seldom yet to be believed.
+    /// Seen too seldom yet to be confirmed.
     pub new: u64,
-    /// Farther from the robot of that name than it can have come.
+    /// Farther from the robot of that number than it can have moved.
     pub jumped: u64,
     /// Where another robot stands: a wrong number or colour.
     pub wrong_name: u64,
 }
 
-/// All robots.
+/// Tracks of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Robots {
     believed: [[Option<Track>; RobotId::COUNT]; 2],
@@ -33,7 +34,7 @@ pub(super) struct Robots {
     pub(super) counts: RobotCounts,
 }
 
-/// How images of this field scatter.
+/// Noise of robot detections in camera frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotNoise {
     /// Standard deviation of a robot's coordinate, m.
@@ -43,8 +44,8 @@ pub struct RobotNoise {
 }
 
 impl Default for RobotNoise {
-    /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm, 0.010 rad;
-    /// both from second differences, `cargo run -p host --example track`).
+    /// The noisier of the recordings (grSim with noise: 3.0 mm, 0.035 rad; ER-Force's "realistic": 1.3 mm,
+    /// 0.010 rad; both from second differences, `cargo run -p host --example track`).
     fn default() -> Self {
         Self { place: 0.003, heading: 0.03 }
     }
@@ -62,13 +63,13 @@ pub(super) struct Moved {
 struct Track {
     plane: Plane,
     turning: Turning,
-    /// Of the state.
+    /// Time of the state.
     at: Captured,
-    /// Image times of the last glimpse and of the last that counted.
+    /// Frame times of the last detection and of the last that counted.
     seen: Captured,
     counted: Captured,
     images: u16,
-    /// What cameras think of their glimpses, averaged, 0–1.
+    /// The cameras' confidence in their detections, averaged, 0–1.
     quality: f32,
 }
 
@@ -85,7 +86,7 @@ impl Track {
         }
     }
 
-    /// How far from the prediction a glimpse at `at` is, beyond what the robot can have moved besides, m.
+    /// Distance of a detection at `at` from the prediction, beyond the robot's possible motion, m.
     fn misses_by(&self, position: Point<Field>, at: Captured) -> f32 {
         let unseen = seconds(at - self.seen);
         self.moved(at).pose.position.distance(position) - (GATE + GATE_SPEED * unseen.min(GATE_TIME_MAX))
@@ -94,7 +95,7 @@ impl Track {
     fn see(&mut self, seen: &RobotSeen, at: Captured, noise: RobotNoise) {
         let dt = seconds(at - self.at);
         if dt > COAST {
-            // Long unseen: the place is believed, the velocity is not.
+            // Unseen for long: the place is used, the velocity is not.
             let moved = self.moved(at);
             self.plane = Plane::new(moved.pose.position, GATE, SPEED_SIGMA);
             self.turning = Turning::new(moved.pose.heading, LOST_HEADING, RATE_SIGMA);
@@ -114,7 +115,7 @@ impl Track {
         self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
     }
 
-    /// Straight on for a while, then at rest.
+    /// Straight on for a while, then at standstill.
     fn moved(&self, at: Captured) -> Moved {
         let dt = seconds(at - self.at).clamp(0.0, COAST);
         let rests = at - self.at > micros(COAST);
@@ -134,7 +135,7 @@ impl Track {
 }
 
 impl Robots {
-    /// Takes an image's robots in.
+    /// Takes a camera frame's robots.
     pub(super) fn see(&mut self, robots: &[RobotSeen], at: Captured, noise: RobotNoise) {
         for track in self
             .believed
@@ -153,7 +154,8 @@ impl Robots {
         let (team, id) = (index(seen.who.colour), seen.who.id.index());
         let elsewhere = self.believed[team][id].is_some_and(|track| at - track.seen <= micros(ELSEWHERE));
         if !elsewhere && self.stands_another(seen.who, seen.position, at) {
-            // A name that is read there now and then only: whoever was believed under it was that misreading.
+            // A number that is read there only now and then: the robot confirmed under it was that
+            // misreading.
             self.counts.wrong_name += 1;
             return;
         }
@@ -183,7 +185,7 @@ impl Robots {
         }
     }
 
-    /// Whether a believed robot of another name was seen at that place just now.
+    /// Whether a confirmed robot of another number was seen at that place just now.
     fn stands_another(&self, who: Who, position: Point<Field>, at: Captured) -> bool {
         self.each().any(|(other, track)| {
             other != who
@@ -200,12 +202,12 @@ impl Robots {
         })
     }
 
-    /// That robot at that moment, if it is believed.
+    /// That robot at that moment, if it is confirmed.
     pub(super) fn robot(&self, who: Who, at: Captured) -> Option<Moved> {
         self.believed[index(who.colour)][who.id.index()].as_ref().map(|track| track.moved(at))
     }
 
-    /// The believed robot nearest to a point, and its distance, m.
+    /// The confirmed robot nearest to a point, and its distance, m.
     pub(super) fn nearest(&self, point: Point<Field>, at: Captured) -> Option<(Who, Moved, f32)> {
         let each = self.each().map(|(who, track)| {
             let moved = track.moved(at);
@@ -214,7 +216,7 @@ impl Robots {
         each.reduce(|best, next| if next.2 < best.2 { next } else { best })
     }
 
-    /// Everybody at that moment; `ours` tells moments on our clock.
+    /// All robots at that moment; `ours` converts moments to our clock.
     pub(super) fn picture(
         &self,
         at: Captured,
@@ -227,45 +229,48 @@ impl Robots {
     }
 }
 
-/// From µs to s.
+/// Converts µs to s.
 pub(super) fn seconds(micros: Captured) -> f32 {
     micros as f32 * 1e-6
 }
 
-/// From s to µs.
+/// Converts s to µs.
 pub(super) const fn micros(seconds: f32) -> Captured {
     (seconds * 1e6) as Captured
 }
 
-/// Images that make a robot believable: 50 ms of one camera; misread patterns of one or two images stay out.
+/// Camera frames that confirm a robot: 50 ms of one camera; misread patterns of one or two frames are
+/// excluded.
 const IMAGES_TO_BELIEVE: u16 = 3;
-/// Images after which confidence is full.
+/// Camera frames after which confidence is full.
 const IMAGES_FULL: u16 = 10;
-/// Glimpses nearer to each other than this are of one tick (two cameras see the robot), µs.
+/// Detections nearer to each other than this are of one tick (two cameras see the robot), µs.
 const IMAGE_APART: Captured = 5_000;
-/// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's "object
-/// position offset"), the rest is margin below a robot's radius.
+/// A robot may be seen this far from its prediction, m: two cameras may disagree by 20 mm each (ER-Force's
+/// "object position offset"), the remainder is margin below a robot's radius.
 const GATE: f32 = 0.08;
 /// ... and farther for every second unseen, m/s: the fastest robots' speed.
 const GATE_SPEED: f32 = 4.0;
 /// ... for no longer than this, s.
 const GATE_TIME_MAX: f32 = 0.25;
-/// Within this time a robot was seen "just now", s: six images of 60 Hz, three of a camera with dropouts.
+/// Within this time a robot was seen "just now", s: six frames of 60 Hz, three of a camera with dropouts.
 const ELSEWHERE: f32 = 0.1;
-/// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is misread for sure.
+/// Two robots' centres are never nearer, m: the smallest hulls have a radius of 0.085 m, half of it is
+/// certainly a misreading.
 const SAME_PLACE: f32 = 0.09;
-/// An unseen robot goes straight on for so long, s, then is taken to stand.
+/// An unseen robot is extrapolated straight on for this time, s, then assumed to stand still.
 const COAST: f32 = 0.25;
 /// It is forgotten after that time, s.
 const GONE: f32 = 1.0;
-/// How unsure the heading is after coasting, rad.
+/// Uncertainty of the heading after extrapolation, rad.
 const LOST_HEADING: f32 = 1.0;
-/// A new robot's speed, m/s, and rate, rad/s, may be anything of that size.
+/// Standard deviations of a new robot's speed, m/s, and rate, rad/s.
 const SPEED_SIGMA: f32 = 2.0;
 const RATE_SIGMA: f32 = 5.0;
-/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held for 0.2 s.
+/// White acceleration, m²/s³: calm is a robot that holds its speed within 0.1 m/s; changing is 5 m/s² held
+/// for 0.2 s.
 const PLACE_FREEDOM: Freedom = Freedom { calm: 0.15, changing: 10.0 };
 /// White angular acceleration, rad²/s³: as above with 0.3 rad/s, and 50 rad/s² held for 0.1 s.
 const HEADING_FREEDOM: Freedom = Freedom { calm: 2.0, changing: 250.0 };
-/// Weight of the newest glimpse in the quality.
+/// Weight of the newest detection in the quality.
 const QUALITY_SHARE: f32 = 0.1;

@@ -1,5 +1,4 @@
-//! `scene`: geometry as tracking needs it. Where cameras hang, how large the surface is and how balls move on
-//! it, ready at hand. m.
+//! `scene`: geometry for tracking: positions of cameras, size of the surface, and models of the ball. m.
 
 use geometry::{Field, Point};
 use motion::ball::BallModel;
@@ -9,36 +8,36 @@ use super::seen::CAMERAS_MAX;
 use crate::field_geometry::{GeometryFault, News, VisionGeometry};
 use crate::world::BallModels;
 
-/// Where a camera hangs.
+/// Position of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Camera {
     pub(super) above: Point<Field>,
     pub(super) height: f32,
 }
 
-/// What is known of the place.
+/// Geometry as far as it is known.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scene {
     pub(super) geometry: VisionGeometry,
     cameras: [Option<Camera>; CAMERAS_MAX],
     pub(super) models: BallModels,
-    /// How fast a rolling ball slows down, where it is better known than vision tells, m/s².
+    /// Deceleration of a rolling ball, where it is better known than from vision, m/s².
     roll: Option<f32>,
 }
 
 impl Scene {
-    /// Nothing told yet; balls move like that until something is.
+    /// No geometry received yet; balls move by `models` until then.
     pub(super) fn new(models: BallModels) -> Self {
         Self { models, ..Self::default() }
     }
 
-    /// Learns from a packet; what it refuses stays as it was.
+    /// Takes a packet; refused parts keep their previous values.
     pub(super) fn hear(&mut self, data: &GeometryData) -> Result<News, GeometryFault> {
         let news = self.geometry.hear(data)?;
         for (number, camera) in self.geometry.cameras() {
             let [x, y, height] = camera.position;
             if let Some(place) = self.cameras.get_mut(*number as usize) {
-                // One that hangs lower tells no heights.
+                // A camera mounted lower is not used for heights.
                 *place = (height >= HEIGHT_MIN).then_some(Camera { above: Point::new(x, y), height });
             }
         }
@@ -48,19 +47,20 @@ impl Scene {
         Ok(news)
     }
 
-    /// Balls roll with that deceleration from now on.
+    /// Sets the deceleration of a rolling ball, m/s².
     pub(super) fn set_roll(&mut self, roll: f32) -> BallModel {
         self.roll = Some(roll);
         self.models.ground.roll = roll;
         self.models.ground
     }
 
-    /// Where that camera hangs, if it was told.
+    /// Position of that camera, if it was received.
     pub(super) fn camera(&self, number: u32) -> Option<Camera> {
         self.cameras.get(number as usize).copied().flatten()
     }
 
-    /// Whether a ball there can be in play: on the surface between the walls. Everywhere, while the field is unknown.
+    /// Whether a ball there can be in play: on the surface between the walls. Everywhere, while the field is
+    /// unknown.
     pub(super) fn is_playable(&self, point: Point<Field>) -> bool {
         self.geometry.field().is_none_or(|field| {
             let margin = field.margin.max(field.goal_line_margin).max(field.goal_depth);
@@ -69,7 +69,7 @@ impl Scene {
     }
 }
 
-/// Lower than a chipped ball flies nobody hangs a camera, m.
+/// No camera is mounted lower than the height of a chipped ball, m.
 const HEIGHT_MIN: f32 = 1.5;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `seen`: detections in SI units, without nonsense. SI, field frame; times in µs on the sender's clock.
+//! `seen`: valid detections in SI units, field frame; times in µs on the sender's clock.
 
 use geometry::{Angle, Field, Point};
 use heapless::Vec;
@@ -9,31 +9,31 @@ use ssl::vision::{DetectionFrame, DetectionRobot};
 /// A moment on vision's clock, µs: since 1970, or since a simulator's start.
 pub(super) type Captured = i64;
 
-/// A robot in an image.
+/// A robot in a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RobotSeen {
     pub(super) who: Who,
     pub(super) position: Point<Field>,
-    /// Absent where the pattern was seen in part.
+    /// Absent where only a part of the pattern was seen.
     pub(super) heading: Option<Angle>,
     pub(super) confidence: f32,
 }
 
-/// A blob in an image.
+/// A blob in a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct BallSeen {
     pub(super) position: Point<Field>,
     pub(super) confidence: f32,
 }
 
-/// One image.
+/// One camera frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Frame {
     pub(super) at: Captured,
     pub(super) camera: u32,
     pub(super) robots: Vec<RobotSeen, ROBOTS_MAX>,
     pub(super) balls: Vec<BallSeen, BALLS_MAX>,
-    /// How many objects were nonsense: not a number, off the planet, without a shell number, or too many.
+    /// Number of invalid objects: not finite, too far, without a shell number, or too many.
     pub(super) nonsense: u32,
 }
 
@@ -42,7 +42,7 @@ impl Frame {
         Self { at: 0, camera: 0, robots: Vec::new(), balls: Vec::new(), nonsense: 0 }
     }
 
-    /// Reads an image into this one; `false` where its time or camera is nonsense.
+    /// Reads a camera frame into this one; `false` where its time or camera is invalid.
     #[must_use]
     pub(super) fn read(&mut self, frame: &DetectionFrame) -> bool {
         let Some(at) = captured(frame.t_capture).filter(|_| frame.camera_id < CAMERAS_MAX as u32) else {
@@ -67,7 +67,7 @@ impl Frame {
     }
 }
 
-/// A time on the wire, s, in µs; `None` where no clock shows it.
+/// A time of the protocol, s, in µs; `None` where it is no valid time.
 pub(super) fn captured(seconds: f64) -> Option<Captured> {
     (0.0..=SECONDS_MAX).contains(&seconds).then_some((seconds * 1e6 + 0.5) as i64)
 }
@@ -83,7 +83,7 @@ fn seen(colour: Colour, robot: &DetectionRobot) -> Option<RobotSeen> {
     Some(RobotSeen { who: Who { colour, id }, position, heading, confidence: share(robot.confidence) })
 }
 
-/// From mm; `None` for what is no place near a field.
+/// From mm; `None` for a place too far from a field.
 fn place(x: f32, y: f32) -> Option<Point<Field>> {
     let near = |mm: f32| mm.abs() <= MM_MAX;
     (near(x) && near(y)).then(|| Point::new(x * 0.001, y * 0.001))
@@ -95,16 +95,16 @@ fn share(confidence: f32) -> f32 {
 
 /// Cameras of a field, numbered from 0: the league uses 1 to 8.
 pub(super) const CAMERAS_MAX: usize = crate::field_geometry::CAMERAS_MAX as usize;
-/// Robots in one image: 11 + 11, some twice under wrong names.
+/// Robots in one camera frame: 11 + 11, some twice under wrong numbers.
 const ROBOTS_MAX: usize = 48;
-/// Blobs in one image; hands and shoes included.
+/// Blobs in one camera frame; hands and shoes included.
 const BALLS_MAX: usize = 16;
-/// Farthest place that is taken for true, mm: the largest field's surface ends at 6.7 m, a simulator let a ball lie
-/// at 9 m on a 9 m field (trap 11), and halls are not larger.
+/// Farthest place that is accepted, mm: the largest field's surface ends at 6.7 m, a simulator let a ball lie
+/// at 9 m on a 9 m field (trap 11), and venues are not larger.
 const MM_MAX: f32 = 30_000.0;
-/// Headings come in (−π, π] or (0, 2π]; far beyond is nonsense.
+/// Headings come in (−π, π] or (0, 2π]; values far beyond are invalid.
 const RADIANS_MAX: f32 = 100.0;
-/// The year 2286, s; what `f64` still counts in µs.
+/// The year 2286, s; `f64` still resolves µs up to it.
 const SECONDS_MAX: f64 = 1e10;
 
 #[cfg(test)]

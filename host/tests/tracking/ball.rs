@@ -102,7 +102,8 @@ fn a_resting_and_a_rolling_ball_are_followed_within_millimetres() {
     }
 }
 
-/// How well a chip is known: from which share of its flight on, and its landing between half and nine tenths of it, m.
+/// Quality of a chip's estimate: from which share of its flight on it is known, and the error of its landing
+/// between half and nine tenths of it, m.
 fn chip(mut stadium: Stadium, from: Point<Field>, velocity: Vector<Field>, climb: f32) -> (Option<f64>, Rms) {
     let path = ChipModel::default().chipped(from, velocity, climb, &BallModel::default());
     let flight = f64::from(2.0 * climb / 9.81);
@@ -236,7 +237,7 @@ fn a_second_ball_a_shoe_or_a_flicker_does_not_take_over_from_the_ball_in_sight()
         let image = (t * RATE).round() as u32;
         let mut balls = vec![ball];
         if t > 0.5 {
-            // One that lies still, one that moves along 0.3 m beside it, one that is here and there.
+            // One that lies still, one that moves along 0.3 m beside it, one at changing places.
             balls.insert(0, [1.0, 1.0, 0.0]);
             balls.push([ball[0], ball[1] + 0.3, 0.0]);
             balls.push([
@@ -263,7 +264,7 @@ fn a_second_ball_a_shoe_or_a_flicker_does_not_take_over_from_the_ball_in_sight()
 fn trap_11_a_ball_far_outside_and_images_with_no_ball_or_two_are_normal() {
     let mut stadium = Stadium::one_camera(13);
     stadium.missed = 0.25;
-    // It lies at 9 m on a 9 m field; later another one is put on the field while it still lies there.
+    // It lies at 9 m on a 9 m field; later another one is placed on the field while it still lies there.
     let truth = |t: f64| {
         let mut balls = vec![[9.0, 0.5, 0.0]];
         if t > 2.0 {

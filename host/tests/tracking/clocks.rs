@@ -17,7 +17,7 @@ fn trap_01_simulation_seconds_and_unix_seconds_give_the_same_picture_on_our_cloc
         let mut stadium = Stadium { epoch, ..Stadium::one_camera(31) };
         let mut tracker = Tracker::default();
         play(&mut stadium, &mut tracker, (0.0, 2.0), truth, |_, _| {});
-        // Vision took 4 ms, the network at least nothing: the image was taken 4 ms before its packet came.
+        // Vision took 4 ms, the network at least 0: the frame was taken 4 ms before its packet came.
         let taken = arrival(119.0 / RATE) - Duration::millis(4);
         let picture = tracker.picture();
         assert!(picture.time.0.abs_diff(taken.0) < 50, "{:?}, not {taken:?}", picture.time);
@@ -26,7 +26,7 @@ fn trap_01_simulation_seconds_and_unix_seconds_give_the_same_picture_on_our_cloc
     });
     let [simulated, unix] = pictures;
     let (a, b) = (simulated.ball.unwrap(), unix.ball.unwrap());
-    // f64 holds Unix seconds to a quarter of a microsecond.
+    // f64 resolves Unix seconds to a quarter of a microsecond.
     assert!(a.position.distance(b.position) < 1e-4 && (a.velocity - b.velocity).norm() < 1e-3);
 }
 
@@ -42,7 +42,8 @@ fn the_picture_is_carried_to_the_moment_asked_for() {
     assert!((robot - (1.0 - 119.0 / RATE as f32 - 0.08)).abs() < 0.03, "{robot}");
 }
 
-/// Feeds images whose clock is `epoch` ahead of ours from `from` to `to`, our time, and returns what was heard.
+/// Feeds camera frames whose clock is `epoch` ahead of ours from `from` to `to`, our time, and returns the
+/// results.
 fn run(tracker: &mut Tracker, epoch: f64, from: f64, to: f64) -> Vec<Heard> {
     let mut stadium = Stadium { epoch, ..Stadium::one_camera(33) };
     let images = stadium.images(from, to, truth);
@@ -89,7 +90,7 @@ fn after_ten_seconds_without_vision_the_picture_comes_back_at_once() {
 fn a_simulator_that_stood_still_for_ten_seconds_goes_on_and_is_not_ten_seconds_late() {
     let mut tracker = Tracker::default();
     run(&mut tracker, 50.0, 0.0, 1.0);
-    // Its clock goes on where it stood.
+    // Its clock continues where it stood.
     let heard = run(&mut tracker, 40.0, 11.0, 12.0);
     assert!(heard.iter().all(|heard| *heard == Heard::Newest), "{heard:?}");
     assert!(tracker.delay() < Duration::millis(10), "{:?}", tracker.delay());

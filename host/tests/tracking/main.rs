@@ -1,5 +1,5 @@
-//! `tracking`: tests of tracking. Made-up fields whose truth is known, and the recordings of the league's
-//! programs.
+//! `tracking`: tests of tracking. Artificial fields with known ground truth, and the recordings of the
+//! league's programs.
 
 mod ball;
 mod clocks;

@@ -28,7 +28,7 @@ fn images() -> Vec<(f64, WrapperPacket)> {
     images
 }
 
-/// All that was worked out, as bits.
+/// All results, as bits.
 fn bits(world: &World) -> Vec<u32> {
     let ball = world.ball.iter().flat_map(|ball| {
         let (p, v) = (ball.position, ball.velocity);
@@ -50,7 +50,7 @@ fn copies_of_half_of_the_images_and_late_copies_of_all_change_nothing_ever() {
     let mut copies = 0;
     for (i, (t, packet)) in images.iter().enumerate() {
         plain.handle(packet, arrival(*t));
-        // The wireless copies of a tenth of a second ago.
+        // The wireless copies, a tenth of a second late.
         while let Some((then, packet)) = late.next_if(|(then, _)| then < t) {
             let heard = copied.handle(packet, arrival(then));
             assert!(matches!(heard, Heard::Repeated | Heard::Late(_)), "{heard:?}");
@@ -78,7 +78,7 @@ fn images_that_come_out_of_order_give_the_same_picture_as_in_order() {
     let expected = bits(&plain.picture());
     for seed in 0..5 {
         let mut random = Stadium::one_camera(seed);
-        // Each packet is under way for up to 40 ms: about ten packets overtake each other.
+        // Each packet is in transit for up to 40 ms: about ten packets overtake each other.
         let mut delayed: Vec<(f64, &WrapperPacket)> =
             images.iter().map(|(t, packet)| (t + 0.04 * random.share(), packet)).collect();
         delayed.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,4 +1,4 @@
-//! `publish`: tests: tracker packets show what we see.
+//! `publish`: tests: tracker packets contain the tracked world.
 
 use geometry::{Point, Vector};
 use host::tracking::{Publisher, Tracker};

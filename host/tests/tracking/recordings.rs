@@ -1,6 +1,6 @@
-//! `recordings`: tests: tracking agrees with the recordings of the league's programs: with a naive oracle
-//! over the raw frames, with an independent decoder's reading of single packets, and with the tracker that
-//! was recorded beside.
+//! `recordings`: tests: tracking agrees with the recordings of the league's programs: with a naive reference
+//! estimate over the raw frames, with an independent decoder's reading of single packets, and with the
+//! tracker that was recorded at the same time.
 
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ fn recording(name: &str) -> (Arrivals<WrapperPacket>, Arrivals<TrackedFrame>) {
     (vision, trackers)
 }
 
-/// Robots and balls as images show them, in order of time: s, m.
+/// Robots and balls as detected in camera frames, in order of time: s, m.
 #[derive(Default)]
 struct Raw {
     robots: Vec<(f64, Who, [f64; 2])>,
@@ -67,7 +67,8 @@ impl Raw {
         raw
     }
 
-    /// The median place of a robot within a window around `t`; `None` where it was seen seldom there, or was put elsewhere.
+    /// The median place of a robot within a window around `t`; `None` where it was seen seldom there, or was
+    /// moved by a script.
     fn robot(&self, who: Who, t: f64) -> Option<[f64; 2]> {
         median(
             window(&self.robots, t, |seen| seen.0)
@@ -83,11 +84,11 @@ impl Raw {
     }
 }
 
-/// Half of the oracle's window, s: two and a half images of grSim's, so that five of each camera lie in it, the middle one
-/// in the middle.
+/// Half of the reference's window, s: two and a half frames of grSim's, so that five of each camera lie in
+/// it, the middle one in the middle.
 const HALF: f64 = 2.5 / 60.0;
 
-/// Nothing moves that far within the window, m: a script put it there, or a ghost showed.
+/// No object moves that far within the window, m: a script moved it, or it is a ghost.
 const PUT_ELSEWHERE: f64 = 0.6;
 
 fn window<T>(sorted: &[T], t: f64, time: impl Fn(&T) -> f64) -> &[T] {
@@ -115,14 +116,14 @@ fn off(place: Point<geometry::Field>, [x, y]: [f64; 2]) -> f64 {
     f64::hypot(f64::from(place.x()) - x, f64::from(place.y()) - y)
 }
 
-/// The value that this share of the errors stays below.
+/// The given quantile of the errors.
 fn quantile(errors: &mut [f64], share: f64) -> f64 {
     errors.sort_by(f64::total_cmp);
     errors[((errors.len() - 1) as f64 * share) as usize]
 }
 
-/// Feeds a recording and compares every twentieth picture with the oracle: median, 95 % and 99 % of robots' errors and of the
-/// ball's, m.
+/// Feeds a recording and compares every twentieth world with the reference: median, 95 % and 99 % of robots'
+/// errors and of the ball's, m.
 fn compare(name: &str, bounds: [[f64; 3]; 2]) -> Tracker {
     let (packets, _) = recording(name);
     let raw = Raw::of(&packets);
@@ -173,8 +174,9 @@ fn grsims_22_s_agree_with_the_median_of_the_images() {
 
 #[test]
 fn grsims_noisy_64_s_agree_with_the_median_of_the_images() {
-    // A hundredth of the time the ball flies, and the median of what cameras show on the carpet is not where it is: at 30.4 s a
-    // script puts it into the air and four cameras see it up to 0.3 m apart, at 41 s it is chipped over a robot.
+    // A hundredth of the time the ball flies, and the median of its detections on the field surface is not
+    // its place: at 30.4 s a script puts it into the air and four cameras see it up to 0.3 m apart, at 41 s
+    // it is chipped over a robot.
     compare("grsim_divB_noisy_64s.log.gz", [[3.0, 9.0, 15.0], [3.0, 20.0, 400.0]]);
 }
 
@@ -198,7 +200,7 @@ fn single_packets_agree_with_what_an_independent_decoder_read_in_them() {
             serde_json::from_slice(&std::fs::read(data(&format!("packets/{name}.json"))).unwrap()).unwrap();
         let mut packet = WrapperPacket::decode(&bytes[..]).unwrap();
         let mut tracker = Tracker::default();
-        // The same image again and again, as of a field where nothing moves.
+        // The same camera frame repeatedly, as of a field where nothing moves.
         for i in 0..10 {
             let image = packet.detection.as_mut().unwrap();
             image.t_capture += 0.016;
@@ -230,7 +232,7 @@ fn single_packets_agree_with_what_an_independent_decoder_read_in_them() {
 
 #[test]
 fn the_recorded_trackers_ball_and_ours_agree_while_its_ball_is_where_the_images_show_it() {
-    // The recorded tracker is a test client that says (0, 0) all the time: true until the kick-off.
+    // The recorded tracker is a test client that always sends (0, 0): correct until the kick-off.
     for name in ["grsim_divB_22s.log.gz", "erforce_divB_realistic_22s.log.gz"] {
         let (packets, frames) = recording(name);
         let raw = Raw::of(&packets);

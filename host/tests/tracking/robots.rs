@@ -6,7 +6,8 @@ use rules::Colour::{Blue, Yellow};
 
 use crate::stadium::{RATE, Rms, Stadium, Truth, play, who};
 
-/// A robot that drives a figure of eight at up to 2.2 m/s and 3 m/s², turning all the while with up to 4 rad/s.
+/// A robot that drives a figure of eight at up to 2.2 m/s and 3 m/s², turning continuously with up to 4
+/// rad/s.
 fn eight(t: f64) -> ([f64; 3], [f64; 3]) {
     let (a, b) = (1.4 * t, 2.0 * 1.4 * t);
     let (turn, rate) = (4.0 * (t * 0.9).sin(), 3.6 * (t * 0.9).cos());
@@ -69,7 +70,7 @@ fn the_velocity_of_a_robot_that_starts_with_3_m_s2_lags_less_than_60_ms() {
         1.5 * s * s + 2.4 * (t - 1.8).max(0.0) - 2.0
     };
     let truth = |t| Truth { robots: vec![(robot, [place(t), 0.0, 0.0])], ..Truth::default() };
-    // The mean of many runs is the lag; what is left in one run is noise.
+    // The mean of many runs is the lag; the remainder in one run is noise.
     let mut lags = vec![0.0; 150];
     let (mut noise, runs) = (Rms::default(), 40);
     for seed in 0..runs {
@@ -98,7 +99,7 @@ fn the_velocity_of_a_robot_that_starts_with_3_m_s2_lags_less_than_60_ms() {
 fn a_robot_is_believed_after_three_images_and_a_misread_one_never() {
     let mut stadium = Stadium::one_camera(4);
     let (real, ghost) = (who(Yellow, 3), who(Yellow, 9));
-    // The ghost shows in two images in a row, every second.
+    // The ghost is in two frames in a row, every second.
     let truth = |t: f64| {
         let mut robots = vec![(real, [0.0, 0.0, 0.0])];
         if (t % 1.0) < 1.99 / RATE {
@@ -119,7 +120,7 @@ fn a_robot_is_believed_after_three_images_and_a_misread_one_never() {
 fn a_pattern_read_in_the_wrong_colour_or_number_makes_no_second_robot() {
     let mut stadium = Stadium::four_cameras(5);
     let (real, colour, number) = (who(Blue, 5), who(Yellow, 5), who(Blue, 6));
-    // Every third image in the wrong colour, every seventh under the wrong number.
+    // Every third frame in the wrong colour, every seventh under the wrong number.
     let truth = |t: f64| {
         let image = (t * RATE).round() as u32;
         let name =
@@ -158,12 +159,12 @@ fn a_robot_seen_elsewhere_now_and_then_stays_where_it_is_but_one_that_is_carried
         let there = [-3.0, -2.0, 2.0];
         let image = (t * RATE).round() as u32;
         let robots = match t {
-            // Misread for an image now and then.
+            // Misread in single frames.
             ..2.0 if image % 10 == 9 => vec![(robot, there)],
             // Seen twice.
             2.0..3.0 => vec![(robot, there), (robot, here)],
             ..3.0 => vec![(robot, here)],
-            // A person, or a simulator, put it elsewhere.
+            // A person, or a simulator, placed it elsewhere.
             _ => vec![(robot, there)],
         };
         Truth { robots, ..Truth::default() }

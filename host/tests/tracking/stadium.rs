@@ -1,4 +1,5 @@
-//! A field whose truth is known, seen by cameras with noise. SI; vision's packets in mm as on the wire.
+//! An artificial field with known ground truth, seen by cameras with noise. SI; vision's packets in mm as in
+//! the protocol.
 
 use host::tracking::{Heard, Tracker};
 use protocol::{Instant, RobotId, Who};
@@ -10,18 +11,18 @@ use ssl::vision::{
     GeometryFieldSize, WrapperPacket,
 };
 
-/// Images a second of each camera.
+/// Frames a second of each camera.
 pub(crate) const RATE: f64 = 60.0;
 
-/// What is really there: m, rad.
+/// The ground truth: m, rad.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Truth {
-    /// x, y, z.
+    /// Balls: x, y, z, m.
     pub(crate) balls: Vec<[f64; 3]>,
     pub(crate) robots: Vec<(Who, [f64; 3])>,
 }
 
-/// A camera: where it hangs, when it takes its first image, by how much it is off, m and s.
+/// A camera: its position, m, the time of its first frame, s, and its error, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
     pub(crate) above: [f64; 2],
@@ -37,7 +38,7 @@ pub(crate) struct Stadium {
     pub(crate) sigma: [f64; 3],
     /// Share of objects that are missed.
     pub(crate) missed: f64,
-    /// Vision's clock when ours shows 0, s.
+    /// Vision's clock when ours is at 0, s.
     pub(crate) epoch: f64,
     pub(crate) rng: Xoshiro256PlusPlus,
 }
@@ -96,7 +97,7 @@ impl Stadium {
         WrapperPacket { geometry: Some(geometry), ..WrapperPacket::default() }
     }
 
-    /// The images between two moments, in the order they are taken.
+    /// The camera frames between two moments, in the order they are taken.
     pub(crate) fn images(
         &mut self,
         from: f64,
@@ -113,7 +114,7 @@ impl Stadium {
         times.into_iter().map(|(t, camera, n)| (t, self.image(camera, n, t, &truth(t)))).collect()
     }
 
-    /// One image.
+    /// One camera frame.
     pub(crate) fn image(&mut self, number: usize, frame_number: u32, t: f64, truth: &Truth) -> WrapperPacket {
         let camera = self.cameras[number];
         let mut detection = DetectionFrame {
@@ -149,7 +150,7 @@ impl Stadium {
         WrapperPacket { detection: Some(detection), ..WrapperPacket::default() }
     }
 
-    /// Where a camera sees something, mm, if it does.
+    /// Where a camera detects something, mm, if it does.
     fn see(&mut self, camera: Camera, at: [f64; 2], sigma: f64) -> Option<[f32; 2]> {
         let reach = if self.cameras.len() == 1 { [20.0, 20.0] } else { [2.75, 2.0] };
         let covered = (0..2).all(|i| (at[i] - camera.above[i]).abs() < reach[i]);
@@ -158,24 +159,24 @@ impl Stadium {
             .then(|| [0, 1].map(|i| ((at[i] + camera.off[i] + sigma * self.gauss()) * 1000.0) as f32))
     }
 
-    /// Evenly in [0, 1).
+    /// Uniform in [0, 1).
     pub(crate) fn share(&mut self) -> f64 {
         (self.rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Normally, mean 0, deviation 1.
+    /// Normal, mean 0, deviation 1.
     pub(crate) fn gauss(&mut self) -> f64 {
         let (a, b) = (1.0 - self.share(), self.share());
         (-2.0 * a.ln()).sqrt() * (b * std::f64::consts::TAU).cos()
     }
 }
 
-/// When a packet of an image taken then arrives, our clock: 5 ms later.
+/// When a packet of a frame taken then arrives, our clock: 5 ms later.
 pub(crate) fn arrival(t: f64) -> Instant {
     Instant(((t + 0.005) * 1e6) as u64)
 }
 
-/// Feeds a tracker and asks after every image.
+/// Feeds a tracker and reads the world after every camera frame.
 pub(crate) fn play(
     stadium: &mut Stadium,
     tracker: &mut Tracker,

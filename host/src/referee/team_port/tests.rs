@@ -1,10 +1,10 @@
-//! Tests: the client speaks as the game controller expects. A controller in a few lines answers.
+//! Tests: the client follows the game controller's protocol. A minimal controller answers.
 
 use super::*;
 
 const S: u64 = 1_000_000;
 
-/// What the controller sends.
+/// A reply of the controller, as bytes.
 fn from_controller(code: Option<StatusCode>, reason: Option<&str>, token: &str) -> Vec<u8> {
     let reply = ControllerReply {
         status_code: code.map(|code| code as i32),
@@ -149,7 +149,7 @@ fn a_port_that_speaks_something_else_is_told() {
     for garbage in [&b"HTTP/1.1 400 Bad Request\r\n\r\n"[..], &[0xff; 12], &[3, 8, 1, 16]] {
         let mut port = TeamPort::new("onetwo", Colour::Blue);
         port.connected(Instant(0));
-        // "HTTP" reads as a length of 72: the rest has to come, or the deadline passes.
+        // "HTTP" reads as a length of 72: the remaining bytes have to come, or the deadline passes.
         port.receive(garbage, Instant(0));
         port.receive(&[b'x'; 100], Instant(0));
         let told = port.poll_event();

@@ -1,4 +1,4 @@
-//! Robots that are too many leave as the rules and the game controller have it, and come back.
+//! Tests: surplus robots leave as the rules and the game controller require, and come back.
 
 use rules::{FieldSpec, League};
 
@@ -25,8 +25,8 @@ fn places(orders: &[Order]) -> Vec<Point<Attack>> {
     orders.iter().map(at).collect()
 }
 
-/// What the game controller takes for a robot on the field, written from its source: the strip of depth d at the wall behind
-/// the own goal, less a radius.
+/// Whether the game controller counts a robot as on the field, written from its source: the strip of depth d
+/// at the wall behind the own goal, less a radius.
 fn controller_counts(field: &FieldSpec, at: Point<Attack>) -> bool {
     let wall = field.length * 0.5 + field.goal_line_margin;
     let edge = wall - field.goal_substitution + 0.09;
@@ -42,7 +42,7 @@ fn in_division_a_they_wait_where_the_controller_does_not_count_them() {
     assert!(places[0].distance(places[1]) > 0.2);
     for at in places {
         assert!(!controller_counts(&view.field, at), "{at:?}");
-        // All of the body on the carpet, 0.3 m or more behind the line, beside the defence area.
+        // The whole body within the field's walls, 0.3 m or more behind the line, beside the defence area.
         assert!(at.x() - 0.09 > -6.6 && at.x() + 0.09 <= -6.3 && at.y().abs() > 1.9, "{at:?}");
     }
 }
@@ -56,7 +56,7 @@ fn in_division_b_they_wait_in_the_centre_area_on_our_half() {
         assert!(at.x() < -0.09 && at.x() > -1.0, "{at:?}");
         assert!(at.y().abs() > 3.0 && at.y().abs() < 3.3 - 0.09, "{at:?}");
     }
-    // Where vision tells of an area behind the goals, that is where the controller looks.
+    // Where vision sends an area behind the goals, the controller uses it.
     let view = View { field: FieldSpec { goal_substitution: 0.3, ..view.field }, ..view };
     for at in places(&bench.orders(&view)) {
         assert!(!controller_counts(&view.field, at) && at.x() > -4.8 + 0.09, "{at:?}");
@@ -74,7 +74,7 @@ fn neither_the_keeper_nor_who_goes_for_the_ball_is_sent_while_there_are_others()
         assert!(!off.contains(&view.keeper));
         assert!(off.len() == 5 || !off.contains(&id(3)), "{off:?}");
     }
-    // Of equals, who is out soonest: those at our own goal's side.
+    // Of equals, the one that is out soonest: those at our own goal's side.
     let mut bench = Bench::default();
     assert_eq!(bench.choose(&View { allowed: 5, ..view }, None), [id(2)]);
 }
@@ -84,14 +84,14 @@ fn who_is_off_stays_off_and_comes_back_a_second_after_the_card_is_over() {
     let mut view = division_a();
     let mut bench = Bench::default();
     let off: Vec<_> = bench.choose(&view, None).to_vec();
-    // Another robot is nearer to the way out now; that changes nothing.
+    // Another robot has a shorter path out now; that changes nothing.
     view.ours[5].position = Point::new(-6.0, 4.0);
     assert_eq!(bench.choose(&view, None), off);
     view.allowed = 5;
     assert_eq!(bench.choose(&view, None), off);
     view.now += Duration::millis(1001);
     assert_eq!(bench.choose(&view, None), &off[..1]);
-    // Vision loses a playing robot for half a second: nobody comes back.
+    // Vision loses a playing robot for half a second: no robot comes back.
     view.ours.remove(3);
     assert_eq!(bench.choose(&view, None), &off[..1]);
     view.now += Duration::millis(500);
@@ -153,7 +153,7 @@ fn they_keep_off_the_ball_and_out_of_the_way_of_a_placement_wherever_that_is() {
 
 #[test]
 fn a_team_does_not_leave_the_field_to_robots_that_never_answered() {
-    // Six of ours, six allowed, five of our colour that stand about: one of those had answered before.
+    // Six of ours, six allowed, five of our colour without contact: one of those had answered before.
     let view = View { uncommanded: 5, strangers: 5, ..division_a() }.allowing(6);
     assert!(Bench::default().choose(&view, None).is_empty());
     let view = View { uncommanded: 5, strangers: 4, ..division_a() }.allowing(6);

@@ -24,7 +24,7 @@ pub(super) struct Ahead {
 }
 
 impl Ahead {
-    /// Begins at `now`.
+    /// A pass that starts at `now`.
     pub(super) fn new(receiver: RobotId, rating: Rating, now: Instant, planned: Option<bool>) -> Self {
         Self { receiver, rating, steps: PassAhead::new(now), planned }
     }
@@ -34,20 +34,21 @@ impl Ahead {
         self.steps.receiver_started().is_some()
     }
 
-    /// What its receiver does.
+    /// Its receiver's task.
     pub(super) fn reception(&self) -> Task {
         let shot = self.rating.shot;
         Task::Receive { at: self.rating.at, then: shot.one_touch.then_some(shot.aim) }
     }
 
-    /// Its numbers.
+    /// Its reasons for the order, as numbers.
     pub(super) fn why(&self) -> Why {
         Why::Chances { receive: self.rating.receive(), goal: self.rating.goal() }
     }
 }
 
 impl Coach {
-    /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else what there is.
+    /// What our restart is aimed at: a shot with room, else the likeliest pass ahead, else the best remaining
+    /// target.
     pub(super) fn target(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Target {
         let usual = support::target(view, taker, ball.position);
         let free_kick = view.phase == Phase::FreeKick(Side::Ours);
@@ -63,7 +64,7 @@ impl Coach {
         Target::Mate { id: best.receiver, at, room: room_along(view, ball.position, at) }
     }
 
-    /// What the taker does for its pass ahead, if it has one.
+    /// The taker's task for its pass ahead, if it has one.
     pub(super) fn pass_ahead(&mut self, view: &View, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
         let mut ahead = self.ahead?;
         let passer = view.our(taker)?;
@@ -118,7 +119,8 @@ impl Coach {
     }
 }
 
-/// The times of Algorithm 1; the passer waits a finger behind x_p, so that it does not touch the ball before.
+/// The times of Algorithm 1; the passer waits a short distance behind x_p, so that it does not touch the ball
+/// before.
 fn times(
     ball: &Ball,
     passer: &Robot,
@@ -133,14 +135,15 @@ fn times(
     Times { at_ball: waits, passer: if waits { 0.0 } else { times.passer }, ..times }
 }
 
-/// A pass that arrives less likely than this is not aimed at.
+/// A pass with a smaller P(receive) is not tried.
 const LIKELY: f32 = 0.3;
-/// A pass whose P(receive) falls below this share of what it was is given up.
+/// A pass whose P(receive) falls below this share of its first value is given up.
 const STILL_LIKELY: f32 = 0.5;
-/// A planned one does not leave with less: of 137 that left with more 85 % arrived (62 of 69 against ours, 54 of 68 against the zone,
-/// seed 100), of 59 that left with less than 0.5, 37 %.
+/// A planned pass does not leave with a smaller P(receive): of 137 that left with more 85 % arrived (62 of 69
+/// against ours, 54 of 68 against the zone, seed 100), of 59 that left with less than 0.5, 37 %.
 const SURE: f32 = 0.6;
-/// This near to x_p a passer waits for its receiver, m: the 0.04 m that the robot leaves to the ball, and what it stands off by.
+/// This near to x_p a passer waits for its receiver, m: the 0.04 m between the robot and the ball, and its
+/// position error.
 const WAITS_WITHIN: f32 = 0.09;
-/// Looks at x* this exactly, rad: the robot itself turns the rest before it kicks.
+/// Looks at x* this exactly, rad: the robot itself corrects the remaining angle before it kicks.
 const AIMED: f32 = 0.15;

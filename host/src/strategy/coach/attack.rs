@@ -1,9 +1,10 @@
-//! `attack`: choice between shot and pass in open play. Shoots or passes, whichever is likelier to end in a
-//! goal (Biswas et al. 2014 §3); where neither is worth it, nothing is said and the robots play a case.
-//! Attack frame, SI units.
+//! `attack`: choice between shot and pass in open play: the one that is likelier to end in a goal (Biswas et
+//! al. 2014 §3); where neither is worth it, it gives no order and the robots play a case. Attack frame, SI
+//! units.
 //!
-//! Opponents are at the ball in open play, so nobody waits for a better start: passer and receiver go at once, and the ball leaves as
-//! soon as the receiver would be at x* with it (the last line of Algorithm 1).
+//! Opponents are at the ball in open play, so waiting for a better start does not help: passer and receiver
+//! start at once, and the ball leaves as soon as the receiver would be at x* with it (the last line of
+//! Algorithm 1).
 
 use geometry::{Attack, Point};
 use motion::trajectory::CalcMotion;
@@ -18,7 +19,7 @@ use super::super::tally::Sent;
 use super::super::view::{Ball, View};
 use super::{Coach, Pass, Plan};
 
-/// What the ball of open play is meant for, by whom, since when.
+/// The shot, pass or case chosen in open play, its robot, and since when.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Intent {
     who: RobotId,
@@ -30,18 +31,18 @@ pub(super) struct Intent {
 
 #[derive(Clone, Copy, Debug)]
 enum What {
-    /// A shot, and P(goal).
+    /// A shot at a point of the goal line, with its P(goal).
     Shot { at: Point<Attack>, goal: f32 },
-    /// A pass to where it is likeliest to become a goal.
+    /// A pass to the place with the greatest P(goal).
     Pass { receiver: RobotId, rating: Rating },
-    /// The pass of the case that is played, and how far from its place.
+    /// The pass of the case that is played, and the distance from its place.
     OfCase { pass: CasePass, rating: Rating, moved: f32 },
-    /// None of these.
+    /// Neither: a case is played.
     Case,
 }
 
 impl What {
-    /// To whom it passes, and how good that is.
+    /// The receiver of its pass, and its rating.
     fn pass(self) -> Option<(RobotId, Rating)> {
         match self {
             Self::Pass { receiver, rating } => Some((receiver, rating)),
@@ -52,7 +53,8 @@ impl What {
 }
 
 impl Coach {
-    /// What `who`, first at the ball, does with it, its receiver being told too; nothing where it plays a case.
+    /// The task of `who`, first at the ball, with an order for the receiver too; `None` where it plays a
+    /// case.
     pub(super) fn attack(&mut self, plan: &mut Plan<'_>, who: RobotId, ball: &Ball) -> Option<(Task, Why)> {
         if !self.tactics.attack {
             return None;
@@ -81,7 +83,7 @@ impl Coach {
         }
     }
 
-    /// The passer's task, its receiver being told, too; nothing where there is no receiver any more.
+    /// The passer's task, with an order for the receiver too; `None` where there is no receiver any more.
     fn pass_to(&self, plan: &mut Plan<'_>, receiver: RobotId, rating: &Rating, why: Why) -> Option<Task> {
         let mate = plan.view.our(receiver)?;
         if plan.take(receiver) {
@@ -93,7 +95,7 @@ impl Coach {
         Some(Task::Pass { at: rating.at, receiver, kick: rating.kick.order(), ready })
     }
 
-    /// Sees the pass of open play leave: from then on its receiver is told to have it.
+    /// Detects that the pass of open play leaves: from then on its receiver is ordered to receive it.
     pub(super) fn see_pass_leave(&mut self, view: &View) {
         let (Some(Intent { who, from, what, .. }), Some(ball), None) = (self.intent, view.ball, self.pass)
         else {
@@ -121,7 +123,8 @@ impl Coach {
         });
     }
 
-    /// What was meant a moment ago where that still holds, so that whoever walks around the ball does not turn back.
+    /// The earlier choice where it is still valid, so that a robot that moves around the ball does not turn
+    /// back.
     fn intends(&mut self, view: &View, who: RobotId, ball: &Ball) -> What {
         if let Some(intent) = self.intent
             && intent.who == who
@@ -156,7 +159,7 @@ impl Coach {
         let shot = shot(view, &self.kicks, ball.position);
         self.searches.forget();
         let offers = self.searches.offers(view, &self.kicks, ball.position, who, SAMPLES);
-        // Who defends goes on defending.
+        // Defenders are not receivers.
         let pass = offers
             .iter()
             .find(|offer| !self.defenders.contains(&Some(offer.receiver)) && offer.rating.receive() > LIKELY);
@@ -170,7 +173,8 @@ impl Coach {
         }
     }
 
-    /// The next pass of the case that `who` plays, refined near the place that the case has for it, where it is then likely to arrive.
+    /// The next pass of the case that `who` plays, refined near the case's place for it, if it is then likely
+    /// to arrive.
     fn of_the_case(&self, view: &View, who: RobotId, ball: &Ball) -> Option<What> {
         let pass = view.proposal.filter(|pass| self.tactics.bridge && pass.passer.0 == who)?;
         let receiver = pass.receiver.0;
@@ -182,28 +186,28 @@ impl Coach {
     }
 }
 
-/// A shot or a pass below this chance of a goal is not worth breaking off a case for. Chosen over 8 matches against chasers of the ball:
-/// 14.8 chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
+/// Least P(goal) of a shot or a pass for which a case is broken off. Chosen over 8 matches against chasers of
+/// the ball: 14.8 scoring chances a match for and 10.9 against; with cases alone 8.6 and 12.8.
 const WORTH_IT: f32 = 0.05;
-/// A pass in open play is received rather than not; what is lost there is lost with mates gone forward.
+/// Least P(receive) of a pass in open play; a pass lost there finds teammates out of position.
 const LIKELY: f32 = 0.5;
-/// … and is given up below this share of what it was.
+/// … and is given up below this share of its first value.
 const STILL_LIKELY: f32 = 0.5;
-/// What was chosen is held for so long: to walk around the ball and aim.
+/// Time for which a choice is held: to move around the ball and aim.
 const HELD: Duration = Duration::millis(800);
-/// A case's pass is held for longer, until its passer is at the ball: who has left the case for it does not propose it again. Scopes
-/// of the cases' robots are less than two seconds' walk.
+/// A case's pass is held for longer, until its passer is at the ball: a robot that has left the case for it
+/// does not propose it again. Scopes of the cases' robots are less than two seconds' drive.
 const CASE_HELD: Duration = Duration::millis(2000);
-/// Where a case is played it is asked again after so long, whether there is something better: as often as the field changes by a robot's
+/// Interval at which a better choice than a case is searched: as often as the field changes by a robot's
 /// body.
 const ASKED_AGAIN: Duration = Duration::millis(200);
-/// A ball that moved by more than this is another situation, m.
+/// A ball that moved by more than this is a new situation, m.
 const MOVED: f32 = 0.3;
-/// The receiver may come this much later than the ball, s: as in pass-ahead at restarts.
+/// The receiver may arrive this much later than the ball, s: as in pass-ahead at restarts.
 const TOGETHER: f32 = 0.1;
 /// A pass has left when the ball is this far from the passer's centre, m (touching it is 0.11 m off), …
 const LEFT: f32 = 0.15;
 /// … this fast, m/s: the slowest pass is kicked with 1, …
 const LEFT_WITH: f32 = 1.0;
-/// … and, by the cosine, rolls where it was meant to: within 26°.
+/// … and, by the cosine, rolls in the direction ordered: within 26°.
 const LEFT_ALONG: f32 = 0.9;

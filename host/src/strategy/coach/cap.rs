@@ -1,6 +1,6 @@
 //! `cap`: our free kick by the Coerce and Attack Planner. Coercers go and wait to be followed, then the pass
-//! ahead (Biswas et al. 2014 §4). Who coerces nobody defends or supports as usual until it receives. Attack
-//! frame, SI units.
+//! ahead (Biswas et al. 2014 §4). Robots that coerce no opponent defend or support as usual until they
+//! receive. Attack frame, SI units.
 
 use protocol::RobotId;
 use rules::{League, Phase, Side};
@@ -14,7 +14,7 @@ use super::super::support::{self, Target};
 use super::super::view::{Ball, View};
 use super::{Ahead, Coach, Plan};
 
-/// The planner, and what was asked of it at this free kick.
+/// The planner, and its settings at this free kick.
 #[derive(Clone, Debug)]
 pub(super) struct Cap {
     planner: Planner,
@@ -29,19 +29,19 @@ impl Cap {
         Self { planner, seed: 0, asked: false }
     }
 
-    /// Another phase has begun.
+    /// Drops the plan when another phase starts.
     pub(super) fn forget(&mut self) {
         self.asked = false;
     }
 }
 
 impl Coach {
-    /// Whether another attack is sought in place of one that has become unlikely.
+    /// Whether another attack is searched in place of one that has become unlikely.
     pub(super) fn reconsider(&mut self, view: &View) -> bool {
         self.cap.planner.reconsider(view.now)
     }
 
-    /// Sees what opponents do before our free kick (step 1).
+    /// Observes the opponents before our free kick (step 1).
     pub(super) fn observe(&mut self, view: &View) {
         let before = matches!(view.phase, Phase::Stop | Phase::BallPlacement(Side::Ours));
         if self.tactics.coerce
@@ -53,7 +53,8 @@ impl Coach {
         }
     }
 
-    /// What the taker does while others coerce; orders for those. When they are done, the attack becomes the pass ahead.
+    /// The taker's task while others coerce; orders for those. When they have finished, the attack becomes
+    /// the pass ahead.
     pub(super) fn coerce(&mut self, plan: &mut Plan<'_>, taker: RobotId, ball: &Ball) -> Option<(Task, Why)> {
         let view = plan.view;
         if !self.tactics.coerce || self.gave_up || view.phase != Phase::FreeKick(Side::Ours) {
@@ -106,5 +107,5 @@ fn begin(view: &View, kicks: &Kicks, taker: RobotId, ball: &Ball, attack: &Final
     Some(Ahead::new(receiver.id, scene.rate(attack.plan.at), view.now, Some(attack.reused)))
 }
 
-/// Free kicks farther back than this are brought into play as soon as can be, m: no pass from there leads to a shot.
+/// Free kicks farther back than this are taken as soon as possible, m: no pass from there leads to a shot.
 const FROM: f32 = -1.0;

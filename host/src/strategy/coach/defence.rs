@@ -11,7 +11,7 @@ use super::super::view::{Ball, RobotSet, View};
 use super::super::{defence, roles};
 use super::{Coach, Plan};
 
-/// A clearance under way: by whom, since when, from where.
+/// A clearance under way: its robot, start and place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clearing {
     who: RobotId,
@@ -22,7 +22,7 @@ pub(super) struct Clearing {
 }
 
 impl Coach {
-    /// Keeper and defenders; while `attacked`, everybody free too if second-level threats are played.
+    /// Keeper and defenders; while `attacked`, all free robots too if second-level threats are played.
     pub(super) fn defend(&mut self, plan: &mut Plan<'_>, attacked: bool) {
         if self.tactics.threats {
             return self.against_threats(plan, attacked && self.tactics.second_level);
@@ -60,7 +60,7 @@ impl Coach {
                 plan.order(id, Role::Keeper, task, why);
                 continue;
             }
-            // A primary defender stays one where it blocks a second-level shot from the edge.
+            // A primary defender keeps the role where it blocks a second-level shot from the edge.
             let primary = self.defenders.iter().position(|defender| *defender == Some(id));
             let role = primary.map_or(Role::Marker(i as u8), |slot| Role::Defender(slot as u8));
             let at = self.clear_of_clearance(view, id, plan.kept_off(assignment.at));
@@ -80,8 +80,8 @@ impl Coach {
         threat::lawful(view, at, &threat::Settings::default())
     }
 
-    /// Whether the ball before our area is left to our keeper: it is there first. Held until another
-    /// one is clearly sooner there.
+    /// Whether the ball before our area is left to our keeper: it is there first. Held until another robot is
+    /// clearly sooner there.
     pub(super) fn is_keepers(&mut self, view: &View, ball: &Ball) -> bool {
         let keeper =
             view.our(view.keeper).filter(|_| self.tactics.threats && lies_before_our_area(view, ball));
@@ -93,7 +93,7 @@ impl Coach {
         let players = view.ours.iter().filter(|robot| robot.id != keeper.id && Some(robot.id) != self.barred);
         let soonest = players
             .map(|robot| {
-                // Who comes from the field goes around the ball first, or turns with it.
+                // A robot that comes from the field drives around the ball first, or turns with it.
                 let around = if robot.position.distance(view.our_goal()) > home { AROUND } else { 0.0 };
                 roles::time_to(robot, ball.position) + around
             })
@@ -108,7 +108,7 @@ impl Coach {
         is
     }
 
-    /// What a field player that is first at a ball before our area does with it.
+    /// The task of a field player that is first at a ball before our area.
     pub(super) fn clears_before_our_area(
         &mut self,
         view: &View,
@@ -122,7 +122,7 @@ impl Coach {
                 (Task::Kick { at, kick }, Why::BestTarget { room })
             }));
         }
-        // There is no room behind it: it is taken from the field, and turned.
+        // There is no room behind it: it is approached from the field, and turned.
         let to_ball = ball.position - robot.position;
         let has = to_ball.norm() < AT_FRONT && (to_ball.angle() - robot.heading).abs() < BEFORE_FRONT;
         if !has {
@@ -135,7 +135,7 @@ impl Coach {
         }))
     }
 
-    /// The keeper at its place; clears what lies in our area, and meets a shot on its line.
+    /// The keeper at its place; it clears a ball in our area, and intercepts a shot on its line.
     fn keeper(&mut self, view: &View, at: Point<Attack>, why: Why) -> (Task, Why) {
         let (task, usual) =
             if view.phase == Phase::Run { defence::keeper(view) } else { (defence::keeper_line(view), why) };
@@ -155,7 +155,8 @@ impl Coach {
         (Task::GoTo { at, face: at.direction_to(ball.position) }, why)
     }
 
-    /// What was chosen a moment ago for a ball that still lies there: opponents who follow the robot's turns do not turn it back.
+    /// The earlier choice for a ball that still lies there: opponents that follow the robot's turns do not
+    /// turn it back.
     fn kept_clearance(
         &mut self,
         view: &View,
@@ -175,7 +176,7 @@ impl Coach {
         (task, why)
     }
 
-    /// The two nearest to where defenders stand; who was one stays one.
+    /// The two robots nearest to the defenders' places; a robot that was one stays one.
     pub(super) fn primaries(&self, plan: &Plan<'_>) -> RobotSet {
         let view = plan.view;
         let mut free = plan.free.clone();
@@ -189,7 +190,8 @@ impl Coach {
     }
 }
 
-/// So near to our area that there is hardly room behind the ball, and slow enough to be kicked as it lies.
+/// The ball is so near to our area that there is hardly room behind it, and slow enough to be kicked as it
+/// lies.
 fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
     let inside = ball.position.x() > view.our_goal().x();
     view.phase == Phase::Run
@@ -198,24 +200,28 @@ fn lies_before_our_area(view: &View, ball: &Ball) -> bool {
         && view.in_our_area(ball.position, KEEPERS)
 }
 
-/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first: a field player's centre is
-/// 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no room to go around it on the goal's side.
+/// Outside our area, but nearer to it than this, the ball is cleared, m, by the keeper if it is there first:
+/// a field player's centre is 0.11 m behind the ball it kicks and 0.17 m when it lines up, and there is no
+/// room to go around it on the goal's side.
 const KEEPERS: f32 = 0.3;
-/// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and what robots keep (`brain`'s
-/// surroundings: 0.01 m off the line's middle of 0.01 m).
+/// Where a field player lines up for such a ball its centre is this far off our area, m: a body, and the
+/// distance robots keep (`brain`'s surroundings: 0.01 m off the line's middle of 0.01 m).
 const OFF_OUR_AREA: f32 = 0.115;
 /// Nearer than this to our area no field player gets behind the ball or beside it, m.
 const BEHIND_BALL: f32 = 0.09;
-/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and noise.
+/// A ball this near a robot's centre, m, and this far from its heading, rad, is at its front: radii and
+/// noise.
 const AT_FRONT: f32 = 0.125;
 const BEFORE_FRONT: f32 = 0.4;
-/// From such a ball to the nearest robot that only defends, m: who lines up is 0.17 m behind it, and two bodies are 0.18 m.
+/// From such a ball to the nearest robot that only defends, m: a robot that lines up is 0.17 m behind it, and
+/// two bodies are 0.18 m.
 const CLEARER_NEEDS: f32 = 0.4;
-/// What it costs to go around a ball, s: half a circle of 0.2 m radius at walking pace (estimate).
+/// Cost of moving around a ball, s: half a circle of 0.2 m radius at moderate speed (estimate).
 const AROUND: f32 = 0.4;
-/// A clearance stands for so long, s: to walk around the ball, aim and kick; …
+/// Time for which a clearance is kept: to move around the ball, aim and kick; …
 const KEPT: Duration = Duration::millis(2500);
 /// … while the ball is within this of where it lay, m.
 const MOVED: f32 = 0.3;
-/// A ball that comes at our goal faster than this is met on its way, m/s: slower ones leave time to walk.
+/// A ball that comes at our goal faster than this is intercepted on its path, m/s: slower ones leave time to
+/// approach.
 const COMES: f32 = 0.5;

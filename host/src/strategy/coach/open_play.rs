@@ -9,7 +9,7 @@ use super::super::{roles, support};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Open play: keeper, who is first at the ball, two defenders, the rest.
+    /// Open play: keeper, the robot first at the ball, two defenders, the others.
     pub(super) fn open_play(&mut self, plan: &mut Plan<'_>) {
         let view = plan.view;
         let Some(ball) = view.ball else { return self.defend(plan, false) };
@@ -32,12 +32,12 @@ impl Coach {
         }
         let forbidden = view.in_their_area(ball.position, THEIRS) || view.in_our_area(ball.position, 0.0);
         if forbidden || keepers || is_shot_at_us(view, &ball) {
-            // Nobody but a keeper may, or can, play it; whoever stands in the way of a shot stays there.
+            // Only a keeper may, or can, play it; a robot that blocks a shot stays there.
             self.first = None;
             self.defend(plan, self.attacked || keepers);
             return self.support(plan, ball.position);
         }
-        // A keeper that left its goal for a ball would be the one that it passes.
+        // A keeper that left its goal for a ball could be passed by it.
         let candidates =
             view.ours.iter().filter(|robot| plan.free.contains(&robot.id) && robot.id != view.keeper);
         let soonest = roles::choose(candidates, self.first, roles::WORTH, |robot| {
@@ -57,7 +57,7 @@ impl Coach {
             }
             plan.order(id, Role::Player, Task::Gameplay, Why::SoonestAtBall { seconds: seconds.max(0.0) });
         }
-        // Who plays a case plays it to its end.
+        // A robot that plays a case plays it to its end.
         for robot in view.ours.iter().filter(|robot| view.in_play.has(robot.id)) {
             if plan.free.len() > 2 && plan.take(robot.id) {
                 plan.order(robot.id, Role::Player, Task::Gameplay, Why::OpenPlay);
@@ -67,7 +67,7 @@ impl Coach {
         plan.everybody(Role::Player, Task::Gameplay, Why::OpenPlay);
     }
 
-    /// The ball is theirs while one of them is clearly sooner at it than ours, `ours` s from now.
+    /// Updates whether the ball is theirs: one of them is clearly sooner at it than ours, `ours` s from now.
     fn see_whose_ball(&mut self, view: &View, ours: f32) {
         let Some(ball) = view.ball else { return };
         let theirs =
@@ -77,7 +77,7 @@ impl Coach {
     }
 }
 
-/// A shot at our goal on its way: who ran after it would open the way that it closes.
+/// Whether a shot moves at our goal: a robot that ran after it would open the line that it blocks.
 fn is_shot_at_us(view: &View, ball: &Ball) -> bool {
     let goal = view.our_goal();
     ball.velocity.norm() > SHOT
@@ -90,9 +90,11 @@ fn best_place(view: &View, ball: Point<Attack>) -> (Point<Attack>, f32) {
     support::places(view, ball, 1).first().copied().unwrap_or((Point::new(0.0, 0.0), 0.0))
 }
 
-/// A robot that plays a case counts as this much nearer to the ball, s: changing hands would end the case.
+/// A robot that plays a case counts as this much nearer to the ball, s: a change of robots would end the
+/// case.
 const BOUND: f32 = 1.0;
-/// A ball this near their area is as good as in it, m: a robot that touches it from outside is 5 mm off the area, and cameras err by 3.
+/// A ball this near their area counts as in it, m: a robot that touches it from outside is 5 mm off the area,
+/// and cameras err by 3.
 const THEIRS: f32 = 0.008;
-/// A slower ball at our goal can be walked to, m/s.
+/// A slower ball at our goal can be reached, m/s.
 const SHOT: f32 = 1.0;

@@ -1,4 +1,4 @@
-//! `penalty`: orders of everybody at a penalty, and in the stop before it. Attack frame, m.
+//! `penalty`: orders of all robots at a penalty, and in the stop before it. Attack frame, m.
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
@@ -10,7 +10,7 @@ use super::super::{defence, restart};
 use super::{Coach, Plan};
 
 impl Coach {
-    /// Penalty: taker or keeper, everybody else behind the mark.
+    /// Penalty: taker or keeper, all other robots behind the mark.
     pub(super) fn penalty(&mut self, plan: &mut Plan<'_>, side: Side) {
         let view = plan.view;
         let started = matches!(view.phase, Phase::Penalty(_));
@@ -28,8 +28,8 @@ impl Coach {
         self.row(plan, &places);
     }
 
-    /// Robots left to the places of a row, in the order in which they stand along it, so that none has to pass another one's place. Who
-    /// has a place keeps it while the same robots wait.
+    /// Sends remaining robots to the places of a row, in the order in which they stand along it, so that none
+    /// has to pass another one's place. A robot that has a place keeps it while the same robots wait.
     fn row(&mut self, plan: &mut Plan<'_>, places: &[Point<Attack>]) {
         let same = |held: &[Option<RobotId>], free: &[RobotId]| {
             held.iter().flatten().count() == free.len() && held.iter().flatten().all(|id| free.contains(id))

@@ -1,4 +1,4 @@
-//! `plan`: orders under construction. What is written while the coach decides. Attack frame, m.
+//! `plan`: the orders that the coach is building. Attack frame, m.
 
 use geometry::{Angle, Attack, Point};
 use protocol::RobotId;
@@ -9,7 +9,7 @@ use super::super::view::{ROBOTS_MAX, Robot, View};
 use super::super::{defence, restart, threat};
 use super::{Free, Orders};
 
-/// Orders being written, and who has none yet.
+/// Orders so far, and the robots that have none yet.
 pub(super) struct Plan<'v> {
     pub(super) view: &'v View,
     pub(super) orders: Orders,
@@ -17,13 +17,13 @@ pub(super) struct Plan<'v> {
 }
 
 impl<'v> Plan<'v> {
-    /// Nobody has an order yet.
+    /// A plan without orders.
     pub(super) fn new(view: &'v View) -> Self {
         Self { view, orders: Orders::new(), free: view.ours.iter().map(|r| r.id).collect() }
     }
 
-    /// The robot's order. While the ball is not in play none is sent where the rules do not let it stand, nor where another one is
-    /// sent: it would not get there.
+    /// Sets the robot's order. While the ball is not in play no robot is sent to where the rules do not let
+    /// it stand, nor to another robot's place: it would not get there.
     pub(super) fn order(&mut self, robot: RobotId, role: Role, task: Task, why: Why) {
         let duty = match role {
             Role::Taker => Duty::Taker,
@@ -38,7 +38,7 @@ impl<'v> Plan<'v> {
             }
             other => other,
         };
-        // One order a robot, and as many places as robots.
+        // At most one order per robot, and as many places as robots.
         let _ = self.orders.push(Order { robot, role, task, why });
     }
 
@@ -51,7 +51,7 @@ impl<'v> Plan<'v> {
         self.orders.iter().filter_map(place).collect()
     }
 
-    /// Takes a robot out of those without an order; false if it is not among them.
+    /// Removes a robot from those without an order; false if it is not among them.
     pub(super) fn take(&mut self, id: RobotId) -> bool {
         let before = self.free.len();
         self.free.retain(|other| *other != id);
@@ -77,7 +77,8 @@ impl<'v> Plan<'v> {
         }
     }
 
-    /// Whoever is left stays; while the ball is not in play by going to where it is, so that it leaves what is forbidden.
+    /// Orders the remaining robots to stay; while the ball is not in play by going to their present place, so
+    /// that they leave forbidden areas.
     pub(super) fn stay_lawful(&mut self) {
         let view = self.view;
         if view.phase == Phase::Run {
@@ -95,7 +96,7 @@ impl<'v> Plan<'v> {
         Task::GoTo { at, face }
     }
 
-    /// Off the ball unless it is in play.
+    /// The place moved off the ball unless that is in play.
     pub(super) fn kept_off(&self, at: Point<Attack>) -> Point<Attack> {
         if self.view.phase == Phase::Run { at } else { restart::kept_off(self.view, at) }
     }

@@ -1,4 +1,4 @@
-//! Tests: every robot has one sensible order in every phase.
+//! Tests: every robot has one plausible order in every phase.
 
 use super::*;
 use crate::strategy::pass::bridge::{CasePass, RADIUS};
@@ -93,7 +93,7 @@ fn who_took_our_free_kick_leaves_the_ball_to_others_until_somebody_touched_it() 
     view.phase = Phase::Run;
     let orders = coach.decide(&view);
     assert_eq!(orders[3].role, Role::Barred);
-    // Another one at the ball: it may again.
+    // Another one is at the ball: it may touch it again.
     let ball = Point::new(0.5, 1.4);
     view.ball = Some(Ball { position: ball, rest: ball, ..view.ball.unwrap() });
     assert_ne!(coach.decide(&view)[3].role, Role::Barred);
@@ -140,7 +140,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
             .map(|order| order.robot.number())
             .collect::<Vec<_>>()
     };
-    // Ours: our 3 is at it. Theirs: their 2 is, and their 1 is free before our goal.
+    // Ours: our 3 is at the ball. Theirs: their 2 is, and their 1 is free before our goal.
     let ours = view((-0.4, 0.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
     assert_eq!(guards(&Coach::new(Team::Ours, tactics, League::DivisionB).decide(&ours)), [0, 1, 2]);
     let theirs = view((0.9, -1.0), &OURS, &[(4.4, 0.0), (-2.0, 1.5), (1.0, -1.0)]);
@@ -153,7 +153,7 @@ fn against_threats_keeper_and_defenders_say_what_is_open_and_others_come_back_on
     assert_eq!(guards(&Coach::new(Team::Ours, alone, League::DivisionB).decide(&far)), [0, 1, 2]);
 }
 
-/// A free kick of ours with the taker behind the ball, `x` m before our 4 at its place, after so many ms.
+/// A free kick of ours with the taker behind the ball, `x` m before our 4 at its place, after `ms`.
 fn free_kick(ms: u64, receiver: (f32, f32), theirs: &[(f32, f32)]) -> View {
     let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (0.855, 0.0), receiver, (-1.0, -2.0)];
     let mut view = view((1.0, 0.0), &ours, theirs);
@@ -174,7 +174,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
         let mut view = free_kick(ms, receiver, &theirs);
         let taker = view.ours[3].id;
         if let Some((at, _)) = went {
-            // The taker looks at x*, the receiver gets there at 2 m/s.
+            // The taker faces x*, the receiver moves there at 2 m/s.
             let at: Point<Attack> = at;
             let ball = Point::new(1.0, 0.0);
             view.ours[3].heading = ball.direction_to(at);
@@ -202,7 +202,7 @@ fn a_pass_ahead_leaves_when_its_receiver_will_be_there_and_whoever_receives_it_i
         }
     }
     assert!(left.is_some_and(|left| left > 200), "{went:?} {left:?}");
-    // Once it is in play the receiver has it, and the books are told once.
+    // Once it is in play the receiver has it, and the pass is counted once.
     let mut view = free_kick(3_500, receiver, &theirs);
     view.phase = Phase::Run;
     let (at, id) = went.unwrap();
@@ -223,7 +223,8 @@ fn a_shot_at_our_goal_makes_nobody_leave_its_place_and_the_keeper_stays_one() {
         (before[0], before[1..3].iter().all(|role| matches!(role, Role::Defender(_)))),
         (Role::Keeper, true)
     );
-    // 6 m/s towards (−4.5, 0.05): past both defenders, to rest far behind the goal, where the keeper would be soonest.
+    // 6 m/s towards (−4.5, 0.05): past both defenders, to a stop position far behind the goal, where the
+    // keeper would be soonest.
     let velocity = Vector::new(-6.0, -0.3);
     let ball =
         Ball { position: Point::new(-2.0, 0.175), velocity, rest: Point::new(-20.0, -0.7), height: 0.0 };
@@ -255,7 +256,7 @@ fn a_ball_that_lies_before_our_area_is_the_keepers_unless_a_field_player_is_ther
     assert!(matches!(orders[0].task, Task::GoTo { .. }), "{:?}", orders[0]);
     let ball = Point::new(-3.3, 0.2);
     assert!(!near.in_our_area(ball - (at - ball).unit().unwrap() * 0.165, 0.1), "{at:?}");
-    // Without a keeper somebody tries.
+    // Without a keeper a field player tries.
     let mut alone = view((-3.3, 0.2), &OURS, &THEIRS);
     alone.keeper = RobotId::new(9).unwrap();
     assert!(coach().decide(&alone).iter().any(|order| order.task == Task::Gameplay));
@@ -284,13 +285,13 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
         "{:?}",
         shoots[3]
     );
-    // A wall before the ball, and a mate beside it.
+    // A wall before the ball, and a teammate beside it.
     let wall = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2)];
     let (_, _, passes) = attack([(3.0, 1.8), (-2.0, -2.0)], &wall, Tactics::default());
     let Task::Pass { at, receiver, .. } = passes[3].task else { panic!("{:?}", passes[3]) };
     assert_eq!(receiver.number(), 4);
     assert!(matches!(passes[4].task, Task::Receive { at: there, .. } if there == at), "{:?}", passes[4]);
-    // Everybody of ours is marked, and the goal closed.
+    // All our robots are marked, and the goal closed.
     let closed = [wall[0], wall[1], wall[2], wall[3], (-1.8, 2.0), (-1.8, -2.0)];
     let (_, _, case) = attack(far, &closed, Tactics::default());
     assert_eq!(case[3].task, Task::Gameplay);
@@ -300,7 +301,7 @@ fn in_open_play_an_open_goal_is_shot_at_and_a_closed_one_passed_around_and_far_f
 
 #[test]
 fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_bridge_is_played() {
-    // The goal is closed and nobody may be worth a pass; the case has 5 receive it in free space.
+    // The goal is closed and no pass may be worth it; the case has 5 receive it in free space.
     let closed = [(4.4, 0.0), (2.4, 0.0), (2.45, 0.2), (2.45, -0.2), (-1.8, 2.0)];
     let ours = [(-4.4, 0.0), (-3.2, 0.3), (-3.2, -0.3), (1.85, 0.0), (-2.0, 2.0), (-0.8, -2.0)];
     let at = Point::new(-0.8, -1.8);
@@ -328,7 +329,7 @@ fn where_a_case_is_played_its_pass_goes_near_its_place_to_its_receiver_if_the_br
     assert_eq!(decide(true, 4)[3].task, Task::Gameplay);
     assert_eq!(decide(false, 3)[3].task, Task::Gameplay);
 }
-/// Less than this is not worth a shot (0.05), by far.
+/// Clearly above the least value of a shot (0.05).
 const WORTH: f32 = 0.1;
 
 #[test]

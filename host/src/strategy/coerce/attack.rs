@@ -1,4 +1,4 @@
-//! `attack`: best receiving position of our free kick. Every cell of the grid, every receiver, by P(receive)
+//! `attack`: best receiving position of our free kick: every cell of the grid, every receiver, by P(receive)
 //! · P(goal) (Biswas et al. 2014 §4.2). Attack frame, m, probabilities.
 
 use geometry::{Angle, Attack, Point, Vector, math};
@@ -13,9 +13,9 @@ use super::grid::{CELLS, Cell};
 /// What a pass to a place is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
-    /// P(receive | x).
+    /// P(receive | x), 0–1.
     pub receive: f32,
-    /// P(goal | receive, x).
+    /// P(goal | receive, x), 0–1.
     pub goal: f32,
     /// How the ball is kicked.
     pub kick: KickOrder,
@@ -32,8 +32,8 @@ impl Worth {
 
 /// Values passes and shots: section 3.1, as the planner needs it.
 pub trait PassValue {
-    /// Passes from `from`, played by `taker` to `receiver`, to each of these places, against all opponents of the view and beside
-    /// all our robots in it.
+    /// Values of passes from `from`, played by `taker` to `receiver`, to each of these places, against all
+    /// opponents of the view and with all our robots in it.
     fn worths(
         &self,
         view: &View,
@@ -44,50 +44,51 @@ pub trait PassValue {
         take: &mut dyn FnMut(Point<Attack>, Worth),
     );
 
-    /// How likely this opponent meets a pass from `from` to `to`.
+    /// Probability that this opponent intercepts a pass from `from` to `to`.
     fn meets_pass(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
 
-    /// How likely it meets a shot.
+    /// Probability that it intercepts a shot.
     fn meets_shot(&self, opponent: &Robot, from: Point<Attack>, to: Point<Attack>) -> f32;
 }
 
 /// A pass to a receiver, and a shot from there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttackPlan {
-    /// Who receives.
+    /// The robot that receives.
     pub receiver: RobotId,
     /// The best cell.
     pub cell: Cell,
-    /// The place in it.
+    /// The best place in that cell.
     pub at: Point<Attack>,
-    /// What it is worth.
+    /// Its value.
     pub worth: Worth,
-    /// How many opponents were taken into account.
+    /// Number of opponents taken into account.
     pub against: usize,
 }
 
-/// The best value found in each cell, 0 where nobody can receive, in the order of [`Cell::all`].
+/// The best value found in each cell, 0 where no robot can receive, in the order of [`Cell::all`].
 pub type CellValues = [f32; CELLS];
 
-/// What an attack must come to, or it is none.
+/// The least values of an attack.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Least {
-    /// P(receive | x).
+    /// Least P(receive | x).
     pub receive: f32,
-    /// P(goal | x).
+    /// Least P(goal | x).
     pub value: f32,
 }
 
 impl Least {
-    /// Whether it does.
+    /// Whether both are reached.
     pub fn allows(self, worth: &Worth) -> bool {
         worth.receive >= self.receive && worth.value() > self.value
     }
 }
 
-/// The best attack by one of `receivers` in this view that comes to `least`, and the value of every cell.
+/// The best attack by one of `receivers` in this view that reaches `least`, and the value of every cell.
 ///
-/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn from `seed`.
+/// The middles of all cells decide; then [`SAMPLES`] places around the best one's middle are tried, drawn
+/// from `seed`.
 pub fn best_attack(
     view: &View,
     value: &dyn PassValue,
@@ -117,7 +118,7 @@ pub fn best_attack(
     let mut random = Xoshiro128PlusPlus::seed_from_u64(seed);
     let mut around = (0..SAMPLES).map(|_| {
         let by = gaussian(&mut random);
-        // Within the cell: a sample beyond it is cut to its border.
+        // Within the cell: a sample beyond it is moved to its border.
         let cut = |x: f32, side: f32| (x * side * SPREAD).clamp(-0.5 * side, 0.5 * side);
         middle + Vector::new(cut(by.x(), size.x()), cut(by.y(), size.y()))
     });

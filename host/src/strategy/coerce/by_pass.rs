@@ -1,4 +1,4 @@
-//! `by_pass`: value of a pass for the planner. What section 3.1 says, by the pass location's own functions
+//! `by_pass`: value of a pass for the planner, by section 3.1, with the pass location's own functions
 //! ([`super::super::pass`]).
 
 use geometry::{Attack, Point, Vector};
@@ -19,7 +19,7 @@ pub struct ByPassLocation<'k> {
 }
 
 impl<'k> ByPassLocation<'k> {
-    /// With the kicks, and so the constants, of a league and a carpet.
+    /// With the kicks, and so the constants, of a league and a field surface.
     pub fn new(kicks: &'k Kicks) -> Self {
         Self { kicks }
     }
@@ -92,7 +92,7 @@ mod tests {
         let (from, to) = (Point::new(0.0, 0.0), Point::new(3.0, 0.0));
         assert!(value.meets_pass(&scene.theirs[0], from, to) > 0.95);
         assert!(value.meets_pass(&scene.theirs[1], from, to) < 0.05);
-        // A shot is faster: there is less time to come to its way.
+        // A shot is faster: there is less time to reach its path.
         let beside = Robot { position: Point::new(1.5, 0.8), ..scene.theirs[0] };
         assert!(value.meets_shot(&beside, from, to) < value.meets_pass(&beside, from, to));
     }
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn against_markers_coercing_makes_the_attack_likelier() {
-        // In the second paper's world and in division B: three of four mates are marked.
+        // In the second paper's world and in division B: three of four teammates are marked.
         for (league, ball, scale) in
             [(League::Ssl2013, (0.25, -1.5), 1.0), (League::DivisionB, (0.4, -2.2), 1.5)]
         {
@@ -142,18 +142,18 @@ mod tests {
                 [at(2.82, -0.1), at(2.2, -0.42), at(1.04, 0.12), at(1.86, 0.38), at(1.17, 1.0), at(0.0, 1.9)];
             let mut scene = view(ball, &ours, &theirs);
             scene.field = league.field();
-            // What it comes to is compared here, however much it is.
+            // The values are compared here, whatever their size.
             let settings = Settings { least: Least::default(), ..Settings::of(league) };
             let mut planner = Planner::new(settings, Models::default());
             let taker = scene.ours[1].id;
             planner.observe(&scene, taker);
             let plan = planner.plan(&scene, &value, taker, 1).unwrap();
             assert_eq!(plan.coerce.coercers.len(), 3, "{league:?}");
-            // Whoever is in the way is drawn off it.
+            // An opponent on the path is drawn off it.
             for coercer in &plan.coerce.coercers {
                 assert!(coercer.interference < 0.1, "{league:?} {coercer:?}");
             }
-            // Followers where they are expected leave the attack worth more than where they stand now.
+            // Followers where they are expected give the attack a higher value than at their present places.
             let receiver = *scene.our(plan.optimistic.receiver).unwrap();
             let worth = |theirs: &dyn Fn(&mut Robot)| {
                 let mut then = scene.clone();

@@ -1,10 +1,11 @@
-//! `coercing`: positions that draw followers away (Biswas et al. 2014 §4.3: the coerce plan.). Attack frame,
+//! `coercing`: positions that draw followers away (Biswas et al. 2014 §4.3: the coerce plan). Attack frame,
 //! m, s.
 //!
-//! For every opponent that follows robots, the robot of ours that it follows is sent to a cell. In every cell of the grid: the
-//! opponent is expected at its usual distance from our robot there, and the *interference likelihood* is how likely it then meets
-//! the pass or the shot of the optimistic attack. The cell with the least is taken, one robot after the other, each time with the
-//! opponents placed before where they are expected.
+//! For every opponent that follows robots, the robot of ours that it follows is sent to a cell. In every cell
+//! of the grid: the opponent is expected at its usual distance from our robot there, and the *interference
+//! likelihood* is the probability that it then intercepts the pass or the shot of the optimistic attack. The
+//! cell with the least is taken, one robot after the other, each time with the opponents of earlier ones at
+//! their expected places.
 
 use geometry::{Attack, Point, Segment};
 use motion::trajectory::CalcMotion;
@@ -16,16 +17,16 @@ use super::detect::Detected;
 use super::grid::{CELLS, Cell};
 use super::{Settings, tactics};
 
-/// One robot of ours and whom it shall draw where.
+/// One robot of ours, the opponent that it draws, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coercer {
     /// Our robot.
     pub robot: RobotId,
     /// The opponent that follows it.
     pub marker: RobotId,
-    /// Where it goes.
+    /// Its cell of the grid.
     pub cell: Cell,
-    /// The middle of that.
+    /// The middle of that cell.
     pub at: Point<Attack>,
     /// Where the opponent is expected then.
     pub expected: Point<Attack>,
@@ -37,12 +38,13 @@ pub struct Coercer {
     pub time: f32,
 }
 
-/// The coerce plan, and the interference likelihood of every cell for the first robot of it (1 where no robot is sent), for pictures.
+/// The coerce plan, and the interference likelihood of every cell for the first robot of it (1 where no robot
+/// is sent), for figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoercePlan {
-    /// Who goes where.
+    /// The coercers with their places.
     pub coercers: heapless::Vec<Coercer, ROBOTS_MAX>,
-    /// By [`Cell::index`].
+    /// Interference likelihood of each cell, by [`Cell::index`].
     pub first: [f32; CELLS],
 }
 
@@ -55,7 +57,7 @@ pub struct Pair {
     pub robot: RobotId,
 }
 
-/// Which robot of ours draws which opponent: the one that it follows, else the nearest that draws nobody yet.
+/// Pairs each opponent with the robot of ours that it follows, else the nearest that draws no opponent yet.
 pub fn pairs(
     view: &View,
     detected: &[Detected],
@@ -67,7 +69,7 @@ pub fn pairs(
         if let Some(robot) = marker.follows.filter(|robot| field_players.contains(robot))
             && pairs.iter().all(|pair| pair.robot != robot)
         {
-            // As many as robots.
+            // At most one per robot.
             let _ = pairs.push(Pair { marker: *marker, robot });
         }
     }
@@ -85,7 +87,7 @@ pub fn pairs(
     pairs
 }
 
-/// How likely an opponent standing at `at` meets the pass, or the shot after it.
+/// Probability that an opponent standing at `at` intercepts the pass, or the shot after it.
 pub fn interference(
     value: &dyn PassValue,
     opponent: &Robot,
@@ -115,7 +117,7 @@ pub fn coerce(
     let likely = |marker: &Detected, at| {
         body(marker.opponent).map_or(0.0, |robot| interference(value, robot, at, from, attack))
     };
-    // Who is most in the way is drawn first: it has the choice of cells.
+    // The opponent that interferes most is drawn first: it has the choice of cells.
     let mut order: heapless::Vec<(Pair, f32), ROBOTS_MAX> =
         pairs.iter().map(|pair| (*pair, likely(&pair.marker, pair.marker.at))).collect();
     order.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.marker.opponent.cmp(&b.0.marker.opponent)));
@@ -133,7 +135,7 @@ pub fn coerce(
             if i == 0 {
                 plan.first[cell.index()] = interference;
             }
-            // Likelihoods that differ by less than a hundredth are equal: then the shorter way.
+            // Likelihoods that differ by less than a hundredth are equal: then the shorter path.
             let step = (interference * STEPS) as u32;
             if best.is_none_or(|(least, shortest, _)| (step, time) < (least, shortest)) {
                 let (robot, marker, interference_now) = (robot.id, pair.marker.opponent, *now);
@@ -143,22 +145,22 @@ pub fn coerce(
             }
         }
         if let Some((_, _, coercer)) = best {
-            // One a robot.
+            // At most one per robot.
             let _ = plan.coercers.push(coercer);
         }
     }
     plan
 }
 
-/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from it, on the side that it
-/// keeps to.
+/// Where an opponent that follows robots drives to when the one it follows is at `at`: to its distance from
+/// it, on the side that it keeps to.
 pub fn response(situation: &tactics::Situation<'_>, marker: &Detected, at: Point<Attack>) -> Point<Attack> {
     let [goal_side, ball_side] = situation.mark_places(at, marker.stand_off);
     if marker.ball_side { ball_side } else { goal_side }
 }
 
-/// Whether a robot of ours may be sent to a cell: nobody else is, it is not the attack's, lawful, and off the ball, the pass and the
-/// shot.
+/// Whether a robot of ours may be sent to a cell: no other robot is, it is not the attack's, the rules allow
+/// it, and it is off the ball, the pass and the shot.
 fn may_go(
     view: &View,
     plan: &CoercePlan,

@@ -1,5 +1,5 @@
-//! `detect`: tactic estimation of the opponents. Tactics estimated from where they were over the last half
-//! second (Biswas et al. 2014 §4.1; docs/papers.md D17). Attack frame, s.
+//! `detect`: tactic estimation of the opponents, from their places over the last half second (Biswas et al.
+//! 2014 §4.1; docs/papers.md D17). Attack frame, s.
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
@@ -7,27 +7,27 @@ use protocol::{Instant, RobotId};
 use super::super::view::{ROBOTS_MAX, View};
 use super::tactics::{Likelihoods, Models, Situation, Tactic, detected};
 
-/// What is known of an opponent.
+/// State of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detected {
-    /// Who.
+    /// Its number.
     pub opponent: RobotId,
-    /// Where it is.
+    /// Its place.
     pub at: Point<Attack>,
-    /// What explains its places best; `None` if nothing does: it counts as one that follows the ball.
+    /// The tactic that explains its places best; `None` if none does: it counts as one that follows the ball.
     pub tactic: Option<Tactic>,
     /// Mean likelihoods over the last half second, in the order of [`Tactic::ALL`].
     pub likelihoods: Likelihoods,
     /// The robot of ours that it follows.
     pub follows: Option<RobotId>,
-    /// How far from it, m: what was seen of this opponent, the model's number before anything was.
+    /// Its distance from that robot, m: as observed of this opponent, before that the model's number.
     pub stand_off: f32,
     /// It stands between that robot and the ball, not their goal.
     pub ball_side: bool,
 }
 
 impl Detected {
-    /// Whether it follows our robots: these are coerced. All others are taken to follow the ball.
+    /// Whether it follows our robots: these are coerced. All others count as following the ball.
     pub fn follows_robots(&self) -> bool {
         self.tactic == Some(Tactic::Mark)
     }
@@ -48,17 +48,17 @@ struct Known {
 }
 
 impl Detector {
-    /// Knows nothing of anybody yet.
+    /// Without any observation yet.
     pub fn new(models: Models) -> Self {
         Self { models, seen: None, known: [None; ROBOTS_MAX] }
     }
 
-    /// The models' numbers.
+    /// The models' parameters.
     pub fn models(&self) -> &Models {
         &self.models
     }
 
-    /// Takes a picture in; older ones count less and less, half of them after 0.35 s.
+    /// Takes a snapshot; older ones count less and less, half of them after 0.35 s.
     pub fn watch(&mut self, view: &View, taker: Option<RobotId>) {
         let since = self.seen.map_or(f32::INFINITY, |seen| view.now.since(seen).as_secs_f32());
         self.seen = Some(view.now);
@@ -72,7 +72,7 @@ impl Detector {
             let likelihoods =
                 before.map_or(new, |before| core::array::from_fn(|i| mixed(before.likelihoods[i], new[i])));
             let mut stand_off = before.map_or(self.models.stand_off, |before| before.stand_off);
-            // How near a marker keeps is learned while it surely marks.
+            // A marker's distance is learned while it is very likely that it marks.
             if let (likely, Some(ours)) = situation.mark(robot.position)
                 && likely > SURE
             {
@@ -83,7 +83,7 @@ impl Detector {
         self.known = known;
     }
 
-    /// What each opponent of the view does, by number; one never watched is judged by where it is now.
+    /// Estimates for each opponent of the view, by number; one never watched is judged by its present place.
     pub fn read(&self, view: &View, taker: Option<RobotId>) -> heapless::Vec<Detected, ROBOTS_MAX> {
         let situation = Situation::new(view, self.models, taker);
         let read = |robot: &super::super::view::Robot| {
@@ -111,11 +111,11 @@ impl Detector {
     }
 }
 
-/// Pictures count by e^(−age/this), s (D17: the last half second).
+/// Snapshots count by e^(−age/this), s (D17: the last half second).
 const MEMORY: f32 = 0.5;
-/// After a gap of this length everything is new, s.
+/// After a gap of this length all estimates restart, s.
 const FORGOTTEN: f32 = 2.0;
-/// A mark as likely as this is one to learn from.
+/// A mark of at least this likelihood updates the distance.
 const SURE: f32 = 0.5;
 
 #[cfg(test)]
@@ -156,11 +156,11 @@ mod tests {
         for tick in 0..60 {
             detector.watch(&picture(tick * 10, &[(2.7, 0.1)]), taker);
         }
-        // One picture in which the keeper is taken for somebody at our robot 2.
+        // One snapshot in which the keeper is taken for another robot at our robot 2.
         let off = picture(600, &[(1.25, -0.9)]);
         detector.watch(&off, taker);
         assert_eq!(detector.read(&off, taker)[0].tactic, Some(Tactic::Goalkeeper));
-        // After a gap everything is new.
+        // After a gap all estimates restart.
         let later = picture(5_000, &[(1.25, -0.9)]);
         detector.watch(&later, taker);
         assert_eq!(detector.read(&later, taker)[0].tactic, Some(Tactic::Mark));

@@ -6,9 +6,9 @@ use rules::FieldSpec;
 
 /// Columns along the length, rows across (§4.2).
 pub const COLUMNS: usize = 6;
-/// See [`COLUMNS`].
+/// Rows across the field (§4.2).
 pub const ROWS: usize = 4;
-/// All of them.
+/// Number of cells.
 pub const CELLS: usize = COLUMNS * ROWS;
 
 /// A cell, from our right corner along the length, row by row.
@@ -31,14 +31,14 @@ impl Cell {
         (self.index() % COLUMNS, self.index() / COLUMNS)
     }
 
-    /// Its middle.
+    /// The middle of the cell.
     pub fn middle(self, field: &FieldSpec) -> Point<Attack> {
         let (column, row) = self.column_and_row();
         let at = |k: usize, n: usize, side: f32| ((k as f32 + 0.5) / n as f32 - 0.5) * side;
         Point::new(at(column, COLUMNS, field.length), at(row, ROWS, field.width))
     }
 
-    /// From corner to corner.
+    /// Size of a cell, along and across, m.
     pub fn size(field: &FieldSpec) -> Vector<Attack> {
         Vector::new(field.length / COLUMNS as f32, field.width / ROWS as f32)
     }

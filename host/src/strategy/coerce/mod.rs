@@ -1,16 +1,17 @@
 //! `coerce`: Coerce and Attack Planner: free kicks against a defence that follows us (Biswas et al. 2014 §4).
 //!
-//! | step | what | where |
+//! | step | action | module |
 //! |---|---|---|
-//! | 1 | which opponents follow the ball, and which our robots? | [`tactics`], [`detect`] |
-//! | 2 | the best attack if only the former were there: the *optimistic attack* | [`attack`] |
-//! | 3 | where to send robots so that the latter follow them out of its way: the *coerce plan* | [`coercing`] |
-//! | 4, 5 | send them; see whether they were followed | [`Planner::watch`] |
-//! | 6, 7 | the attack as planned, or a new one against everybody as they stand | [`Planner::watch`] |
+//! | 1 | find which opponents follow the ball, and which follow our robots | [`tactics`], [`detect`] |
+//! | 2 | find the best attack against the former only: the *optimistic attack* | [`attack`] |
+//! | 3 | find places that draw the latter off its path: the *coerce plan* | [`coercing`] |
+//! | 4, 5 | send robots there; check whether they are followed | [`Planner::watch`] |
+//! | 6, 7 | play that attack, or a new one against all opponents as they are | [`Planner::watch`] |
 //!
-//! [`Planner`] is a value: pictures go in ([`Planner::observe`], [`Planner::plan`], [`Planner::watch`]), a plan with its reasons
-//! comes out, and [`Planner::postings`] says who goes where. Attack frame, SI. What passes are worth is section 3.1's, by
-//! [`attack::PassValue`], for which [`ByPassLocation`] asks [`super::pass`]. The same pictures and the same seed give the same plan.
+//! [`Planner`] is a value: snapshots go in ([`Planner::observe`], [`Planner::plan`], [`Planner::watch`]), a
+//! plan with its reasons comes out, and [`Planner::postings`] lists the robots' places. Attack frame, SI.
+//! Passes are valued by section 3.1, through [`attack::PassValue`], which [`ByPassLocation`] implements with
+//! [`super::pass`]. The same snapshots and the same seed give the same plan.
 
 pub mod attack;
 mod by_pass;
@@ -26,33 +27,33 @@ use rules::League;
 pub use by_pass::ByPassLocation;
 pub use planner::{CapPlan, End, FinalAttack, Followed, Part, Planner, Posting, Progress};
 
-/// What the paper leaves open, in one place.
+/// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How our robots drive, for when they are in a cell.
+    /// How our robots drive, for the times at which they reach a cell.
     pub robot: FreeLimits,
-    /// Coercing takes at most so long, s: of the time that a free kick may take.
+    /// Longest time for coercing, s: part of the time that a free kick may take.
     pub coerce_time: f32,
-    /// Coercers are there within this, m: a body's diameter.
+    /// A coercer within this of its place has arrived, m: a body's diameter.
     pub arrived: f32,
-    /// Opponents are given this long to come after them, s.
+    /// Time in which opponents may follow them, s.
     pub follow_time: f32,
     /// An opponent farther than this from where it is expected was not coerced, m (docs/papers.md D16).
     pub expected_within: f32,
     /// A robot with an opponent nearer than this is marked, m: the same.
     pub marked_within: f32,
-    /// What the attack must come to: else the free kick is played as usual.
+    /// Least values of the attack: else the free kick is played as usual.
     pub least: attack::Least,
     /// Coercers stay this far from pass and shot, m (D19).
     pub off_ways: f32,
-    /// … from the ball, m: what everybody keeps off a ball that is not in play.
+    /// … from the ball, m: the distance that robots keep from a ball that is not in play.
     pub off_ball: f32,
-    /// … and from both areas, m: the rules' 0.2 m at free kicks, a body, a finger.
+    /// … and from both areas, m: the rules' 0.2 m at free kicks, a body, a margin.
     pub off_areas: f32,
 }
 
 impl Settings {
-    /// For a league's rules.
+    /// The settings for a league's rules.
     pub fn of(league: League) -> Self {
         let free_kick = league.limits().map_or(FREE_KICK_TIME, |limits| limits.free_kick_time);
         Self { coerce_time: COERCE_SHARE * free_kick, ..Self::default() }
@@ -76,11 +77,12 @@ impl Default for Settings {
     }
 }
 
-/// P(receive) is a tenth above what the ball may leave with (`coach::ahead`), as it falls a little while passer and receiver get ready.
-/// Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the others to 0.75 (86 and 55 passes, seed 100, against
-/// the zone and against ours); free kicks taken at once against the zone to 0.82 (134).
+/// P(receive) is a tenth above the least one for a kick (`coach::ahead`), as it falls slightly while passer
+/// and receiver get ready. Planned passes worth less than 0.005 led to 0.23 shots of ours within 12 s, the
+/// others to 0.75 (86 and 55 passes, seed 100, against the zone and against ours); free kicks taken at once
+/// against the zone to 0.82 (134).
 const LEAST: attack::Least = attack::Least { receive: 0.7, value: 0.005 };
-/// Share of a free kick's time for coercing: 4 s of 10 (D16); the rest is for the pass-ahead.
+/// Share of a free kick's time for coercing: 4 s of 10 (D16); the remaining time is for the pass-ahead.
 const COERCE_SHARE: f32 = 0.4;
 /// s (paper §4; division B).
 const FREE_KICK_TIME: f32 = 10.0;

@@ -1,4 +1,4 @@
-//! `planner`: sequence of the planner. The seven steps over time (Biswas et al. 2014 §4). Attack frame, s, m.
+//! `planner`: sequence of the planner: the seven steps over time (Biswas et al. 2014 §4). Attack frame, s, m.
 
 use geometry::{Attack, Point};
 use protocol::{Instant, RobotId};
@@ -11,20 +11,20 @@ use super::coercing::{CoercePlan, Coercer, Pair, coerce, pairs};
 use super::detect::{Detected, Detector};
 use super::tactics::{Models, Situation};
 
-/// What is planned for a free kick, and why.
+/// The plan of a free kick, with its reasons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CapPlan {
-    /// Who takes the kick.
+    /// The robot that takes the kick.
     pub taker: RobotId,
-    /// What each opponent does (step 1).
+    /// The estimated tactic of each opponent (step 1).
     pub detected: heapless::Vec<Detected, ROBOTS_MAX>,
-    /// The attack against those who follow the ball alone (step 2).
+    /// The attack against the opponents that follow the ball only (step 2).
     pub optimistic: AttackPlan,
-    /// What every cell was worth then.
+    /// The value of every cell in that attack.
     pub values: CellValues,
-    /// Who coerces whom (step 3).
+    /// The robots that coerce, with their opponents (step 3).
     pub coerce: CoercePlan,
-    /// Who coerces nobody and attacks.
+    /// The robots that coerce no opponent and attack.
     pub attackers: heapless::Vec<RobotId, ROBOTS_MAX>,
 }
 
@@ -35,31 +35,31 @@ impl CapPlan {
     }
 }
 
-/// Whether the opponents did as expected (step 5).
+/// Whether the opponents reacted as expected (step 5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Followed {
-    /// All who follow robots are where they were expected: the optimistic attack stands.
+    /// All that follow robots are where they were expected: the optimistic attack is kept.
     AsExpected {
-        /// The farthest of them is so far off, m; 0 where nobody was coerced.
+        /// Largest distance of one from its expected place, m; 0 where none was coerced.
         worst: f32,
     },
-    /// One is not: a new attack against everybody.
+    /// One is not: a new attack against all opponents.
     Otherwise {
-        /// Who.
+        /// That opponent.
         opponent: RobotId,
-        /// How far from where it was expected, m.
+        /// Distance from where it was expected, m.
         off: f32,
     },
-    /// They are, but others have come in the way of the pass: a new attack.
+    /// They are, but others obstruct the pass: a new attack.
     Unlikely {
-        /// P(receive | x) against everybody.
+        /// P(receive | x) against all opponents.
         receive: f32,
     },
     /// They are, but the attack's receiver, a coercer to be used again, is marked: a new attack.
     ReceiverMarked {
-        /// By whom.
+        /// The marker.
         opponent: RobotId,
-        /// How near, m.
+        /// Its distance to the receiver, m.
         near: f32,
     },
 }
@@ -67,82 +67,82 @@ pub enum Followed {
 /// The attack that is played (steps 6 and 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FinalAttack {
-    /// Pass and shot.
+    /// The pass and the shot after it.
     pub plan: AttackPlan,
-    /// What was seen.
+    /// The reaction observed.
     pub followed: Followed,
-    /// Whether the receiver coerced somebody before (the paper's Table 1 counts them).
+    /// Whether the receiver has coerced an opponent before (the paper's Table 1 counts them).
     pub reused: bool,
 }
 
-/// How far it is.
+/// Progress of the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
     /// Nothing is planned.
     Idle,
     /// Robots go to the places of the coerce plan (step 4).
     Coercing {
-        /// How many are there.
+        /// Number of coercers that have arrived.
         arrived: usize,
-        /// Of how many.
+        /// Number of coercers.
         of: usize,
-        /// How long at most, s.
+        /// Time left for coercing, s.
         left: f32,
     },
-    /// The attack is on (step 7): the receiver is passed to, ahead of it.
+    /// The attack has started (step 7): the pass goes to the receiver, ahead of it.
     Attacking(FinalAttack),
-    /// It is over.
+    /// The plan has ended.
     Over(End),
 }
 
-/// Why it is over.
+/// Why it has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The ball is in play.
     InPlay,
-    /// The referee changed his mind.
+    /// The referee has changed the command.
     Stopped,
-    /// Nobody could receive anything anywhere, or taker or receiver are gone.
+    /// No robot can receive a pass anywhere, or taker or receiver are missing.
     NoAttack,
 }
 
-/// What a robot does in the plan.
+/// A robot's part in the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
     /// Takes the free kick.
     Takes,
     /// Draws this opponent away.
     Coerces {
-        /// Whom.
+        /// The opponent.
         marker: RobotId,
-        /// Where to.
+        /// Where it is expected then.
         expected: Point<Attack>,
     },
-    /// Holds its place until the attack: whoever moves there early shows where the pass will go.
+    /// Holds its place until the attack: a robot that moves there early reveals the pass.
     Waits,
-    /// Receives the pass, at that place, moving there as pass-ahead tells it.
+    /// Receives the pass, at that place, moving there at the time that pass-ahead sets.
     Receives,
 }
 
-/// Who goes where.
+/// The place and part of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posting {
-    /// Who.
+    /// The robot.
     pub robot: RobotId,
-    /// Where.
+    /// Its place.
     pub at: Point<Attack>,
-    /// As what.
+    /// Its part.
     pub part: Part,
 }
 
-/// The planner, from picture to picture.
+/// State of the planner between snapshots.
 #[derive(Clone, Debug)]
 pub struct Planner {
     settings: Settings,
     detector: Detector,
     seed: u64,
     plan: Option<CapPlan>,
-    /// When coercing began: with the free kick, or with the plan.
+    /// When coercing started: with the free kick, or with the plan.
     begun: Option<Instant>,
     /// When the last coercer arrived.
     arrived: Option<Instant>,
@@ -151,7 +151,7 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Knows nothing yet.
+    /// A planner without observations.
     pub fn new(settings: Settings, models: Models) -> Self {
         Self {
             settings,
@@ -170,7 +170,7 @@ impl Planner {
         self.plan.as_ref()
     }
 
-    /// Takes a picture in for step 1; from some time before the plan is asked for, on STOP for instance.
+    /// Takes a snapshot for step 1; from some time before the plan is requested, on STOP for instance.
     pub fn observe(&mut self, view: &View, taker: RobotId) {
         self.detector.watch(view, Some(taker));
     }
@@ -210,7 +210,8 @@ impl Planner {
         Some(CapPlan { taker, detected, optimistic: attack, values, coerce, attackers })
     }
 
-    /// The attack has become unlikely before the ball left: another one is sought while there is time to coerce; false where there is none.
+    /// Handles an attack that has become unlikely before the ball left: another one is searched while there
+    /// is time to coerce; false where there is none.
     pub fn reconsider(&mut self, now: Instant) -> bool {
         let left = self.begun.is_some_and(|begun| now.since(begun).as_secs_f32() < self.settings.coerce_time);
         if self.over.is_none() && left {
@@ -219,7 +220,7 @@ impl Planner {
         self.over.is_none() && left
     }
 
-    /// Steps 4 to 7: how far the plan is in this picture.
+    /// Steps 4 to 7: progress of the plan in this snapshot.
     pub fn watch(&mut self, view: &View, value: &dyn PassValue) -> Progress {
         if let Some(end) = self.over {
             return Progress::Over(end);
@@ -269,14 +270,14 @@ impl Planner {
             return Progress::Attacking(attack);
         }
         if left > 0.0 {
-            // Who moves may still open a way.
+            // A robot that still moves may open a path.
             return Progress::Coercing { arrived, of, left };
         }
         self.over = Some(End::NoAttack);
         Progress::Over(End::NoAttack)
     }
 
-    /// Step 6.
+    /// Step 6: the final attack.
     fn attack_now(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Option<FinalAttack> {
         let followed = self.verify(view, value, plan);
         let coerced = |id: RobotId| plan.coercer(id).is_some();
@@ -284,7 +285,8 @@ impl Planner {
             let reused = coerced(plan.optimistic.receiver);
             return Some(FinalAttack { plan: plan.optimistic, followed, reused });
         }
-        // Against everybody, where they stand; by who is free, and coercers whom nobody marks.
+        // Against all opponents at their present places; by robots that are free, and coercers that no
+        // opponent marks.
         let mut receivers: heapless::Vec<RobotId, ROBOTS_MAX> = plan.attackers.clone();
         let coercers = || plan.coerce.coercers.iter().map(|coercer| coercer.robot);
         receivers.extend(coercers().filter(|id| self.marked(view, *id).is_none()));
@@ -295,11 +297,11 @@ impl Planner {
         attack.map(|attack| FinalAttack { plan: attack, followed, reused: coerced(attack.receiver) })
     }
 
-    /// Step 5.
+    /// Step 5: whether the opponents reacted as expected.
     fn verify(&self, view: &View, value: &dyn PassValue, plan: &CapPlan) -> Followed {
         let mut worst: Option<(RobotId, f32)> = None;
         for coercer in &plan.coerce.coercers {
-            // Whoever left the field is in nobody's way.
+            // An opponent that left the field obstructs no pass.
             let Some(marker) = view.theirs.iter().find(|robot| robot.id == coercer.marker) else { continue };
             let off = marker.position.distance(coercer.expected);
             if worst.is_none_or(|(_, most)| off > most) {
@@ -331,14 +333,14 @@ impl Planner {
         Followed::AsExpected { worst: worst.map_or(0.0, |(_, off)| off) }
     }
 
-    /// Who marks our robot, and how near.
+    /// The opponent that marks our robot, and its distance, m.
     fn marked(&self, view: &View, ours: RobotId) -> Option<(RobotId, f32)> {
         let at = view.our(ours)?.position;
         let nearest = view.nearest_theirs(at).map(|(robot, near)| (robot.id, near));
         nearest.filter(|(_, near)| *near < self.settings.marked_within)
     }
 
-    /// Who goes where now, by number.
+    /// The place and part of each robot now, by number.
     pub fn postings(&self, view: &View) -> heapless::Vec<Posting, ROBOTS_MAX> {
         let Some(plan) = self.plan.as_ref().filter(|_| self.over.is_none()) else {
             return heapless::Vec::new();
@@ -361,8 +363,8 @@ impl Planner {
     }
 }
 
-/// The view with opponents who follow robots gone, and of ours only keeper, taker and the receivers (§4.2: "only … ball-following
-/// tactics" count; and coercers will be elsewhere).
+/// The view without the opponents that follow robots, and of ours only with keeper, taker and the receivers
+/// (§4.2: "only … ball-following tactics" count; and coercers will have left).
 fn optimistic(view: &View, detected: &[Detected], taker: RobotId, receivers: &[RobotId]) -> View {
     let mut imagined = view.clone();
     let follows = |id| detected.iter().any(|known| known.opponent == id && known.follows_robots());

@@ -1,8 +1,9 @@
-//! `tactics`: likelihood of a position under each tactic. P(p | M_t, W) for the four tactics that the planner
-//! knows (Biswas et al. 2014 §4.1; its Figure 5). Attack frame (opponents defend +x), m.
+//! `tactics`: likelihood of a position under each tactic. P(p | M_t, W) for the planner's four tactics
+//! (Biswas et al. 2014 §4.1; its Figure 5). Attack frame (opponents defend +x), m.
 //!
-//! The paper computes its models "analytically using assumptions of SSL-specific tactic behaviors and the rules" and prints none.
-//! Ours are bells around where the tactic wants a robot, 1 at their top, so that a threshold means the same for all of them.
+//! The paper computes its models "analytically using assumptions of SSL-specific tactic behaviors and the
+//! rules" and prints none. Ours are bell curves around the place that the tactic gives a robot, 1 at their
+//! top, so that a threshold means the same for all of them.
 
 use geometry::{Attack, Point, Segment, Vector, math};
 use rules::FieldSpec;
@@ -11,7 +12,7 @@ use rules::limits::{BALL_DISTANCE, ROBOT_RADIUS};
 use super::super::threat::edge::Edge;
 use super::super::view::View;
 
-/// What a robot of theirs does.
+/// The tactic of an opponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tactic {
     /// Follows the ball within its defence area.
@@ -20,7 +21,7 @@ pub enum Tactic {
     PrimaryDefence,
     /// Follows one of our attackers.
     Mark,
-    /// Follows the ball, as close to our taker as it may.
+    /// Follows the ball, as close to our taker as the rules allow.
     Wall,
 }
 
@@ -28,7 +29,7 @@ impl Tactic {
     /// All, as [`Likelihoods`] orders them.
     pub const ALL: [Self; 4] = [Self::Goalkeeper, Self::PrimaryDefence, Self::Mark, Self::Wall];
 
-    /// Its English name.
+    /// Its English name, for figures and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Goalkeeper => "goalkeeper",
@@ -45,17 +46,19 @@ pub type Likelihoods = [f32; 4];
 /// The numbers of the models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Models {
-    /// Standard deviation of where a robot is around where its tactic wants it, m (docs/papers.md D17).
+    /// Standard deviation of a robot's distance from the place that its tactic gives it, m (docs/papers.md
+    /// D17).
     pub spread: f32,
-    /// … of how far primary defenders are from the edge that they move along, and walls from the distance they keep, m.
+    /// … of the distance of primary defenders from the edge that they move along, and of walls from the
+    /// distance they keep, m.
     pub keeps: f32,
-    /// … of how far the keeper is outside its area, m: it never is; what cameras err by.
+    /// … of the keeper's distance outside its area, m: it never leaves it; this is the cameras' error.
     pub outside: f32,
-    /// A defender's centre is this far outside the area that it must not enter, m: a body and a finger.
+    /// A defender's centre is this far outside the area that it must not enter, m: a body and a margin.
     pub off_area: f32,
     /// Markers stand this far from our robot, towards their goal or towards the ball, m (D19).
     pub stand_off: f32,
-    /// α_t: a tactic is not believed below this likelihood (D17: 0.1 to 0.3).
+    /// α_t: a tactic is not accepted below this likelihood (D17: 0.1 to 0.3).
     pub alpha: Likelihoods,
 }
 
@@ -65,20 +68,20 @@ impl Default for Models {
     }
 }
 
-/// What the models need of the world: the ball and the robots of ours that can be marked.
+/// The world's part in the models: the ball and the robots of ours that can be marked.
 #[derive(Clone, Debug)]
 pub struct Situation<'v> {
     view: &'v View,
     models: Models,
     ball: Point<Attack>,
-    /// Our field players but for the taker.
+    /// Our field players except the taker.
     marked: heapless::Vec<usize, { super::super::view::ROBOTS_MAX }>,
-    /// The ball's shortest way to the middle of their goal ends here, on their area's border.
+    /// End of the ball's shortest path to the middle of their goal, on their area's border.
     keeper_front: Point<Attack>,
 }
 
 impl<'v> Situation<'v> {
-    /// This moment, with `taker` at the ball.
+    /// The situation in this snapshot, with `taker` at the ball.
     pub fn new(view: &'v View, models: Models, taker: Option<protocol::RobotId>) -> Self {
         let ball = view.ball.map_or(Point::new(0.0, 0.0), |ball| ball.position);
         let marked = |robot: &super::super::view::Robot| robot.id != view.keeper && Some(robot.id) != taker;
@@ -94,7 +97,7 @@ impl<'v> Situation<'v> {
         [self.goalkeeper(at), self.primary(at), self.mark(at).0, self.wall(at)]
     }
 
-    /// Within the defence area, on the ball's way to the goal.
+    /// Within the defence area, on the ball's path to the goal.
     fn goalkeeper(&self, at: Point<Attack>) -> f32 {
         let out = Edge::of(&self.view.field, 0.0).distance_to(turned(at)).max(0.0);
         let way = Segment::new(self.view.their_goal(), self.keeper_front);
@@ -123,25 +126,26 @@ impl<'v> Situation<'v> {
         best
     }
 
-    /// Where a marker stands: between our robot and their goal against its shot, or the ball against the pass to it.
+    /// Where a marker stands: between our robot and their goal against its shot, or the ball against the pass
+    /// to it.
     pub fn mark_places(&self, ours: Point<Attack>, stand_off: f32) -> [Point<Attack>; 2] {
         let towards =
             |to: Point<Attack>| ours + (to - ours).unit().unwrap_or(Vector::new(1.0, 0.0)) * stand_off;
         [towards(self.view.their_goal()), towards(self.ball)]
     }
 
-    /// As near to the ball as the rules let it.
+    /// As near to the ball as the rules allow.
     fn wall(&self, at: Point<Attack>) -> f32 {
         bell(at.distance(self.ball) - (BALL_DISTANCE + ROBOT_RADIUS + 0.02), self.models.keeps)
     }
 
-    /// The models' numbers.
+    /// The models' parameters.
     pub fn models(&self) -> &Models {
         &self.models
     }
 }
 
-/// The tactic that explains a place best, if any is likelier than its threshold.
+/// The tactic that explains a place best, if one exceeds its threshold.
 pub fn detected(likelihoods: &Likelihoods, models: &Models) -> Option<Tactic> {
     let mut best: Option<(Tactic, f32)> = None;
     for ((tactic, likely), alpha) in Tactic::ALL.into_iter().zip(likelihoods).zip(models.alpha) {
@@ -152,13 +156,13 @@ pub fn detected(likelihoods: &Likelihoods, models: &Models) -> Option<Tactic> {
     best.map(|(tactic, _)| tactic)
 }
 
-/// exp(−x²/2σ²).
+/// Bell curve exp(−x²/2σ²).
 fn bell(off: f32, spread: f32) -> f32 {
     let x = off / spread;
     math::exp(-0.5 * x * x)
 }
 
-/// How far a place is outside the triangle of ball and posts, m.
+/// Distance of a place outside the triangle of ball and posts, m.
 fn off_angle(field: &FieldSpec, ball: Point<Attack>, at: Point<Attack>) -> f32 {
     let (x, y) = (field.length * 0.5, field.goal_width * 0.5);
     let corners = [ball, Point::new(x, -y), Point::new(x, y)];
@@ -172,7 +176,7 @@ fn off_angle(field: &FieldSpec, ball: Point<Attack>, at: Point<Attack>) -> f32 {
     }
 }
 
-/// Half a turn: [`Edge`] is told for our end.
+/// Half a turn: [`Edge`] is defined for our end.
 fn turned(at: Point<Attack>) -> Point<Attack> {
     Point::new(-at.x(), -at.y())
 }
@@ -193,7 +197,7 @@ mod tests {
         assert!((found - expected).abs() < 2e-4, "{found}, not {expected}");
     }
 
-    /// Values by Python: `exp(-.5*(x/s)**2)` of the distances worked out beside each.
+    /// Values by Python: `exp(-.5*(x/s)**2)` of the distances computed beside each.
     #[test]
     fn every_model_gives_the_values_computed_by_hand() {
         let view = scene();
@@ -206,10 +210,12 @@ mod tests {
         let along = line.vector().unit().unwrap();
         let beside = line.from + along * 0.4 + Vector::new(-along.y(), along.x()) * 0.1;
         near(at(beside.x(), beside.y())[0], 0.923_116);
-        // 0.06 m beyond where that line leaves the area, by its quarter circle about (3, 0.175): 0.0588 m outside it.
+        // 0.06 m beyond where that line leaves the area, by its quarter circle about (3, 0.175): 0.0588 m
+        // outside it.
         let front = situation.keeper_front + along * 0.06;
         near(at(front.x(), front.y())[0], 0.142_476);
-        // Primary: 0.11 m off the area's straight front and within the angle: 1; 0.12 m farther out: exp(−0.5).
+        // Primary: 0.11 m off the area's straight front and within the angle: 1; 0.12 m farther out:
+        // exp(−0.5).
         near(at(2.09, 0.17)[1], 1.0);
         near(at(1.97, 0.17)[1], 0.606_531);
         // Mark: 0.3 m from (1, −1) towards (3, 0): (1.2683, −0.8658) is 1; 0.25 m from that: exp(−0.5).
@@ -231,7 +237,7 @@ mod tests {
         assert_eq!(tactic(1.25, -0.9), Some(Tactic::Mark));
         assert_eq!(tactic(0.5, 0.7), Some(Tactic::Wall));
         assert_eq!(tactic(-2.0, -1.8), None);
-        // Nobody marks the taker or the keeper.
+        // Neither the taker nor the keeper is marked.
         assert_eq!(situation.mark(Point::new(-0.1, 1.3)).1, Some(2));
     }
 

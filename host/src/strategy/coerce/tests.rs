@@ -1,4 +1,4 @@
-//! Tests: the planner follows the paper's seven steps. With passes valued by a rule that can be worked out by
+//! Tests: the planner follows the paper's seven steps, with passes valued by a rule that can be computed by
 //! hand.
 
 use super::super::view::tests::view;
@@ -16,7 +16,8 @@ fn id(n: u8) -> RobotId {
     RobotId::new(n).unwrap()
 }
 
-/// P(receive) falls with how near opponents are to the pass, P(goal) with how near they are to the shot and with its length.
+/// P(receive) falls with the nearness of opponents to the pass, P(goal) with their nearness to the shot and
+/// with its length.
 struct ByDistance;
 
 impl ByDistance {
@@ -43,7 +44,7 @@ impl PassValue for ByDistance {
             let lawful = !view.in_their_area(at, 0.3) && at.distance(from) > 0.8;
             let receive = if lawful { product(Segment::new(from, at)) } else { 0.0 };
             let near = (1.0 - at.distance(goal) / 6.0).max(0.0);
-            // The keeper is always in the way of the shot: what counts is who else is.
+            // The keeper always obstructs the shot: only the others count.
             let shot = Segment::new(at, goal);
             let blocked = view.theirs.iter().filter(|robot| robot.id != view.their_keeper);
             let open: f32 = blocked.map(|robot| Self::free(shot.distance_to(robot.position))).product();
@@ -60,8 +61,8 @@ impl PassValue for ByDistance {
     }
 }
 
-/// Division B, our free kick at (0.5, 1.8) with 1 as taker; keeper 0, mates from 2 on. Theirs: keeper 0, primaries 1 and 2,
-/// then a marker goal-side of each mate named.
+/// Division B, our free kick at (0.5, 1.8) with 1 as taker; keeper 0, teammates from 2 on. Theirs: keeper 0,
+/// primaries 1 and 2, then a marker goal-side of each teammate named.
 fn free_kick(mates: &[(f32, f32)], marked: &[usize]) -> View {
     let mut ours = vec![(-4.4, 0.0), (0.4, 1.9)];
     ours.extend(mates);
@@ -77,7 +78,7 @@ fn free_kick(mates: &[(f32, f32)], marked: &[usize]) -> View {
     view
 }
 
-/// Passes that are worth anything.
+/// Passes of any value.
 const ANY: attack::Least = attack::Least { receive: 0.0, value: 0.0 };
 
 fn planner() -> Planner {
@@ -121,7 +122,7 @@ fn as_many_coerce_as_are_followed_and_the_rest_attacks() {
 fn the_optimistic_attack_sees_ball_followers_only() {
     let (_, plan, view) = run(&MATES, &[0, 1, 2]);
     assert_eq!(plan.optimistic.against, 3);
-    // Worth more than against everybody, and the best of all cells by hand.
+    // Its value is above that against all opponents, and the best of all cells by hand.
     let mut seen = view.clone();
     let (_, everybody) = attack::best_attack(&seen, &ByDistance, id(1), &[id(5)], ANY, 1);
     assert!(everybody.iter().zip(&plan.values).all(|(all, some)| all <= some));
@@ -164,12 +165,12 @@ fn coercers_go_where_their_followers_are_least_in_the_way() {
         assert!(coercer.time <= 4.0 && !view.in_their_area(coercer.at, 0.3));
         cells.push(coercer.cell);
     }
-    // Who is most in the way goes first.
+    // The opponent that interferes most comes first.
     let now: Vec<_> = plan.coerce.coercers.iter().map(|coercer| coercer.interference_now).collect();
     assert!(now.is_sorted_by(|a, b| a >= b), "{now:?}");
 }
 
-/// Everybody moves as told for so long: coercers to their places, followers after them if `follow`.
+/// All robots move as ordered for `seconds`: coercers to their places, followers after them if `follow`.
 fn play(planner: &mut Planner, view: &mut View, follow: bool, seconds: f32) -> Progress {
     let mut progress = planner.watch(view, &ByDistance);
     for _ in 0..(seconds * 100.0) as u32 {
@@ -220,7 +221,7 @@ fn who_does_not_follow_makes_a_new_attack_against_everybody() {
     let Progress::Attacking(attack) = play(&mut planner, &mut view, false, 5.0) else { panic!() };
     let Followed::Otherwise { off, .. } = attack.followed else { panic!("{attack:?}") };
     assert!(off > 0.5 && attack.plan.against == 6);
-    // Coercers whom nobody followed are free: they may be used again.
+    // Coercers that no opponent followed are free: they may be used again.
     let candidates = [id(2), id(3), id(4), id(5)];
     let (best, _) = attack::best_attack(&view, &ByDistance, id(1), &candidates, ANY, 1);
     assert!(attack.plan.worth.value() <= best.unwrap().worth.value() + 1e-6);
@@ -232,10 +233,11 @@ fn where_all_coerce_one_whom_nobody_follows_is_used_again() {
     let (mut planner, plan, mut view) = run(&MATES, &[0, 1, 2, 3]);
     let marked = plan.optimistic.receiver;
     let Progress::Attacking(attack) = play(&mut planner, &mut view, true, 5.0) else { panic!() };
-    // All are followed as expected, so the receiver is marked; nobody is free; one of them attacks nevertheless.
+    // All are followed as expected, so the receiver is marked; no robot is free; one of them attacks
+    // nevertheless.
     assert!(matches!(attack.followed, Followed::ReceiverMarked { .. }), "{attack:?} {marked:?}");
     assert!(attack.reused);
-    // One loses its follower: it is the one.
+    // One loses its follower: it becomes the receiver.
     let (mut planner, plan, mut view) = run(&MATES, &[0, 1, 2, 3]);
     let left = plan.coercer(plan.optimistic.receiver).unwrap().marker;
     view.theirs.retain(|robot| robot.id != left);
@@ -315,7 +317,7 @@ fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to
         }
     }
     assert_eq!((sought, over), (3_900, Some((4_000, End::NoAttack))));
-    // It goes away in time: then there is one, and it is sought anew as long as there is time.
+    // It leaves in time: then there is a plan, and it is searched again as long as there is time.
     planner.plan(&view, &ByDistance, id(1), 1).unwrap();
     let begun = view.now;
     planner.watch(&view, &ByDistance);
@@ -332,7 +334,7 @@ fn a_pass_that_hardly_arrives_is_no_attack_and_a_way_is_sought_until_the_time_to
     assert!(!planner.reconsider(begun + protocol::Duration::millis(4_000)));
 }
 
-/// Counts what is asked of it.
+/// Counts the calls of each function.
 #[derive(Default)]
 struct Counting {
     worths: core::cell::Cell<usize>,
@@ -375,7 +377,7 @@ fn the_work_of_a_tick_is_bounded_by_cells_receivers_and_followers() {
         let receivers = if marked.len() == 4 { 4 } else { 4 - marked.len() };
         // Every cell for every receiver, and the samples around the best one.
         assert_eq!(counting.worths.take(), 24 * receivers + attack::SAMPLES as usize);
-        // Every cell that may be gone to for every follower, and each where it stands.
+        // Every cell that is allowed for every follower, and each where it stands.
         assert!(counting.meets.take() <= 25 * marked.len());
         planner.watch(&view, &counting);
         let ticks = counting.worths.take();

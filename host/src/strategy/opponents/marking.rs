@@ -1,6 +1,7 @@
-//! `marking`: opponent team of man-markers. Whoever is not at the ball stays between an opponent and the own
-//! goal and moves when it moves, as the paper's Teams G and B, who were swift to answer every change (Biswas
-//! et al. 2014 §6). With the ball far from every opponent two go free for a pass. Attack frame, m.
+//! `marking`: opponent team of man-markers. A robot that is not at the ball stays between an opponent and the
+//! own goal and follows its motion, as the paper's Teams G and B, which reacted swiftly to every change
+//! (Biswas et al. 2014 §6). With the ball far from every opponent two leave their opponents to receive a
+//! pass. Attack frame, m.
 
 use geometry::Vector;
 
@@ -22,7 +23,7 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
     let danger = |robot: &Robot| robot.position.distance(goal);
     them.sort_unstable_by(|a, b| danger(a).total_cmp(&danger(b)).then(a.id.cmp(&b.id)));
     let marks = (0_u8..).zip(them).map(|(i, robot)| {
-        // Before its next step: where it will be when the marker has answered.
+        // Extrapolated to where it will be when the marker has reacted.
         let at = robot.position + robot.velocity * ANSWERS;
         let home = (goal - at).unit().unwrap_or(Vector::new(-1.0, 0.0));
         (at + home * OFF, Role::Marker(i), Why::Marks { opponent: robot.id })
@@ -36,7 +37,7 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
     places
 }
 
-/// Can one of ours have the ball well before any of theirs?
+/// Whether one of ours can have the ball well before any of theirs.
 fn is_ours(view: &View, ball: &Ball) -> bool {
     let soonest = |robots: &[Robot]| {
         robots.iter().map(|robot| roles::time_to(robot, ball.rest)).fold(f32::INFINITY, f32::min)
@@ -44,13 +45,14 @@ fn is_ours(view: &View, ball: &Ball) -> bool {
     soonest(&view.ours) + SOONER < soonest(&view.theirs)
 }
 
-/// An opponent this near the ball is the business of whoever goes for it, m.
+/// An opponent this near the ball is covered by the robot that goes for the ball, m.
 const AT_BALL: f32 = 0.4;
-/// A marker's centre stands this far from its opponent's, m: two bodies and room to brake.
+/// Distance of a marker's centre from its opponent's, m: two bodies and room to brake.
 const OFF: f32 = 0.3;
-/// A marker goes to where its opponent will be in so long, s: a command's way to the robot and its first step.
+/// A marker goes to where its opponent will be after this time, s: latency of a command to the robot, and its
+/// first step.
 const ANSWERS: f32 = 0.15;
-/// The ball is ours if we are this much sooner at it, s.
+/// The ball counts as ours if we are this much sooner at it, s.
 const SOONER: f32 = 0.3;
-/// So many leave their opponents while the ball is ours.
+/// Number of robots that leave their opponents while the ball is ours.
 const FORWARD: usize = 2;

@@ -1,9 +1,9 @@
-//! `opponents`: opponent teams that our play is measured against. Honest teams that share our view, motion,
-//! limits, skills, keeper and restarts, and differ in open play alone; each does one thing that teams of the
-//! league are known for (Biswas et al. 2014 §6).
+//! `opponents`: opponent teams as a reference for our play. They share our view, motion, limits, skills,
+//! keeper and restarts, and differ in open play only; each imitates one property of teams of the league
+//! (Biswas et al. 2014 §6).
 //!
-//! [`Team`] names them. Each is a module: `reactive` runs for the ball and shoots, `marking` stays with every opponent, `zone`
-//! follows the ball with a wall. Attack frame, m, m/s, s.
+//! [`Team`] names them. Each is a module: `reactive` runs for the ball and shoots, `marking` marks every
+//! opponent, `zone` follows the ball with a wall. Attack frame, m, m/s, s.
 
 mod marking;
 mod reactive;
@@ -18,27 +18,27 @@ use super::support::{self, Target};
 use super::view::{Ball, ROBOTS_MAX, View};
 use super::{Orders, defence, restart, roles};
 
-/// Who decides a side's open play.
+/// What decides a side's open play.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Team {
-    /// We.
+    /// Our own play: cases and the coach.
     #[default]
     Ours,
-    /// The nearest runs for the ball and shoots or clears, a second backs it up.
+    /// The nearest goes for the ball and shoots or clears, a second backs it up.
     Reactive,
-    /// Swift man-to-man: everybody stays between an opponent and the own goal.
+    /// Fast man-to-man defence: every robot stays between an opponent and the own goal.
     Marking,
     /// A wall between ball and goal that follows the ball.
     Zone,
-    /// Its robots stand, whatever happens: who cannot score against it cannot score.
+    /// Its robots always stand still: a team that does not score against it cannot score.
     Idle,
 }
 
 impl Team {
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Ours, Self::Reactive, Self::Marking, Self::Zone, Self::Idle];
-    /// Those that play and are not we.
+    /// Those that move and are not ours.
     pub const OPPONENTS: [Self; 3] = [Self::Reactive, Self::Marking, Self::Zone];
 
     /// Its name on command lines and in files.
@@ -58,34 +58,34 @@ impl Team {
     }
 }
 
-/// The open play of one of [`Team::OPPONENTS`], with what it remembers.
+/// The open play of one of [`Team::OPPONENTS`], with its state.
 #[derive(Clone, Debug)]
 pub(super) struct Rival {
     style: Style,
-    /// Who goes for the ball.
+    /// The robot that goes for the ball.
     first: Option<RobotId>,
-    /// What the ball is meant for, since when, from where.
+    /// Target of the ball, since when, from where.
     aim: Option<(Instant, Point<Attack>, Target)>,
-    /// Who had which of the style's places.
+    /// Which robot had which of the style's places.
     held: [Option<RobotId>; PLACES],
 }
 
-/// What tells one opponent from another.
+/// The functions that distinguish one opponent team from another.
 #[derive(Clone, Copy, Debug)]
 struct Style {
-    /// What the one at the ball does with it.
+    /// The target chosen for the robot at the ball.
     target: fn(&View, RobotId, Point<Attack>) -> Target,
     /// Where the others stand, most urgent first, while `wanted` of them are free.
     places: fn(&View, &Ball, usize) -> Places,
 }
 
-/// A place to be taken, as what, and why.
+/// A place to be taken, its role, and the reason.
 type Place = (Point<Attack>, Role, Why);
 type Places = heapless::Vec<Place, ROBOTS_MAX>;
 type Free = heapless::Vec<RobotId, ROBOTS_MAX>;
 
 impl Rival {
-    /// Of that team; none for those whose open play is not here.
+    /// The state for that team; `None` for those whose open play is not here.
     pub(super) fn of(team: Team) -> Option<Self> {
         let style = match team {
             Team::Reactive => reactive::STYLE,
@@ -96,10 +96,10 @@ impl Rival {
         Some(Self { style, first: None, aim: None, held: [None; PLACES] })
     }
 
-    /// Orders in open play for those of `free`, who are taken out of it; `barred` must not touch the ball.
+    /// Orders in open play for those of `free`, which are removed from it; `barred` must not touch the ball.
     pub(super) fn open_play(&mut self, view: &View, free: &mut Free, barred: Option<RobotId>) -> Orders {
         let mut orders = Orders::new();
-        // One order a robot, and as many places as robots.
+        // At most one order per robot, and as many places as robots.
         let mut order = |free: &mut Free, robot: RobotId, role: Role, task: Task, why: Why| {
             free.retain(|other| *other != robot);
             let _ = orders.push(Order { robot, role, task, why });
@@ -137,7 +137,7 @@ impl Rival {
         orders
     }
 
-    /// Who goes for the ball; nobody where only keepers may touch it.
+    /// The robot that goes for the ball; none where only keepers may touch it.
     fn choose_first(
         &mut self,
         view: &View,
@@ -153,7 +153,7 @@ impl Rival {
         first
     }
 
-    /// What the ball is meant for: held for a while, so that whoever walks around the ball does not turn back.
+    /// The ball's target: held for a while, so that a robot that moves around the ball does not turn back.
     fn target(&mut self, view: &View, robot: RobotId, ball: &Ball) -> Target {
         match self.aim {
             Some((since, from, target))
@@ -176,7 +176,7 @@ fn defenders(view: &View) -> [Place; 2] {
     [(first, Role::Defender(0), why), (second, Role::Defender(1), why)]
 }
 
-/// Free places for a pass from the ball, as many as are wanted.
+/// Free places for a pass from the ball, at most `wanted` of them.
 fn free_places(view: &View, ball: &Ball, wanted: usize) -> impl Iterator<Item = Place> {
     let places = support::places(view, ball.position, wanted);
     (0_u8..).zip(places).map(|(i, (at, worth))| (at, Role::Support(i), Why::FreePlace { worth }))
@@ -187,7 +187,7 @@ fn facing(view: &View, at: Point<Attack>) -> Task {
     Task::GoTo { at, face }
 }
 
-/// Away from the ball that a mate plays: who only helps does not stand in its way.
+/// Away from the ball that a teammate plays: a supporting robot does not obstruct it.
 fn off_ball(view: &View, ball: &Ball, at: Point<Attack>) -> Point<Attack> {
     let away = at - ball.position;
     if away.norm() >= OFF_MATES_BALL {
@@ -213,19 +213,19 @@ fn off_areas(view: &View, at: Point<Attack>) -> Point<Attack> {
     at
 }
 
-/// Places that a style gives out: field players of a team of eleven.
+/// Most places of a style: field players of a team of eleven.
 const PLACES: usize = 10;
-/// A ball slower than this lies, m/s.
+/// A ball slower than this counts as stopped, m/s.
 const LIES: f32 = 0.25;
-/// A target stands for this long, unless the ball moves: to walk around it, aim and kick.
+/// A target is kept for this long, unless the ball moves: to move around it, aim and kick.
 const AIM_STANDS: Duration = Duration::millis(1500);
-/// A ball moved by more than this is aimed anew, m.
+/// Distance the ball moves from which a new target is chosen, m.
 const AIM_MOVES: f32 = 0.3;
-/// Who helps keeps this far from the ball, m: two bodies and room to turn with it.
+/// A supporting robot keeps this far from the ball, m: two bodies and room to turn with it.
 const OFF_MATES_BALL: f32 = 0.5;
-/// Nobody is sent nearer to a line than this, m.
+/// No robot is sent nearer to a line than this, m.
 const INSIDE: f32 = 0.15;
-/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and what control errs by.
+/// Centres keep this far off their area, m: the rules' 0.2 m at restarts, a body and the control error.
 const OFF_THEIR_AREA: f32 = 0.35;
 /// Steps out of an area, m.
 const STEP: f32 = 0.02;

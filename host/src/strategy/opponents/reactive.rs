@@ -1,5 +1,6 @@
-//! `reactive`: opponent team of ball chasers. The nearest runs for the ball and shoots, or kicks it ahead; a
-//! second backs it up, a third waits in front, the rest defend. Nobody passes on purpose. Attack frame, m.
+//! `reactive`: opponent team of ball chasers. The nearest robot goes for the ball and shoots, or kicks it
+//! ahead; a second backs it up, a third waits in front, the others defend. No robot passes on purpose. Attack
+//! frame, m.
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
@@ -12,7 +13,7 @@ use crate::strategy::view::{Ball, View};
 
 pub(super) const STYLE: Style = Style { target: shoot_or_clear, places };
 
-/// A shot from wherever one is worth it, else ahead along the freest way: it runs after its own ball.
+/// A shot where one is worth it, else ahead along the freest path: the robot then follows its own ball.
 pub(super) fn shoot_or_clear(view: &View, _robot: RobotId, ball: Point<Attack>) -> Target {
     let (at, room) = best_shot(view, ball);
     if ball.distance(view.their_goal()) < SHOOTS_WITHIN {
@@ -43,11 +44,11 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
         .collect()
 }
 
-/// Farther shots are not even tried, m.
+/// Farther shots are not tried, m.
 const SHOOTS_WITHIN: f32 = 4.0;
-/// How far ahead a clearance comes to rest, m: as far as the kicker is soonest at it again.
+/// Distance to the stop position of a clearance, m: as far as the kicker is the first at it again.
 const AHEAD: f32 = 2.0;
 /// A clearance goes from the wing to the middle by this share of its distance.
 const INWARDS: f32 = 0.5;
-/// The second stays this far behind the ball, m: where a ball that the first loses comes to.
+/// The second stays this far behind the ball, m: where a ball lost by the first stops.
 const BEHIND: f32 = 0.9;

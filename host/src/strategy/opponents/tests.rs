@@ -1,4 +1,4 @@
-//! Tests: each opponent team gives every robot one lawful order and plays in its own style.
+//! Tests: each opponent team gives every robot one rule-compliant order and plays in its own style.
 
 use super::*;
 use crate::strategy::view::tests::view;
@@ -61,7 +61,7 @@ fn chasers_shoot_near_the_goal_and_kick_ahead_far_from_it() {
 
 #[test]
 fn a_marker_stands_between_each_opponent_and_the_goal() {
-    // Theirs has the ball: everybody but keeper, first and one defender marks.
+    // Their robot has the ball: all robots except keeper, first and one defender mark.
     let view = view((2.0, 0.4), &OURS, &THEIRS);
     let orders = orders(Team::Marking, &view);
     for opponent in [1, 2] {
@@ -85,7 +85,7 @@ fn the_wall_stands_across_the_line_from_ball_to_goal_and_moves_with_the_ball() {
             .filter(|order| order.role == Role::Wall)
             .filter_map(|order| if let Task::GoTo { at, .. } = order.task { Some(at) } else { None })
             .collect();
-        // One plays the ball, one waits in front, and one may have a pass.
+        // One plays the ball, one waits in front, and one may be the receiver of a pass.
         assert!(wall.len() >= 2, "{ball:?}: {wall:?}");
         let n = wall.len() as f32;
         let middle = Point::<Attack>::new(

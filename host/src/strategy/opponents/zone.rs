@@ -26,11 +26,13 @@ fn places(view: &View, ball: &Ball, wanted: usize) -> Places {
     bricks.chain(free_places(view, ball, forward)).take(wanted).collect()
 }
 
-/// The wall's bricks stand this far apart, centre to centre, m: two bodies, and less than a ball's way between them.
+/// Spacing of the wall's robots, centre to centre, m: two bodies, and a gap smaller than a ball.
 const SPACING: f32 = 0.3;
-/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with a body.
+/// The wall stands this far before the ball, m: the nearest it may be while the ball is the opponents', with
+/// a body.
 const OFF_BALL: f32 = 0.8;
 /// It never comes nearer to the goal than this beyond the area's depth, m.
 const NEAREST_OFF: f32 = 0.35;
-/// Nor farther from it than this share of the field: who stands at the halfway line cannot be chipped over to the keeper alone.
+/// Nor farther from it than this share of the field: a wall at the halfway line could be chipped over, to the
+/// keeper alone.
 const FARTHEST: f32 = 0.4;

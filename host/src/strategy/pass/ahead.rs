@@ -1,9 +1,10 @@
 //! `ahead`: timing of pass-ahead (Biswas et al. 2014 §3.2, Algorithm 1: pass-ahead; D14). Attack frame, SI
 //! units.
 //!
-//! The shorter the time between the first move and the shot, the less opponents can see of it: whoever needs longer starts first, the
-//! other one when both would be ready together. A start is never taken back; who gave up does not shoot. The tests hold the start times
-//! to the latest schedule of least length of the paper's Simple Temporal Network (Fig. 4; D15).
+//! A short time between the first move and the shot leaves opponents little time to react: the robot that
+//! needs longer starts first, the other one when both would be ready together. A start is never revoked;
+//! after giving up the passer does not shoot. The tests compare the start times with the latest schedule of
+//! least length of the paper's Simple Temporal Network (Fig. 4; D15).
 
 use geometry::{Angle, Attack, Point, math};
 use motion::intercept::{kick_place, kick_reach};
@@ -14,20 +15,20 @@ use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 use super::super::view::Robot;
 use super::scene::Rating;
 
-/// What Algorithm 1 goes by, s.
+/// Times used by Algorithm 1, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
-    /// T_r: the receiver's way to x_r.
+    /// T_r: the receiver's time to x_r.
     pub receiver: f32,
-    /// T_s: the passer's way to x_p.
+    /// T_s: the passer's time to x_p.
     pub passer: f32,
-    /// T_b: the ball's way from x0 to x*.
+    /// T_b: the ball's time from x0 to x*.
     pub ball: f32,
-    /// P is at x_p.
+    /// The passer is at x_p.
     pub at_ball: bool,
 }
 
-/// Where the two stand when the ball leaves, and when it comes.
+/// Poses of the two robots when the ball leaves, and when it arrives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Places {
     /// x_p: behind the ball, facing x*.
@@ -49,7 +50,8 @@ impl Places {
 }
 
 impl Times {
-    /// Estimated for passer and receiver as they are, by `CalcMotion2D` and the turn to their headings, whichever takes longer.
+    /// Estimated for passer and receiver at their present states, by `CalcMotion2D` and the turn to their
+    /// headings, whichever takes longer.
     pub fn of(
         places: &Places,
         passer: &Robot,
@@ -85,33 +87,33 @@ pub struct PassAhead {
     shot: Option<Instant>,
 }
 
-/// What both shall do now.
+/// The present moves of both robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moves {
-    /// The passer.
+    /// The passer's present move.
     pub passer: PasserMove,
     /// Whether the receiver goes to x_r.
     pub receiver_goes: bool,
 }
 
-/// What the passer does.
+/// A move of the passer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PasserMove {
-    /// Not yet.
+    /// Does not start yet.
     Waits,
-    /// To x_p, and there waits for the receiver.
+    /// Goes to x_p, and waits there for the receiver.
     Goes,
     /// Kicks now.
     Shoots,
-    /// T_f is over: somebody else decides.
+    /// T_f is over: the caller chooses another target.
     GivesUp {
-        /// Since the pass was wanted.
+        /// Time since the pass was requested.
         after: Duration,
     },
 }
 
 impl PassAhead {
-    /// Begins at `now`.
+    /// Starts at `now`.
     pub fn new(now: Instant) -> Self {
         Self { began: now, passer: None, receiver: None, shot: None }
     }
@@ -126,7 +128,7 @@ impl PassAhead {
         self.receiver
     }
 
-    /// When the ball was told to leave, if it was.
+    /// When the passer was ordered to kick, if it was.
     pub fn shot(&self) -> Option<Instant> {
         self.shot
     }
@@ -147,7 +149,7 @@ impl PassAhead {
         let together = times.receiver <= times.ball + TOGETHER;
         if self.passer.is_some() && times.at_ball && together {
             self.shot.get_or_insert(now);
-            // Who shoots now has a receiver on its way, however short that is.
+            // When the passer shoots, its receiver has started, however short its path.
             self.receiver.get_or_insert(now);
         }
         let passer = match (self.shot, self.passer) {
@@ -159,13 +161,15 @@ impl PassAhead {
     }
 }
 
-/// T_f: a pass that has not left by then is planned anew, s: the 10 s that a free kick may take leave room for a second try.
+/// T_f: a pass that has not left by then is replanned, s: the 10 s that a free kick may take leave room for a
+/// second try.
 pub const SEARCH_TIME: Duration = Duration::millis(4000);
-/// The receiver may come this much later than the ball, s: what a body of 0.09 m covers before it stands, and an image's delay (D14).
+/// The receiver may come this much later than the ball, s: the time in which a body covers 0.09 m while
+/// braking, and the delay of a camera frame (D14).
 const TOGETHER: f32 = 0.08;
-/// Nearer to x_p the passer is there, m: what its mouth forgives.
+/// Nearer to x_p than this the passer has arrived, m: the tolerance of its dribbler opening.
 const AT_PLACE: f32 = 0.03;
-/// … when it looks at x* this exactly, rad (3°, as the robots' own kicks).
+/// … when it faces x* this exactly, rad (3°, as the robots' own kicks).
 const AIMED: f32 = 3.0 * (math::PI / 180.0);
 
 #[cfg(test)]

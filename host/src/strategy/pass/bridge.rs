@@ -1,6 +1,5 @@
-//! `bridge`: refinement of a retrieved case's pass point. P(receive) · P(goal) refines a retrieved case's
-//! pass point near its adapted position (docs/papers.md §8: the case is the intent, the evaluator its
-//! parameters). Attack frame, m.
+//! `bridge`: refinement of a retrieved case's pass point by P(receive) · P(goal) near its adapted position
+//! (docs/papers.md §8: the case gives the intent, the evaluator its parameters). Attack frame, m.
 
 use casebase::CaseRobot;
 use geometry::{Angle, Attack, Point, Vector, math};
@@ -11,13 +10,13 @@ use super::scene::{Rating, Scene};
 /// The next pass of a case that is being played.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CasePass {
-    /// Which case.
+    /// The case.
     pub case: CaseId,
-    /// Who passes, and what it is in the case.
+    /// The passer, and its robot in the case.
     pub passer: (RobotId, CaseRobot),
-    /// To whom, and what that one is in the case.
+    /// The receiver, and its robot in the case.
     pub receiver: (RobotId, CaseRobot),
-    /// Where the case, adapted, has it received.
+    /// The place of its reception in the adapted case.
     pub at: Point<Attack>,
 }
 
@@ -26,7 +25,8 @@ pub struct CasePass {
 pub struct Refined {
     /// At the place that the case adapted.
     pub proposed: Rating,
-    /// At the best place within the radius; the proposed one where nothing near is better by [`WORTH_MOVING`].
+    /// At the best place within the radius; the proposed one where no place near it is better by
+    /// [`WORTH_MOVING`].
     pub best: Rating,
 }
 
@@ -36,14 +36,14 @@ impl Refined {
         self.best.value() - self.proposed.value()
     }
 
-    /// How far the point moves, m.
+    /// Distance by which the point moves, m.
     pub fn moved(&self) -> f32 {
         self.best.at.distance(self.proposed.at)
     }
 }
 
-/// Refines the pass to `place` within `radius` m of it: a sunflower of places, then ever smaller circles around the best of them.
-/// Nothing is random: the same scene gives the same point.
+/// Refines the pass to `place` within `radius` m of it: a sunflower of places, then ever smaller circles
+/// around the best of them. Nothing is random: the same scene gives the same point.
 pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     let proposed = scene.rate(place);
     let mut best = proposed;
@@ -74,18 +74,18 @@ pub fn refine(scene: &Scene<'_>, place: Point<Attack>, radius: f32) -> Refined {
     Refined { proposed, best }
 }
 
-/// How far from the adapted position the point may move, m: less than the least scope of the cases' robots, so that it stays the case's
-/// play.
+/// Largest distance of the point from the adapted position, m: less than the least scope of the cases'
+/// robots, so that it stays the case's play.
 pub const RADIUS: f32 = 0.6;
-/// The case's own place stands unless another one is better by a twentieth: below, it moves for noise.
+/// The case's own place is kept unless another one is better by a twentieth: below, it would follow noise.
 pub const WORTH_MOVING: f32 = 1.05;
 /// Places of the sunflower: 0.15 m apart at a radius of 0.6 m.
 const SEEDS: u32 = 48;
 /// rad: π (3 − √5).
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
-/// Rounding must not put the outermost ones outside.
+/// Rounding must not place the outermost ones outside.
 const INSIDE: f32 = 0.999;
-/// Circles around the best place: radius of the first as a share, how many, places on each.
+/// Circles around the best place: radius of the first as a share, their number, and places on each.
 const FIRST_STEP: f32 = 0.125;
 const ROUNDS: u32 = 4;
 const DIRECTIONS: u32 = 8;

@@ -1,8 +1,9 @@
-//! `conditions`: the conditions of a pass and of a goal after it. The paper's conditions c1–c5 and c1'–c4',
-//! one function each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
+//! `conditions`: the conditions of a pass and of a goal after it. Conditions c1–c5 and c1'–c4', one function
+//! each, from a margin to a probability (Biswas et al. 2014 §3.1). SI units.
 //!
-//! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the condition just holds
-//! (docs/papers.md D3). Which margins those are is found by [`super::intercept`], [`super::open`] and [`super::scene`].
+//! "~0 where …, ~1 otherwise" is a logistic function of the margin: 1 / (1 + exp(−m/w)), 1/2 where the
+//! condition just holds (docs/papers.md D3). The margins are computed by [`super::intercept`],
+//! [`super::open`] and [`super::scene`].
 
 use geometry::math;
 
@@ -12,7 +13,7 @@ use super::constants::PassConstants;
 #[inline]
 pub fn likely(margin: f32, width: f32) -> f32 {
     let x = margin / width;
-    // Beyond, it is 0 or 1 to six digits; NaN is no promise.
+    // Beyond, it is 0 or 1 to six digits; NaN gives 0.
     if x > CERTAIN {
         1.0
     } else if x > -CERTAIN {
@@ -22,14 +23,14 @@ pub fn likely(margin: f32, width: f32) -> f32 {
     }
 }
 
-/// c1: no opponent can reach x faster than the receiver can. Times to x of the two, s.
+/// c1: no opponent can reach x faster than the receiver. Times of both to x, s.
 #[inline]
 pub fn first_there(receiver: f32, soonest_opponent: f32, c: &PassConstants) -> f32 {
     likely(soonest_opponent - receiver, c.time_width)
 }
 
-/// c2: no opponent intercepts the pass. `margin` is the least time, over the places of its way, by which an opponent comes later
-/// than the ball, s.
+/// c2: no opponent intercepts the pass. `margin` is the least time, over the places of its path, by which an
+/// opponent comes later than the ball, s.
 #[inline]
 pub fn not_intercepted(margin: f32, chip: bool, c: &PassConstants) -> f32 {
     let p = likely(margin, c.time_width);
@@ -48,7 +49,7 @@ pub fn short_enough(distance: f32, c: &PassConstants) -> f32 {
     likely(c.longest - distance, c.distance_width)
 }
 
-/// c5: x is a reliable place: off areas, lines and mates. The least of these margins, m.
+/// c5: x is a reliable place: off areas, lines and teammates. The least of these margins, m.
 #[inline]
 pub fn reliable_place(margin: f32, c: &PassConstants) -> f32 {
     likely(margin, c.distance_width)
@@ -60,7 +61,8 @@ pub fn beats_the_keeper(shot_time: f32, c: &PassConstants) -> f32 {
     likely(c.keeper_time - shot_time, c.time_width)
 }
 
-/// c2': the open angle on the goal is wide enough: from p_gmin where it is 0 evenly to 1 at θ_max and beyond. rad.
+/// c2': the open angle on the goal is wide enough: from p_gmin where it is 0 evenly to 1 at θ_max and beyond.
+/// rad.
 #[inline]
 pub fn open_goal(angle: f32, c: &PassConstants) -> f32 {
     let share = (angle / c.open_enough).clamp(0.0, 1.0);
@@ -73,14 +75,14 @@ pub fn shot_in_time(one_touch: bool, c: &PassConstants) -> f32 {
     if one_touch { 1.0 } else { c.turn_prior }
 }
 
-/// c4': a shot before opponents steal the ball: nobody may in their defence area. Where attackers may not enter it either, no place
-/// is inside.
+/// c4': a shot before opponents steal the ball: none may in their defence area. Where attackers may not enter
+/// it either, no place is inside.
 #[inline]
 pub fn not_stolen(in_their_area: bool, c: &PassConstants) -> f32 {
     if in_their_area && !c.their_area_forbidden { 1.0 } else { c.outside_prior }
 }
 
-/// Widths of margin at which a logistic is as good as 0 or 1: exp(−14) is below 10⁻⁶.
+/// Widths of margin at which a logistic equals 0 or 1: exp(−14) is below 10⁻⁶.
 const CERTAIN: f32 = 14.0;
 
 #[cfg(test)]
@@ -96,7 +98,8 @@ mod tests {
         assert!((is - by_hand).abs() < 2e-6, "{is}, by hand {by_hand}");
     }
 
-    // The values are those of Python's `1/(1+math.exp(-m/w))` in double precision, m and w as written beside them.
+    // The values are those of Python's `1/(1+math.exp(-m/w))` in double precision, m and w as written beside
+    // them.
 
     #[test]
     fn a_condition_that_just_holds_is_a_toss_and_one_width_of_margin_is_0_731() {

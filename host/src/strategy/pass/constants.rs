@@ -5,19 +5,20 @@ use geometry::math;
 use motion::trajectory::FreeLimits;
 use rules::League;
 
-/// Everything that the conditions c1–c5 and c1'–c4' and the kicks need to know; [`PassConstants::of`] a league.
+/// Parameters of the conditions c1–c5 and c1'–c4' and of the kicks; [`PassConstants::of`] a league.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassConstants {
-    /// How soft a condition on times is, s: margins of this size are e : 1 likely. The scatter of what teams achieve against
-    /// what is planned for them is of this size (100 ms of latency, docs/papers.md D3).
+    /// Width of a condition on times, s: margins of this size are e : 1 likely. The differences between
+    /// planned and achieved times of teams have this size (100 ms of latency, docs/papers.md D3).
     pub time_width: f32,
-    /// How soft a condition on places is, m: a robot's radius and what a kick of 2 m scatters by (D3).
+    /// Width of a condition on places, m: a robot's radius and the scatter of a kick over 2 m (D3).
     pub distance_width: f32,
-    /// c1, c2: what an opponent can do. Nobody publishes more than our own robots have.
+    /// c1, c2: an opponent's limits. No team publishes more than our own robots have.
     pub opponent: FreeLimits,
-    /// c1: what the receiver can do.
+    /// c1: the receiver's limits.
     pub receiver: FreeLimits,
-    /// c2: an opponent sees a kick this late, s: camera, radio and one image between two (TIGERs take 0 to 0.08).
+    /// c2: an opponent detects a kick this late, s: camera, radio and one frame between two (TIGERs take 0 to
+    /// 0.08).
     pub reaction: f32,
     /// c2: the share of chips over an opponent that arrive (Fig. 2's grey region; D8).
     pub chip_prior: f32,
@@ -29,31 +30,33 @@ pub struct PassConstants {
     pub area_margin: f32,
     /// c5: off the lines, m (D8; Thunderbots take 0.3).
     pub line_margin: f32,
-    /// c5: off mates, m (D8; two bodies and a ball between).
+    /// c5: off teammates, m (D8; two bodies and a ball between).
     pub mate_margin: f32,
-    /// c5: whether attackers are kept out of the opponents' defence area. Until 2017 they might enter (c4' lives there), today a
-    /// touch of the ball in it is an offence.
+    /// c5: whether attackers are kept out of the opponents' defence area. Until 2017 they were allowed to
+    /// enter (c4' is about that), today a touch of the ball in it is an offence.
     pub their_area_forbidden: bool,
-    /// c1', t_g: their keeper needs this long to any point of its goal, s (D12): half a goal of 1 m less body and ball, at 3.5 m/s²
-    /// without braking, takes 0.4 s.
+    /// c1', t_g: their keeper needs this long to any point of its goal, s (D12): half a goal of 1 m less body
+    /// and ball, at 3.5 m/s² without braking, takes 0.4 s.
     pub keeper_time: f32,
-    /// c2', p_gmin: chance of a goal where none is open now, as robots move (D12).
+    /// c2', p_gmin: probability of a goal where no angle is open now, as robots move (D12).
     pub closed_prior: f32,
-    /// c2', θ_max: a wider open angle is as good, rad (10°: D12 and Thunderbots).
+    /// c2', θ_max: a wider open angle gives no further value, rad (10°: D12 and Thunderbots).
     pub open_enough: f32,
-    /// c3', p_turn: chance that nobody blocks while the receiver turns to the goal (D12).
+    /// c3', p_turn: probability that no opponent blocks while the receiver turns to the goal (D12).
     pub turn_prior: f32,
-    /// c3': cosine of the largest angle between the pass and the shot that one touch turns a ball by (60°, D12).
+    /// c3': cosine of the largest angle between the pass and the shot that one touch turns a ball by (60°,
+    /// D12).
     pub one_touch_cos: f32,
-    /// c4', p_out: chance that nobody steals the ball outside the opponents' area (D12).
+    /// c4', p_out: probability that no opponent steals the ball outside the opponents' area (D12).
     pub outside_prior: f32,
-    /// A shot's speed, m/s: what the rules allow, less 4 % that a kicker may err by.
+    /// A shot's speed, m/s: the rules' limit, less a kicker's error of 4 %.
     pub shot_speed: f32,
-    /// Passes along the ground are no faster, m/s: as shots.
+    /// Fastest pass along the ground, m/s: as shots.
     pub pass_fastest: f32,
-    /// … and no slower, m/s: below, a ball stays at the kicker's mouth (D14).
+    /// … and no slower, m/s: below, a ball stays at the dribbler opening (D14).
     pub pass_slowest: f32,
-    /// A receiver masters a ball that arrives with this speed, m/s (Thunderbots receive at 2 and less; an estimate).
+    /// A receiver can control a ball that arrives with this speed, m/s (Thunderbots receive at 2 and less; an
+    /// estimate).
     pub arrival: f32,
     /// Rise over run of a chip: 45°, as our robots' kickers chip.
     pub chip_slope: f32,
@@ -73,7 +76,7 @@ impl PassConstants {
     }
 }
 
-/// Division B of 2026.
+/// Constants for division B of 2026.
 const TODAY: PassConstants = PassConstants {
     time_width: 0.1,
     distance_width: 0.15,
@@ -99,11 +102,11 @@ const TODAY: PassConstants = PassConstants {
     arrival: 2.0,
     chip_slope: 1.0,
 };
-/// What any robot of the league is taken to drive: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its reasons).
+/// Assumed limits of any robot of the league: 3 m/s and 3.5 m/s² (`FreeLimits::default`, with its reasons).
 const ROBOT: FreeLimits = FreeLimits { speed: 3.0, acceleration: 3.5, braking: 3.5 };
-/// m/s (rules 2026, offences).
+/// Ball speed limit, m/s (rules 2026, offences).
 const DIVISION_B_BALL_SPEED: f32 = 6.5;
-/// Share of the limit that is asked of a kicker.
+/// Share of the limit that is ordered of a kicker.
 const KICK_SHARE: f32 = 0.96;
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! `intercept`: interception of a pass by an opponent. The least margin over all opponents and all places of
-//! the way, for c2 (Biswas et al. 2014 §3.1, Fig. 2). Attack frame, SI units.
+//! the path, for c2 (Biswas et al. 2014 §3.1, Fig. 2). Attack frame, SI units.
 //!
-//! An opponent's margin at a place is its time to touch a ball there, less the ball's time to it. Along the way the margin first falls
-//! (the opponent nears its best place faster than the ball comes) and then rises; the turning point is guessed from both speeds there,
-//! and margins are taken at it, at the nearest place and at the end. A test holds this to the search through every centimetre.
+//! An opponent's margin at a place is its time to touch a ball there, less the ball's time to it. Along the
+//! path the margin first falls (the opponent nears its best place faster than the ball comes) and then rises;
+//! the turning point is estimated from both speeds there, and margins are taken at it, at the nearest place
+//! and at the end. A test compares this with a search through every centimetre.
 
 use geometry::{Attack, Point, Vector, math};
 use protocol::RobotId;
@@ -11,49 +12,49 @@ use protocol::RobotId;
 use super::kicks::{ChipKick, FlatKick};
 use super::reach::Mover;
 
-/// An opponent that may come to the ball.
+/// An opponent that may intercept the ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opponent {
     /// Its number.
     pub id: RobotId,
-    /// How it moves.
+    /// Its motion and limits.
     pub mover: Mover,
 }
 
-/// Who comes nearest to having the ball, and where.
+/// The opponent with the least margin, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interceptor {
-    /// Who.
+    /// Its number.
     pub id: RobotId,
     /// Its time there less the ball's, s.
     pub margin: f32,
-    /// How far along the way, m.
+    /// Distance along the path, m.
     pub along: f32,
 }
 
-/// The way of a pass.
+/// The path of a pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// Where the ball lies.
+    /// Place of the ball at the kick.
     pub from: Point<Attack>,
-    /// Of length 1.
+    /// Direction of the pass, of length 1.
     pub along: Vector<Attack>,
-    /// To where it is received, m.
+    /// Length up to where it is received, m.
     pub length: f32,
     /// A body touches a ball that passes this near its centre, m.
     pub body: f32,
-    /// An opponent sees the kick so late, s.
+    /// Delay until an opponent detects the kick, s.
     pub reaction: f32,
 }
 
 impl Way {
-    /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below −[`SAFE`], which certainly
-    /// has the ball.
+    /// The opponent with the least margin along a flat pass, if it is below [`SAFE`]; the first one below
+    /// −[`SAFE`], which certainly has the ball.
     pub fn flat(&self, kick: &FlatKick, opponents: &[Opponent]) -> Option<Interceptor> {
         self.flat_until(kick, opponents, -SAFE)
     }
 
-    /// … the first one below `enough`: who asks does not care how much.
+    /// … the first one below `enough`: the caller needs no smaller one.
     pub fn flat_until(&self, kick: &FlatKick, opponents: &[Opponent], enough: f32) -> Option<Interceptor> {
         let end = kick.at(self.length);
         self.worst(opponents, end.0, enough, |opponent, worst| {
@@ -80,7 +81,8 @@ impl Way {
     ) -> Option<Interceptor> {
         let mut worst = Interceptor { id: RobotId::ZERO, margin: SAFE, along: 0.0 };
         for opponent in opponents {
-            // Whoever cannot be at the way by the ball's arrival and the margin to beat is no worse than who is known.
+            // An opponent that cannot be at the path by the ball's arrival plus the margin to beat is no
+            // worse than the known one.
             let (foot, across) = self.seen(opponent);
             let beyond = (foot - self.length).max(-foot).max(0.0);
             let reach = opponent.mover.farthest_touched(arrival + worst.margin - self.reaction)
@@ -96,14 +98,14 @@ impl Way {
         (worst.margin < SAFE).then_some(worst)
     }
 
-    /// How far along the way it is seen, and how far beside, m.
+    /// The opponent's position along the path, and beside it, m.
     #[inline]
     fn seen(&self, opponent: &Opponent) -> (f32, f32) {
         let off = opponent.mover.position - self.from;
         (off.dot(self.along), self.along.cross(off))
     }
 
-    /// Takes the margins on a stretch of the way, whose end the ball reaches at `end` (s, m/s).
+    /// Takes the margins on a section of the path, whose end the ball reaches at `end` (s, m/s).
     #[inline]
     fn stretch(
         &self,
@@ -120,15 +122,16 @@ impl Way {
         let nearest = foot.max(low).min(high);
         let (time, speed) = ball(nearest);
         let touched = self.look(opponent, nearest, time, worst);
-        // Nowhere is it sooner than at the nearest place, nowhere the ball later than at the end.
+        // The opponent is nowhere sooner than at the nearest place, the ball nowhere later than at the end.
         if nearest >= high
             || (touched - end.0 >= worst.margin && opponent.mover.velocity == Vector::default())
         {
             return;
         }
         self.look(opponent, high, end.0, worst);
-        // dD/ds = w / u at the turning point, D the distance to the place: s − foot = across · q / √(1 − q²), q = w / u; and half the
-        // way that the opponent's speed carries it along the ball's way in the meantime.
+        // dD/ds = w / u at the turning point, D the distance to the place: s − foot = across · q / √(1 − q²),
+        // q = w / u; and half the distance that the opponent's speed carries it along the ball's path in the
+        // meantime.
         let pace = opponent.mover.pace(across.abs() - self.body);
         let q = pace / speed.max(1e-3);
         let drift = 0.5 * opponent.mover.velocity.dot(self.along) * touched;
@@ -150,24 +153,25 @@ impl Way {
         time
     }
 
-    /// When it touches a ball at `place`, s. It need not react to one that comes to it; what it gains by that fades out with the way
-    /// it has to make.
+    /// When it touches a ball at `place`, s. No reaction is needed for a ball that comes to it; that gain
+    /// fades out with the distance it has to drive.
     #[inline]
     fn touch_time(&self, mover: &Mover, place: Point<Attack>) -> f32 {
         let time = mover.time_to_touch(place, self.body);
-        // Time and way go together; 0.24 s are 0.1 m from rest.
+        // Time and distance are proportional here; 0.24 s are 0.1 m from standstill.
         time + self.reaction * (time * (1.0 / REACTION_TIME)).min(1.0)
     }
 }
 
-/// No margin above this is told, s: at a width of 0.1 s it is a certain pass (1 − exp(−6) = 0.998), below its negative a lost one.
+/// Largest margin returned, s: at a width of 0.1 s it is a certain pass (1 − exp(−6) = 0.998), below its
+/// negative a lost one.
 pub const SAFE: f32 = 0.6;
-/// A way of this length takes the whole reaction, m: what a kick of 0.5° to 1° scatters by over 5 m; nearer, a body is likely hit
-/// without moving.
+/// From this distance on the whole reaction counts, m: the scatter over 5 m of a kick of 0.5° to 1°; nearer,
+/// a body is likely hit without moving.
 const REACTION_FADES: f32 = 0.1;
 /// 2 √(0.1 m / 3.5 m/s²), s.
 const REACTION_TIME: f32 = 0.338;
-/// Places nearer to each other than this tell the same, m.
+/// Places nearer to each other than this count as equal, m.
 const WORTH_LOOKING: f32 = 0.02;
 
 #[cfg(test)]
@@ -202,15 +206,16 @@ mod tests {
     fn a_body_on_the_way_has_the_ball_and_one_far_off_never() {
         let kick = kicks().flat(3.0);
         let on_it = way(3.0).flat(&kick, &[opponent(4, (1.5, 0.05), (0.0, 0.0))]).unwrap();
-        // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to walk to.
+        // It covers every place up to 1.5 + √(0.1115² − 0.05²); the end it has to drive to.
         assert!(on_it.id.number() == 4 && on_it.margin < -0.4, "{on_it:?}");
         assert_eq!(way(3.0).flat(&kick, &[opponent(4, (1.5, 4.0), (0.0, 0.0))]), None);
     }
 
     #[test]
     fn the_margin_beside_the_way_by_hand() {
-        // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) − 0.1115 = 0.745192 m from
-        // touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which is 0.276890 s sooner than the ball.
+        // 3 m with 3.317774 m/s take 1.299743 s (see `kicks`). At (2.4, 0.6115) a body is √(0.6² + 0.6115²) −
+        // 0.1115 = 0.745192 m from touching a ball at the end: 2 √(0.745192 / 3.5) + 0.1 = 1.022853 s, which
+        // is 0.276890 s sooner than the ball.
         let kick = kicks().flat(3.0);
         let found = way(3.0).flat(&kick, &[opponent(2, (2.4, 0.6115), (0.0, 0.0))]).unwrap();
         assert!((found.margin + 0.276_890).abs() < 1e-4 && found.along == 3.0, "{found:?}");
@@ -265,7 +270,7 @@ mod tests {
                 }
                 let found = found.map_or(SAFE, |found| found.margin).max(-SAFE);
                 let truth = truth.max(-SAFE);
-                // What matters is below three widths.
+                // Margins that matter are below three widths.
                 if truth < 0.3 {
                     let off = found - truth;
                     far += u32::from(off.abs() > 0.1);
@@ -274,7 +279,7 @@ mod tests {
             }
         }
         let mean = sum / counted as f32;
-        // The few that are off stand within half a metre and run across the way, or away from it.
+        // The few that are off stand within half a metre and move across the path, or away from it.
         assert!(counted > 1_000 && mean < 0.01 && worst < 0.4, "{counted}: {mean} {worst}");
         assert!(far * 100 < counted, "{far} of {counted} are off by more than a width");
     }

@@ -1,8 +1,8 @@
-//! `kicks`: kick speed and ball times of a pass. Flat kicks in closed form, chips from a table that is made
-//! once for a carpet. SI units.
+//! `kicks`: kick speed and ball times of a pass. Flat kicks in closed form, chips from a table that is
+//! computed once for a field surface. SI units.
 //!
-//! A flat pass is as fast as the receiver can still master at its end (T_b is the least over the kicks allowed, Algorithm 1); a chip
-//! begins to roll just where it is received.
+//! A flat pass is as fast as the receiver can still control at its end (T_b is the least over the kicks
+//! allowed, Algorithm 1); a chip starts to roll just where it is received.
 
 use geometry::{Attack, Point, Vector, math};
 use motion::ball::BallModel;
@@ -14,22 +14,22 @@ use super::constants::PassConstants;
 /// A kick of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PassKick {
-    /// Along the ground.
+    /// A kick along the ground.
     Flat {
-        /// m/s.
+        /// Speed at the kick, m/s.
         speed: f32,
     },
-    /// Through the air.
+    /// A kick through the air.
     Chip {
-        /// In three dimensions, m/s.
+        /// Speed at the kick in three dimensions, m/s.
         speed: f32,
-        /// How far off it comes down first, m.
+        /// Distance to its first touch-down, m.
         lands: f32,
     },
 }
 
 impl PassKick {
-    /// For the wire.
+    /// As an order of the protocol.
     pub fn order(self) -> KickOrder {
         match self {
             Self::Flat { speed } => KickOrder::Flat((speed * 100.0) as u16),
@@ -46,18 +46,18 @@ impl PassKick {
 /// A ball on the ground, kicked with some speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatKick {
-    /// m/s.
+    /// Speed at the kick, m/s.
     pub speed: f32,
     slide: f32,
     roll: f32,
-    /// Where and when it begins to roll, and how fast.
+    /// Where and when it starts to roll, and how fast.
     slide_distance: f32,
     slide_time: f32,
     roll_speed: f32,
 }
 
 impl FlatKick {
-    /// Kicked with `speed`.
+    /// A kick with `speed`, m/s.
     #[inline]
     pub fn new(speed: f32, ball: &BallModel) -> Self {
         let roll_speed = speed * ball.switch;
@@ -72,7 +72,8 @@ impl FlatKick {
         }
     }
 
-    /// When it is `distance` m off, s, and how fast, m/s; where it rests before, a long time and 0.
+    /// Time at which it is `distance` m off, s, and its speed there, m/s; where it stops before, a long time
+    /// and 0.
     #[inline]
     pub fn at(&self, distance: f32) -> (f32, f32) {
         let (start, way, deceleration, before) = if distance <= self.slide_distance {
@@ -85,32 +86,33 @@ impl FlatKick {
             return (NEVER, 0.0);
         }
         let speed = math::sqrt(squared);
-        // (start − speed) / deceleration, without the difference of nearly equal numbers.
+        // (start − speed) / deceleration, without cancellation.
         (before + 2.0 * way / (start + speed).max(1e-6), speed)
     }
 }
 
-/// A chip that begins to roll at some distance.
+/// A chip that starts to roll at some distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChipKick {
-    /// In three dimensions, m/s.
+    /// Speed at the kick in three dimensions, m/s.
     pub speed: f32,
     /// Along the ground until it first comes down, m/s.
     pub along: f32,
     /// Where it first comes down, m, and when, s.
     pub lands: f32,
-    /// See `lands`.
+    /// Time of the first touch-down, s.
     pub lands_at: f32,
     /// Between these distances it flies over robots, m.
     pub over: (f32, f32),
-    /// When it rolls, s, …
+    /// Time at which it rolls, s, …
     pub rolls_at: f32,
     /// … and where: where it is received, m.
     pub rolls: f32,
 }
 
 impl ChipKick {
-    /// When it is `distance` m off, s, and how fast there, m/s: between touches at the mean speed of all hops after the first.
+    /// Time at which it is `distance` m off, s, and its speed there, m/s: between touches at the mean speed
+    /// of all hops after the first.
     #[inline]
     pub fn at(&self, distance: f32) -> (f32, f32) {
         if distance <= self.lands || self.rolls <= self.lands {
@@ -121,7 +123,7 @@ impl ChipKick {
     }
 }
 
-/// The kicks of a team on a carpet.
+/// The kicks of a team on a field surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kicks {
     constants: PassConstants,
@@ -131,7 +133,7 @@ pub struct Kicks {
 }
 
 impl Kicks {
-    /// Made once for a league and a carpet.
+    /// Computed once for a league and a field surface.
     pub fn new(constants: PassConstants, ground: BallModel, chip: ChipModel) -> Self {
         let mut kicks = Self { constants, ground, chips: heapless::Vec::new() };
         for i in 0..CHIPS {
@@ -144,17 +146,17 @@ impl Kicks {
         kicks
     }
 
-    /// The constants they are made with.
+    /// The constants they are computed with.
     pub fn constants(&self) -> &PassConstants {
         &self.constants
     }
 
-    /// How balls roll here.
+    /// Model of rolling balls on this field surface.
     pub fn ground(&self) -> &BallModel {
         &self.ground
     }
 
-    /// The fastest flat kick over `distance` m that the receiver masters.
+    /// The fastest flat kick over `distance` m that the receiver can control.
     #[inline]
     pub fn flat(&self, distance: f32) -> FlatKick {
         let c = &self.constants;
@@ -168,7 +170,8 @@ impl Kicks {
         FlatKick::new(self.constants.shot_speed, &self.ground)
     }
 
-    /// The chip that rolls from `distance` m off, between two of the table; `None` where it is too near or too far.
+    /// The chip that rolls from `distance` m off, between two of the table; `None` where it is too near or
+    /// too far.
     #[inline]
     pub fn chip(&self, distance: f32) -> Option<ChipKick> {
         let place = (distance - CHIP_SHORTEST) * (1.0 / CHIP_STEP);
@@ -190,7 +193,8 @@ impl Kicks {
     }
 }
 
-/// The chip that begins to roll `rolls` m off: all its hops grow with the first one, but for those too low to count.
+/// The chip that starts to roll `rolls` m off: all its hops grow with the first one, except those too low to
+/// count.
 fn chip_that_rolls(
     rolls: f32,
     constants: &PassConstants,
@@ -219,16 +223,19 @@ fn chip_that_rolls(
     found
 }
 
-/// What a ball that never arrives takes, s.
+/// Time of a ball that never arrives, s.
 pub const NEVER: f32 = 1e3;
-/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6 m.
+/// Chips in the table, and the distance between two of them, m: up to 7.3 m; a chip of 6.2 m/s rolls from 6
+/// m.
 const CHIPS: usize = 64;
 const CHIP_STEP: f32 = 0.1;
-/// No chip is shorter, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
+/// Shortest chip, m: its first hop of 0.65 m is 0.16 m high, just over a robot.
 const CHIP_SHORTEST: f32 = 1.0;
-/// Share of a chip's way to the first touch, to begin with: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22) of TIGERs' balls.
+/// First estimate of the share of a chip's distance up to the first touch: 1 / (1 + 0.8 · 0.47 + 0.68 · 0.22)
+/// of TIGERs' balls.
 const FIRST_GUESS: f32 = 0.65;
-/// The ratio changes only where a hop becomes too low to count; it stands after one round between such places.
+/// The ratio changes only where a hop becomes too low to count; it is constant after one round between such
+/// places.
 const ROUNDS: u32 = 6;
 
 #[cfg(test)]
@@ -243,8 +250,9 @@ mod tests {
 
     #[test]
     fn a_pass_over_three_metres_leaves_with_the_speed_that_arrives_with_two_by_hand() {
-        // v² = (4 + 2 · 0.35 · 3) / (0.510204 + 0.489796 · 0.35/3.9) = 6.1 / 0.554160: 3.317774 m/s. It slides (1 − 5/7) v / 3.9 =
-        // 0.243060 s over 0.489796 v² / 7.8 = 0.691216 m, then rolls from 2.369839 to 2: 0.369839 / 0.35 = 1.056683 s more.
+        // v² = (4 + 2 · 0.35 · 3) / (0.510204 + 0.489796 · 0.35/3.9) = 6.1 / 0.554160: 3.317774 m/s. It
+        // slides (1 − 5/7) v / 3.9 = 0.243060 s over 0.489796 v² / 7.8 = 0.691216 m, then rolls from 2.369839
+        // to 2: 0.369839 / 0.35 = 1.056683 s more.
         let kick = kicks().flat(3.0);
         assert!((kick.speed - 3.317_774).abs() < 1e-4, "{kick:?}");
         let (time, speed) = kick.at(3.0);

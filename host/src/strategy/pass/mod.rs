@@ -1,17 +1,17 @@
-//! `pass`: passes: where, when, to whom, and their outcome (Biswas et al. 2014 §3: pass location and
-//! pass-ahead).
+//! `pass`: place, time, receiver and outcome of passes (Biswas et al. 2014 §3: pass location and pass-ahead).
 //!
-//! | question | answer |
+//! | topic | module |
 //! |---|---|
-//! | Which constants? | [`constants`] |
-//! | How likely is a pass to x a goal, and why? (equations 3–5, c1–c5, c1'–c4') | [`scene`], of [`conditions`], [`intercept`], [`open`], [`reach`], [`kicks`] |
-//! | Is a shot now likelier than all that? | [`shot`] |
-//! | Which x is best for a receiver, near the one of a moment ago? | [`search`] |
-//! | When do passer and receiver start, and when is the ball kicked? (Algorithm 1) | [`ahead`] |
-//! | What became of a pass, and how good was the prediction? | [`watch`], [`tally`] |
-//! | Which x near the place that a case proposes? | [`bridge`] |
+//! | Constants | [`constants`] |
+//! | Probability that a pass to x leads to a goal, with its factors (equations 3–5, c1–c5, c1'–c4') | [`scene`], of [`conditions`], [`intercept`], [`open`], [`reach`], [`kicks`] |
+//! | Probability of a goal by a direct shot | [`shot`] |
+//! | Best x for a receiver, near the previous one | [`search`] |
+//! | Start times of passer and receiver, and time of the kick (Algorithm 1) | [`ahead`] |
+//! | Outcome of a pass, and quality of the prediction | [`watch`], [`tally`] |
+//! | Best x near the place that a case proposes | [`bridge`] |
 //!
-//! Attack frame, SI units; [`watch`] follows the world in the field frame. No I/O, no clock; what is random is seeded.
+//! Attack frame, SI units; [`watch`] follows the world in the field frame. No I/O, no clock; random numbers
+//! are seeded.
 
 pub mod ahead;
 pub mod bridge;

@@ -1,25 +1,25 @@
-//! `open`: open goal angle. The widest angle between the posts that no body closes (Biswas et al. 2014 c2',
+//! `open`: open goal angle. The widest angle between the posts that no body blocks (Biswas et al. 2014 c2',
 //! Fig. 3; D10). Attack frame, m, rad.
 
 use geometry::{Attack, Point, Vector, math};
 
 use super::super::view::ROBOTS_MAX;
 
-/// A mouth of a goal on the line x = `x`, between ±`half`; and who may stand in the way of a ball.
+/// A goal opening on the line x = `x`, between ±`half`, and the size of bodies that can block a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mouth {
-    /// m.
+    /// Position of the goal line, m.
     pub x: f32,
     /// Half its width less the ball's radius, m.
     pub half: f32,
-    /// Radius that a body closes, the ball's included, m.
+    /// Radius that a body blocks, the ball's included, m.
     pub body: f32,
 }
 
-/// The widest gap.
+/// The widest gap of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenAngle {
-    /// rad; 0 where all is closed, or the place is not in front of the goal.
+    /// rad; 0 where all is blocked, or the place is not in front of the goal.
     pub angle: f32,
     /// Middle of the gap on the goal line; of the goal where there is none.
     pub aim: Point<Attack>,
@@ -38,7 +38,7 @@ impl Mouth {
         for blocker in blockers {
             if let Some((low, high)) = self.shadow(from, depth, blocker - from) {
                 let at = shadows.iter().position(|(other, _)| *other > low).unwrap_or(shadows.len());
-                // As many as robots fit; one more would only close more.
+                // As many as robots fit; one more would only block more.
                 let _ = shadows.insert(at, (low, high));
             }
         }
@@ -48,7 +48,8 @@ impl Mouth {
                 return;
             }
             let (a, b) = (low - from.y(), high - from.y());
-            // tan of the angle between the two sides; they are less than 90° apart unless the place lies in the goal's mouth.
+            // tan of the angle between the two sides; they are less than 90° apart unless the place lies in
+            // the goal.
             let (across, along) = (depth * (b - a), depth * depth + a * b);
             let tangent = if along > 0.0 { across / along } else { f32::INFINITY };
             if tangent > best.0 {
@@ -66,7 +67,7 @@ impl Mouth {
         OpenAngle { angle, aim }
     }
 
-    /// What a body at `off` from the place closes of the goal line, cut to the mouth.
+    /// The part of the goal line that a body at `off` from the place blocks, cut to the opening.
     #[inline]
     fn shadow(&self, from: Point<Attack>, depth: f32, off: Vector<Attack>) -> Option<(f32, f32)> {
         let (x, y) = (off.x(), off.y());
@@ -123,7 +124,8 @@ mod tests {
 
     #[test]
     fn a_body_in_the_middle_leaves_two_gaps_by_hand() {
-        // A keeper 1 m ahead closes ± asin(0.1) = 0.100167 rad of ± 0.244979: 0.144811 rad to either side, the lower first.
+        // A keeper 1 m ahead blocks ± asin(0.1) = 0.100167 rad of ± 0.244979: 0.144811 rad to either side,
+        // the lower first.
         let open = open((2.5, 0.0), &[(3.5, 0.0)]);
         assert!((open.angle - 0.144_811).abs() < 1e-5, "{open:?}");
         // From −0.5 to −2 tan(0.100167) = −0.201008.

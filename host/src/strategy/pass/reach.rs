@@ -1,26 +1,27 @@
 //! `reach`: fast estimate of a robot's time to a place. SI units.
 //!
-//! [`Mover::time_to`] is what `CalcMotion2D` answers (paper 2 §2), along the straight line alone: exact for a robot at rest, and for
-//! one that moves along that line. [`Mover::time_to_touch`] is the same for who only has to touch a ball there.
+//! [`Mover::time_to`] is the time that `CalcMotion2D` gives (paper 2 §2), along the straight line only: exact
+//! for a robot at standstill, and for one that moves along that line. [`Mover::time_to_touch`] is the same
+//! for a robot that only has to touch a ball there.
 
 use geometry::{Attack, Point, Vector, math};
 use motion::trajectory::FreeLimits;
 
-/// A robot and what it can do; its acceleration is taken for its braking too.
+/// A robot with its limits; its acceleration is also used as its braking.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mover {
-    /// Where it is.
+    /// Its place.
     pub position: Point<Attack>,
-    /// m/s.
+    /// Its velocity, m/s.
     pub velocity: Vector<Attack>,
-    /// How fast it is, m/s.
+    /// Its speed, m/s.
     running: f32,
-    /// m/s, > 0.
+    /// Speed limit, m/s, > 0.
     speed: f32,
     /// m/s², > 0, and 1 over it.
     acceleration: f32,
     per_acceleration: f32,
-    /// 1 / speed.
+    /// 1 / speed, s/m.
     per_speed: f32,
 }
 
@@ -33,16 +34,17 @@ impl Mover {
         Self { position, velocity, running, speed, acceleration, per_acceleration, per_speed: 1.0 / speed }
     }
 
-    /// Until it rests at `to`, s. Speed across the line is taken off while it drives, as far as there is time for it.
+    /// Time until it stands at `to`, s. Speed across the line is reduced while it drives, as far as there is
+    /// time for it.
     #[inline]
     pub fn time_to(&self, to: Point<Attack>) -> f32 {
         let (distance, closing, across) = self.towards(to);
-        // Taking off the speed across shifts nothing, but it takes its share of the acceleration.
+        // Reducing the speed across takes no extra distance, but a share of the acceleration.
         self.time_along(distance, closing).max(across.abs() * self.per_acceleration)
     }
 
-    /// Until it touches a ball at `to`, s, when that takes to be within `reach` m: at rest there, or in passing where it comes too fast
-    /// to stop. 0 where it covers the place already.
+    /// Time until it touches a ball at `to`, s, where touching means being within `reach` m: at standstill
+    /// there, or in passing where it is too fast to stop. 0 where it covers the place already.
     #[inline]
     pub fn time_to_touch(&self, to: Point<Attack>, reach: f32) -> f32 {
         let (distance, closing, _) = self.towards(to);
@@ -57,13 +59,14 @@ impl Mover {
         self.time_along(distance, closing)
     }
 
-    /// By how many metres a way of `distance` from rest may grow for a second more: its highest speed on that way, m/s.
+    /// Metres by which a path of `distance` from standstill may grow per additional second: the highest speed
+    /// on that path, m/s.
     #[inline]
     pub fn pace(&self, distance: f32) -> f32 {
         math::sqrt(self.acceleration * distance.max(0.0)).min(self.speed)
     }
 
-    /// No place farther than this is reached and rested at within `time`, m.
+    /// No place farther than this is reached at standstill within `time`, m.
     #[inline]
     pub fn farthest(&self, time: f32) -> f32 {
         let t = time.max(0.0);
@@ -89,13 +92,14 @@ impl Mover {
         (distance, self.velocity.dot(along), along.cross(self.velocity))
     }
 
-    /// Speeding up, cruising, braking; first back from the wrong direction or from beyond.
+    /// Acceleration, constant speed, braking; before that a return from the wrong direction or from an
+    /// overshoot.
     #[inline]
     fn time_along(&self, distance: f32, closing: f32) -> f32 {
         let stop = 0.5 * closing * closing.abs() * self.per_acceleration;
         let (mut ahead, mut distance, mut first) = (closing, distance, 0.0);
         if distance < stop {
-            // It overshoots: brake, and back from rest.
+            // It overshoots: brake, and return from standstill.
             (first, distance, ahead) = (closing * self.per_acceleration, stop - distance, 0.0);
         } else if ahead < 0.0 {
             (first, distance, ahead) = (-closing * self.per_acceleration, distance - stop, 0.0);
@@ -109,7 +113,7 @@ impl Mover {
     }
 }
 
-/// m; nearer, directions mean nothing.
+/// m; nearer, directions are undefined.
 const ON_THE_SPOT: f32 = 1e-3;
 
 #[cfg(test)]
@@ -125,7 +129,8 @@ mod tests {
 
     #[test]
     fn from_rest_to_rest_by_hand() {
-        // Triangle over 1 m: 2 √(1 / 3.5) = 1.069045 s. Trapezoid over 4 m: 2 · 3/3.5 + (4 − 9/3.5)/3 = 2.190476 s.
+        // Triangle over 1 m: 2 √(1 / 3.5) = 1.069045 s. Trapezoid over 4 m: 2 · 3/3.5 + (4 − 9/3.5)/3 =
+        // 2.190476 s.
         assert!((mover(0.0, 0.0, 0.0, 0.0).time_to(Point::new(0.6, 0.8)) - 1.069_045).abs() < 1e-5);
         assert!((mover(0.0, 0.0, 0.0, 0.0).time_to(Point::new(0.0, 4.0)) - 2.190_476).abs() < 1e-5);
     }
@@ -137,14 +142,15 @@ mod tests {
         assert!((mover(0.0, 0.0, 1.0, 0.0).time_to(to) - 6.0 / 7.0).abs() < 1e-5);
         // Away: 1/3.5 s of braking over 1/7 m, then 8/7 m: 0.285714 + 2 √(1.142857 / 3.5) = 1.428571 s.
         assert!((mover(0.0, 0.0, -1.0, 0.0).time_to(to) - 1.428_571).abs() < 1e-5);
-        // Too fast to stop there, 3 m/s 1 m off: stops after 0.857143 s, 0.285714 m beyond: + 2 √(0.285714 / 3.5) = 1.428571 s.
+        // Too fast to stop there, 3 m/s 1 m off: stops after 0.857143 s, 0.285714 m beyond: + 2 √(0.285714 /
+        // 3.5) = 1.428571 s.
         assert!((mover(0.0, 0.0, 3.0, 0.0).time_to(to) - 1.428_571).abs() < 1e-5);
     }
 
     #[test]
     fn who_comes_too_fast_to_stop_touches_a_ball_in_passing_by_hand() {
-        // 1.1 m less 0.1 m of reach: at rest there after 1.069045 s as above; with 3 m/s, which stops over 9/7 m, in passing:
-        // (3 − √(9 − 7)) / 3.5 = 0.453082 s.
+        // 1.1 m less 0.1 m of reach: at standstill there after 1.069045 s as above; with 3 m/s, which stops
+        // over 9/7 m, in passing: (3 − √(9 − 7)) / 3.5 = 0.453082 s.
         let at = Point::new(1.1, 0.0);
         assert!((mover(0.0, 0.0, 0.0, 0.0).time_to_touch(at, 0.1) - 1.069_045).abs() < 1e-5);
         assert!((mover(0.0, 0.0, 3.0, 0.0).time_to_touch(at, 0.1) - 0.453_082).abs() < 1e-5);
@@ -170,7 +176,8 @@ mod tests {
         assert!(sum / 2_000.0 < MEAN_OFF && worst < WORST_OFF, "{} {worst}", sum / 2_000.0);
     }
 
-    /// s, on average and at worst over robots of up to 1.5 m/s along each axis: below the width of a condition on times.
+    /// Mean error and worst error, s, over robots of up to 1.5 m/s along each axis: below the width of a
+    /// condition on times.
     const MEAN_OFF: f32 = 0.08;
     const WORST_OFF: f32 = 0.5;
 

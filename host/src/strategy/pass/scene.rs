@@ -1,8 +1,8 @@
-//! `scene`: probability that a pass leads to a goal. P(receive | x) · P(goal | receive, x), with everything
-//! it was found from (Biswas et al. 2014 §3.1, equations 3–5). Attack frame, SI units.
+//! `scene`: probability that a pass leads to a goal. P(receive | x) · P(goal | receive, x), with all its
+//! factors (Biswas et al. 2014 §3.1, equations 3–5). Attack frame, SI units.
 //!
-//! A [`Scene`] is one moment with one receiver; what does not depend on x is worked out once.
-//! docs/architecture.md §9 bounds what a place costs (`cargo xtask bench strategy`).
+//! A [`Scene`] is one moment with one receiver; values that do not depend on x are computed once.
+//! docs/architecture.md §9 bounds the cost of a place (`cargo xtask bench strategy`).
 
 use geometry::{Attack, Field, GoalEnd, Point, Shape, Vector};
 use protocol::RobotId;
@@ -16,10 +16,10 @@ use super::kicks::{FlatKick, Kicks, PassKick};
 use super::open::Mouth;
 use super::reach::Mover;
 
-/// What comes of a pass to a place, and why.
+/// Probabilities of a pass to a place, with their factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rating {
-    /// Where it is received.
+    /// Where the pass is received.
     pub at: Point<Attack>,
     /// The kick that is likelier to end in a goal.
     pub kick: PassKick,
@@ -27,19 +27,19 @@ pub struct Rating {
     pub receive_factors: [f32; 5],
     /// P(c1') … P(c4').
     pub goal_factors: [f32; 4],
-    /// When the ball is there, s after the kick.
+    /// Time of the ball's arrival, s after the kick.
     pub ball_time: f32,
-    /// When the receiver can be there and at rest, s.
+    /// Time until the receiver stands there, s.
     pub receiver_time: f32,
-    /// The opponent that can be there soonest, and when, s; none if not within [`SAFE`] after the receiver. Of those that are there
-    /// [`SAFE`] before it, any.
+    /// The opponent that can be there soonest, and its time, s; none if not within [`SAFE`] after the
+    /// receiver. Of those that are there [`SAFE`] before it, any.
     pub rival: Option<(RobotId, f32)>,
-    /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those that certainly do
-    /// (−[`SAFE`]), any.
+    /// The opponent that comes nearest to intercepting the ball, if its margin is below [`SAFE`]. Of those
+    /// that certainly do (−[`SAFE`]), any.
     pub interceptor: Option<Interceptor>,
-    /// What is nearest to spoiling the place, with its margin, m.
+    /// The most restrictive obstacle of the place, with its margin, m.
     pub spoiler: (Spoiler, f32),
-    /// The shot that follows.
+    /// The shot after the reception.
     pub shot: ShotFrom,
 }
 
@@ -50,22 +50,22 @@ pub struct ShotFrom {
     pub aim: Point<Attack>,
     /// The open angle around it, rad.
     pub angle: f32,
-    /// Until it is there, s.
+    /// Time until it is there, s.
     pub time: f32,
-    /// Without taking the ball first.
+    /// Without stopping the ball first.
     pub one_touch: bool,
 }
 
-/// What can make a place unreliable (c5).
+/// Obstacles that make a place unreliable (c5).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spoiler {
     /// Our defence area.
     OurArea,
-    /// Theirs, where attackers must not be.
+    /// Theirs, which attackers must not enter.
     TheirArea,
     /// A line of the field.
     Line,
-    /// A mate.
+    /// A teammate.
     Mate,
 }
 
@@ -80,13 +80,13 @@ impl Rating {
         self.goal_factors.iter().product()
     }
 
-    /// P(goal | x), what is maximised.
+    /// P(goal | x), the value that is maximised.
     pub fn value(&self) -> f32 {
         self.receive() * self.goal()
     }
 }
 
-/// One moment, a ball to be passed and who shall receive it.
+/// One snapshot, a ball to be passed, and its receiver.
 #[derive(Clone, Debug)]
 pub struct Scene<'k> {
     kicks: &'k Kicks,
@@ -113,7 +113,7 @@ impl<'k> Scene<'k> {
         Self::against(view, kicks, from, passer, receiver, view.theirs.iter())
     }
 
-    /// … against some of them, or where they are expected to be (the optimistic attack of §4.2).
+    /// … against some of them, or at their expected places (the optimistic attack of §4.2).
     pub fn against<'r>(
         view: &View,
         kicks: &'k Kicks,
@@ -126,7 +126,7 @@ impl<'k> Scene<'k> {
         let mover = |robot: &Robot, limits| Mover::new(robot.position, robot.velocity, limits);
         let others = view.ours.iter().filter(|mate| mate.id != receiver.id && Some(mate.id) != passer);
         let (length, width) = (view.field.length, view.field.width);
-        // The field is the same seen from either end, so its areas are where they are in the attack frame too.
+        // The field is the same seen from either end, so its areas have the same places in the attack frame.
         Self {
             kicks,
             from,
@@ -185,12 +185,13 @@ impl<'k> Scene<'k> {
         Way { from: self.from, along, length, body: self.mouth.body, reaction }
     }
 
-    /// Rates it, if it is worth more than `floor`; finding out that it is not is cheaper.
+    /// Rates it, if its value is above `floor`; below, it costs less.
     pub fn rate_above(&self, at: Point<Attack>, floor: f32) -> Option<Rating> {
         Some(self.weigh(at, floor)).filter(|rating| rating.value() > floor)
     }
 
-    /// Factor by factor, until the value cannot be above `floor` any more; what was not looked at by then stays 1.
+    /// Factor by factor, until the value cannot be above `floor` any more; factors not computed by then stay
+    /// 1.
     fn weigh(&self, at: Point<Attack>, floor: f32) -> Rating {
         let c = self.kicks.constants();
         let way = self.way(at - self.from);
@@ -220,7 +221,8 @@ impl<'k> Scene<'k> {
             spoiler,
             shot: ShotFrom { aim: goal, angle: 0.0, time: 0.0, one_touch: false },
         };
-        // The product so far, a little larger for what rounding takes: what it rules out, the value is not above either.
+        // The product so far, slightly enlarged for rounding: a floor that it does not exceed is not exceeded
+        // by the value either.
         let place = rating.receive_factors[3] * rating.receive_factors[4] * rating.goal_factors[3] * ROUNDING;
         if place * rating.goal_factors[0] <= floor {
             return rating;
@@ -253,7 +255,7 @@ impl<'k> Scene<'k> {
         rating
     }
 
-    /// c1' for the nearest point that the goal can have, where that tells anything: near the goal it is 1.
+    /// c1' for the nearest possible point of the goal, where that matters: near the goal it is 1.
     fn keeper_at_best(&self, at: Point<Attack>, c: &PassConstants) -> f32 {
         let depth = self.mouth.x - at.x();
         if depth < KEEPER_MATTERS {
@@ -262,13 +264,13 @@ impl<'k> Scene<'k> {
         given::beats_the_keeper(self.shot.at(depth).0, c)
     }
 
-    /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over opponents (c2), but bounces: no
-    /// one-touch shot follows (c3').
+    /// A chip instead, where it is likelier to end in a goal. It gives more time (c3) and passes over
+    /// opponents (c2), but bounces: no one-touch shot follows (c3').
     fn chip_if_better(&self, way: &Way, rating: &mut Rating, floor: f32, c: &PassConstants) {
         let flat = rating.receive_factors[1] * rating.receive_factors[2] * rating.goal_factors[2];
         let most = c.chip_prior * c.turn_prior;
         let others = rating.value() / flat.max(f32::MIN_POSITIVE);
-        // Neither above the flat pass, nor above what is asked for.
+        // Neither above the flat pass, nor above the floor.
         if flat >= most || others * most <= floor.max(WORTH_A_CHIP) {
             return;
         }
@@ -287,8 +289,8 @@ impl<'k> Scene<'k> {
         }
     }
 
-    /// The opponent that can be at `at` soonest, if it is of any account to a receiver that takes `receiver_time`; the first one that
-    /// is there so much sooner that it is of no account who else is.
+    /// The opponent that can be at `at` soonest, if it affects a receiver that takes `receiver_time`; the
+    /// first one that is sooner by so large a margin that the others do not matter.
     fn rival(&self, at: Point<Attack>, receiver_time: f32) -> Option<(RobotId, f32)> {
         let mut soonest = (None, receiver_time + SAFE);
         for opponent in &self.opponents {
@@ -308,7 +310,7 @@ impl<'k> Scene<'k> {
         soonest.0.map(|id| (id, soonest.1))
     }
 
-    /// What is nearest to spoiling the place.
+    /// The most restrictive obstacle of the place.
     fn spoiler(&self, at: Point<Attack>, c: &PassConstants) -> (Spoiler, f32) {
         let line = (self.half[0] - at.x().abs()).min(self.half[1] - at.y().abs()) - c.line_margin;
         let mut worst = (Spoiler::Line, line);
@@ -345,31 +347,31 @@ impl<'k> Scene<'k> {
         let open = self.mouth.open_from(at, self.opponents.iter().map(|opponent| opponent.mover.position));
         let way = open.aim - at;
         let distance = way.norm();
-        // Between where the ball comes from and where it shall go, seen from the receiver.
+        // Angle between the incoming and the outgoing path of the ball, at the receiver.
         let one_touch = -along.dot(way) >= c.one_touch_cos * distance;
         ShotFrom { aim: open.aim, angle: open.angle, time: self.shot.at(distance).0, one_touch }
     }
 }
 
-/// A margin of time with which a value of `others` (all other factors) is not above `floor` any more, s: nobody needs to know how much
-/// smaller it is. No less than −[`SAFE`].
+/// A margin of time with which a value of `others` (all other factors) is not above `floor` any more, s: no
+/// caller needs a smaller one. No less than −[`SAFE`].
 fn enough(floor: f32, others: f32, c: &PassConstants) -> f32 {
     let p = floor / others;
     if p > 0.0 && p < 1.0 {
-        // The inverse of the logistic, a little lower for what rounding takes.
+        // The inverse of the logistic, slightly lowered for rounding.
         (c.time_width * geometry::math::ln(p / (1.0 - p)) - 1e-3).max(-SAFE)
     } else {
         -SAFE
     }
 }
 
-/// m; nearer, directions mean nothing.
+/// m; nearer, directions are undefined.
 const ON_THE_SPOT: f32 = 1e-3;
-/// Farther from the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
+/// From places farther off the goal line than this most shots are slower than a keeper, m: 0.5 s at 6.24 m/s.
 const KEEPER_MATTERS: f32 = 2.8;
 /// Nine factors in another order differ by less than 10⁻⁶.
 const ROUNDING: f32 = 1.0 + 1e-5;
-/// A chip that ends in a goal less often than this is not looked at: one in two hundred.
+/// A chip that ends in a goal less often than this is not considered: one in two hundred.
 const WORTH_A_CHIP: f32 = 0.005;
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
-//! `search`: search for the best receiving place. Random samples near the best of a moment ago, and some
-//! anywhere (Biswas et al. 2014 §3.1; D13).
+//! `search`: search for the best receiving place. Random samples near the previous best, and some anywhere
+//! (Biswas et al. 2014 §3.1; D13).
 //!
-//! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not jump. So does this, but
-//! for a tenth of its samples, which look over the whole field; the target jumps only for a place that is better by a quarter.
-//! One seed, one stream: the same moments give the same places.
+//! The paper searches the neighbourhood of the previous optimum alone, so that the receiver's target does not
+//! jump. This search does the same, except for a tenth of its samples, which cover the whole field; the
+//! target jumps only for a place that is better by a quarter. One seed, one stream: the same moments give the
+//! same places.
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
@@ -14,7 +15,7 @@ use super::super::view::{ROBOTS_MAX, View};
 use super::kicks::Kicks;
 use super::scene::{Rating, Scene};
 
-/// A receiver's search, from moment to moment.
+/// A receiver's search, kept between snapshots.
 #[derive(Clone, Debug)]
 pub struct Search {
     random: Xoshiro128PlusPlus,
@@ -27,17 +28,17 @@ impl Search {
         Self { random: Xoshiro128PlusPlus::seed_from_u64(seed), last: None }
     }
 
-    /// The optimum of the last moment.
+    /// The optimum of the last step.
     pub fn last(&self) -> Option<Point<Attack>> {
         self.last
     }
 
-    /// Forgets it: another pass is sought.
+    /// Forgets it: another pass is searched.
     pub fn forget(&mut self) {
         self.last = None;
     }
 
-    /// Rates `samples` places and the last optimum, and gives the best.
+    /// Rates `samples` places and the last optimum, and returns the best.
     pub fn step(&mut self, scene: &Scene<'_>, samples: u32) -> Rating {
         let anywhere = match self.last {
             Some(_) => samples / GLOBAL_SHARE,
@@ -67,13 +68,14 @@ impl Search {
         best
     }
 
-    /// −1 to 1.
+    /// Uniform in −1 to 1.
     fn uniform(&mut self) -> f32 {
         (self.random.next_u32() >> 8) as f32 * (1.0 / 8_388_608.0) - 1.0
     }
 
-    /// Two independent numbers of a bell curve, mean 0 and standard deviation 1: four even ones added up each, which is a normal
-    /// distribution but for its tails beyond 3, and a tenth of the instructions of a logarithm and a sine.
+    /// Two independent numbers of a bell curve, mean 0 and standard deviation 1: four uniform ones added up
+    /// each, which is a normal distribution except for its tails beyond 3, and takes a tenth of the
+    /// instructions of a logarithm and a sine.
     fn bell(&mut self) -> Vector<Attack> {
         let mut one = || {
             let (a, b) = (self.random.next_u32(), self.random.next_u32());
@@ -85,7 +87,7 @@ impl Search {
     }
 }
 
-/// The best so far, or the place `at` where it is worth more.
+/// The best so far, or the place `at` where that has a higher value.
 fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating {
     match best {
         Some(best) => scene.rate_above(at, best.value()).unwrap_or(best),
@@ -93,16 +95,16 @@ fn better(best: Option<Rating>, scene: &Scene<'_>, at: Point<Attack>) -> Rating 
     }
 }
 
-/// A mate's best place, and what a pass there is worth.
+/// A teammate's best place, and the rating of a pass there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer {
-    /// Who would receive.
+    /// The receiver.
     pub receiver: RobotId,
-    /// Where, and why.
+    /// Its place, with the factors.
     pub rating: Rating,
 }
 
-/// All receivers' searches: each mate seeks its own place, the passer chooses among them (§3).
+/// All receivers' searches: each teammate searches its own place, the passer chooses among them (§3).
 #[derive(Clone, Debug)]
 pub struct Searches {
     each: [Search; ROBOTS_MAX],
@@ -116,7 +118,8 @@ impl Searches {
         Self { each: std::array::from_fn(|i| Search::new(seed.wrapping_add(apart.wrapping_mul(i as u64)))) }
     }
 
-    /// What every robot but `passer` and our keeper offers for a pass from `from`, best first; of equal ones the lower number.
+    /// The offer of every robot except `passer` and our keeper for a pass from `from`, best first; of equal
+    /// ones the lower number.
     pub fn offers(
         &mut self,
         view: &View,
@@ -131,13 +134,13 @@ impl Searches {
             let rating = self.each[mate.id.index()].step(&scene, samples);
             let worse = |other: &Offer| other.rating.value() < rating.value();
             let place = offers.iter().position(worse).unwrap_or(offers.len());
-            // One a robot.
+            // At most one per robot.
             let _ = offers.insert(place, Offer { receiver: mate.id, rating });
         }
         offers
     }
 
-    /// Forgets all places: another ball, another passer.
+    /// Forgets all places: for another ball or passer.
     pub fn forget(&mut self) {
         self.each.iter_mut().for_each(Search::forget);
     }
@@ -147,12 +150,12 @@ impl Searches {
 pub const SAMPLES: u32 = 200;
 /// Standard deviation of samples near the last optimum, m along each axis (D13).
 const NEAR: f32 = 0.5;
-/// √3: four even numbers have a variance of 1/3.
+/// √3: four uniform numbers have a variance of 1/3.
 const ROOT_OF_3: f32 = 1.732_050_8;
-/// One of so many samples lies anywhere (D13: 10 %).
+/// One of this number of samples lies anywhere (D13: 10 %).
 const GLOBAL_SHARE: u32 = 10;
-/// How many times better a place elsewhere must be to jump there: a receiver that turns round loses half a second, which costs a
-/// fifth of the passes that were likely.
+/// Factor by which a place elsewhere must be better to jump there: a receiver that turns round loses half a
+/// second, which costs a fifth of the passes that were likely.
 const JUMP_GAIN: f32 = 1.25;
 
 #[cfg(test)]
@@ -217,7 +220,7 @@ mod tests {
             let view = view((0.5, 0.0), &OURS, &theirs);
             let scene = Scene::of(&view, &kicks, Point::new(0.5, 0.0), None, &view.ours[2]);
             let at = search.step(&scene, 60).at;
-            // The first moments still seek.
+            // The first steps still search.
             if let (Some(last), true) = (last, tick > 10) {
                 moved = moved.max(at.distance(last));
             }

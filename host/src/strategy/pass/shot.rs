@@ -1,5 +1,5 @@
 //! `shot`: probability that a shot scores. The paper's c1', c2' and c4' without a pass before (Biswas et al.
-//! 2014 §3.1), so that a shot and a pass are weighed on one scale. Attack frame, SI units.
+//! 2014 §3.1), so that shots and passes are compared on one scale. Attack frame, SI units.
 
 use geometry::{Attack, Point};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
@@ -16,14 +16,14 @@ pub struct Shot {
     pub aim: Point<Attack>,
     /// The open angle around it, rad.
     pub angle: f32,
-    /// Until it is there, s.
+    /// Time until it is there, s.
     pub time: f32,
-    /// P(c1'), P(c2'), P(c4').
+    /// Factors P(c1'), P(c2'), P(c4').
     pub factors: [f32; 3],
 }
 
 impl Shot {
-    /// P(goal).
+    /// P(goal), the product of the factors.
     pub fn value(&self) -> f32 {
         self.factors.iter().product()
     }
@@ -65,8 +65,8 @@ mod tests {
     #[test]
     fn an_open_goal_two_metres_off_by_hand() {
         let found = shot_from((2.5, 0.0), &[]);
-        // 2 atan(0.4785 / 2) = 0.4697 rad: wide enough. The ball slides from 6.24 m/s with 3.9 m/s²: 2 m = 6.24 t − 1.95 t², t = 0.3613 s;
-        // c1' = 1 / (1 + exp(−0.387)) = 0.5956; c4' = 0.7.
+        // 2 atan(0.4785 / 2) = 0.4697 rad: wide enough. The ball slides from 6.24 m/s with 3.9 m/s²: 2 m =
+        // 6.24 t − 1.95 t², t = 0.3613 s; c1' = 1 / (1 + exp(−0.387)) = 0.5956; c4' = 0.7.
         assert!((found.angle - 0.4697).abs() < 1e-3 && found.aim.y().abs() < 1e-6, "{found:?}");
         assert!((found.time - 0.3613).abs() < 2e-3, "{found:?}");
         assert!((found.factors[0] - 0.5956).abs() < 5e-3 && found.factors[1..] == [1.0, 0.7], "{found:?}");
@@ -77,7 +77,7 @@ mod tests {
     fn a_closed_goal_keeps_a_tenth_and_a_far_one_hardly_anything() {
         let closed = shot_from((2.5, 0.0), &[(2.7, 0.0)]);
         assert_eq!((closed.angle, closed.factors[1]), (0.0, 0.1));
-        // 0.86 s for 5 m: e^−4.6 of being there before the keeper.
+        // 0.86 s for 5 m: probability e^−4.6 that it is there before the keeper.
         assert!(shot_from((-0.5, 0.0), &[]).value() < 0.02);
     }
 }

@@ -1,20 +1,20 @@
 //! `tally`: counters of passes and calibration. Counts that add up over matches: the passes of the second
-//! paper's Table 1, and the calibration of its equation 5, predicted against seen.
+//! paper's Table 1, and the calibration of its equation 5, predicted against observed.
 
 use serde::{Deserialize, Serialize};
 
 use super::watch::{Ordered, Verdict};
 
-/// Passes of one kind of kick, by what became of them.
+/// Passes of one kind of kick, by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fates {
-    /// The receiver had it.
+    /// The receiver received it.
     pub received: u32,
-    /// Another mate had it.
+    /// Another teammate received it.
     pub by_mate: u32,
-    /// An opponent had it.
+    /// An opponent intercepted it.
     pub intercepted: u32,
-    /// It went by.
+    /// It passed the receiver.
     pub missed: u32,
     /// The receiver came too late.
     pub late: u32,
@@ -27,41 +27,41 @@ pub struct Fates {
 /// Passes whose P(receive) lay in one tenth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bin {
-    /// Passes kicked.
+    /// Number of passes kicked.
     pub passes: u32,
     /// Sum of their P(receive).
     pub predicted: f64,
-    /// How many their receiver had.
+    /// Number of them received.
     pub received: u32,
 }
 
 /// All passes of a team.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PassTally {
-    /// Along the ground.
+    /// Passes along the ground.
     pub flat: Fates,
-    /// Through the air.
+    /// Passes through the air.
     pub chip: Fates,
-    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in none.
+    /// By predicted P(receive): 0–0.1, …, 0.9–1. Passes that were never kicked are in no bin.
     pub calibration: [Bin; BINS],
 }
 
-/// Tenths.
+/// Number of calibration bins: tenths of P(receive).
 pub const BINS: usize = 10;
 
 impl Fates {
-    /// All of them.
+    /// Number of all passes.
     pub fn ordered(&self) -> u32 {
         self.kicked() + self.no_kick
     }
 
-    /// Those that left the passer: what the paper's Table 1 calls attempted.
+    /// Those that left the passer: "attempted" in the paper's Table 1.
     pub fn kicked(&self) -> u32 {
         let Self { received, by_mate, intercepted, missed, late, out, .. } = self;
         received + by_mate + intercepted + missed + late + out
     }
 
-    /// Those that the team had in the end.
+    /// Those that the team received.
     pub fn successful(&self) -> u32 {
         self.received + self.by_mate
     }
@@ -105,7 +105,7 @@ impl PassTally {
         bin.received += u32::from(matches!(verdict, Verdict::Received { .. }));
     }
 
-    /// The passes of another match, too.
+    /// Adds the passes of another match.
     pub fn add(&mut self, other: &Self) {
         self.flat.add(&other.flat);
         self.chip.add(&other.chip);
@@ -116,8 +116,8 @@ impl PassTally {
         }
     }
 
-    /// How far P(receive) is off what was seen: the mean over the bins of |predicted − seen|, each by its passes (expected calibration
-    /// error); `None` without passes.
+    /// Difference between P(receive) and the observed share: the mean over the bins of |predicted −
+    /// observed|, each by its passes (expected calibration error); `None` without passes.
     pub fn calibration_error(&self) -> Option<f64> {
         let passes: u32 = self.calibration.iter().map(|bin| bin.passes).sum();
         let off: f64 =
@@ -167,12 +167,12 @@ mod tests {
     fn the_calibration_error_by_hand_and_over_two_matches() {
         let mut one = PassTally::default();
         assert_eq!(one.calibration_error(), None);
-        // Predicted 0.75 + 0.75, one seen: |1.5 − 1| / 2.
+        // Predicted 0.75 + 0.75, one received: |1.5 − 1| / 2.
         one.record(&pass(0.75, false), &RECEIVED);
         one.record(&pass(0.75, false), &Verdict::Missed { by: 1.0 });
         assert!((one.calibration_error().unwrap() - 0.25).abs() < 1e-9);
         let mut other = PassTally::default();
-        // Predicted 0.25 + 0.25, none seen: with the above (0.5 + 0.5) / 4.
+        // Predicted 0.25 + 0.25, none received: with the above (0.5 + 0.5) / 4.
         other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
         other.record(&pass(0.25, true), &Verdict::Out { at: Point::default() });
         one.add(&other);

@@ -1,8 +1,8 @@
-//! `watch`: outcome of a pass. A watch that follows the field after a pass was ordered and gives one verdict,
-//! with its evidence (Biswas et al. 2014 §3.2; failures by kind). Field frame, SI units.
+//! `watch`: outcome of a pass. It follows the field after a pass was ordered and gives one verdict, with its
+//! evidence (Biswas et al. 2014 §3.2; failures by kind). Field frame, SI units.
 //!
-//! It looks at pictures alone, so that a host, an arena or a replay can hold it: whoever has a [`World`] every few hundredths of a
-//! second. A touch is a robot near the ball and a ball that changes its way there.
+//! It uses snapshots only, so that a host, an arena or a replay can run it: any caller with a [`World`] every
+//! few hundredths of a second. A touch is a robot near the ball and a ball that changes its direction there.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Duration, Instant, RobotId, Who};
@@ -14,70 +14,70 @@ use crate::world::{Ball, World};
 /// A pass that was ordered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ordered {
-    /// When.
+    /// Time of the order.
     pub at: Instant,
-    /// Whose.
+    /// The team's colour.
     pub us: Colour,
-    /// Who kicks.
+    /// The robot that kicks.
     pub passer: RobotId,
-    /// Who shall have it.
+    /// The robot that shall receive it.
     pub receiver: RobotId,
-    /// x0.
+    /// x0: place of the ball at the order.
     pub from: Point<Field>,
-    /// x*.
+    /// x*: place of reception.
     pub to: Point<Field>,
-    /// T_b, s.
+    /// T_b: predicted time of the ball from x0 to x*, s.
     pub flight: f32,
-    /// Through the air.
+    /// Whether it is a chip.
     pub chip: bool,
-    /// P(receive), as it was rated.
+    /// P(receive), as rated.
     pub likely: f32,
 }
 
-/// What became of it.
+/// Outcome of a pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The receiver has it.
+    /// The receiver has received it.
     Received {
-        /// This far from x*, m.
+        /// Distance from x*, m.
         off: f32,
-        /// This much later than T_b after the kick, s; earlier if negative.
+        /// Time later than T_b after the kick, s; earlier if negative.
         late: f32,
     },
-    /// Another mate has it.
+    /// Another teammate has received it.
     ByMate {
-        /// Who.
+        /// The robot.
         by: RobotId,
-        /// This far from x*, m.
+        /// Distance from x*, m.
         off: f32,
     },
     /// An opponent touched it first.
     Intercepted {
-        /// Who.
+        /// The robot.
         by: RobotId,
-        /// So far along the way from x0, m.
+        /// Distance along the path from x0, m.
         along: f32,
-        /// So long after the kick, s.
+        /// Time after the kick, s.
         after: f32,
     },
-    /// It went by, or stopped short of, a receiver that was there.
+    /// It passed, or stopped short of, a receiver that was there.
     Missed {
         /// The ball's least distance from x*, m.
         by: f32,
     },
-    /// It came by x* before the receiver.
+    /// It passed x* before the receiver was there.
     Late {
-        /// Where the receiver was then: this far from x*, m.
+        /// The receiver's distance from x* then, m.
         receiver_off: f32,
     },
-    /// It left the field before anybody touched it.
+    /// It left the field before any robot touched it.
     Out {
-        /// Where.
+        /// Where it left the field.
         at: Point<Field>,
     },
     /// The ball never left the passer.
     NoKick {
-        /// So long after the order, s.
+        /// Time after the order, s.
         after: f32,
         /// An opponent took the ball away.
         lost_to: Option<RobotId>,
@@ -98,21 +98,21 @@ pub struct PassWatch {
     flight: Option<Flight>,
 }
 
-/// A ball on its way.
+/// A ball that has left the passer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Flight {
     since: Instant,
     /// Its least distance from x* so far, m.
     nearest: f32,
-    /// When it came by x*: how far off the receiver was, m.
+    /// When it passed x*: the receiver's distance, m.
     receiver_off: Option<f32>,
-    /// Who is at the ball, since when, and how the ball went before.
+    /// The robot at the ball, since when, and the ball's velocity before.
     contact: Option<(Who, Vector<Field>)>,
     velocity: Vector<Field>,
 }
 
 impl PassWatch {
-    /// Begins with the order.
+    /// A watch that starts with the order.
     pub fn new(ordered: Ordered) -> Self {
         Self { ordered, flight: None }
     }
@@ -127,7 +127,7 @@ impl PassWatch {
         self.flight.is_some()
     }
 
-    /// The next picture. A verdict ends the watch.
+    /// Takes the next snapshot. A verdict ends the watch.
     pub fn observe(&mut self, world: &World, field: &FieldSpec) -> Option<Verdict> {
         let Some(ball) = world.ball else { return self.over(world.time) };
         match self.flight {
@@ -195,7 +195,7 @@ impl PassWatch {
         stopped.then(|| flight.end())
     }
 
-    /// Who has just touched the ball; the passer's own kick is none.
+    /// The robot that has just touched the ball; the passer's own kick does not count.
     fn touch(&self, flight: &mut Flight, before: Vector<Field>, world: &World, ball: &Ball) -> Option<Who> {
         let near = world
             .nearest(ball.position)
@@ -212,7 +212,7 @@ impl PassWatch {
                 let change = (ball.velocity - before).norm();
                 (change > CHANGE + CHANGE_SHARE * before.norm()).then_some(who)
             }
-            // It left the robot again: by a touch, where it changed its way.
+            // It left the robot again: a touch, if it changed its direction.
             (None, Some((who, came))) => {
                 flight.contact = None;
                 let change = (ball.velocity - came).norm();
@@ -222,7 +222,7 @@ impl PassWatch {
         }
     }
 
-    /// A ball that nobody saw again, or that rolls on for nobody.
+    /// A ball that no camera saw again, or that rolls on without a receiver.
     fn over(&self, now: Instant) -> Option<Verdict> {
         match self.flight {
             None => {
@@ -239,7 +239,7 @@ impl PassWatch {
 }
 
 impl Flight {
-    /// Nobody has it: because of whom?
+    /// The verdict where no robot received it: late or missed.
     fn end(&self) -> Verdict {
         match self.receiver_off {
             Some(receiver_off) if receiver_off > THERE && self.nearest <= THERE => {
@@ -250,24 +250,28 @@ impl Flight {
     }
 }
 
-/// A robot's centre this near the ball may touch it, m: both radii, and what two positions of vision err by together.
+/// A robot's centre this near the ball may touch it, m: both radii, and the joint error of two positions of
+/// vision.
 const TOUCHING: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.02;
-/// Farther from the passer the ball has left it, m.
+/// At a larger distance from the passer the ball has left it, m.
 const LEFT: f32 = ROBOT_RADIUS + BALL_RADIUS + 0.05;
 /// … when it is faster than this, m/s: slower than any pass, faster than a ball that is pushed along.
 const KICKED: f32 = 0.8;
-/// A change of velocity that carpet does not make between two pictures, m/s, and as a share of the speed.
+/// A change of velocity that the field surface does not cause between two snapshots, m/s, and as a share of
+/// the speed.
 const CHANGE: f32 = 0.3;
 const CHANGE_SHARE: f32 = 0.15;
-/// A slower ball is on its way to nobody, m/s.
+/// A slower ball counts as stopped, m/s.
 const STOPPED: f32 = 0.15;
-/// A kick is known by its speed only after a few pictures, s.
+/// A kick is known by its speed only after a few snapshots, s.
 const MOVES_FOR: f32 = 0.3;
-/// Within this distance of x* a receiver is there, and a ball comes to it, m: two robots' radii and the ball.
+/// Distance from x* within which a receiver counts as there, and a ball as arrived, m: two robots' radii and
+/// the ball.
 const THERE: f32 = 0.2;
-/// A pass that has not left by then is none: what it may be sought for ([`super::ahead::SEARCH_TIME`]), and a second for the kick.
+/// A pass that has not left by then counts as not kicked: the time in which it may be searched
+/// ([`super::ahead::SEARCH_TIME`]), and a second for the kick.
 const KICK_WITHIN: Duration = Duration::millis(5000);
-/// A receiver that missed it may still run after it, s.
+/// Time in which a receiver that missed it may still reach it, s.
 const COLLECTED_WITHIN: f32 = 1.5;
 
 #[cfg(test)]

@@ -1,36 +1,38 @@
-//! `angle`: open angle of our goal (Biswas et al. 2014 §5.1: open angles.).
+//! `angle`: open angle of our goal (Biswas et al. 2014 §5.1).
 //!
-//! Angles of view are told from the direction of the view's middle, left positive, rad. A robot of radius r at distance D takes
-//! 2·asin((r + r_ball) / D): the ball's centre must not come nearer than both radii. Attack frame.
+//! Angles of view are measured from the direction of the view's middle, left positive, rad. A robot of radius
+//! r at distance D covers 2·asin((r + r_ball) / D): the ball's centre must not come nearer than both radii.
+//! Attack frame.
 
 use geometry::{Angle, Attack, Point, Vector, math};
 use rules::limits::{BALL_RADIUS, ROBOT_RADIUS};
 
-/// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is stopped.
+/// Radii of a body and of the ball together, m: a ball whose centre comes nearer to a robot's centre is
+/// blocked.
 pub const BODY: f32 = ROBOT_RADIUS + BALL_RADIUS;
 
-/// A goal as it is seen from a place.
+/// The goal as seen from a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
-    /// From where.
+    /// That place.
     pub from: Point<Attack>,
-    /// Direction of the bisector.
+    /// Direction of the goal's bisector.
     pub middle: Angle,
     /// Half the angle between the posts, rad.
     pub half: f32,
 }
 
-/// A stretch of directions, rad from the opening's middle.
+/// A range of directions, rad from the opening's middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Its right end.
+    /// Its right end, rad.
     pub right: f32,
-    /// Its left end.
+    /// Its left end, rad.
     pub left: f32,
 }
 
 impl Span {
-    /// How wide, rad.
+    /// Its width, rad.
     pub fn width(&self) -> f32 {
         self.left - self.right
     }
@@ -42,8 +44,8 @@ impl Span {
 }
 
 impl Opening {
-    /// The goal with its middle at `goal` and `width` m between the posts, seen from `from`; a place on or behind its line is
-    /// taken to be just before it.
+    /// The goal with its middle at `goal` and `width` m between the posts, seen from `from`; a place on or
+    /// behind its line is moved to just before it.
     pub fn of(from: Point<Attack>, goal: Point<Attack>, width: f32) -> Self {
         let before = if goal.x() < 0.0 {
             from.x().max(goal.x() + BEFORE_LINE)
@@ -53,12 +55,12 @@ impl Opening {
         let from = Point::new(before, from.y());
         let post = |y: f32| Point::new(goal.x(), goal.y() + y) - from;
         let (one, other) = (post(-0.5 * width), post(0.5 * width));
-        // The turn from one post to the other is below half a turn, either way.
+        // The angle from one post to the other is below half a turn in either direction.
         let half = 0.5 * math::atan2(one.cross(other), one.dot(other));
         Self { from, middle: one.angle() + Angle::new(half), half: half.abs() }
     }
 
-    /// All of it, rad.
+    /// The whole angle, rad.
     pub fn angle(&self) -> f32 {
         2.0 * self.half
     }
@@ -68,7 +70,7 @@ impl Opening {
         Vector::polar(1.0, self.middle + Angle::new(off))
     }
 
-    /// What a body takes of all directions; `None` where it stands no nearer than `within` m, or behind.
+    /// The directions that a body covers; `None` where it stands no nearer than `within` m, or behind.
     pub fn shadow(&self, body: Point<Attack>, within: f32) -> Option<Span> {
         let to = body - self.from;
         let distance = to.norm();
@@ -78,7 +80,8 @@ impl Opening {
             .then_some(Span { right: off - half, left: off + half })
     }
 
-    /// What is left open by these bodies, from right to left. A body counts where it stands nearer than `within` m.
+    /// The gaps that these bodies leave open, from right to left. A body counts where it stands nearer than
+    /// `within` m.
     pub fn gaps(&self, bodies: impl Iterator<Item = Point<Attack>>, within: f32) -> Gaps {
         let mut shadows: heapless::Vec<Span, BODIES_MAX> =
             bodies.filter_map(|body| self.shadow(body, within)).take(BODIES_MAX).collect();
@@ -98,7 +101,7 @@ impl Opening {
     }
 }
 
-/// What is left open, from right to left.
+/// Open gaps, from right to left.
 pub type Gaps = heapless::Vec<Span, { BODIES_MAX + 1 }>;
 
 /// The widest of them; 0 where there is none.
@@ -106,7 +109,8 @@ pub fn widest(gaps: &[Span]) -> f32 {
     gaps.iter().map(Span::width).fold(0.0, f32::max)
 }
 
-/// asin(([`BODY`]) / D): half of what a body takes at a distance, rad; a quarter turn where it touches.
+/// asin(([`BODY`]) / D): half of the angle that a body covers at a distance, rad; a quarter turn where it
+/// touches.
 pub fn half_shadow(distance: f32) -> f32 {
     if distance <= BODY {
         return math::FRAC_PI_2;
@@ -114,16 +118,16 @@ pub fn half_shadow(distance: f32) -> f32 {
     math::atan2(BODY, math::sqrt(distance * distance - BODY * BODY))
 }
 
-/// The distance at which a body takes this half angle, m: the inverse of [`half_shadow`].
+/// The distance at which a body covers this half angle, m: the inverse of [`half_shadow`].
 pub fn distance_for(half: f32) -> f32 {
     BODY / math::sin_cos(half.clamp(SMALLEST, math::FRAC_PI_2)).0
 }
 
-/// Bodies that can stand in the way at once: all of both teams on the largest field.
+/// Bodies that can block at the same time: all of both teams on the largest field.
 pub const BODIES_MAX: usize = 2 * rules::limits::ROBOTS_MAX;
-/// From nearer a goal is not looked at, m: its posts are a straight line there.
+/// Least distance of a view from the goal line, m: nearer, its posts are a straight line.
 const BEFORE_LINE: f32 = 0.05;
-/// Below this an angle is none, rad: it asks for a body 110 m away.
+/// Smaller angles count as 0, rad: they need a body 110 m away.
 const SMALLEST: f32 = 1e-3;
 
 #[cfg(test)]
@@ -159,7 +163,7 @@ mod tests {
             for ray in 0..rays {
                 let y = -0.5 + (ray as f32 + 0.5) / rays as f32;
                 let way = geometry::Segment::new(opening.from, Point::new(-4.5, y));
-                // Bodies behind the line do not stand here, so the segment to the goal line decides.
+                // Bodies behind the line do not occur here, so the segment to the goal line decides.
                 if bodies.iter().all(|body| way.distance_to(*body) > BODY) {
                     free += 1;
                     let off = (way.vector().angle() - opening.middle).radians();
@@ -169,7 +173,7 @@ mod tests {
                     );
                 }
             }
-            // The same share of the mouth: seen from the middle of each gap's ends.
+            // The same share of the goal opening: seen from the middle of each gap's ends.
             let on_line = |off: f32| {
                 let d = opening.direction(off);
                 opening.from.y() + d.y() * (-4.5 - opening.from.x()) / d.x()

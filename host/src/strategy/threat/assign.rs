@@ -1,5 +1,5 @@
-//! `assign`: assignment of defenders to places. Primaries along the edge, the rest greedily by rank, tasks
-//! held (Biswas et al. 2014 §5.1, §5.2). Attack frame, m.
+//! `assign`: assignment of defenders to places. Primaries along the edge, the other defenders greedily by
+//! rank, tasks held (Biswas et al. 2014 §5.1, §5.2). Attack frame, m.
 
 use geometry::{Attack, Point};
 use protocol::RobotId;
@@ -14,12 +14,12 @@ use super::{Assignment, Guards, Kept, Memory, Settings};
 
 type Assignments = heapless::Vec<Assignment, ROBOTS_MAX>;
 
-/// A place of a primary defender, and whose it is.
+/// A place of a primary defender, and its robot.
 #[derive(Clone, Copy)]
 struct Primary {
     robot: RobotId,
     place: Point<Attack>,
-    /// Against the first-level threat; else it is spare.
+    /// Whether it is needed against the first-level threat; else it is spare.
     needed: bool,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn assign(
     if let (Some(kept), None) = (held, memory.held)
         && let Some(robot) = view.our(kept.robot)
     {
-        // The primaries are in place: it is free for what else there is.
+        // The primaries are in place: it is free for the other tasks.
         let _ = giving.free.push(*robot);
     }
     memory.tasks = giving.second_level(dangers, spare, cover, &memory.tasks);
@@ -71,14 +71,14 @@ pub(super) fn assign(
     giving.given
 }
 
-/// The task of blocking the shot of whom the ball is being passed to, if somebody beside the primaries has it.
+/// The task of blocking the shot of the pass receiver, if a robot other than the primaries has it.
 fn held_task(threat: &FirstLevel, memory: &Memory) -> Option<Kept> {
     let receiver = threat.receiver()?;
     let kept = memory.tasks.iter().find(|kept| kept.opponent == receiver && kept.blocks == Blocks::Shot)?;
     (!memory.primaries.contains(&Some(kept.robot))).then_some(*kept)
 }
 
-/// Places being given, and who has none yet.
+/// Places being assigned, and robots that have none yet.
 struct Giving<'v> {
     view: &'v View,
     settings: &'v Settings,
@@ -90,7 +90,7 @@ struct Giving<'v> {
 impl Giving<'_> {
     fn give(&mut self, robot: RobotId, at: Point<Attack>, guards: Guards) {
         let at = if robot == self.view.keeper { at } else { super::lawful(self.view, at, self.settings) };
-        // One a robot.
+        // At most one per robot.
         let _ = self.given.push(Assignment { robot, at, guards });
     }
 
@@ -100,7 +100,8 @@ impl Giving<'_> {
         Some(self.free.remove(found))
     }
 
-    /// At most two primaries, the ones needed first. Who was one stays one until another is nearer by the settings' worth.
+    /// At most two primaries, the ones needed first. A robot that was one stays one until another is nearer
+    /// by the settings' worth.
     fn primaries(&mut self, cover: &Cover, before: [Option<RobotId>; 2]) -> heapless::Vec<Primary, 2> {
         let worth = self.settings.worth;
         match cover.primaries[..] {
@@ -108,7 +109,8 @@ impl Giving<'_> {
             [place] => {
                 let guard = self.nearest(place, before[0], worth);
                 let guard = guard.map(|robot| Primary { robot: robot.id, place, needed: true });
-                // The spare one is away along the edge where it guards a second-level threat, so it is held more.
+                // The spare one may be away along the edge to guard a second-level threat, so it is held
+                // longer.
                 let place = cover.spare_place(&self.edge, self.settings);
                 let spare = self.nearest(place, before[1], 2.0 * worth);
                 let spare = spare.map(|robot| Primary { robot: robot.id, place, needed: false });
@@ -124,7 +126,7 @@ impl Giving<'_> {
         self.take(id)
     }
 
-    /// Two primaries that are both needed: who is nearest to either place, who was one before first.
+    /// Two primaries that are both needed: the robots nearest to either place, present primaries first.
     fn pair(
         &mut self,
         places: [Point<Attack>; 2],
@@ -154,7 +156,7 @@ impl Giving<'_> {
         robots.iter().zip(places).map(needed).collect()
     }
 
-    /// Whether a held task goes on: until all primaries are in place. Gives it its place if so.
+    /// Whether a held task continues: until all primaries are in place. Assigns its place if so.
     fn holds_on(&mut self, kept: Kept, primaries: &[Primary]) -> bool {
         let off = |primary: &Primary| {
             self.view.our(primary.robot).map_or(0.0, |robot| robot.position.distance(primary.place))
@@ -168,8 +170,8 @@ impl Giving<'_> {
         true
     }
 
-    /// The best positions to whoever is nearest, in order of rank; who had one keeps it. A spare primary blocks shots from
-    /// where their lines cross the edge, and else stands beside the other one.
+    /// The best positions to the nearest robots, in order of rank; a robot that had one keeps it. A spare
+    /// primary blocks shots from where their lines cross the edge, and else stands beside the other one.
     fn second_level(
         &mut self,
         dangers: &[Danger],
@@ -211,7 +213,8 @@ impl Giving<'_> {
             let chosen = roles::choose(candidates, had, self.settings.worth, |robot| {
                 let place = on_edge.filter(|(spare, _)| spare.id == robot.id).map(|(_, place)| place);
                 let way = robot.position.distance(place.unwrap_or(position.at));
-                // Whoever has another task that is wanted still is left to it, or one new task would move everybody.
+                // A robot with another task that is still wanted keeps that, or one new task would move all
+                // robots.
                 let has_other = had != Some(robot.id) && wanted.contains(&robot.id);
                 if has_other { way + self.settings.worth } else { way }
             });
@@ -223,7 +226,7 @@ impl Giving<'_> {
             let Danger { open, time_to_shoot, .. } = position.danger;
             let guards = Guards::SecondLevel { opponent, blocks, rank, open, time_to_shoot };
             self.give(robot, place.unwrap_or(position.at), guards);
-            // One a robot.
+            // At most one per robot.
             let _ = kept.push(Kept { robot, opponent, blocks });
         }
         if let Some(spare) = spare {
@@ -232,7 +235,7 @@ impl Giving<'_> {
         kept
     }
 
-    /// Whether somebody stands there already; a place that somebody had is given up less easily.
+    /// Whether a robot stands there already; a place that a robot had is given up less easily.
     fn is_taken(&self, at: Point<Attack>, had: bool) -> bool {
         let room = if had { TAKEN } else { TAKEN + TAKEN_HOLD };
         self.given.iter().any(|other| other.at.distance(at) < room)
@@ -253,9 +256,10 @@ impl Giving<'_> {
     }
 }
 
-/// Primaries have passed each other when they are so far past, m along the edge: a body's radius and more than noise.
+/// Primaries have passed each other when they are past by this, m along the edge: a body's radius and more
+/// than noise.
 const PASSED: f32 = 0.12;
-/// Two robots do not both stand within this, m: two bodies and a finger between.
+/// Two robots do not both stand within this, m: two bodies and a margin between.
 const TAKEN: f32 = 0.2;
-/// A new place keeps so much more off others, m.
+/// A new place keeps this much more distance from others, m.
 const TAKEN_HOLD: f32 = 0.1;

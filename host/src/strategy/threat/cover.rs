@@ -1,13 +1,15 @@
 //! `cover`: places of keeper and primary defenders against the first-level threat (Biswas et al. 2014 §5.1:
-//! three cases; its Figure 7.). Attack frame, m, rad.
+//! three cases; its Figure 7). Attack frame, m, rad.
 //!
-//! 1. One defender takes the whole open angle: it stands on the bisector, the keeper before the middle of the goal.
-//! 2. Defender and keeper take it together: the defender just inside the line from the threat to the nearer post, the keeper on
-//!    the bisector of the rest, as far back as it can be.
-//! 3. Else two defenders: the keeper on the bisector of all, a defender on the bisector of each of the two rests.
+//! 1. One defender covers the whole open angle: it stands on the bisector, the keeper before the middle of
+//!    the goal.
+//! 2. Defender and keeper cover it together: the defender just inside the line from the threat to the nearer
+//!    post, the keeper on the bisector of the remaining angle, as far back as it can be.
+//! 3. Else two defenders: the keeper on the bisector of the whole angle, a defender on the bisector of each
+//!    of the two remaining angles.
 //!
-//! Division B's goal is wide (1 m): from far away not even three bodies take all of it as they stand. The keeper then comes out
-//! as far as it may, and [`Cover::uncovered`] says what is left to its reaction.
+//! Division B's goal is wide (1 m): from far away not even three standing bodies cover all of it. The keeper
+//! then comes out as far as it may, and [`Cover::uncovered`] is the angle left to its reaction.
 
 use geometry::{Angle, Attack, Point, Vector};
 
@@ -16,7 +18,7 @@ use super::Settings;
 use super::angle::{Opening, distance_for, half_shadow, widest};
 use super::edge::Edge;
 
-/// Which of the three placements.
+/// The three placements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Case {
     /// One defender suffices.
@@ -27,19 +29,19 @@ pub enum Case {
     DefendersAndKeeper,
 }
 
-/// What was decided before, so that nothing turns round for a millimetre.
+/// The earlier decision, for hysteresis, so that small changes do not reverse it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Before {
-    /// The placement.
+    /// The earlier placement.
     pub case: Case,
     /// Whether the post at +y counted as the nearer one.
     pub upper_post: bool,
 }
 
-/// The placement.
+/// Places of keeper and primary defenders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cover {
-    /// Which.
+    /// Its case.
     pub case: Case,
     /// The goal as seen from the threat.
     pub opening: Opening,
@@ -47,7 +49,7 @@ pub struct Cover {
     pub keeper: Point<Attack>,
     /// Where the primary defenders stand that are needed, from −y to +y along the edge.
     pub primaries: heapless::Vec<Point<Attack>, 2>,
-    /// What bodies at these places leave of the open angle, rad.
+    /// The part of the open angle that bodies at these places leave open, rad.
     pub uncovered: f32,
     /// Whether the post at +y counts as the nearer one.
     pub upper_post: bool,
@@ -64,7 +66,7 @@ pub fn cover(
     let place = Placing::new(view, threat, before, settings);
     let held = before.map(|before| before.case);
     let fits = |case: Case, taken: f32, open: f32| {
-        // Fewer bodies than now only where they suffice with something to spare.
+        // Fewer bodies than now only where they suffice with a reserve.
         let spare = if held.is_some_and(|held| case < held) { settings.to_spare } else { 1.0 };
         taken >= open * spare
     };
@@ -85,7 +87,7 @@ pub fn cover(
     place.finish(Case::DefendersAndKeeper, keeper, &defenders)
 }
 
-/// What every placement needs.
+/// Values that every placement needs.
 struct Placing<'v> {
     view: &'v View,
     settings: &'v Settings,
@@ -107,7 +109,7 @@ impl<'v> Placing<'v> {
         place.distance(self.opening.from)
     }
 
-    /// Where the ray `off` the middle meets our goal line.
+    /// Where the ray `off` the middle crosses our goal line.
     fn on_goal_line(&self, off: f32) -> Point<Attack> {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let (goal, half) = (self.view.our_goal(), self.view.field.goal_width * 0.5);
@@ -126,8 +128,8 @@ impl<'v> Placing<'v> {
         self.view.our_goal() + Vector::new(self.settings.keeper_back, 0.0)
     }
 
-    /// On the ray `off` the middle, as far back as lets the keeper take `half` to either side, but no farther out than it may;
-    /// and the half angle that it takes there.
+    /// On the ray `off` the middle, as far back as the keeper still covers `half` to either side, but no
+    /// farther out than it may; and the half angle that it covers there.
     fn keeper(&self, off: f32, half: f32) -> (Point<Attack>, f32) {
         let (from, direction) = (self.opening.from, self.opening.direction(off));
         let goal = self.view.our_goal();
@@ -138,12 +140,13 @@ impl<'v> Placing<'v> {
         let aside = from.y().abs() - post;
         let between = if aside > 0.0 { aside / direction.y().abs().max(LEAST_SLOPE) } else { 0.0 };
         let at = from + direction * distance_for(half).max(front).max(between).min(back);
-        // A shot along the goal line is met before the near post, not beside the goal.
+        // A shot along the goal line is blocked before the near post, not beside the goal.
         let at = Point::new(at.x().max(goal.x() + self.settings.keeper_back), at.y().clamp(-post, post));
         (at, half_shadow(self.distance(at)))
     }
 
-    /// Case 2: defender, keeper, and what the keeper takes of which rest, rad.
+    /// Case 2: defender, keeper, the angle that the keeper covers, and the angle that the defender leaves,
+    /// rad.
     fn defender_and_keeper(&self) -> (Point<Attack>, Point<Attack>, f32, f32) {
         let half = self.opening.half;
         // Seen from a threat before our goal, +y lies to the right.
@@ -151,7 +154,8 @@ impl<'v> Placing<'v> {
         let inwards = if self.upper_post { 1.0 } else { -1.0 };
         let mut at = self.on_bisector(post);
         let mut taken = half_shadow(self.distance(at)).min(half);
-        // Its shadow begins at the post; its distance, and so its shadow, changes little with where that leaves it.
+        // Its shadow starts at the post; its distance, and so its shadow, changes little with the resulting
+        // place.
         for _ in 0..ROUNDS {
             at = self.on_bisector(post + inwards * taken);
             taken = half_shadow(self.distance(at)).min(half);
@@ -203,8 +207,9 @@ impl<'v> Placing<'v> {
 }
 
 impl Cover {
-    /// Where the keeper stands while the primaries are still on their way to their places: where it takes the most of what `bodies`,
-    /// where they are now, leave of the open angle. The more nearly they take what they will, the nearer to its own place.
+    /// The keeper's place while the primaries still move to their places: where it covers most of the gaps
+    /// that `bodies`, at their present places, leave of the open angle. The closer they are to their final
+    /// cover, the nearer to its own place.
     pub fn keeper_meanwhile(
         &self,
         view: &View,
@@ -217,7 +222,8 @@ impl Cover {
         if more <= 0.0 {
             return self.keeper;
         }
-        // Wide gaps count far more than narrow ones, but none alone: which is the widest may change with noise.
+        // Wide gaps count far more than narrow ones, but none exclusively: the widest one may change with
+        // noise.
         let (weight, off) = gaps.iter().fold((0.0, 0.0), |(weight, off), gap| {
             let cubed = gap.width() * gap.width() * gap.width();
             (weight + cubed, off + cubed * gap.middle())
@@ -228,13 +234,14 @@ impl Cover {
         self.keeper + (at - self.keeper) * (more * (1.0 / settings.meanwhile)).min(1.0)
     }
 
-    /// Where a primary defender stands that is not needed: beside the one that is, on the side of the field's middle.
+    /// Place of a primary defender that is not needed: beside the one that is, on the side of the field's
+    /// middle.
     pub fn spare_place(&self, edge: &Edge, settings: &Settings) -> Point<Attack> {
         let along = self.primaries.first().map_or(0.5 * edge.length(), |place| edge.along(*place));
         beside(edge, along, if self.upper_post { -1.0 } else { 1.0 }, settings)
     }
 
-    /// What to remember of it.
+    /// The state for hysteresis.
     pub fn remember(&self) -> Before {
         Before { case: self.case, upper_post: self.upper_post }
     }
@@ -245,7 +252,8 @@ impl Cover {
     }
 }
 
-/// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards (−1).
+/// The point of the edge next to the one `along` it that leaves room for two bodies, upwards (1) or downwards
+/// (−1).
 pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &Settings) -> Point<Attack> {
     let (here, least) = (edge.point(along), 2.0 * settings.shoulder);
     let mut off = least;
@@ -258,7 +266,7 @@ pub(super) fn beside(edge: &Edge, along: f32, towards: f32, settings: &Settings)
 
 /// Rounds after which a place that depends on its own distance moves by less than a millimetre.
 const ROUNDS: usize = 4;
-/// A ray towards our goal line that falls by less is as good as parallel to it.
+/// Least slope of a ray towards our goal line: below, it counts as parallel to the line.
 const LEAST_SLOPE: f32 = 1e-3;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `danger`: second-level threats (Biswas et al. 2014 §5.2: second-level threats, two positions each, and
-//! their ranking.). Attack frame, m, s, rad.
+//! `danger`: second-level threats (Biswas et al. 2014 §5.2): two positions each, and their ranking. Attack
+//! frame, m, s, rad.
 
 use core::cmp::Ordering;
 
@@ -17,45 +17,45 @@ use super::{Memory, Settings, lawful};
 /// A second-level threat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Danger {
-    /// Who.
+    /// The opponent.
     pub opponent: RobotId,
-    /// Where it is.
+    /// Its place.
     pub at: Point<Attack>,
     /// Whether it is near to our side.
     pub near: bool,
-    /// The widest gap that keeper and primaries at their places leave it of our goal, rad.
+    /// The widest gap to our goal that keeper and primaries at their places leave it, rad.
     pub open: f32,
-    /// When it could have shot: the pass to it and the shot, s.
+    /// Time until it could have shot: the pass to it and the shot, s.
     pub time_to_shoot: f32,
-    /// Where its shot is blocked, and how far out on the way from our goal to it that is, 0–1.
+    /// Where its shot is blocked, and the share of the distance from our goal to it, 0–1.
     pub block_shot: (Point<Attack>, f32),
     /// Where the pass to it is blocked.
     pub block_pass: Point<Attack>,
 }
 
-/// Which of the two.
+/// Kind of block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Blocks {
     /// On the line from the opponent to the middle of our goal.
     Shot,
-    /// Half way between the opponent and the first-level threat.
+    /// Halfway between the opponent and the first-level threat.
     Pass,
 }
 
 /// A position to be given to a defender.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Against whom.
+    /// The second-level threat.
     pub danger: Danger,
     /// Its shot, or the pass to it.
     pub blocks: Blocks,
-    /// Where.
+    /// The place.
     pub at: Point<Attack>,
-    /// What it counts more because somebody has it already, as shares of the settings' worths.
+    /// Bonus of a position that a robot has already, as shares of the settings' worths.
     held: f32,
 }
 
-/// The second-level threats, by number; `memory` says who was near.
+/// The second-level threats, by number; `memory` lists those that were near.
 pub fn dangers(
     view: &View,
     threat: &FirstLevel,
@@ -76,14 +76,14 @@ pub fn dangers(
         if threat.receiver() == Some(robot.id) || holder == Some(robot.id) || keeper_at_home {
             continue;
         }
-        // As many as robots.
+        // At most one per robot.
         let _ = dangers.push(danger(view, threat.at, cover, robot, is_near, settings));
     }
     memory.near = near;
     dangers
 }
 
-/// The opponent who has the ball: it is the first-level threat by the ball's place.
+/// The opponent that has the ball: it is the first-level threat by the ball's place.
 fn holder(view: &View, threat: &FirstLevel) -> Option<RobotId> {
     let at_ball = super::super::view::nearest(view.theirs.iter(), threat.at);
     at_ball.filter(|(_, off)| threat.because == Because::Ball && *off < HOLDS).map(|(robot, _)| robot.id)
@@ -112,7 +112,7 @@ fn danger(
     }
 }
 
-/// Passing time plus shot time, s: a pass that arrives with 2.5 m/s, a shot of 6.2.
+/// Passing time plus shot time, s: a pass that arrives with 2.5 m/s, a shot of 6.2 m/s.
 pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
     let model = BallModel::default();
     let time = |speed: f32, way: f32| {
@@ -122,8 +122,8 @@ pub fn time_to_shoot(pass: f32, shot: f32) -> f32 {
     time(model.kick_speed(pass, ARRIVES).min(SHOT), pass) + time(SHOT, shot)
 }
 
-/// On the line from our goal's middle to the opponent, as far out as lets us answer its start in time ([`share`]), off its
-/// body, and out of our area. With it the share of the way.
+/// On the line from our goal's middle to the opponent, as far out as our robot can react to its start in time
+/// ([`share`]), off its body, and out of our area. With it the share of the distance.
 pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> (Point<Attack>, f32) {
     let (goal, way) = (view.our_goal(), opponent - view.our_goal());
     let length = way.norm().max(settings.clear);
@@ -137,17 +137,18 @@ pub fn block_shot(view: &View, opponent: Point<Attack>, settings: &Settings) -> 
     (lawful(view, at, settings), at.distance(goal) / length)
 }
 
-/// The greatest share k of the way from goal to opponent at which our robot still stands in the line when the opponent starts
-/// sideways with a_o: it has to move k·a_o·t²/2, and moves a_d·(t − τ)²/2. The greatest lag, k·a_o·a_d·τ²/(2 (a_d − k·a_o)), is
-/// a body's half width r for k = r / (a_o·(τ²/2 + r/a_d)). Never beyond the opponent.
+/// The greatest share k of the distance from goal to opponent at which our robot still is in the line when
+/// the opponent starts sideways with a_o: it has to move k·a_o·t²/2, and moves a_d·(t − τ)²/2. The greatest
+/// lag, k·a_o·a_d·τ²/(2 (a_d − k·a_o)), is a body's half width r for k = r / (a_o·(τ²/2 + r/a_d)). Never
+/// beyond the opponent.
 pub fn share(settings: &Settings) -> f32 {
     let Settings { acceleration: a, latency: tau, .. } = *settings;
     let r = BODY;
     (r / (a * (0.5 * tau * tau + r / a))).min(1.0)
 }
 
-/// Both positions of every danger, best first: near opponents, then shots before passes, then the larger open angle (all above
-/// a limit alike), then who can shoot sooner; then by number.
+/// Both positions of every danger, best first: near opponents, then shots before passes, then the larger open
+/// angle (all above a limit alike), then the sooner shot; then by number.
 pub fn ranked(
     dangers: &[Danger],
     held: impl Fn(RobotId, Blocks) -> bool,
@@ -178,11 +179,11 @@ impl Position {
     }
 }
 
-/// An opponent whose centre is this near to the ball has it, m: radii of body and ball, and a hand's breadth.
+/// An opponent whose centre is this near to the ball has the ball, m: radii of body and ball, and a margin.
 const HOLDS: f32 = 0.2;
-/// Passes arrive with this speed, m/s: what a receiver can shoot at once.
+/// Passes arrive with this speed, m/s, at which a receiver can shoot at once.
 const ARRIVES: f32 = 2.5;
-/// Nobody shoots faster, m/s: the rules' 6.5 less what a kicker errs by.
+/// Fastest shot, m/s: the rules' 6.5 less a kicker's error.
 const SHOT: f32 = 6.2;
 
 #[cfg(test)]
@@ -197,7 +198,8 @@ mod tests {
         let settings = Settings::default();
         let k = share(&settings);
         assert!((k - 0.847_908_7).abs() < 1e-5, "{k}");
-        // Stepping both motions: with k the greatest lag is a body's half width, with more it is more.
+        // Simulated motion of both: with k the greatest lag is a body's half width, with a greater share it
+        // is more.
         let lag = |k: f32| {
             let a = settings.acceleration;
             let lag = |i: i32| {
@@ -223,7 +225,7 @@ mod tests {
         let found = dangers(&view, &threat, &cover, &mut memory, &settings);
         let [danger] = found[..] else { panic!("{found:?}") };
         assert!(danger.block_pass.distance(Point::new(0.0, 0.0)) < 1e-5);
-        // 0.8479 of the way from (−4.5, 0) to (0, −2).
+        // 0.8479 of the distance from (−4.5, 0) to (0, −2).
         assert!(danger.block_shot.0.distance(Point::new(-0.684_411, -1.695_817)) < 1e-4, "{danger:?}");
         assert!((danger.block_shot.1 - 0.847_908_7).abs() < 1e-5);
     }
@@ -232,7 +234,7 @@ mod tests {
     fn near_an_opponent_the_defender_stays_off_it_and_out_of_our_area() {
         let settings = Settings::default();
         let view = view((0.0, 0.0), &[], &[]);
-        // 1.3 m before the goal: the edge (1.13 m) is as far out as it gets.
+        // 1.3 m before the goal: the edge (1.13 m) is the farthest place allowed.
         let (at, _) = block_shot(&view, Point::new(-3.2, 0.0), &settings);
         assert!(at.distance(Point::new(-3.37, 0.0)) < 1e-4, "{at:?}");
         // 1.5 m: 0.25 m off.
@@ -242,7 +244,8 @@ mod tests {
 
     #[test]
     fn a_pass_of_two_metres_and_a_shot_of_three_take_their_times() {
-        // Python, slide 3.9 to 5/7, roll 0.35: pass at kick_speed(2, 2.5) = 3.7155 m/s takes 0.7119 s, shot at 6.2 takes 0.5873 s.
+        // Python, slide 3.9 to 5/7, roll 0.35: pass at kick_speed(2, 2.5) = 3.7155 m/s takes 0.7119 s, shot
+        // at 6.2 takes 0.5873 s.
         let time = time_to_shoot(2.0, 3.0);
         assert!((time - PASS_AND_SHOT).abs() < 1e-3, "{time}");
     }
@@ -261,7 +264,7 @@ mod tests {
             made(0, false, 0.17, 0.5), // far, however open
             made(1, true, 0.05, 1.0),  // near, little open
             made(2, true, 0.30, 2.0),  // near, wide open, late
-            made(3, true, 0.20, 1.5),  // near, as good as wide open, sooner
+            made(3, true, 0.20, 1.5),  // near, equal to wide open, sooner
         ];
         let order = |held: &dyn Fn(RobotId, Blocks) -> bool| {
             let ranked = ranked(&dangers, held, &settings);
@@ -270,7 +273,7 @@ mod tests {
         use Blocks::{Pass, Shot};
         let papers = [(3, Shot), (2, Shot), (1, Shot), (3, Pass), (2, Pass), (1, Pass), (0, Shot), (0, Pass)];
         assert_eq!(order(&|_, _| false), papers);
-        // What somebody has counts a little more, and no more than that.
+        // A position that a robot has counts slightly more, and no more than that.
         assert_eq!(order(&|id, _| id.number() == 1), papers);
         let close = [made(1, true, 0.100, 1.0), made(2, true, 0.099, 1.0)];
         let first =

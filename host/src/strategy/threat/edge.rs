@@ -1,8 +1,9 @@
 //! `edge`: places along the edge of our defence area (Biswas et al. 2014 §5: primary defenders "always move
-//! along the edge of the defense area".). Attack frame, m.
+//! along the edge of the defense area"). Attack frame, m.
 //!
-//! The edge is the line that bodies' centres may stand on: the area's border, moved outwards. For the box of today that is a
-//! box with round corners, for the quarter circles of 2013 two larger quarter circles: one shape with other numbers.
+//! The edge is the line that bodies' centres may stand on: the area's border, moved outwards. For the box of
+//! today that is a box with round corners, for the quarter circles of 2013 two larger quarter circles: the
+//! same shape with other dimensions.
 
 use geometry::{Attack, Point, Vector, math};
 use rules::{AreaForm, FieldSpec};
@@ -16,7 +17,7 @@ pub struct Edge {
     ahead: f32,
     /// From the axis to the centres of the round corners.
     beside: f32,
-    /// Of the corners.
+    /// Radius of the corners, m.
     radius: f32,
 }
 
@@ -41,17 +42,18 @@ impl Edge {
         math::FRAC_PI_2 * self.radius
     }
 
-    /// How far outside the edge a place lies, m; negative within. What lies behind the goal line counts as within.
+    /// Distance of a place outside the edge, m; negative within. A place behind the goal line counts as
+    /// within.
     pub fn distance_to(&self, place: Point<Attack>) -> f32 {
         let (x, y) = self.corner(place);
         if x > 0.0 && y > 0.0 { math::hypot(x, y) - self.radius } else { x.max(y) - self.radius }
     }
 
-    /// The point of the edge that far along it, m.
+    /// The point at distance `along` on the edge, m.
     pub fn point(&self, along: f32) -> Point<Attack> {
         let along = along.clamp(0.0, self.length());
         let middle = 0.5 * self.length();
-        // From the middle of the front to either side alike.
+        // From the middle of the front, the same to either side.
         let (side, way) = if along < middle { (-1.0, middle - along) } else { (1.0, along - middle) };
         let (out, y) = if way <= self.beside {
             (self.ahead + self.radius, way)
@@ -64,7 +66,7 @@ impl Edge {
         Point::new(self.goal.x() + out, side * y)
     }
 
-    /// How far along the edge its point nearest to a place lies, m.
+    /// Distance along the edge of its point nearest to a place, m.
     pub fn along(&self, place: Point<Attack>) -> f32 {
         let (x, y) = self.corner(place);
         let way = if x > 0.0 && y > 0.0 {
@@ -86,7 +88,7 @@ impl Edge {
     /// Where the ray from a point of our goal line in this direction leaves the edge.
     pub fn crossing(&self, from: Point<Attack>, direction: Vector<Attack>) -> Point<Attack> {
         let along = direction.unit().unwrap_or(Vector::new(1.0, 0.0));
-        // Within at the goal line, outside at FAR, and the region has no dents.
+        // Within at the goal line, outside at FAR, and the region is convex.
         let (mut inside, mut outside) = (0.0, FAR);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
@@ -95,7 +97,7 @@ impl Edge {
         from + along * outside
     }
 
-    /// The edge from end to end, for pictures.
+    /// The edge from end to end, for figures.
     pub fn outline(&self, points: usize) -> impl Iterator<Item = Point<Attack>> {
         (0..points).map(move |i| self.point(self.length() * i as f32 / (points - 1) as f32))
     }
@@ -106,9 +108,9 @@ impl Edge {
     }
 }
 
-/// Beyond any field, m.
+/// A distance beyond any field, m.
 const FAR: f32 = 32.0;
-/// 32 m in halves: down to 1 µm.
+/// 32 m halved this often: down to 1 µm.
 const HALVINGS: u32 = 25;
 
 #[cfg(test)]
@@ -126,7 +128,8 @@ mod tests {
             let edge = Edge::of(&field, 0.13);
             for (i, point) in edge.outline(301).enumerate() {
                 let place = Point::<Field>::new(point.x(), point.y());
-                // At the goal line itself the rules' area goes on, and boxes' corners are measured as corners.
+                // At the goal line itself the rules' area continues behind it, and boxes' corners are
+                // measured as corners.
                 let off = field.distance_to_area(GoalEnd::Negative, place);
                 assert!((off - 0.13).abs() < 1e-4, "{league:?} {i}: {point:?} is {off} off");
                 assert!(edge.distance_to(point).abs() < 1e-4);
@@ -158,8 +161,8 @@ mod tests {
 
     #[test]
     fn a_ray_from_the_goal_leaves_by_the_edge() {
-        // From the middle of division B's goal at 45° the corner's arc, about (1, 1), radius 0.13, is met on its diagonal:
-        // √2 × 1 + 0.13 = 1.5442 m away.
+        // From the middle of division B's goal at 45° the corner's arc, about (1, 1), radius 0.13, is crossed
+        // on its diagonal: √2 × 1 + 0.13 = 1.5442 m away.
         let edge = Edge::of(&League::DivisionB.field(), 0.13);
         let out = edge.crossing(Point::new(-4.5, 0.0), Vector::new(1.0, 1.0));
         assert!((out.distance(Point::new(-4.5, 0.0)) - 1.5442).abs() < 1e-4, "{out:?}");

@@ -1,4 +1,4 @@
-//! `lawful`: moves a place to where `rules::keep_out` lets a robot's body be in this phase. Attack frame, m.
+//! `lawful`: moves a place to where `rules::keep_out` allows a robot's body in this phase. Attack frame, m.
 
 use geometry::{Attack, Field, GoalEnd, Point, Vector};
 use rules::keep_out::{KeepOut, Situation, keep_out};
@@ -10,13 +10,14 @@ use super::super::view::View;
 use super::Settings;
 use super::edge::Edge;
 
-/// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge), and off
-/// everything else that the phase forbids.
+/// The nearest place to `at` where a field player may stand: within the lines, out of our area (at its edge),
+/// and off everything else that the phase forbids.
 pub fn lawful(view: &View, at: Point<Attack>, settings: &Settings) -> Point<Attack> {
     lawful_for(view, Duty::Player, at, &[], settings)
 }
 
-/// The same for a robot of that duty (a keeper may stay in our area, a taker near the ball), a body clear of the `taken` places.
+/// The same for a robot of that role under the rules (a keeper may stay in our area, a taker near the ball),
+/// a body clear of the `taken` places.
 pub fn lawful_for(
     view: &View,
     duty: Duty,
@@ -54,7 +55,8 @@ pub fn lawful_for(
     if free(&place) {
         return place;
     }
-    // Rare: where areas, lines and the ball leave little room. Rings around it, the nearest free place first.
+    // Rare: where areas, lines and the ball leave little room. Tries rings around it, the nearest free place
+    // first.
     let around = (1..=RINGS).flat_map(|ring| {
         (0..SPOKES).map(move |spoke| {
             let turn = geometry::Angle::new(geometry::math::TAU * spoke as f32 / SPOKES as f32);
@@ -64,12 +66,13 @@ pub fn lawful_for(
     around.map(|by| out(place + by)).find(free).unwrap_or(place)
 }
 
-/// Half a turn: their end for ours.
+/// Half a turn: maps their end to ours.
 fn turned(at: Point<Attack>) -> Point<Attack> {
     Point::new(-at.x(), -at.y())
 }
 
-/// Where a body of that duty must not be, in the attack frame: we defend −x in it, as a team of that end does on the field.
+/// Where a body of that role must not be, in the attack frame: we defend −x in it, as a team of that end does
+/// on the field.
 fn forbidden_to(view: &View, duty: Duty) -> KeepOut {
     let on_field = |at: Point<Attack>| Point::<Field>::new(at.x(), at.y());
     keep_out(&Situation {
@@ -83,14 +86,15 @@ fn forbidden_to(view: &View, duty: Duty) -> KeepOut {
     })
 }
 
-/// In play bodies stay this far off what is forbidden, m: what control overshoots by; less than `off_area` leaves.
+/// Margin of bodies to forbidden areas in play, m: the overshoot of control; less than that of `off_area`.
 const MARGIN: f32 = 0.01;
-/// While the ball is not in play, m: as robots do themselves (0.04, `brain`'s surroundings), less rounding. A place that is nearer is
-/// none for them: they would stand elsewhere.
+/// The same while the ball is not in play, m: the robots' own margin (0.04, `brain`'s surroundings), less
+/// rounding. Robots would not go to a nearer place.
 const MARGIN_STOPPED: f32 = 0.038;
-/// Two places nearer than that are one, m: two bodies and the gap that two defenders of one line leave (`defence`, `SHOULDER`).
+/// Least distance of two places, m: two bodies and the gap between two defenders of one line (`defence`,
+/// `SHOULDER`).
 const SIDE_BY_SIDE: f32 = 0.2;
-/// m.
+/// Spacing of the rings, m.
 const RING: f32 = 0.1;
 const RINGS: u32 = 15;
 const SPOKES: u32 = 24;
@@ -127,7 +131,8 @@ mod tests {
                         let place = lawful(&view, at, &settings);
                         let body = Point::<Field>::new(place.x(), place.y());
                         let offence = rules.offence(body, ROBOT_RADIUS);
-                        // Their own half at a kick-off is far from some of these places: only ours is searched.
+                        // Their own half at a kick-off is far from some of these places: so only our half is
+                        // searched.
                         let ours = !matches!(phase, Phase::Kickoff(_)) || at.x() < 0.9;
                         assert!(
                             !ours || offence.is_none(),
@@ -148,7 +153,7 @@ mod tests {
         view.phase = Phase::Stop;
         let settings = Settings::default();
         let mut taken = Vec::new();
-        // Seven robots are sent between the ball and the goal, where its circle meets our area.
+        // Seven robots are sent between the ball and the goal, where its circle overlaps our area.
         for _ in 0..7 {
             let place = lawful_for(&view, Duty::Player, Point::new(-3.4, 0.2), &taken, &settings);
             let near = taken.iter().map(|other| place.distance(*other)).fold(f32::MAX, f32::min);

@@ -1,13 +1,15 @@
-//! `threat`: threat-based defence. Threats from the ball and from opponents who could have it next (Biswas et
-//! al. 2014 §5).
+//! `threat`: threat-based defence. Threats from the ball and from opponents that could receive it next
+//! (Biswas et al. 2014 §5).
 //!
-//! [`defend`] is the whole of it: [`receiving`] finds the *first-level threat* (the ball, or whom it is being passed to),
-//! [`cover`] places keeper and primary defenders against it ([`angle`] says what a body takes, [`edge`] where primaries may
-//! stand), [`danger`] finds and ranks the *second-level threats*, and the rest is given to defenders greedily, with
-//! tasks held: a defender keeps its task until another would be clearly nearer, and a defender that blocks the shot of an
-//! opponent to whom the ball is passed goes on blocking it until the primaries are there.
+//! [`defend`] is the entry point: [`receiving`] finds the *first-level threat* (the ball, or the receiver of
+//! a pass), [`cover`] places keeper and primary defenders against it ([`angle`] computes the angle that a
+//! body covers, [`edge`] where primaries may stand), [`danger`] finds and ranks the *second-level threats*,
+//! and the remaining places are assigned to defenders greedily, with tasks held: a defender keeps its task
+//! until another would be clearly nearer, and a defender that blocks the shot of the pass receiver continues
+//! blocking it until the primaries are there.
 //!
-//! Attack frame (we defend −x), SI. Everything carries its numbers. [`Memory`] is what makes it calm; an empty one is lawful.
+//! Attack frame (we defend −x), SI. All results carry their numbers. [`Memory`] gives hysteresis; an empty
+//! one is valid.
 
 pub mod angle;
 mod assign;
@@ -29,54 +31,57 @@ use receiving::FirstLevel;
 
 pub use lawful::{lawful, lawful_for};
 
-/// What the paper leaves open, in one place.
+/// Settings that the paper leaves open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// c of equation 6: between the 5 and 20 of the paper's Figure 6.
     pub c: f32,
     /// A slower ball is no pass, m/s.
     pub pass_speed: f32,
-    /// A risk above this makes an opponent the one whom the ball is passed to, s: it has the ball within a second.
+    /// A risk above this makes an opponent the receiver of a pass, s: it has the ball within a second.
     pub risk_threshold: f32,
-    /// A pass once seen is believed until speed falls, or risk grows, by this factor beyond its threshold.
+    /// A pass once detected is kept until speed falls, or risk grows, by this factor beyond its threshold.
     pub hold: f32,
-    /// By how much another opponent's risk must be greater to be believed instead, s.
+    /// Difference by which another opponent's risk must be greater to replace it, s.
     pub risk_worth: f32,
-    /// Primary defenders' centres are this far outside our area, m: a body (0.09) and what tracking and control err by.
+    /// Primary defenders' centres are this far outside our area, m: a body (0.09) and the error of tracking
+    /// and control.
     pub off_area: f32,
-    /// Primary defenders stand this far, each, from the middle between them, m: bodies side by side and a finger between.
+    /// Primary defenders stand this far, each, from the middle between them, m: bodies side by side and a
+    /// margin between.
     pub shoulder: f32,
-    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and less than a ball, so that
-    /// none rolls along the line behind it.
+    /// The keeper is no nearer to its goal line than this, m: a body, so that the posts do not stop it, and
+    /// less than a ball, so that none rolls along the line behind it.
     pub keeper_back: f32,
     /// … and no farther from it, m: "staying near the goal"; half of division B's area.
     pub keeper_out: f32,
-    /// Primaries on their way that leave a gap wider by this than they will have the keeper wholly at what they leave, rad: what a
-    /// body takes from the halfway line.
+    /// Difference of the widest gap now from that of the primaries at their places at which the keeper covers
+    /// only the present gaps, rad: the angle of a body seen from the halfway line.
     pub meanwhile: f32,
-    /// A placement of fewer bodies than now must take this many times the angle that it needs.
+    /// A placement of fewer bodies than now must cover this many times the angle that it needs.
     pub to_spare: f32,
-    /// This near to the axis the nearer post stays what it was, m.
+    /// This near to the axis the choice of the nearer post is kept, m.
     pub axis: f32,
     /// Opponents with x below this are near to our goal, m: in our half.
     pub near: f32,
-    /// One that was near stays so until it is this much farther, m.
+    /// Hysteresis: one that was near stays so until it is this much farther, m.
     pub near_hold: f32,
-    /// Greater open angles count as equal, rad: 10°, from where a shot is as good as any.
+    /// Greater open angles count as equal, rad: 10°, above it shots do not improve.
     pub open_enough: f32,
-    /// What a defended opponent's open angle counts more, rad, so that noise does not change ranks: about 1°.
+    /// Bonus on the open angle of a defended opponent, rad, so that noise does not change ranks: about 1°.
     pub open_worth: f32,
-    /// What a defended opponent's time to shoot counts less, s.
+    /// Bonus on the time to shoot of a defended opponent, s.
     pub time_worth: f32,
-    /// How strongly opponents and our defenders speed up, m/s²: what teams publish (3 to 4.7).
+    /// Acceleration of opponents and our defenders, m/s²: values that teams publish (3 to 4.7).
     pub acceleration: f32,
-    /// From an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a tick of ours and theirs more.
+    /// Delay from an opponent's start to our robot's, s: camera to wheels are 0.05–0.07 s in the league, a
+    /// tick of ours and theirs more.
     pub latency: f32,
     /// A defender is no nearer to its opponent's centre than this, m: two bodies and room to brake.
     pub clear: f32,
     /// The primaries are in place within this, m: a body's radius.
     pub in_place: f32,
-    /// A defender changes its task, or two swap, for a way shorter by this, m: 0.4 s at 2 m/s.
+    /// A defender changes its task, or two swap, for a path shorter by this, m: 0.4 s at 2 m/s.
     pub worth: f32,
 }
 
@@ -109,23 +114,23 @@ impl Default for Settings {
     }
 }
 
-/// What one robot guards against.
+/// The threat that one robot guards against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guards {
     /// Keeper or primary defender: the first-level threat.
     FirstLevel {
-        /// Which of the three placements.
+        /// Its placement.
         case: Case,
         /// The open angle, rad.
         open: f32,
-        /// What the bodies of this placement leave of it, rad.
+        /// The part of it that the bodies of this placement leave open, rad.
         uncovered: f32,
     },
     /// A primary defender that is not needed, at the edge beside the one that is.
     Spare,
     /// A second-level threat.
     SecondLevel {
-        /// Whom.
+        /// The opponent.
         opponent: RobotId,
         /// Its shot, or the pass to it.
         blocks: Blocks,
@@ -133,14 +138,14 @@ pub enum Guards {
         rank: usize,
         /// Its open angle on our goal, rad.
         open: f32,
-        /// When it could shoot: pass and shot, s.
+        /// Time until it could shoot: pass and shot, s.
         time_to_shoot: f32,
     },
-    /// The shot of an opponent to whom the ball is being passed, until the primaries are there.
+    /// The shot of the pass receiver, until the primaries are there.
     Held {
-        /// Whom.
+        /// The opponent.
         opponent: RobotId,
-        /// How far the primaries have yet to go, m.
+        /// Distance that the primaries have yet to go, m.
         primaries_off: f32,
     },
 }
@@ -176,28 +181,28 @@ impl fmt::Display for Guards {
 /// One robot's part in the defence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assignment {
-    /// Who.
+    /// The robot.
     pub robot: RobotId,
-    /// Where.
+    /// Its place.
     pub at: Point<Attack>,
-    /// Against what, and why.
+    /// The threat it guards against.
     pub guards: Guards,
 }
 
 /// The whole defence of one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Defence {
-    /// From where a shot is most imminent.
+    /// Place from which a shot is most imminent.
     pub threat: FirstLevel,
     /// Keeper and primaries against it.
     pub cover: Cover,
-    /// Who else could have the ball and shoot.
+    /// Opponents that could receive the ball and shoot.
     pub dangers: heapless::Vec<Danger, ROBOTS_MAX>,
-    /// Who does what, the keeper first; robots without a task are not in it.
+    /// The robots' assignments, the keeper first; robots without a task are not in it.
     pub assignments: heapless::Vec<Assignment, ROBOTS_MAX>,
 }
 
-/// What the defence remembers from tick to tick.
+/// State of the defence between ticks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
     threat: Option<FirstLevel>,
@@ -210,13 +215,13 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Who are the primary defenders.
+    /// The primary defenders.
     pub fn primaries(&self) -> [Option<RobotId>; 2] {
         self.primaries
     }
 }
 
-/// A task somebody has.
+/// A task that a robot has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Kept {
     robot: RobotId,
@@ -224,7 +229,8 @@ struct Kept {
     blocks: Blocks,
 }
 
-/// The defence by our keeper and those of our robots that are in `team`; `memory` is this function's own.
+/// The defence by our keeper and those of our robots that are in `team`; `memory` is changed only by this
+/// function.
 pub fn defend(view: &View, team: RobotSet, memory: &mut Memory, settings: &Settings) -> Defence {
     let threat = receiving::first_level(view, memory.threat, settings);
     let players = view.ours.iter().filter(|robot| robot.id != view.keeper && team.has(robot.id)).count();

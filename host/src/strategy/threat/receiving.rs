@@ -1,4 +1,4 @@
-//! `receiving`: first-level threat (Biswas et al. 2014 §5.1, equation 6.). Attack frame, m, m/s, s.
+//! `receiving`: first-level threat (Biswas et al. 2014 §5.1, equation 6). Attack frame, m, m/s, s.
 
 use geometry::{Attack, Point, Vector};
 use protocol::RobotId;
@@ -8,9 +8,10 @@ use super::Settings;
 
 /// Equation 6: −(|d| / |v|) · (1 + c · (1 − cos θ)), s, at most 0; greater is riskier.
 ///
-/// `d` leads from the ball to the robot, `v` is the ball's velocity, θ the angle between them. Straight ahead it is less the
-/// time the ball would take; c says how fast risk falls to the side. Places of equal risk lie on an ellipse of eccentricity
-/// c / (1 + c) with the ball in a focus ([`isocontour`]). A ball at rest is received nowhere: −∞.
+/// `d` leads from the ball to the robot, `v` is the ball's velocity, θ the angle between them. Straight ahead
+/// it is less the time the ball would take; c sets how fast risk falls to the side. Places of equal risk lie
+/// on an ellipse of eccentricity c / (1 + c) with the ball in a focus ([`isocontour`]). A ball at standstill
+/// is not received: −∞.
 pub fn risk_of_receiving(ball: Point<Attack>, velocity: Vector<Attack>, robot: Point<Attack>, c: f32) -> f32 {
     let (d, speed) = (robot - ball, velocity.norm());
     let distance = d.norm();
@@ -21,22 +22,23 @@ pub fn risk_of_receiving(ball: Point<Attack>, velocity: Vector<Attack>, robot: P
     -(distance / speed) * (1.0 + c * (1.0 - cos))
 }
 
-/// The ellipse of one `risk` (below 0) for a ball at the origin with `speed` along +x: its centre's x, its half axes along and
-/// across, m.
+/// The ellipse of one `risk` (below 0) for a ball at the origin with `speed` along +x: its centre's x, its
+/// half axes along and across, m.
 pub fn isocontour(speed: f32, c: f32, risk: f32) -> (f32, f32, f32) {
-    // |d| (1 + c) − c d_x = −risk · |v|: a conic with the ball in its focus, e = c / (1 + c), semi-latus rectum k / (1 + c).
+    // |d| (1 + c) − c d_x = −risk · |v|: a conic with the ball in its focus, e = c / (1 + c), semi-latus
+    // rectum k / (1 + c).
     let (k, eccentricity) = (-risk * speed, c / (1.0 + c));
     let rest = 1.0 - eccentricity * eccentricity;
     let along = k / (1.0 + c) / rest;
     (along * eccentricity, along, along * geometry::math::sqrt(rest))
 }
 
-/// Whence a shot is most imminent.
+/// The place from which a shot is most imminent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstLevel {
     /// The place that keeper and primary defenders guard against.
     pub at: Point<Attack>,
-    /// Because.
+    /// The reason.
     pub because: Because,
 }
 
@@ -47,17 +49,17 @@ pub enum Because {
     Ball,
     /// A pass to this opponent is imminent.
     PassTo {
-        /// Whom.
+        /// The opponent.
         opponent: RobotId,
         /// Equation 6, s.
         risk: f32,
     },
-    /// No ball is seen: where it was last, or the field's middle.
+    /// The ball is not visible: its last place, or the field's middle.
     BallUnseen,
 }
 
 impl FirstLevel {
-    /// Whom the ball is being passed to.
+    /// The receiver of the pass, if there is one.
     pub fn receiver(&self) -> Option<RobotId> {
         match self.because {
             Because::PassTo { opponent, .. } => Some(opponent),
@@ -66,7 +68,7 @@ impl FirstLevel {
     }
 }
 
-/// The first-level threat, given the one before (a pass once seen is believed until it is clearly over).
+/// The first-level threat, given the one before (a pass once detected is kept until it is clearly over).
 pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &Settings) -> FirstLevel {
     let Some(ball) = view.ball else {
         let at = before.map_or(Point::new(0.0, 0.0), |threat| threat.at);
@@ -82,7 +84,7 @@ pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &Settings)
     let risk = |at| risk_of_receiving(ball.position, ball.velocity, at, settings.c);
     let mut best: Option<(RobotId, Point<Attack>, f32, f32)> = None;
     for robot in &view.theirs {
-        // Who kicked the ball does not receive it: it stands behind, where equation 6 is steep, but near.
+        // The kicker does not receive its own ball: it stands behind, where equation 6 is steep, but near.
         if (robot.position - ball.position).dot(ball.velocity) <= 0.0 && held != Some(robot.id) {
             continue;
         }
@@ -100,7 +102,7 @@ pub fn first_level(view: &View, before: Option<FirstLevel>, settings: &Settings)
     }
 }
 
-/// Whether a ball on its way crosses our goal line between the posts, or a ball's width beside.
+/// Whether the path of a ball crosses our goal line between the posts, or a ball's width beside.
 pub fn comes_at_goal(view: &View, ball: Point<Attack>, velocity: Vector<Attack>) -> bool {
     let goal = view.our_goal();
     if velocity.x() >= 0.0 || ball.x() <= goal.x() {
@@ -171,7 +173,7 @@ mod tests {
         let Because::PassTo { risk, .. } = threat.because else { panic!("{threat:?}") };
         assert!((risk + 0.625).abs() < 1e-4, "{risk}");
         assert_eq!(threat.at, Point::new(-1.5, 2.0));
-        // Too slow, at our goal, at nobody.
+        // Too slow, at our goal, at no opponent.
         for velocity in [(-0.24, 0.32), (-5.0, 0.0), (0.0, 3.0)] {
             let threat = first_level(&passing(velocity, &theirs), None, &settings);
             assert_eq!(threat.because, Because::Ball, "{velocity:?}");
@@ -197,7 +199,7 @@ mod tests {
             before = Some(threat);
         }
         assert_eq!((changes, last), (0, Some(Some(id(0)))));
-        // What decides without a memory does turn round.
+        // The decision without a memory does change back and forth.
         let without = |turn| {
             let v = Vector::<Attack>::new(-2.4, 3.2).rotated(Angle::degrees(turn));
             first_level(&passing((v.x(), v.y()), &theirs), None, &settings).receiver()

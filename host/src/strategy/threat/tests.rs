@@ -1,4 +1,5 @@
-//! Tests: the whole defence is consistent. Lawful places, one task a robot, held tasks, and calm under noise.
+//! Tests: the whole defence is consistent: rule-compliant places, one task per robot, held tasks, and
+//! stability under noise.
 
 use super::super::view::tests::view;
 use super::*;
@@ -26,7 +27,7 @@ impl Noise {
         Self(Xoshiro128PlusPlus::seed_from_u64(seed))
     }
 
-    /// In ±`range`.
+    /// Uniform in ±`range`.
     fn within(&mut self, range: f32) -> f32 {
         ((self.0.next_u32() >> 8) as f32 / 8_388_608.0 - 1.0) * range
     }
@@ -74,7 +75,7 @@ fn whatever_the_picture_every_robot_has_one_lawful_place_at_most() {
                 assert_eq!(offence, None, "{league:?} {:?} {assignment:?}", view.phase);
                 assert!(keeper || !field.in_penalty_area(GoalEnd::Negative, body));
             }
-            // Everybody has something to do while there are more positions than defenders.
+            // All robots have a task while there are more positions than defenders.
             assert!(defence.assignments.len() >= robots.min(5), "{league:?} {defence:?}");
         }
     }
@@ -127,8 +128,8 @@ fn a_blocked_shot_stays_blocked_until_the_primaries_have_come_over() {
     assert!(!matches!(of(&after, 3), Guards::Held { .. }), "{after:#?}");
 }
 
-/// A sequence of 20 s at 100 Hz: opponents wander, the ball is carried and passed, everything is seen with noise as large as a
-/// camera's; our robots go to their places at 2 m/s. Counts changes of task per robot.
+/// A sequence of 20 s at 100 Hz: opponents wander, the ball is carried and passed, all positions have the
+/// noise of a camera; our robots go to their places at 2 m/s. Counts changes of task per robot.
 fn changes_over_a_sequence(sigma: f32, settings: &Settings, forgetful: bool) -> (usize, usize) {
     let mut noise = Noise::seeded(7);
     let ours = [(-4.4, 0.0), (-3.3, 0.3), (-3.3, -0.3), (-2.0, 1.6), (-1.5, -1.0), (0.0, 0.0)];
@@ -186,8 +187,8 @@ fn over_a_noisy_sequence_tasks_do_not_flicker() {
     println!(
         "changes of task in 20 s: clean {clean}, noisy {noisy} with {jumps} jumps, without a memory {forgetful}"
     );
-    // Six robots, 20 s: what the picture itself asks for, and hardly more for a centimetre of noise. Places jump by more than
-    // 0.3 m with tasks, or where another placement of the primaries begins.
+    // Six robots, 20 s: the changes due to the play itself, and hardly more for a centimetre of noise. Places
+    // jump by more than 0.3 m with tasks, or where another placement of the primaries starts.
     assert!(noisy <= clean + 4 && jumps <= 20, "clean {clean}, noisy {noisy}, jumps {jumps}");
     assert!(forgetful > 4 * noisy.max(1), "the memory matters: {forgetful} without it, {noisy} with it");
 }

@@ -1,6 +1,6 @@
-//! `choice`: choice of the ball among detections. The one that goes on from where the ball was, while it is
-//! in sight; else one that was seen steadily, in the field rather than outside, near rather than far. m;
-//! times on vision's clock, µs.
+//! `choice`: choice of the ball among detections. The one that continues the ball's track while it is
+//! visible; else one that was detected steadily, inside the field before outside, near before far. m; times
+//! on vision's clock, µs.
 
 use super::kick::Air;
 use super::track::{Glimpse, Track};
@@ -10,7 +10,7 @@ use crate::tracking::scene::Scene;
 use crate::tracking::seen::{BallSeen, Captured, Frame};
 
 impl Balls {
-    /// The blob nearest to where the ball should seem to be, if one can be it.
+    /// The blob nearest to where the ball is expected in the camera frame, if one can be it.
     pub(super) fn nearest_to_chosen(&self, frame: &Frame, around: Around<'_>) -> Option<usize> {
         let track = self.chosen_track()?;
         let fits = |(index, seen): (usize, &BallSeen)| {
@@ -50,7 +50,7 @@ impl Balls {
             track.see(&glimpse, models, around.sigma);
             return;
         }
-        // A new one; where there is no room, the one unseen the longest makes it.
+        // A new track; without room it replaces the one unseen the longest.
         let room = self.tracks.iter_mut().enumerate().filter(|(index, _)| Some(*index) != chosen);
         let seen_last = |track: &Option<Track>| track.map_or(Captured::MIN, |track| track.seen);
         if let Some((_, place)) = room.min_by_key(|(_, track)| seen_last(track)) {
@@ -58,7 +58,7 @@ impl Balls {
         }
     }
 
-    /// Drops what nobody saw for long.
+    /// Drops tracks that no camera has seen for long.
     pub(super) fn forget(&mut self, now: Captured) {
         let patience = micros(self.patience());
         for (index, place) in self.tracks.iter_mut().enumerate() {
@@ -72,14 +72,14 @@ impl Balls {
         }
     }
 
-    /// How long an unseen ball is kept, s.
+    /// Time for which an unseen ball is kept, s.
     pub(super) fn patience(&self) -> f32 {
         let at_front = self.contact.zip(self.chosen_track());
         let held = at_front.is_some_and(|(contact, track)| track.seen - contact.until <= micros(UNSEEN));
         if held { HELD_GONE } else { GONE }
     }
 
-    /// Lets another track be the ball where this one is out of sight, or out of the field.
+    /// Makes another track the ball where this one is not visible, or out of the field.
     pub(super) fn choose(&mut self, now: Captured, scene: &Scene) {
         let playable = |track: &Track| scene.is_playable(track.plane.position);
         let current = self.chosen_track();
@@ -113,18 +113,20 @@ impl Balls {
     }
 }
 
-/// Images that make a blob the ball when there is none ...
+/// Camera frames that make a blob the ball when there is none ...
 const IMAGES_TO_BELIEVE: u16 = 2;
-/// ... and when there is one that is out of sight.
+/// ... and when there is one that is not visible.
 const IMAGES_TO_TAKE_OVER: u16 = 5;
-/// Out of sight for so long, another ball may be the one, s: six images of 60 Hz.
+/// Time without detection after which another ball may be chosen, s: six frames of 60 Hz.
 const LOST: f32 = 0.1;
-/// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, later.
+/// An unseen ball is forgotten after this time, s; at a robot's front, where robots hide balls, this time is
+/// longer.
 const GONE: f32 = 1.0;
 const HELD_GONE: f32 = 3.0;
 /// Other balls are forgotten sooner, s.
 const OTHER_GONE: f32 = 0.3;
-/// Two blobs of one image nearer than this are one ball, m: its diameter.
+/// Two blobs of one camera frame nearer than this are one ball, m: its diameter.
 const SAME_BALL: f32 = 0.045;
-/// A flying ball seems to be at most this far from its parabola, m; farther, it is another ball or hit something.
+/// A flying ball appears at most this far from its parabola, m; farther, it is another ball or has hit
+/// something.
 const FLIGHT_GATE: f32 = 0.4;

@@ -1,13 +1,14 @@
-//! `flight`: detection of chipped balls, and prediction of where they come down. m, m/s, s.
+//! `flight`: detection of chipped balls, and prediction of their landing. m, m/s, s.
 //!
-//! Vision takes every ball to lie on the carpet: one at height z below a camera at (c, H) seems to be at
-//! a = c + (p − c) · H / (H − z), which is the same as p + (a − c) · z / H = a. With p = p₀ + v t and
-//! z = w t − g t² / 2 that is linear in p₀, v and w:
+//! Vision assumes that every ball lies on the field surface: one at height z below a camera at (c, H) appears
+//! at a = c + (p − c) · H / (H − z), which is the same as p + (a − c) · z / H = a. With p = p₀ + v t and z =
+//! w t − g t² / 2 that is linear in p₀, v and w:
 //!
 //! p₀ + v t + w · t (a − c) / H = a + (g t² / 2)(a − c) / H
 //!
-//! so the flight is found by least squares, and beside it a flat kick that slows down as it likes; the ball flies when
-//! only the flight explains what was seen. A camera right above cannot tell the two apart, but then nothing seems displaced.
+//! so the flight is found by least squares, and beside it a flat kick with free deceleration; the ball flies
+//! when only the flight explains the detections. A camera right above cannot distinguish the two, but then
+//! the ball does not appear displaced.
 
 use geometry::{Field, Point, Vector};
 
@@ -22,9 +23,9 @@ use protocol::Who;
 pub(super) struct Launch {
     pub(super) at: Captured,
     pub(super) from: Point<Field>,
-    /// Who stood there.
+    /// The robot that stood there.
     pub(super) by: Option<Who>,
-    /// How well the moment is known, s.
+    /// Uncertainty of the moment, s.
     slack: f32,
     samples: [Sample; SAMPLES_MAX],
     count: usize,
@@ -32,9 +33,9 @@ pub(super) struct Launch {
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Sample {
-    /// Since the kick, s.
+    /// Time since the kick, s.
     time: f32,
-    /// From the kick's place to where the ball seemed to be.
+    /// From the kick's place to where the ball appeared.
     seen: Vector<Field>,
     /// (a − c) / H.
     slant: Vector<Field>,
@@ -50,12 +51,12 @@ pub(super) struct Flight {
 }
 
 impl Launch {
-    /// A kick at that moment, known to `slack` s, from there.
+    /// A kick at that moment, known to ± `slack` s, from that place.
     pub(super) fn new(at: Captured, from: Point<Field>, by: Option<Who>, slack: f32) -> Self {
         Self { at, from, by, slack, samples: [Sample::default(); SAMPLES_MAX], count: 0 }
     }
 
-    /// Adds a glimpse of a camera; without room or without a camera's place it is left out.
+    /// Adds a detection of a camera; without room or without a camera's place it is left out.
     pub(super) fn add(&mut self, apparent: Point<Field>, at: Captured, camera: Option<Camera>) {
         let Some(camera) = camera.filter(|_| !self.is_full()) else { return };
         let time = seconds(at - self.at);
@@ -79,12 +80,13 @@ impl Launch {
         self.count >= SAMPLES_MIN && self.samples[self.count - 1].time >= TIME_MIN
     }
 
-    /// Whether another glimpse finds room.
+    /// Whether there is no room for another detection.
     pub(super) fn is_full(&self) -> bool {
         self.count == SAMPLES_MAX
     }
 
-    /// The flight that explains the glimpses, if a flat kick does not; `decided` asks for the best flight in any case.
+    /// The flight that explains the detections, if a flat kick does not; `decided` requests the best flight
+    /// in any case.
     pub(super) fn flight(&self, sigma: f32, slide: f32, decided: bool) -> Option<Flight> {
         let mut best: Option<(f32, f32, [f32; UNKNOWNS])> = None;
         for share in SHIFTS {
@@ -117,7 +119,7 @@ impl Launch {
         Some(flight)
     }
 
-    /// How badly the best flat kick explains the glimpses, in variances.
+    /// Error of the best flat kick over the detections, in variances.
     fn flat_error(&self, sigma: f32, slide: f32) -> f32 {
         let Some(last) = self.samples().last() else { return 0.0 };
         let along = last.seen.unit().unwrap_or_default();
@@ -135,25 +137,25 @@ impl Launch {
 }
 
 impl Flight {
-    /// Height and climb that long after the kick, until it lands, m and m/s.
+    /// Height and climb at that time after the kick, until it lands, m and m/s.
     pub(super) fn height(&self, at: Captured) -> (f32, f32) {
         let t = seconds(at - self.at).max(0.0);
         ((self.climb * t - 0.5 * GRAVITY * t * t).max(0.0), self.climb - GRAVITY * t)
     }
 
-    /// Above which point it is.
+    /// The point below it on the ground.
     pub(super) fn position(&self, at: Captured) -> Point<Field> {
         self.from + self.velocity * seconds(at - self.at)
     }
 
-    /// When it touches the ground.
+    /// Time at which it touches the ground.
     pub(super) fn lands(&self) -> Captured {
         self.at + (self.climb * (2.0 / GRAVITY) * 1e6) as Captured
     }
 }
 
-/// Least squares for p₀, v and one more unknown u: p₀ + v t + u · `slope` = `value` for each sample, p₀ near 0.
-/// Gives the solution and the sum of squared errors in variances.
+/// Least squares for p₀, v and one more unknown u: p₀ + v t + u · `slope` = `value` for each sample, p₀
+/// close to 0. Gives the solution and the sum of squared errors in variances.
 fn solve(
     samples: &[Sample],
     sigma: f32,
@@ -191,7 +193,7 @@ fn solve(
     Some((solution, (sum + known * (x * x + y * y)) / (sigma * sigma)))
 }
 
-/// Gauss with the largest pivot; `None` where the unknowns cannot be told apart.
+/// Gauss with the largest pivot; `None` where the unknowns are not separable.
 fn eliminate(normal: &mut [[f32; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f32; UNKNOWNS]> {
     for column in 0..UNKNOWNS {
         let pivot = (column..UNKNOWNS).max_by(|a, b| {
@@ -223,37 +225,37 @@ fn eliminate(normal: &mut [[f32; UNKNOWNS + 1]; UNKNOWNS]) -> Option<[f32; UNKNO
 
 /// p₀ and v along x and y, and climb or deceleration.
 const UNKNOWNS: usize = 5;
-/// Glimpses of one flight: 0.4 s and more; what comes later refines nothing much.
+/// Detections of one flight: 0.4 s and more; later ones improve little.
 const SAMPLES_MAX: usize = 48;
-/// Glimpses nearer to each other than this tell nothing new, s: four cameras that see the ball at once.
+/// Detections nearer in time to each other than this add nothing, s: four cameras that see the ball at once.
 const SAMPLES_APART: f32 = 0.006;
-/// Fewer glimpses, or a shorter time (s), do not tell a flight from a flat kick: in 60 ms a ball that rises with 2 m/s is
-/// 0.1 m high, which shows as 25 mm at one metre from below a camera 4 m high.
+/// Fewer detections, or a shorter time (s), do not distinguish a flight from a flat kick: in 60 ms a ball
+/// that rises with 2 m/s is 0.1 m high, which appears as 25 mm at one metre from below a camera 4 m high.
 const SAMPLES_MIN: usize = 5;
 const TIME_MIN: f32 = 0.06;
-/// The kick's moment is sought around the one two glimpses told, in units of how well it is known.
+/// Offsets tried around the kick's moment by two detections, in units of its uncertainty.
 const SHIFTS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
-/// A turn shows its moment this well, s: half an image.
+/// Uncertainty of the moment by a turn, s: half a frame.
 pub(super) const SHARP: f32 = 0.008;
-/// Where it showed late, the moment is known to two images, s.
+/// Where the turn was detected late, the moment is known to two frames, s.
 pub(super) const VAGUE: f32 = 0.03;
-/// How well the kick's place is known, m.
+/// Uncertainty of the kick's place, m.
 const FROM_SIGMA: f32 = 0.01;
-/// Climbs that are flights, m/s: slower ones stay below 50 mm; a kick of 10 m/s straight up is no robot's.
+/// Climbs that are flights, m/s: slower ones stay below 50 mm; no robot kicks straight up with 10 m/s.
 const CLIMB_MIN: f32 = 1.0;
 const CLIMB_MAX: f32 = 10.0;
-/// No kicker sends a ball off more steeply than this (tangent of 76°; chippers are built for 45°, and a launch's direction is known to
-/// some degrees after 60 ms).
+/// No kicker launches a ball more steeply than this (tangent of 76°; chippers are built for 45°, and a
+/// launch's direction is known to some degrees after 60 ms).
 const STEEPEST: f32 = 4.0;
-/// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as told; the noise of
-/// cameras that disagree is larger).
+/// A flight fits when its mean squared error is less than this, in variances (1 where the noise is as
+/// configured; the noise of cameras that disagree is larger).
 const FIT_MAX: f32 = 6.0;
-/// A flat kick explains as well unless its summed squared error is worse by this, in variances (times the flight's own mean):
-/// 1 in 10⁶ by chance.
+/// A flat kick is accepted unless its summed squared error is worse by this, in variances (times the flight's
+/// own mean): 1 in 10⁶ by noise.
 const FLAT_WORSE: f32 = 25.0;
-/// A flat kick slows down by at most this much more than the carpet's sliding deceleration.
+/// A flat kick decelerates by at most this much more than the field surface's sliding deceleration.
 const SLIDE_MORE: f32 = 1.5;
-/// Normal equations with a smaller pivot say nothing (m², s², as samples weigh 1).
+/// Normal equations with a smaller pivot have no solution (m², s², as samples weigh 1).
 const PIVOT_MIN: f32 = 1e-9;
 
 #[cfg(test)]
@@ -295,7 +297,8 @@ mod tests {
 
     #[test]
     fn a_slow_ball_that_a_turning_robot_leads_around_does_not_fly() {
-        // On the front of a robot that turns with 3.5 rad/s: a circle of 0.095 m, speeding up from rest.
+        // On the front of a robot that turns with 3.5 rad/s: a circle of 0.095 m, accelerating from
+        // standstill.
         for count in 5..30 {
             let launch = watched(
                 |t| {

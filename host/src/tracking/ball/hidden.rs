@@ -1,10 +1,11 @@
-//! `hidden`: position of a ball that no camera sees. Under a robot, or where it was put; field frame,
-//! SI.
+//! `hidden`: position of a ball that no camera sees: under a robot, or where it was placed; field frame, SI.
 //!
-//! Of ours, it is at the robot that feels it, and where that robot felt it last once it has let go; of theirs, at the one whose
-//! front was at it when it vanished. At a restart after a placement it lies where it was placed: who brought it there hid it on the
-//! way, and where it was seen last is metres off. Else it lies where it was going to rest. Without this a robot that may not come
-//! near the ball would walk up to it as soon as it is hidden, and one that backs off a ball it hides would look for it elsewhere.
+//! With one of our robots, it is at the robot whose sensor detects it, and after release where that robot
+//! detected it last; with theirs, at the one whose front was at it when it vanished. At a restart after a
+//! placement it lies where it was placed: the robot that brought it there hid it on the path, and the last
+//! visible place is metres off. Else it lies at its stop position. Without this a robot that must keep off
+//! the ball would approach it as soon as it is hidden, and one that backs off a ball it hides would search it
+//! elsewhere.
 
 use geometry::{Field, Point, Vector};
 use protocol::{Instant, RobotId, Who};
@@ -13,10 +14,10 @@ use rules::{Colour, Phase};
 use crate::referee::Game;
 use crate::world::{Ball, Robot, World};
 
-/// What is remembered of the ball while it is seen, and of its placement.
+/// The ball's last visible state, and its placement.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HiddenBall {
-    /// The ball as it was when last seen, or felt by a robot of ours since.
+    /// The ball as it was when last seen, or detected by a sensor of ours since.
     last: Option<Ball>,
     /// The opponent that hides it from all cameras, if one does.
     by: Option<Who>,
@@ -25,7 +26,8 @@ pub(crate) struct HiddenBall {
 }
 
 impl HiddenBall {
-    /// Puts a ball into a world without one, for the team `us`; `feels` tells of its robots whether they have the ball.
+    /// Puts a ball into a world without one, for the team `us`; `feels` returns whether one of its robots has
+    /// the ball.
     pub(crate) fn fill(
         &mut self,
         now: Instant,
@@ -47,7 +49,7 @@ impl HiddenBall {
         }
         let holder = world.ours(us).find(|robot| feels(robot.who.id));
         if let (Some(robot), Some(last)) = (holder, &mut self.last) {
-            // Where it lies if it is let go: what is let go at speed is soon seen.
+            // Where it lies if it is released: a ball released at speed is soon visible.
             (last.position, last.velocity) = (mouth(robot), Vector::default());
             (last.height, last.climb) = (0.0, 0.0);
             self.by = None;
@@ -66,12 +68,13 @@ impl HiddenBall {
     }
 }
 
-/// The middle of a robot's front, where a ball is that it has.
+/// The middle of a robot's front, where a ball at the dribbler is.
 fn mouth(robot: &Robot) -> Point<Field> {
     robot.pose.to_field(Point::new(rules::limits::ROBOT_RADIUS, 0.0))
 }
 
-/// A ball this near the middle of a robot's front may lie in its mouth, m: a mouth's half width and the vision's noise.
+/// A ball this near the middle of a robot's front may lie in its dribbler opening, m: the opening's half
+/// width and the vision's noise.
 const HIDES: f32 = 0.06;
 
 #[cfg(test)]

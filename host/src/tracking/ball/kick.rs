@@ -1,8 +1,8 @@
-//! `kick`: detection of kicks: by whom, how fast, flat or chipped. m, m/s; times on vision's clock, µs.
+//! `kick`: detection of kicks: the robot, the speed, flat or chipped. m, m/s; times on vision's clock, µs.
 //!
-//! A kick is a turn that made the ball faster, or that a robot's front made of it; any other turn is a bounce. After a kick
-//! the flight is sought (see [`super::flight`]); found, it stands until the ball touches the ground, then the known bounces
-//! follow until the ball rolls.
+//! A kick is a turn that made the ball faster, or that a robot's front made of it; any other turn is a
+//! bounce. After a kick the flight is estimated (see [`super::flight`]); once found, it is kept until the
+//! ball touches the ground, then the known bounces follow until the ball rolls.
 
 use geometry::{Body, Field, Point, Vector};
 use motion::ball::chip::ChipPath;
@@ -16,21 +16,21 @@ use crate::tracking::seen::Captured;
 use crate::world::BallModels;
 use protocol::Who;
 
-/// What is known of the ball's height.
+/// State of the ball's height.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Air {
-    /// On the ground for all that is known.
+    /// On the ground as far as is known.
     #[default]
     Down,
-    /// Just kicked: a flight would show soon.
+    /// Just kicked: a flight would be detected soon.
     Watched(Launch),
-    /// In its first hop, found from these glimpses.
+    /// In its first hop, estimated from these detections.
     Flying(Launch, Flight),
-    /// Hopping on after its first touch.
+    /// Bouncing after its first touch.
     Hopping(Flight),
 }
 
-/// The last kick.
+/// The last kick of the ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kicked {
     pub(super) by: Option<Who>,
@@ -44,22 +44,22 @@ pub(super) struct Kicked {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     pub(super) who: Who,
-    /// Where the ball was, as the robot sees it.
+    /// The ball's place in the robot's frame.
     pub(super) place: Point<Body>,
-    /// Last glimpse of it there.
+    /// Last detection of it there.
     pub(super) until: Captured,
-    /// How the ball moved before.
+    /// The ball's velocity before.
     before: Vector<Field>,
 }
 
 impl Balls {
-    /// The ball began a new way: a kick, or a bounce.
+    /// The ball has changed its direction: a kick, or a bounce.
     pub(super) fn turned(&mut self, turn: &Turn, around: Around<'_>) {
         let near = around.robots.nearest(turn.from, turn.at).filter(|(_, _, off)| *off <= REACH);
         if let Air::Watched(launch) = &mut self.air
             && near.is_none()
         {
-            // Nobody was there to turn it: a ball in the air seems to turn.
+            // No robot was there to turn it: a ball in the air appears to turn.
             for glimpse in turn.shown {
                 launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
             }
@@ -78,7 +78,8 @@ impl Balls {
         let in_front = near.is_some_and(|(_, robot, _)| is_in_front(&robot, turn.from));
         let redirected = in_front && (turn.after - turn.before).norm() >= KICK_REDIRECTS;
         let by = near.map(|(who, _, _)| who);
-        // Where nobody stands only a robot that no camera recognises can kick, and only a ball at rest is surely kicked.
+        // Where no robot stands only a robot that no camera recognises can kick, and only a ball at
+        // standstill is certainly kicked.
         let can_be_kicked = by.is_some() || (before < KICK_GAIN && !hopped);
         let faster = after >= before + KICK_GAIN && can_be_kicked;
         let kicked = after >= KICK_SPEED && (faster || redirected);
@@ -88,7 +89,8 @@ impl Balls {
             self.counts.bounces += 1;
             self.set_rolls_below(around.scene.models.ground.switch * after);
         }
-        // A chip towards the camera seems to move slowly at first, so whatever leaves a robot's front is watched.
+        // A chip towards the camera appears to move slowly at first, so every ball that leaves a robot's
+        // front is watched.
         if kicked || in_front {
             let mut launch = Launch::new(turn.at, turn.from, by, SHARP);
             for glimpse in turn.shown {
@@ -98,8 +100,8 @@ impl Balls {
         }
     }
 
-    /// A chip towards the camera may hardly seem to move while it rises: when the turn shows at last, it was the robot's that
-    /// had the ball a moment ago.
+    /// A chip towards the camera may hardly appear to move while it rises: when the turn is detected at last,
+    /// it was by the robot that had the ball just before.
     fn showed_late(&mut self, turn: &Turn, around: Around<'_>) -> bool {
         let Some(contact) = self.contact.filter(|contact| turn.at - contact.until <= micros(CONTACT_LATE))
         else {
@@ -147,7 +149,7 @@ impl Balls {
         }
     }
 
-    /// Asks whether a watched kick flies.
+    /// Checks whether a watched kick flies.
     pub(super) fn watch(&mut self, glimpse: &Glimpse, around: Around<'_>) {
         let Air::Watched(launch) = &mut self.air else { return };
         launch.add(glimpse.apparent, glimpse.at, around.scene.camera(glimpse.camera));
@@ -164,7 +166,7 @@ impl Balls {
         }
     }
 
-    /// A glimpse of a flying ball makes its flight better known.
+    /// Refines a flight with a detection of the flying ball.
     pub(super) fn see_flying(&mut self, glimpse: &Glimpse, around: Around<'_>) {
         let Air::Flying(launch, flight) = &mut self.air else { return };
         if !launch.is_full() {
@@ -185,7 +187,7 @@ impl Balls {
         self.put(at, Plane::sent_off(flight.position(at), velocity, sigma, FLIGHT_UNSURE));
     }
 
-    /// Goes on to the next kind of motion of a chip when its time has come.
+    /// Switches to the next kind of motion of a chip when its time has come.
     pub(super) fn land(&mut self, now: Captured, models: &BallModels) {
         if let Air::Flying(_, flight) = self.air
             && now >= flight.lands()
@@ -214,7 +216,7 @@ impl Balls {
         }
     }
 
-    /// Notes whose front the ball is at, and sees it pushed off without a sharp turn.
+    /// Detects which robot's front the ball is at, and a ball pushed off without a sharp turn.
     pub(super) fn touch(&mut self, now: Captured, around: Around<'_>) {
         let Some(track) = self.chosen_track() else { return };
         let (position, velocity) = (track.plane.position, track.plane.velocity);
@@ -226,11 +228,11 @@ impl Balls {
             let before = same.map_or(velocity, |contact| contact.before);
             self.contact = Some(Contact { who, place: robot.pose.to_body(position), until: now, before });
             if self.kicked.is_some_and(|kicked| now - kicked.at > micros(CONTACT_LATE)) {
-                // Whoever has it now, the kick is over.
+                // Once another robot has the ball, the kick is over.
                 self.kicked = None;
                 self.air = Air::Down;
             }
-            // A ball that is led by a robot turns and speeds up without flying.
+            // A ball that a robot pushes turns and accelerates without flying.
             if matches!(&self.air, Air::Watched(launch) if now - launch.at > micros(CONTACT)) {
                 self.air = Air::Down;
             }
@@ -254,7 +256,7 @@ impl Balls {
         }
     }
 
-    /// A kick's speed is better known from how far the ball got.
+    /// Refines a kick's speed by the distance the ball has covered.
     pub(super) fn refine(&mut self, models: &BallModels) {
         let Some(track) = self.chosen_track() else { return };
         let (Some(kicked), speed) = (self.kicked, track.plane.velocity.norm()) else { return };
@@ -271,15 +273,16 @@ impl Balls {
     }
 }
 
-/// How fast a flat kick was that made this way in that time: d = v t − a t² / 2 while it slides, from the switch on as told.
+/// Speed of a flat kick that covered this distance in that time: d = v t − a t² / 2 while it slides, from the
+/// switch on as configured.
 fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
     let sliding = way / time + 0.5 * models.ground.slide * time;
     let slides_for = sliding * (1.0 - models.ground.switch) / models.ground.slide;
     if time <= slides_for {
         return sliding;
     }
-    // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for v by two steps
-    // of Newton's from the speed of a ball that lost nothing.
+    // Slid for t_s = v (1 − c) / a, then rolled with c v: d = v² (1 − c²) / (2 a) + c v (t − t_s), solved for
+    // v by two steps of Newton's starting from the speed of a ball without losses.
     let (c, a) = (models.ground.switch, models.ground.slide);
     let mut speed = way / time;
     for _ in 0..NEWTON_STEPS {
@@ -291,7 +294,7 @@ fn launch_speed(way: f32, time: f32, models: &BallModels) -> f32 {
     speed
 }
 
-/// A chip's whole way.
+/// A chip's whole path.
 fn hops(flight: &Flight, models: &BallModels) -> ChipPath<Field> {
     models.chip.chipped(flight.from, flight.velocity, flight.climb, &models.ground)
 }
@@ -301,13 +304,14 @@ fn is_in_front(robot: &Moved, ball: Point<Field>) -> bool {
     ball.x() > 0.0 && ball.y().abs() <= ball.x()
 }
 
-/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with room for noise.
+/// The ball touches a robot's front at 0.095 m (0.073 m to the plate, 0.0215 m of ball), m, with a margin for
+/// noise.
 const TOUCH: f32 = 0.125;
-/// A robot this near can have turned the ball, m: hull, ball, and 7 cm that the robot moved since.
+/// A robot this near can have turned the ball, m: hull, ball, and 7 cm of motion of the robot since.
 const REACH: f32 = 0.18;
-/// A contact ends this long after the last glimpse of it, s.
+/// A contact ends this long after its last detection, s.
 const CONTACT: f32 = 0.1;
-/// ... and is remembered for this long, s, for chips that show late, within this distance, m.
+/// ... and is kept for this long, s, for chips that are detected late, within this distance, m.
 const CONTACT_LATE: f32 = 0.25;
 const LATE_REACH: f32 = 0.4;
 /// Slower balls are not kicked but rolled, m/s.
@@ -316,16 +320,18 @@ const KICK_SPEED: f32 = 0.5;
 const KICK_GAIN: f32 = 0.3;
 /// ... or a robot's front changes its velocity by this, m/s.
 const KICK_REDIRECTS: f32 = 0.8;
-/// Where the old way and the new one are farther apart than this, somebody put the ball there, m.
+/// Where the old path and the new one are farther apart than this, the ball was placed there by hand or by a
+/// script, m.
 const PUT_GAP: f32 = 0.3;
 /// A kicked ball has stopped below this speed, m/s.
 const REST_SPEED: f32 = 0.05;
-/// A flat kick's speed is taken from the way it made in this time after it, s: two images, to when robots may meet it.
+/// A flat kick's speed is computed from the distance covered in this time after it, s: two frames, until
+/// robots may intercept it.
 const REFINE_FROM: f32 = 0.03;
 const REFINE_TO: f32 = 0.15;
 /// Each step doubles the digits; the start is within a third.
 const NEWTON_STEPS: usize = 3;
-/// How unsure a fitted flight's velocity is, m/s, a landing's place, m, and the speed after a bounce, m/s.
+/// Uncertainty of a fitted flight's velocity, m/s, a landing's place, m, and the speed after a bounce, m/s.
 const FLIGHT_UNSURE: f32 = 0.2;
 const LANDING_UNSURE: f32 = 0.05;
 const BOUNCE_UNSURE: f32 = 0.7;

@@ -1,8 +1,9 @@
-//! `ball`: ball tracking: which detection is the ball, who kicked it, does it fly, and where it is when no
-//! camera sees it. m, m/s; times on vision's clock, µs.
+//! `ball`: ball tracking: chooses the ball among detections, and estimates its kicker, its flight, and its
+//! place when no camera sees it. m, m/s; times on vision's clock, µs.
 //!
-//! Every blob that stays becomes a track. One of them is the ball, and stays the ball while it is seen: a second ball, a
-//! hand or a shoe never takes over from a ball in sight. A ball that vanishes at a robot's front is taken to be held there.
+//! Every blob that stays becomes a track. One of them is the ball, and stays the ball while it is seen: a
+//! second ball, a hand or a shoe never replaces a visible ball. A ball that vanishes at a robot's front
+//! counts as held there.
 
 mod choice;
 mod flight;
@@ -22,28 +23,28 @@ use super::scene::Scene;
 use super::seen::{BallSeen, Captured, Frame};
 use crate::world::{Ball, Kick};
 
-/// What became of blobs, counted.
+/// Counts of blobs by result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct BallCounts {
-    /// Glimpses of the ball.
+    /// Detections of the ball.
     pub taken: u64,
-    /// Glimpses of balls while none was believed yet.
+    /// Detections of balls while none was confirmed yet.
     pub new: u64,
-    /// Glimpses of other balls, hands, shoes.
+    /// Detections of other balls, hands, shoes.
     pub others: u64,
-    /// Kicks noticed, flat ones and chips.
+    /// Kicks detected, flat ones and chips.
     pub kicks: u64,
     /// ... of these, chips.
     pub chips: u64,
-    /// Turns that nobody kicked: off robots, posts and walls.
+    /// Turns without a kick: off robots, posts and walls.
     pub bounces: u64,
 }
 
-/// All balls.
+/// Tracks of all balls.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balls {
     tracks: [Option<Track>; TRACKS_MAX],
-    /// Which of them is the ball.
+    /// Index of the ball among them.
     chosen: Option<usize>,
     air: Air,
     kicked: Option<Kicked>,
@@ -51,7 +52,7 @@ pub(super) struct Balls {
     pub(super) counts: BallCounts,
 }
 
-/// What everything here needs to know besides the image.
+/// Inputs of the ball's tracking besides the camera frame.
 #[derive(Clone, Copy)]
 pub(super) struct Around<'a> {
     pub(super) robots: &'a Robots,
@@ -61,7 +62,7 @@ pub(super) struct Around<'a> {
 }
 
 impl Balls {
-    /// Takes an image's blobs in.
+    /// Takes a camera frame's blobs.
     pub(super) fn see(&mut self, frame: &Frame, around: Around<'_>) {
         self.forget(frame.at);
         self.hold(frame.at, around.robots);
@@ -96,7 +97,7 @@ impl Balls {
         self.refine(models);
     }
 
-    /// A blob, put below the ball if the ball is known to fly.
+    /// A detection from a blob, put below the ball if the ball is known to fly.
     fn glimpse(&self, frame: &Frame, seen: &BallSeen, scene: &Scene) -> Glimpse {
         let height = self.height(frame.at, &scene.models).0;
         let camera = scene.camera(frame.camera).filter(|_| height > 0.0);
@@ -106,7 +107,7 @@ impl Balls {
         Glimpse { position, apparent: seen.position, camera: frame.camera, at: frame.at }
     }
 
-    /// A ball that vanished at a robot's front goes with the robot.
+    /// A ball that vanished at a robot's front moves with the robot.
     fn hold(&mut self, now: Captured, robots: &Robots) {
         let Some((place, robot)) = self.held(now, robots) else { return };
         if let Some(track) = self.chosen.and_then(|index| self.tracks[index].as_mut()) {
@@ -126,7 +127,7 @@ impl Balls {
         self.chosen.and_then(|index| self.tracks[index].as_ref())
     }
 
-    /// The ball at that moment; `ours` tells moments on our clock.
+    /// The ball at that moment; `ours` converts moments to our clock.
     pub(super) fn picture(
         &self,
         at: Captured,
@@ -162,10 +163,10 @@ impl Balls {
     }
 }
 
-/// Balls at once: more are a box of balls, not a game.
+/// Tracks at once: more balls do not occur in a game.
 const TRACKS_MAX: usize = 6;
-/// Not seen just now, s: two to three images of 60 Hz.
+/// Time after which it counts as unseen, s: two to three frames of 60 Hz.
 const UNSEEN: f32 = 0.045;
-/// How unsure a hidden ball is: within a ball's radius of where it was, m; let go slowly, m/s.
+/// Uncertainty of a hidden ball: within a ball's radius of where it was, m; released slowly, m/s.
 const HELD_UNSURE: f32 = 0.02;
 const HELD_SPEED_UNSURE: f32 = 0.5;

@@ -1,8 +1,9 @@
-//! `track`: filter of one ball on the ground. A filter that knows how balls slow down, and notices when
-//! something else moved it. m, m/s, s; times on vision's clock, µs.
+//! `track`: filter of one ball on the ground, with a model of its deceleration; it detects changes by robots
+//! and walls. m, m/s, s; times on vision's clock, µs.
 //!
-//! A glimpse far from the prediction is held back: the next one tells whether it was a misreading or the beginning of a
-//! new way. So a kick is known by the second image that shows it, and one wrong blob moves nothing.
+//! A detection far from the prediction is held back: the next one shows whether it was a misreading or the
+//! start of a new direction. So a kick is known by the second camera frame that contains it, and one wrong
+//! blob changes nothing.
 
 use geometry::{Field, Point, Vector};
 use motion::trajectory::Motion;
@@ -12,35 +13,35 @@ use super::super::robots::seconds;
 use super::super::seen::{BallSeen, Captured};
 use crate::world::BallModels;
 
-/// A blob and when it was seen.
+/// A blob and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Glimpse {
     /// On the ground; for a ball in the air, below it.
     pub(super) position: Point<Field>,
-    /// Where the camera saw it on the carpet.
+    /// Where the camera saw it on the field surface.
     pub(super) apparent: Point<Field>,
     pub(super) camera: u32,
     pub(super) at: Captured,
 }
 
-/// A change of velocity that no carpet makes.
+/// A change of velocity that the field surface cannot cause.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
     pub(super) at: Captured,
     pub(super) from: Point<Field>,
     pub(super) before: Vector<Field>,
     pub(super) after: Vector<Field>,
-    /// The two glimpses that showed it.
+    /// The two detections that revealed it.
     pub(super) shown: [Glimpse; 2],
-    /// Between the old way and the new one, m; large where the ball was put elsewhere.
+    /// Distance between the old path and the new one, m; large where the ball was placed elsewhere.
     pub(super) gap: f32,
 }
 
-/// A ball.
+/// Track of one ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Track {
     pub(super) plane: Plane,
-    /// Of the state.
+    /// Time of the state.
     pub(super) at: Captured,
     pub(super) seen: Captured,
     counted: Captured,
@@ -65,7 +66,7 @@ impl Track {
         }
     }
 
-    /// Where it is at `at` if nobody met it, and its velocity.
+    /// Its place at `at` if no robot touches it, and its velocity.
     pub(super) fn moved(&self, at: Captured, models: &BallModels) -> (Point<Field>, Vector<Field>) {
         let dt = seconds(at - self.at);
         if dt <= 0.0 {
@@ -76,11 +77,11 @@ impl Track {
         (state.position, state.velocity)
     }
 
-    /// How far a glimpse is from the prediction, and whether it can be this ball.
+    /// Distance of a detection from the prediction, and whether it can be this ball.
     pub(super) fn fits(&self, position: Point<Field>, at: Captured, models: &BallModels) -> Option<f32> {
         let off = self.moved(at, models).0.distance(position);
         let reach = GATE + GATE_SPEED * seconds(at - self.seen).clamp(0.0, GATE_TIME_MAX);
-        // What began to go elsewhere may go on there.
+        // A change that has started may continue there.
         let begun = self.strange.is_some_and(|strange| {
             let reach = GATE + GATE_SPEED * seconds(at - strange.at).clamp(0.0, GATE_TIME_MAX);
             strange.position.distance(position) <= reach
@@ -88,12 +89,12 @@ impl Track {
         (off <= reach || begun).then_some(off)
     }
 
-    /// Puts it where it is known to be otherwise.
+    /// Sets it to a state known from elsewhere.
     pub(super) fn put(&mut self, at: Captured, plane: Plane) {
         (self.at, self.plane, self.strange) = (at, plane, None);
     }
 
-    /// Notes that it was seen.
+    /// Records that it was seen.
     pub(super) fn note(&mut self, at: Captured, seen: &BallSeen) {
         self.seen = self.seen.max(at);
         if at - self.counted >= IMAGE_APART {
@@ -103,7 +104,7 @@ impl Track {
         self.quality += (seen.confidence - self.quality) * QUALITY_SHARE;
     }
 
-    /// Takes a glimpse in; a turn if it is the second that shows one.
+    /// Takes a detection; returns a turn if it is the second that reveals one.
     pub(super) fn see(&mut self, glimpse: &Glimpse, models: &BallModels, sigma: f32) -> Option<Turn> {
         let dt = seconds(glimpse.at - self.at).max(0.0);
         let (position, velocity) = self.moved(self.at.max(glimpse.at), models);
@@ -134,7 +135,7 @@ impl Track {
         Some(turn)
     }
 
-    /// Where and when the old way met the new one.
+    /// Place and time at which the old path and the new one cross.
     fn turn(&self, first: &Glimpse, second: &Glimpse, after: Vector<Field>) -> Turn {
         let (start, before) = (self.plane.position, self.plane.velocity);
         let span = seconds(first.at - self.at).max(0.0);
@@ -155,26 +156,27 @@ impl Track {
     }
 }
 
-/// White acceleration of a ball on its way, m²/s³: calm is a carpet that slows it 0.3 m/s² more or less than told;
-/// changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
+/// White acceleration of a rolling ball, m²/s³: calm is a field surface that decelerates it 0.3 m/s² more or
+/// less than configured; changing is a robot that pushes or dribbles it with 5 m/s² for 0.2 s.
 const FREEDOM: Freedom = Freedom { calm: 0.02, changing: 8.0 };
-/// A glimpse is strange when its distance squared is more variances than this ...
+/// A detection is an outlier when its distance squared is more variances than this ...
 const SURPRISE_MAX: f32 = 20.0;
-/// ... and it is farther than this off, m: noise of fusing cameras is no turn.
+/// ... and it is farther than this off, m: noise between cameras is no turn.
 const STRANGE_MIN: f32 = 0.012;
-/// A new ball's speed may be anything of that size, m/s.
+/// Standard deviation of a new ball's speed, m/s.
 const SPEED_SIGMA: f32 = 2.0;
-/// A turned ball's speed is this unsure besides the noise of two glimpses, m/s.
+/// Uncertainty of a turned ball's speed besides the noise of two detections, m/s.
 const SPEED_UNSURE: f32 = 0.3;
-/// No ball is faster, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
+/// Fastest ball, m/s: robots are allowed 6.5, kickers without a limit give 10 or so.
 const SPEED_MAX: f32 = 15.0;
-/// It can be seen that far from its prediction, m, and that much farther for every second unseen (m/s), up to a time (s).
+/// Largest distance of a detection from its prediction, m, and its growth for every second unseen (m/s), up
+/// to a time (s).
 const GATE: f32 = 0.1;
 const GATE_SPEED: f32 = 10.0;
 const GATE_TIME_MAX: f32 = 0.15;
-/// Glimpses nearer to each other are of one tick, µs.
+/// Detections nearer to each other are of one tick, µs.
 const IMAGE_APART: Captured = 5_000;
-/// Images after which confidence is full.
+/// Camera frames after which confidence is full.
 const IMAGES_FULL: u16 = 8;
-/// Weight of the newest glimpse in the quality.
+/// Weight of the newest detection in the quality.
 const QUALITY_SHARE: f32 = 0.1;

@@ -6,7 +6,8 @@ use super::*;
 use rand_core::{RngCore, SeedableRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
-/// Events: the pass is wanted; the passer starts, is at x_p, kicks; the receiver starts, is at x_r; the ball is at x*.
+/// Events: the pass is requested; the passer starts, is at x_p, kicks; the receiver starts, is at x_r; the
+/// ball is at x*.
 const EVENTS: usize = 7;
 const BEGIN: usize = 0;
 const PASSER_STARTS: usize = 1;
@@ -42,7 +43,7 @@ impl Network {
         self.most[to][from] = self.most[to][from].min(-least);
     }
 
-    /// All shortest ways; `None` where the times contradict each other.
+    /// All shortest paths; `None` where the times contradict each other.
     fn solved(mut self) -> Option<Self> {
         for via in 0..EVENTS {
             for a in 0..EVENTS {
@@ -64,7 +65,7 @@ impl Network {
     }
 }
 
-/// Robots that need exactly as long as they say, and start when they are told.
+/// Robots that need exactly their estimated times, and start when they are ordered to.
 fn simulate(receiver: f32, passer: f32, ball: f32) -> (PassAhead, f32) {
     let mut ahead = PassAhead::new(Instant(0));
     for tick in 0..1_000_u64 {
@@ -111,7 +112,7 @@ fn the_network_of_a_pass_by_hand() {
 fn everybody_starts_when_the_network_says() {
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(9);
     let mut up_to = |most: f32| (rng.next_u32() >> 8) as f32 / 16_777_216.0 * most;
-    // A tick late at most, each; and the kick may be early by what the algorithm forgives.
+    // At most a tick late, each; and the kick may be early by the tolerance of the algorithm.
     let tick = 1.5 * TICK as f64 * 1e-6;
     let (mut receiver_first, mut passer_first) = (0, 0);
     for _ in 0..500 {
@@ -166,7 +167,7 @@ fn the_ball_waits_for_a_late_receiver_and_leaves_for_one_in_time() {
     );
     assert_eq!(ahead.step(Instant(400_000), &at_ball(1.1)).passer, PasserMove::Waits);
     assert_eq!(ahead.step(Instant(500_000), &at_ball(1.0)).passer, PasserMove::Shoots);
-    // And it stays shot.
+    // The state remains "shot".
     assert_eq!(ahead.step(Instant(900_000), &at_ball(9.0)).passer, PasserMove::Shoots);
 }
 
@@ -198,7 +199,8 @@ fn places_and_times_by_hand() {
         velocity: Vector::default(),
     };
     let limits = FreeLimits::default();
-    // 1 m to walk: 1.069045 s; 170° to turn on the spot: 2.967 rad at 6 rad/s and 30 rad/s²: 2.967/6 + 0.2 = 0.694510 s.
+    // 1 m to drive: 1.069045 s; 170° to turn on the spot: 2.967 rad at 6 rad/s and 30 rad/s²: 2.967/6 + 0.2 =
+    // 0.694510 s.
     let times = Times::of(&places, &robot(-1.1015, 0.0), &robot(2.1015, 10.0), 0.9, &limits);
     assert!(
         (times.passer - 1.069_045).abs() < 0.01 && (times.receiver - 0.694_510).abs() < 1e-3,

@@ -1,6 +1,6 @@
-//! Tests: a place is rated as the paper's formulas say. Against numbers of a program of its own in Python
-//! (double precision; the ball's way is searched in 100,000 steps, the goal by 400,000 rays), and against
-//! what must hold for any place.
+//! Tests: a place is rated by the paper's formulas. Compared with numbers of a separate program in Python
+//! (double precision; the ball's path is searched in 100,000 steps, the goal by 400,000 rays), and with
+//! properties of every place.
 
 use motion::ball::BallModel;
 use motion::ball::chip::ChipModel;
@@ -15,7 +15,7 @@ fn kicks(league: League) -> Kicks {
     Kicks::new(PassConstants::of(league), BallModel::default(), ChipModel::default())
 }
 
-/// Ours: 0 passes, 1 receives, the others are mates.
+/// Ours: 0 passes, 1 receives, the others are teammates.
 fn rated(from: (f32, f32), at: (f32, f32), ours: &[(f32, f32)], theirs: &[(f32, f32)]) -> Rating {
     let (kicks, view) = (kicks(League::DivisionB), view(from, ours, theirs));
     let from = Point::new(from.0, from.1);
@@ -32,18 +32,21 @@ fn all_close(are: &[f32], by_hand: &[f64]) {
 fn a_pass_beside_an_opponent_and_a_mate_by_hand() {
     let ours = [(-0.1, 0.0), (2.5, -2.0), (3.5, -1.5)];
     let rating = rated((0.0, 0.0), (2.9, -1.5), &ours, &[(4.3, -0.1), (2.0, 0.5)]);
-    // The ball leaves with 3.367840 m/s and is there after 1.405585 s; the receiver walks 0.640312 m: 2 √(0.640312 / 3.5) = 0.855445 s.
+    // The ball leaves with 3.367840 m/s and is there after 1.405585 s; the receiver drives 0.640312 m: 2
+    // √(0.640312 / 3.5) = 0.855445 s.
     let PassKick::Flat { speed } = rating.kick else { panic!("{rating:?}") };
     all_close(&[speed, rating.ball_time, rating.receiver_time], &[3.367_840, 1.405_585, 0.855_445]);
-    // No opponent is there within 0.6 s more (likely(6) = 0.997527); number 0, their keeper, is 0.155686 s late for the ball.
+    // No opponent is there within 0.6 s more (likely(6) = 0.997527); number 0, their keeper, is 0.155686 s
+    // late for the ball.
     assert_eq!(rating.rival, None);
     let interceptor = rating.interceptor.unwrap();
     assert_eq!(interceptor.id.number(), 0);
     all_close(&[interceptor.margin], &[0.155_686]);
-    // The mate is 0.6 m off: 0.1 m more than its margin.
+    // The teammate is 0.6 m off: 0.1 m more than its margin.
     assert_eq!(rating.spoiler.0, Spoiler::Mate);
     all_close(&rating.receive_factors, &[0.997_527, 0.825_902, 0.999_984, 0.999_991, 0.660_756]);
-    // The gap beside the keeper: 9.216°, its middle 0.274680 m below the goal's; 2.015 m at 6.24 m/s take 0.364477 s.
+    // The gap beside the keeper: 9.216°, its middle 0.274680 m below the goal's; 2.015 m at 6.24 m/s take
+    // 0.364477 s.
     all_close(
         &[rating.shot.angle, rating.shot.aim.y(), rating.shot.time],
         &[0.160_849, -0.274_680, 0.364_477],
@@ -85,7 +88,7 @@ fn the_opponents_area_is_worthless_today_and_the_best_place_in_2013() {
         scene.rate(Point::new(league.field().length * 0.5 - 0.5, 0.0))
     };
     let today = rate(League::DivisionB);
-    // 0.5 m deep inside: −0.5 − 0.2 = −0.7 m of margin, 1/(1 + exp(0.7/0.15)) = 0.009315.
+    // 0.5 m inside: −0.5 − 0.2 = −0.7 m of margin, 1/(1 + exp(0.7/0.15)) = 0.009315.
     assert_eq!(today.spoiler.0, Spoiler::TheirArea);
     all_close(&[today.receive_factors[4], today.goal_factors[3]], &[0.009_315, 0.7]);
     let paper = rate(League::Ssl2013);
@@ -121,7 +124,7 @@ fn every_factor_is_a_probability_wherever_everybody_stands() {
             let factors = rating.receive_factors.iter().chain(&rating.goal_factors);
             assert!(factors.clone().all(|p| (0.0..=1.0).contains(p)), "{rating:?}");
             chips += u32::from(rating.kick.is_chip());
-            // Who asks for more than there is gets nothing, who asks for less the same.
+            // A floor above the value gives nothing, a floor below it the same rating.
             let value = rating.value();
             assert_eq!(scene.rate_above(at, value), None);
             if value > 1e-30 {

@@ -9,7 +9,7 @@ fn who(colour: Colour, id: u8) -> Who {
     Who { colour, id: RobotId::new(id).unwrap() }
 }
 
-/// A pass by blue 1 from the middle to blue 2 at (2, 0), kicked at 0.2 s with 2.5 m/s; rolling evenly.
+/// A pass by blue 1 from the middle to blue 2 at (2, 0), kicked at 0.2 s with 2.5 m/s; at constant speed.
 struct Play {
     robots: Vec<(Who, Point<Field>)>,
     ball: Box<dyn Fn(f32) -> Seen>,
@@ -69,7 +69,7 @@ impl Play {
     }
 }
 
-/// Rolls along `direction` from 0.2 s on, until `stops` m; there it lies.
+/// Rolls along `direction` from 0.2 s on, until `stops` m, where it stops.
 fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
     move |time| {
         let along = Vector::new(direction.0, direction.1);
@@ -84,7 +84,7 @@ fn rolling(direction: (f32, f32), stops: f32) -> impl Fn(f32) -> Seen {
 fn a_ball_that_stops_at_the_receivers_mouth_is_received_in_time() {
     let verdict = Play::new(rolling((1.0, 0.0), 2.0)).verdict();
     let Verdict::Received { off, late } = verdict else { panic!("{verdict:?}") };
-    // 2 m take 0.8 s; the kick is known by the picture in which the ball has left the passer.
+    // 2 m take 0.8 s; the kick is known by the snapshot in which the ball has left the passer.
     assert!(off < 0.02 && late.abs() < 0.05, "{verdict:?}");
     assert!(verdict.is_success());
 }
@@ -99,7 +99,7 @@ fn a_ball_that_a_mate_stops_is_the_teams_but_not_the_receivers() {
 
 #[test]
 fn a_ball_that_an_opponent_turns_aside_is_intercepted_where_it_was() {
-    // At 1 m it goes off to the side.
+    // At 1 m it is deflected to the side.
     let play = Play::new(|time| {
         let way = (2.5 * (time - 0.2)).max(0.0);
         if way <= 1.0 {

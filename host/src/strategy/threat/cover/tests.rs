@@ -1,4 +1,4 @@
-//! Tests: the three placements stand where the paper says. Against rays and hand-computed places.
+//! Tests: the three placements are those of the paper. Compared with rays and hand-computed places.
 
 use super::super::super::view::tests::view;
 use super::super::angle::BODY;
@@ -13,7 +13,7 @@ fn at(league: League, threat: (f32, f32), available: usize) -> (View, Cover) {
     (view, cover)
 }
 
-/// Share of 2,000 shots from the threat to the mouth that meet nobody.
+/// Share of 2,000 shots from the threat to the goal opening that no body blocks.
 fn free_rays(view: &View, cover: &Cover) -> f32 {
     let (from, goal, width) = (cover.opening.from, view.our_goal(), view.field.goal_width);
     let bodies: Vec<_> = cover.primaries.iter().copied().chain([cover.keeper]).collect();
@@ -27,11 +27,11 @@ fn free_rays(view: &View, cover: &Cover) -> f32 {
 
 #[test]
 fn one_defender_suffices_where_the_open_angle_is_narrow() {
-    // From (−4.2, 2.5): the goal's angle is 3.5°, far below what a body takes at 1.4 m.
+    // From (−4.2, 2.5): the goal's angle is 3.5°, far below the angle of a body at 1.4 m.
     let (view, cover) = at(League::DivisionB, (-4.2, 2.5), 2);
     assert_eq!(cover.case, Case::Defender);
     assert_eq!(cover.keeper, view.our_goal() + Vector::new(0.125, 0.0));
-    // On the bisector: its direction from the threat is the opening's middle.
+    // It is on the bisector: its direction from the threat is the opening's middle.
     let off = (cover.opening.from.direction_to(cover.primaries[0]) - cover.opening.middle).abs();
     assert!(off < 1e-3 && cover.uncovered == 0.0 && free_rays(&view, &cover) == 0.0, "{cover:?}");
 }
@@ -45,7 +45,7 @@ fn a_defender_at_the_nearer_post_and_the_keeper_share_a_wider_one() {
     assert!((line.distance_to(cover.primaries[0]) - BODY).abs() < 1e-3, "{cover:?}");
     let far = Segment::new(cover.opening.from, Point::new(-3.0, -0.35));
     assert!(far.distance_to(cover.primaries[0]) < far.distance_to(Point::new(-3.0, 0.35)));
-    // The keeper is as far back as it can be: a centimetre farther back and something is left.
+    // The keeper is as far back as it can be: a centimetre farther back it would leave a gap.
     assert!(cover.uncovered < 1e-3 && free_rays(&view, &cover) < 0.005, "{cover:?}");
     let back = cover.keeper + (cover.keeper - cover.opening.from).unit().unwrap() * 0.03;
     let lazy = Cover { keeper: back, ..cover.clone() };
@@ -71,7 +71,8 @@ fn else_two_defenders_stand_on_the_bisectors_of_what_the_keeper_leaves() {
 #[test]
 fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
     let settings = Settings::default();
-    // A ball on the flank: one defender will take all; until it is there, the keeper is before the near post, not the middle.
+    // A ball on the flank: one defender will cover all; until it is there, the keeper is before the near
+    // post, not the middle.
     let (view, cover) = at(League::DivisionB, (-3.65, -1.89), 2);
     assert_eq!(cover.case, Case::Defender);
     let keeper = |body: Point<Attack>| cover.keeper_meanwhile(&view, [body].into_iter(), &settings);
@@ -79,12 +80,12 @@ fn while_the_primaries_are_not_there_yet_the_keeper_takes_what_they_leave() {
     let opening = cover.opening;
     let on_bisector = opening.shadow(away, f32::INFINITY).unwrap().middle().abs() < 1e-3;
     assert!(on_bisector && (-0.501..-0.3).contains(&away.y()), "{away:?}");
-    // Half there: what is left is on one side, and to there the keeper goes.
+    // Half there: the open part is on one side, and the keeper moves there.
     let half = cover.primaries[0] + Vector::new(0.1, 0.0);
     let left = opening.gaps([half].into_iter(), f32::INFINITY);
     let side = |at: Point<Attack>| (opening.from.direction_to(at) - opening.middle).radians();
     assert!(left.len() == 1 && side(keeper(half)) * left[0].middle() > 0.0, "{left:?} {:?}", keeper(half));
-    // There: the paper's place.
+    // At its place: the keeper's place is the paper's.
     assert_eq!(keeper(cover.primaries[0]), cover.keeper);
 }
 
@@ -126,7 +127,7 @@ fn what_is_left_open_is_what_rays_find_and_in_the_papers_world_it_is_nothing() {
         let threat = (-2.9 + column * 2.9, (row - 0.5) * 3.9);
         let (view, cover) = at(League::Ssl2013, threat, 2);
         if view.in_our_area(cover.opening.from, 0.35) {
-            continue; // the defenders stand behind or beside it there, where rays from it do not meet them
+            continue; // the defenders stand behind or beside it there, where rays from it do not reach them
         }
         let free = free_rays(&view, &cover);
         assert_eq!(
@@ -141,7 +142,7 @@ fn what_is_left_open_is_what_rays_find_and_in_the_papers_world_it_is_nothing() {
 
 #[test]
 fn a_placement_is_kept_while_fewer_bodies_suffice_only_just() {
-    // Walks outwards along a circle until one defender suffices without a memory, by a hair.
+    // Moves outwards along a circle until one defender barely suffices without a memory.
     let settings = Settings::default();
     let angle = |deg: f32| {
         let (s, c) = Angle::degrees(deg).sin_cos();
