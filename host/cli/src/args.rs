@@ -54,10 +54,10 @@ pub(crate) enum Verb {
     VirtualRobot(Box<VirtualRobotArgs>),
 }
 
-/// Whose cases, where every built-in league is meant unless a folder is named.
+/// Which libraries: every built-in league unless a directory is given.
 #[derive(Debug, Args)]
 pub(crate) struct FolderArgs {
-    /// One league's folder of case files, read now: `league.toml` and `<region>/<name>.toml`.
+    /// Directory of one league's case files, read now: `league.toml` and `<region>/<name>.toml`.
     #[arg(long, value_name = "DIR")]
     pub(crate) library: Option<PathBuf>,
 }
@@ -94,7 +94,7 @@ impl SettingsArgs {
         &self.assignments
     }
 
-    /// The defaults, changed as the command line says; the later of two assignments to a name stands.
+    /// The defaults, changed as the command line orders; of two assignments to a name the later one counts.
     pub(crate) fn choose(&self) -> Result<Chosen, Failure> {
         let mut settings = Settings::default();
         for (name, value) in &self.assignments {

@@ -17,16 +17,16 @@ use crate::output::{note, shown};
 /// One variant per thing the person can do something about.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// `--library` names no folder.
+    /// `--library` names no directory.
     NoFolder(PathBuf),
-    /// The case files in a folder are faulty.
+    /// The case files in a directory are faulty.
     FaultyLibrary {
-        /// The league's folder.
+        /// The league's directory.
         folder: PathBuf,
         /// What is wrong, errors among them.
         findings: Vec<Finding>,
     },
-    /// `--league` names none of the built-in leagues.
+    /// `--league` names no built-in league.
     UnknownLeague(String),
     /// A case asked for by a name or id that the library lacks.
     UnknownCase {
@@ -41,7 +41,7 @@ pub(crate) enum Failure {
     },
     /// A problem to draw cannot be read.
     Problem(String),
-    /// A picture of the retrieved case was asked for, and there is none.
+    /// A figure of the retrieved case was requested, and no case fits.
     NoCaseFits,
     /// A case to be drawn under a problem that defends the other goal.
     OtherGoal(String),
@@ -49,7 +49,7 @@ pub(crate) enum Failure {
     Setting {
         /// As given.
         assignment: String,
-        /// What retrieval says to it.
+        /// The error of the retrieval.
         error: SettingError,
     },
     /// A library without a case has nothing to count.
@@ -62,9 +62,9 @@ pub(crate) enum Failure {
     Game(String),
     /// A recording could not be written.
     Recording(String),
-    /// The robots' image or its emulator cannot be had.
+    /// The robots' firmware image or its emulator is not available.
     Firmware(String),
-    /// A picture could not be written.
+    /// A figure could not be written.
     Picture {
         /// Where to.
         file: PathBuf,
@@ -104,7 +104,7 @@ pub(crate) enum Failure {
     Recorded {
         /// Which.
         file: PathBuf,
-        /// What, and how to mend it.
+        /// What is wrong, and how to fix it.
         words: String,
     },
     /// What a verb on the league's networks cannot go on without.
@@ -124,7 +124,7 @@ impl Failure {
         Self::NoFolder(folder.to_owned())
     }
 
-    /// Says it on stderr. Whoever closed our stdout has read enough: that is a quiet end.
+    /// Prints it on stderr. A closed stdout is not an error: the reader has read enough.
     pub(crate) fn report(&self) -> ExitCode {
         if matches!(self, Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe) {
             return ExitCode::SUCCESS;
@@ -211,9 +211,9 @@ impl fmt::Display for Failure {
             Self::Threads(words) => write!(f, "cannot start threads: {words}; try --jobs 1"),
             Self::Recorded { file, words } => {
                 let file = shown(file);
-                // What is wrong may be told in the file's own words.
+                // The reason may quote the file's own text.
                 let words = printable(words);
-                // Some of what is said names the file already.
+                // Some reasons name the file already.
                 if words.starts_with(&file) { f.write_str(&words) } else { write!(f, "{file}: {words}") }
             }
             Self::Input(error) => write!(f, "cannot read stdin: {error}"),

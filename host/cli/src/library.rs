@@ -16,7 +16,7 @@ use crate::args::LibraryArgs;
 pub(crate) enum Shelf {
     /// Baked into this program; with the case base over its table, which is checked once.
     BuiltIn(&'static League, CaseBase<'static>),
-    /// Read from a folder. It stays until the program ends, so that the case base may lie beside it.
+    /// Read from a directory. It is kept until the program ends, because the case base borrows from it.
     Folder(&'static Library, CaseBase<'static>),
 }
 
@@ -54,7 +54,7 @@ impl Shelf {
         Ok(Self::Folder(library, library.base()))
     }
 
-    /// One league's folder.
+    /// One league's directory.
     pub(crate) fn read(folder: &Path) -> Result<Self, Failure> {
         if !folder.is_dir() {
             return Err(Failure::missing_folder(folder));
@@ -70,7 +70,7 @@ impl Shelf {
         Self::BuiltIn(league, league.base())
     }
 
-    /// The libraries meant where no single one needs to be named: the folder, or every built-in league.
+    /// The libraries if no single one is named: the directory, or every built-in league.
     pub(crate) fn all(folder: Option<&Path>) -> Result<Vec<Self>, Failure> {
         match folder {
             Some(folder) => Ok(vec![Self::read(folder)?]),
@@ -138,7 +138,8 @@ impl Shelf {
     }
 }
 
-/// Reads one league's folder; with a bar on a terminal's stderr where there are many files, and nothing in a pipe.
+/// Reads one league's directory; with a bar on a terminal's stderr where there are many files, and nothing in
+/// a pipe.
 pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
     let progress = ProgressBar::hidden();
     progress.set_style(ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -153,7 +154,7 @@ pub(crate) fn load(folder: &Path) -> Result<Library, Vec<Finding>> {
     library
 }
 
-/// Steps of a load from which on it takes long enough to be told of: half a thousand files.
+/// Number of load steps from which a progress bar is drawn: half a thousand files.
 const MANY: usize = 1000;
 /// Drawn on a terminal's stderr only.
 const BAR: &str = "reading the library {bar:40} {percent} %";

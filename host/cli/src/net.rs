@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use ssl::net::{Datagram, Interfaces, NetError, Port, Receiver, Sender};
 
-/// Speaks to an address; what fails is told once, not a thousand times a second.
+/// Sends to an address; an error is reported once, not a thousand times a second.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     to: SocketAddr,
@@ -18,7 +18,7 @@ pub(crate) struct Mouth {
 }
 
 impl Mouth {
-    /// Nothing is opened before something is said.
+    /// The socket is opened with the first datagram.
     pub(crate) fn new(to: SocketAddr, by: Option<&str>) -> Self {
         Self { to, by: by.map(str::to_owned), sender: None, troubled: false, sent: 0 }
     }
@@ -36,7 +36,8 @@ impl Mouth {
         }
     }
 
-    /// Sends; gives words for people where something began to fail, or goes another way than was asked for.
+    /// Sends; returns a message for the operator where sending starts to fail, recovers, or uses another
+    /// interface than requested.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> Option<String> {
         let words = match self.try_send(bytes) {
             Ok(()) => return self.works(),
@@ -78,7 +79,7 @@ impl Mouth {
     }
 }
 
-/// Hears an address: a group beside other programs, or a port of its own.
+/// Receives from an address: a multicast group shared with other programs, or a port of its own.
 #[derive(Debug)]
 pub(crate) enum Ear {
     /// A multicast group.
@@ -104,7 +105,7 @@ impl Ear {
         }
     }
 
-    /// By which way it hears, in words.
+    /// How it receives, as text.
     pub(crate) fn words(&self) -> String {
         match self {
             Self::Group(receiver) => {

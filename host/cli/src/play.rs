@@ -1,6 +1,6 @@
 //! `onetwo play`: a whole match in the simulator, ours against ours or another team (docs/case-format.md §5).
-//! Shown on the page at the clock's pace;
-//! `--headless` as fast as the machine plays it, told line by line, or as one JSON object.
+//! Displayed on the page at the clock's pace; `--headless` as fast as the machine plays it, printed line by
+//! line, or as one JSON object.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
@@ -30,7 +30,8 @@ use crate::stop::{signal, stopped_by_hand};
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct PlayArgs {
-    /// Without the page: a match is told on the terminal, as fast as the machine plays it.
+    /// Without the page: events are printed on the terminal, and the match runs as fast as the machine plays
+    /// it.
     #[arg(long)]
     headless: bool,
     #[command(flatten)]
@@ -51,13 +52,13 @@ pub(crate) struct PlayArgs {
     /// weak-kickers or random:SEED (docs/fields.md).
     #[arg(long, value_name = "WORLD", default_value_t)]
     world: WorldChoice,
-    /// Who plays blue: ours, reactive, marking, zone or idle.
+    /// Blue team: ours, reactive, marking, zone or idle.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
     blue: Team,
-    /// Who plays yellow.
+    /// Yellow team.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = team)]
     yellow: Team,
-    /// Robots of each team; the league's number unless told.
+    /// Robots of each team; the league's number by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=11))]
     robots: Option<u8>,
     /// What ours plays of the second paper as yellow: none, all, usual, or names such as threats,pass-ahead.
@@ -287,7 +288,7 @@ fn tell(out: &mut impl Write, args: &PlayArgs, report: &GameReport) -> io::Resul
     writeln!(out, "trace {}, to see it again: onetwo play --seed {}{words}", report.trace_hash, args.seed)
 }
 
-/// Tells the story on stdout, or how far it is on a terminal where only the report is wanted.
+/// Prints events on stdout, or the progress on a terminal where only the report is wanted.
 struct Teller {
     story: Option<GameStory>,
     bar: ProgressBar,
@@ -317,7 +318,7 @@ impl Watcher for Teller {
             story.tick(game);
             let mut out = output::lines();
             for line in story.take_lines() {
-                // A reader who has had enough ends the program with the report's own write.
+                // A closed stdout is detected when the report is written.
                 let _ = writeln!(out, "{line}");
             }
             let _ = out.flush();

@@ -15,16 +15,16 @@ use crate::library::Shelf;
 /// The attackers' set-up.
 #[derive(Debug, Args)]
 pub(crate) struct SetupArgs {
-    /// When a case's actions begin.
+    /// When a case's actions start.
     #[arg(long, value_enum, default_value_t = PositioningWord::Dependent)]
     positioning: PositioningWord,
-    /// How many robots may retrieve; all unless told.
+    /// Number of robots that may retrieve; all by default.
     #[arg(long, value_parser = clap::value_parser!(u8).range(1..=4))]
     retrievers: Option<u8>,
     /// Share of packets lost, 0 to 1.
     #[arg(long, default_value_t = 0.0, value_parser = share)]
     loss: f32,
-    /// Without the mirror images of cases: only authored ones are known.
+    /// Without the mirrored copies of cases: only authored ones are known.
     #[arg(long)]
     no_symmetry: bool,
     /// Without the opponents of cases: they neither ask for them nor rank by them.
@@ -46,7 +46,7 @@ enum PositioningWord {
 }
 
 impl SetupArgs {
-    /// As the flags say, for a team of so many robots.
+    /// The setup of the flags, for a team of this number of robots.
     pub(crate) fn choose(&self, robots: usize) -> Result<Setup, Failure> {
         Ok(Setup {
             settings: self.settings.choose()?.settings,
@@ -68,12 +68,12 @@ impl SetupArgs {
         Ok(shelf)
     }
 
-    /// Does the image of the firmware hold the cases?
+    /// Whether the firmware contains the cases.
     pub(crate) fn is_built_in(&self) -> bool {
         self.library.folder.library.is_none() && !self.no_symmetry && !self.no_opponents
     }
 
-    /// Whose cases, in a word: a league's name, or the folder.
+    /// Name of the library: a league's name, or the directory.
     pub(crate) fn library_word(&self) -> String {
         match &self.library.folder.library {
             Some(folder) => folder.display().to_string(),
@@ -131,7 +131,7 @@ pub(crate) fn refuse_other_fields(shelf: &Shelf) -> Result<(), Failure> {
     }
 }
 
-/// The words of scenarios, as flags take them.
+/// Parses a scenario, as flags take it.
 pub(crate) fn scenario(word: &str) -> Result<hil_sim::Scenario, String> {
     hil_sim::Scenario::from_word(word).ok_or_else(|| "take 1, 2, 3, 4 or random".to_owned())
 }

@@ -1,5 +1,5 @@
-//! `stop`: Ctrl-C and SIGTERM. Whoever runs for long looks now and then, and ends in order; a second time
-//! ends it at once.
+//! `stop`: Ctrl-C and SIGTERM. Long-running verbs poll the flag, and end in order; a second signal ends the
+//! program at once.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};

@@ -1,5 +1,5 @@
-//! `onetwo trial`: one trial of the paper, told, reported or drawn (Ros et al. 2009 §5.1;
-//! docs/case-format.md §5.2).
+//! `onetwo trial`: one trial of the paper, printed as events, as a report or as a figure (Ros et al. 2009
+//! §5.1; docs/case-format.md §5.2).
 
 use std::fs;
 use std::io::Write;
@@ -23,7 +23,7 @@ use crate::setup::{SetupArgs, opponents, profile, scenario};
 /// What decides a trial.
 #[derive(Debug, Args)]
 pub(crate) struct TrialArgs {
-    /// Where everybody stands: the paper's 1 to 4, or random.
+    /// Start positions: the paper's 1 to 4, or random.
     #[arg(long, default_value = "3", value_parser = scenario)]
     scenario: Scenario,
     /// Defender and goalie, or two defenders.
@@ -75,7 +75,7 @@ enum ApproachWord {
 enum BackendWord {
     /// In this process.
     Native,
-    /// As the firmware image, each robot in a QEMU of its own.
+    /// As the firmware, each robot in a QEMU of its own.
     Qemu,
 }
 
@@ -145,7 +145,7 @@ fn play(args: &TrialArgs, watchers: &mut [&mut dyn Watcher]) -> Result<TrialRepo
     arena::run(&config, backend, watchers).map_err(Failure::Trial)
 }
 
-/// QEMU with a fresh image; a library of one's own goes into the robots' flash beside it.
+/// QEMU with freshly built firmware; the user's own library goes into the robots' flash beside it.
 fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
     firmware_build::ensure_qemu(Install::ForUser).map_err(|error| Failure::Firmware(error.to_string()))?;
     let image = firmware_build::build_image(&firmware_build::workspace_root(), firmware_build::Body::Legged)
@@ -158,7 +158,7 @@ fn qemu(args: &TrialArgs, shelf: &Shelf) -> Result<QemuBackend, Failure> {
 }
 
 impl TrialArgs {
-    /// The command that shows the same trial again.
+    /// The command that replays the same trial.
     fn again(&self, report: &TrialReport) -> String {
         use std::fmt::Write as _;
         let mut words = format!(

@@ -1,5 +1,6 @@
-//! `onetwo virtual-robot`: one robot's brain as a process, in any simulator of the league. Not for people: `control` starts it
-//! for each robot of `--robots sim://HOST`; by hand it helps to see why one does not run.
+//! `onetwo virtual-robot`: one robot's brain as a process, in any simulator of the league. Not for direct
+//! use: `control` starts it for each robot of `--robots sim://HOST`; by hand it helps to find out why one
+//! does not run.
 
 use std::io::{self, BufRead as _};
 use std::net::{SocketAddr, ToSocketAddrs as _};
@@ -23,7 +24,7 @@ use crate::args::{FolderArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::note;
 
-/// Who it is and whom it speaks with.
+/// The robot's identity and its addresses.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArgs {
     /// Its number, 0 to 15.
@@ -35,13 +36,13 @@ pub(crate) struct VirtualRobotArgs {
     /// What it plays: ssl-2013, division-b or division-a.
     #[arg(long, value_parser = league, default_value = "division-b")]
     league: League,
-    /// Who commands it, as HOST:PORT.
+    /// Its host, as HOST:PORT.
     #[arg(long, value_parser = address)]
     host: SocketAddr,
     /// The simulator, as HOST or HOST:PORT; without a port the league's for its team, 10301 blue, 10302 yellow.
     #[arg(long, value_name = "HOST[:PORT]")]
     simulator: String,
-    /// The goal its team defends until its host says which.
+    /// The goal its team defends until its host sends it.
     #[arg(long, value_parser = goal, default_value = "yellow", value_name = "yellow|cyan")]
     defending: GoalEnd,
     /// The file of the team's key; left out: a key of zeros.

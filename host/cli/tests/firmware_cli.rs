@@ -19,7 +19,7 @@ fn onetwo(arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// A folder of this test's own; gone with this value.
+/// A directory of this test's own; removed with this value.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -36,7 +36,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A temporary folder that stays is a pity, not an error.
+        // A temporary directory that remains is not an error.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

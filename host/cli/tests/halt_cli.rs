@@ -28,13 +28,13 @@ use ssl::vision::{DetectionBall, DetectionFrame, DetectionRobot, WrapperPacket};
 const PATIENCE: Duration = Duration::from_mins(1);
 /// HALT takes this long at most on a machine that is loaded; 1.2 to 9.3 s before queues were bounded.
 const HALT_MAX: Duration = Duration::from_millis(500);
-/// Resident memory may grow by so much under a flood, bytes; 465 MB before.
+/// Resident memory may grow by at most this under a flood, bytes; 465 MB before.
 const GROWTH_MAX: u64 = 24 << 20;
 /// A gigabit network, bytes a second.
 const LINE_RATE: u64 = 125_000_000;
 const KEY: [u8; 16] = [0x5a; 16];
 
-/// `onetwo control` with its referee, vision and base station in the test's hands.
+/// `onetwo control` with its referee, vision and base station simulated by the test.
 struct Field {
     process: Child,
     lines: Receiver<String>,
@@ -78,7 +78,7 @@ impl Field {
         Self { process, lines, said: Vec::new(), vision, referee }
     }
 
-    /// Waits for a line with all of these words.
+    /// Waits for a line that contains all of `words`.
     fn says(&mut self, words: &[&str]) -> String {
         let until = Instant::now() + PATIENCE;
         loop {
@@ -172,7 +172,7 @@ fn packet(identifier: &str, command: Wire, counter: u32) -> Vec<u8> {
     packet.encode_to_vec()
 }
 
-/// A camera frame with six robots a team and so many balls.
+/// A camera frame with six robots a team and `balls` balls.
 fn camera_frame(number: u32, balls: usize) -> Vec<u8> {
     let robot = |id: u32, y: f32| DetectionRobot {
         confidence: 1.0,
@@ -230,7 +230,7 @@ impl Robots {
         protocol::Instant(self.began.elapsed().as_micros() as u64)
     }
 
-    /// Takes a frame of the host: whether it says HALT, where it says anything of the phase.
+    /// Takes a frame of the host: whether its phase is HALT, if it has a phase.
     fn receive(&mut self, frame: &[u8]) -> Option<bool> {
         let now = self.now();
         for link in &mut self.links {
@@ -261,7 +261,7 @@ impl Robots {
     }
 }
 
-/// What the base station receives: whether the newest frame says HALT, and when.
+/// What the base station receives: whether the newest frame is a HALT, and when.
 fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     let socket = socket("127.0.0.1:0");
     let (send, frames) = channel();
@@ -282,7 +282,7 @@ fn station() -> (SocketAddr, Receiver<(Instant, bool)>) {
     (address, frames)
 }
 
-/// Waits for a frame that says HALT, or one that does not, sent after `since`.
+/// Waits for a frame that is a HALT, or one that is not, sent after `since`.
 fn wait_for(frames: &Receiver<(Instant, bool)>, halt: bool, since: Instant) -> Duration {
     let until = Instant::now() + PATIENCE;
     loop {

@@ -80,7 +80,7 @@ fn json(arguments: &[&str], code: i32) -> Value {
     serde_json::from_slice(&out.stdout).expect("one JSON value on stdout and nothing else")
 }
 
-/// A recorded match of that many seconds.
+/// A recorded match of `seconds` seconds.
 fn recorded(name: &str, seconds: &str) -> PathBuf {
     let stem = scratch(name);
     let out = onetwo(&["play", "--headless", "--duration", seconds, "--record", text(&stem)]);
@@ -385,7 +385,7 @@ fn special_files_are_refused_by_what_they_are_wherever_a_file_is_read() {
             let out = onetwo(&arguments);
             let words = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
             assert_ne!(out.status.code(), Some(0), "{arguments:?}: {words}");
-            // Some verbs have no such flag for files: clap's own word is 2.
+            // Some verbs have no such flag for files: clap exits with 2.
             if out.status.code() == Some(1) {
                 let kind = if special.starts_with("/dev") { "this is a device" } else { "this is a pipe" };
                 assert!(words.contains(kind), "{arguments:?}: {words}");

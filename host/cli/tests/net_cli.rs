@@ -22,7 +22,7 @@ fn socket() -> UdpSocket {
     socket
 }
 
-/// A port nobody has at the moment.
+/// A port that is free at the moment.
 fn free() -> String {
     socket().local_addr().expect("an address").to_string()
 }
@@ -161,7 +161,7 @@ fn brains_of_our_own_take_their_places_for_the_kickoff() {
     let control = ["control", "--robots", &robots, "--tracker", &to, "--duration", "60"];
     let mut control = Running::start(&[&control[..], &["--vision", &vision, "--referee", &referee]].concat());
     control.says("robots are heard");
-    // Blue begins within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
+    // Blue starts within 1.5 m of the halfway line; the keeper has 3 m to go to its goal at −x.
     let (until, mut bytes) = (Instant::now() + PATIENCE, [0; 8192]);
     let mut places = Vec::new();
     while Instant::now() < until {

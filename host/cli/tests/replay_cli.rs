@@ -127,7 +127,7 @@ fn cut_and_foreign_files_are_told_with_their_place() {
     assert!(refused(&[&recording("grsim_divB_22s.log.gz"), "--check"]).contains("no trace"));
 }
 
-/// A trace of a host that hears a recording, as a match writes it.
+/// A trace of a host that receives a recording, as a match writes it.
 fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
     let settings = HostSettings::new(Colour::Blue, League::DivisionB, 7);
     let header = RecordingHeader {
@@ -154,7 +154,7 @@ fn trace(name: &str, change: impl Fn(&mut Vec<u8>, usize)) -> String {
             _ => continue,
         };
         let at = Instant(number * 5_000);
-        // Before a packet of the referee stands who sent it.
+        // A packet of the referee is preceded by its sender.
         let sender = SenderAddress::INTERNAL.to_bytes();
         let sender = if kind == Kind::Referee { &sender[..] } else { &[] };
         writer.write(at, 0, kind, &[sender, &record.payload]).expect("memory");

@@ -19,7 +19,7 @@ use super::answer::write_line;
 use super::counted;
 use super::survey;
 
-/// What `cases check` may be told.
+/// Arguments of `cases check`.
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
     #[command(flatten)]
@@ -36,7 +36,7 @@ pub(crate) struct CheckArgs {
     /// The draw: the same seed gives the same problems.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Say what a code of a finding means, or `all` of them, and check nothing.
+    /// Explain a code of a finding, or `all` of them, and check nothing.
     #[arg(long, value_name = "CODE", value_parser = known_code)]
     explain: Option<String>,
 }
@@ -93,7 +93,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<ExitCode, Failure> {
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// What only drawn problems tell; the same for any number of threads.
+/// Findings that only drawn problems reveal; the same for any number of threads.
 fn doubts_of_draw(library: &Library, args: &CheckArgs) -> Result<Vec<Finding>, Failure> {
     let fail = |error: casebase::SettingError| Failure::Survey(error.to_string());
     let (survey, sampler) = (library.survey().map_err(fail)?, library.sampler(args.seed));

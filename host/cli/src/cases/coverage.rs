@@ -18,7 +18,7 @@ use crate::Failure;
 use crate::output;
 use crate::picture;
 
-/// What `cases coverage` may be told.
+/// Arguments of `cases coverage`.
 #[derive(Debug, Args)]
 pub(crate) struct CoverageArgs {
     #[command(flatten)]
@@ -29,10 +29,10 @@ pub(crate) struct CoverageArgs {
     /// One JSON object instead of maps and tables.
     #[arg(long)]
     json: bool,
-    /// Write the map as a picture (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
+    /// Write the map as a figure (FILE.svg, FILE.png), or every cell as a table (FILE.csv).
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     out: Option<PathBuf>,
-    /// What the picture shows.
+    /// What the figure displays.
     #[arg(long, value_enum, default_value = "holes")]
     map: Map,
 }

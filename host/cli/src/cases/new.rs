@@ -1,6 +1,6 @@
 //! `onetwo cases new`: draft of a case for a situation. One problem in, a case file out, to author from. It
-//! passes `cases check` and is retrieved from its problem; what it leaves out of the problem is told on
-//! stderr.
+//! passes `cases check` and is retrieved from its problem; the parts of the problem that it leaves out are
+//! reported on stderr.
 
 use std::fs::OpenOptions;
 use std::io::{self, Read, Write, stdin};
@@ -17,13 +17,13 @@ use crate::Failure;
 use crate::args::LibraryArgs;
 use crate::output::{note, say, shown};
 
-/// What `cases new` may be told.
+/// Arguments of `cases new`.
 #[derive(Debug, Args)]
 pub(crate) struct NewArgs {
     /// The situation: a file with one problem, or - for stdin.
     #[arg(long, value_name = "FILE|-")]
     from: PathBuf,
-    /// The file to write: `<region>/<name>.toml` in a league's folder; stdout unless told.
+    /// The file to write: `<region>/<name>.toml` in a league's directory; stdout by default.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Write over a file that is there.

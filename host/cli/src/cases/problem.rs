@@ -34,7 +34,7 @@ pub(crate) fn parse(line: &str) -> Result<Problem, Malformed> {
     })
 }
 
-/// As much of a place as is shown, characters: a key of the line may be as long as the line.
+/// Longest place that is printed, characters: a key of the line may be as long as the line.
 const PLACE_LEN: usize = 60;
 
 /// Why a line holds no problem.

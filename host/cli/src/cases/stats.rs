@@ -15,7 +15,7 @@ use super::survey::{SurveyArgs, Trial, class, percent};
 use crate::Failure;
 use crate::output;
 
-/// What `cases stats` may be told.
+/// Arguments of `cases stats`.
 #[derive(Debug, Args)]
 pub(crate) struct StatsArgs {
     #[command(flatten)]
@@ -267,11 +267,12 @@ fn object(words: &[&str], counts: &[u64]) -> Value {
         .into()
 }
 
-/// Fewer wins than one in so many times candidate: another case plays nearly all of its problems.
+/// A case with fewer wins than one in this number of candidacies is shadowed: another case wins nearly all of
+/// its problems.
 const SHADOWED: u64 = 50;
 /// Problems that make a hint: fewer may be chance.
 const EVIDENCE: u64 = 20;
-/// A larger scope is worth a hint where it fills one in so many of the problems without a case.
+/// A larger scope is worth a hint where it fills at least one in this number of the problems without a case.
 const WORTH_ENLARGING: u64 = 25;
 /// Jaccard's index of coverage sets from which two cases are nearly one.
 const NEAR_TWINS: f64 = 0.8;

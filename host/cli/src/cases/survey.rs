@@ -18,7 +18,7 @@ use crate::args::{Chosen, LibraryArgs, SettingsArgs};
 use crate::library::Shelf;
 use crate::output::shown;
 
-/// What both verbs may be told.
+/// Arguments of both verbs.
 #[derive(Debug, Args)]
 pub(crate) struct SurveyArgs {
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub(crate) struct SurveyArgs {
     /// Only the first N robots of each problem are present.
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=11))]
     teammates: Option<u8>,
-    /// How many threads work; as many as there are cores unless told. The answer is the same.
+    /// Number of threads; the number of cores by default. The answer is the same.
     #[arg(long, value_name = "J", value_parser = value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Edge of a cell, mm; a cell holds the balls that are counted together.
@@ -160,7 +160,7 @@ pub(crate) fn percent(part: u64, whole: u64) -> f64 {
     (1000.0 * part as f64 / whole.max(1) as f64).round() / 10.0
 }
 
-/// Region of a case's name: its folder.
+/// Region of a case's name: its directory.
 pub(crate) fn region(name: &str) -> &str {
     name.split_once('/').map_or(name, |(region, _)| region)
 }

@@ -9,15 +9,15 @@ use super::inbox::Dropped;
 
 /// An alarm that lasts is printed again after this.
 const AGAIN: Duration = Duration::millis(10_000);
-/// One that was away for so long is a new one.
+/// A robot that was missing for longer than this counts as a new one.
 const FORGOTTEN: Duration = Duration::millis(10_000);
-/// Drops and the line's lateness are shown for so long after the last.
+/// Drops and the line's lateness are displayed for this long after the last one.
 const LASTS: Duration = Duration::millis(3_000);
 
 /// Something that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Alarm {
-    /// What it is about: words change with figures, this does not.
+    /// What the alarm is about: its text changes with the figures, this key does not.
     matter: String,
     words: String,
     /// It is printed again while it lasts.
@@ -30,7 +30,7 @@ pub(super) struct Alarms {
     sanity: Sanity,
     printed: Vec<(String, Instant, Instant)>,
     dropped: Dropped,
-    /// What was dropped lately, and until when that is shown.
+    /// What was dropped recently, and until when that is displayed.
     drops: Vec<(&'static str, u64, Instant)>,
     slow: Option<(String, Instant)>,
     now: Vec<String>,
@@ -52,7 +52,7 @@ impl Alarms {
         &self.now
     }
 
-    /// Looks at everything; gives the lines to print. `vision` says where vision is received.
+    /// Checks all alarms; returns the lines to print. `vision` is where vision is received.
     pub(super) fn look(
         &mut self,
         now: Instant,

@@ -1,7 +1,8 @@
-//! The desk: whatever comes by the channel goes to the host with the time of a monotonic clock, and what the host says goes out.
+//! Event loop of `onetwo control`: feeds what arrives on the channel to the host, with the time of a
+//! monotonic clock, and sends the host's packets.
 //!
-//! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock, which shows 0 when
-//! the program starts.
+//! Event-driven: it waits for mail or for the host's deadline, whichever is first. Times on the host's clock,
+//! which is 0 when the program starts.
 
 use std::ffi::OsString;
 use std::io;
@@ -44,9 +45,10 @@ use crate::stop::stopped_by_hand;
 
 /// Looks at what is missing, and at Ctrl-C, at least this often.
 const LOOK: Duration = Duration::from_millis(100);
-/// HALT is sent so long before the program ends: thirty pictures, so that a lossy radio brings one of them.
+/// HALT is sent for this time before the program ends: thirty snapshots, so that one of them arrives over a
+/// lossy radio.
 const HALTING: Duration = Duration::from_millis(300);
-/// A longer file is none of settings, bytes.
+/// A longer file is not read as a settings file, bytes.
 const LEARNED_LEN_MAX: u64 = 1 << 20;
 /// One HALT after the other.
 const HALT_EVERY: Duration = Duration::from_millis(10);
@@ -59,7 +61,7 @@ pub(super) struct Keeps<'p> {
     pub(super) learned: Option<&'p Path>,
 }
 
-/// Runs until somebody ends it.
+/// Runs until the operator ends it.
 pub(super) fn run(
     config: &TeamConfig,
     learns: bool,
@@ -178,8 +180,7 @@ pub(super) fn run(
     Ok(ExitCode::SUCCESS)
 }
 
-/// With what the host begins; its clock shows 0 now.
-/// What was learned goes to that file; words about it.
+/// Saves the learned values to the file `path`; returns a message for the operator.
 fn keep_learned(path: &Path, learned: &Learned) -> String {
     let write = || -> io::Result<()> {
         let before = match foreign::read_text(path, LEARNED_LEN_MAX) {
@@ -313,7 +314,7 @@ impl Desk {
         }
     }
 
-    /// One input, then what the host says to it.
+    /// Feeds one input to the host, then handles its output.
     fn tell(&mut self, now: protocol::Instant, input: Input<'_>) -> Verdict {
         if let Some(recorder) = &mut self.recorder {
             let heard = match input {
@@ -356,7 +357,7 @@ impl Desk {
         self.out.lock().unwrap_or_else(PoisonError::into_inner).push(batch, self.host.is_halting());
     }
 
-    /// The moment on the page, and HALT if somebody there asks for it.
+    /// Sends the scene to the page, and HALT if a viewer asks for it.
     fn show(&mut self) {
         let now = self.now();
         let Some(board) = &mut self.board else { return };
@@ -421,7 +422,7 @@ impl Desk {
         }
     }
 
-    /// Robots stand before nobody leads them any more.
+    /// Halts the robots before the program stops controlling them.
     fn halt(&mut self) {
         let began = Instant::now();
         while began.elapsed() < HALTING {

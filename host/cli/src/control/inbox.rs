@@ -18,7 +18,7 @@ use super::threads::Source;
 pub(super) const VISION_LEN_MAX: usize = 10_240;
 /// The longest packet of the referee, bytes: the controller sends 0.6 to 4 kB, with every game event it keeps.
 pub(super) const REFEREE_LEN_MAX: usize = 16_384;
-/// Camera frames that wait: 0.1 s of eight cameras at 80 Hz. Older ones say nothing that newer ones do not say better.
+/// Camera frames that wait: 0.1 s of eight cameras at 80 Hz. Newer frames supersede older ones.
 const VISION_MAX: usize = 64;
 /// Packets of the referee that wait: more than a second of it.
 const REFEREE_MAX: usize = 64;
@@ -26,8 +26,8 @@ const REFEREE_MAX: usize = 64;
 const ROBOTS_MAX: usize = 256;
 /// Notes for the operator that wait.
 const NOTES_MAX: usize = 256;
-/// So many referee's packets and robots' frames are handled in a row while camera frames wait: a flood of one kind shall not
-/// blind the robots altogether.
+/// Most referee packets and robot frames that are handled in a row while camera frames wait: a flood of one
+/// kind must not block vision.
 const URGENT_IN_ROW: u32 = 32;
 
 /// What comes to the event loop.
@@ -35,7 +35,7 @@ const URGENT_IN_ROW: u32 = 32;
 pub(super) enum Mail {
     /// A datagram of the vision.
     Vision(Vec<u8>),
-    /// A datagram of the referee, and who sent it.
+    /// A datagram of the referee, and its sender.
     Referee(Vec<u8>, SenderAddress),
     /// A frame of a robot.
     Robot(Packet),

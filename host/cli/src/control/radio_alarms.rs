@@ -4,10 +4,10 @@
 use host::radio::{Radio, RadioWarning};
 use protocol::{Duration, Instant};
 
-/// What lasts is said again after this.
+/// A lasting problem is reported again after this.
 const AGAIN: Duration = Duration::millis(10_000);
 
-/// What was said when.
+/// What was reported, and when.
 #[derive(Debug, Default)]
 pub(super) struct RadioAlarms {
     said: Vec<(RadioWarning, Instant)>,

@@ -1,5 +1,6 @@
-//! `terminal`: lines and status for the operator, printed by a thread of their own: a terminal that is stopped (Ctrl-S, a full
-//! pipe) must not stop whoever leads robots. What does not fit into [`LINES_MAX`] is dropped and counted.
+//! `terminal`: lines and status for the operator, printed by a thread of their own: a terminal that is
+//! stopped (Ctrl-S, a full pipe) must not stop the thread that controls robots. What does not fit into
+//! [`LINES_MAX`] is dropped and counted.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};

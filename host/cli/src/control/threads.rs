@@ -21,7 +21,7 @@ pub(super) enum Source {
 }
 
 impl Source {
-    /// As people call it.
+    /// Name for the operator.
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Vision => "vision",
@@ -35,21 +35,22 @@ impl Source {
 const LOOK: Duration = Duration::from_millis(100);
 /// What could not be opened is tried again after this.
 const AGAIN: Duration = Duration::from_secs(1);
-/// A link that fails again and again is told of this often.
+/// A link that fails repeatedly is reported this often.
 const TROUBLE_EVERY: Duration = Duration::from_secs(10);
-/// The link's thread waits so long for robots before it looks for what is to be sent: a tenth of a picture's period.
+/// The link's thread waits at most this long for robots before it checks for frames to send: a tenth of a
+/// snapshot's period.
 const LINK_WAIT: Duration = Duration::from_millis(1);
 
 /// Whether a line keeps up is looked at this often.
 const PACE_EVERY: Duration = Duration::from_secs(1);
-/// One of so many snapshots may be replaced by a newer one: threads are late now and then.
+/// One in this number of snapshots may be replaced by a newer one: threads are late now and then.
 const SPARED: u64 = 20;
 /// Rates that adapters have, bit/s.
 const RATES: [u64; 7] = [115_200, 230_400, 460_800, 921_600, 1_000_000, 2_000_000, 3_000_000];
-/// At the end the last frames have so long to go out.
+/// Time for the last frames to be sent at the end.
 const AT_END: Duration = Duration::from_millis(200);
 
-/// Hears `address` until `end`.
+/// Receives on `address` until `end`.
 pub(super) fn hear(
     source: Source,
     address: SocketAddr,
@@ -179,7 +180,7 @@ impl Pace {
         Self { since: Instant::now(), before: OutCounts::default() }
     }
 
-    /// Words where the line did not keep up in the last second, with the rate it needs.
+    /// A message if the line did not keep up in the last second, with the rate it needs.
     fn look(&mut self, link: &dyn Link, frames: &Mutex<Outbox>) -> Option<String> {
         let passed = self.since.elapsed();
         if passed < PACE_EVERY {
@@ -192,7 +193,7 @@ impl Pace {
     }
 }
 
-/// Words for a line that dropped more than [`SPARED`] of its snapshots between two counts.
+/// A message for a line that dropped more than one in [`SPARED`] of its snapshots between two counts.
 fn too_slow(line: &LineRate, before: OutCounts, counts: OutCounts, passed: Duration) -> Option<String> {
     let lost = counts.superseded - before.superseded;
     let offered = counts.snapshots - before.snapshots;

@@ -46,15 +46,15 @@ pub(super) struct MatchesArgs {
     /// Where all chance comes from.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Who plays against the opponents; as they are named there.
+    /// The team that plays against the opponents; named as they are.
     #[arg(long, value_name = "TEAM", default_value = "ours", value_parser = Entrant::parse)]
     team: Entrant,
-    /// Against whom, with commas between: reactive, marking, zone (these three unless told), idle, ours, or ours with other
-    /// tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
+    /// Opponents, with commas between: reactive, marking, zone (these three by default), idle, ours, or ours
+    /// with other tactics, such as ours-without-second-level or ours-with-coerce+pass-ahead.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = Entrant::parse)]
     opponents: Vec<Entrant>,
-    /// Our team with one part of the second paper more or less, for each part: what is it worth? Instead of the opponents, or
-    /// beside those that are named, or one more each in the round robin.
+    /// Measure what each part of the second paper is worth: our team with one part more or less, for each
+    /// part. Instead of the opponents, or beside those that are named, or one more each in the round robin.
     #[arg(long)]
     ablations: bool,
     /// Each team against each: ours and the opponents.
@@ -63,10 +63,11 @@ pub(super) struct MatchesArgs {
     /// Every n-th match from the i-th on, for a cluster; `--merge` puts the shards together.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = work::shard, conflicts_with = "merge")]
     shard: Shard,
-    /// Plays nothing: puts the shards together that were written to this folder; may be repeated.
+    /// Play nothing: merge the shards that were written to this directory; may be repeated.
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
-    /// Put the tables between the markers of this Markdown file, and the plots into a folder of its name beside it.
+    /// Put the tables between the markers of this Markdown file, and the plots into a directory of its name
+    /// beside it.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
     /// Which markers: those of that name.
@@ -137,7 +138,7 @@ impl MatchesArgs {
         }
     }
 
-    /// Writes `matches.csv`, `matches.json` and the plots, and says the tables.
+    /// Writes `matches.csv`, `matches.json` and the plots, and prints the tables.
     fn finish(&self, made: &Made<'_>, folder: &Path) -> Result<ExitCode, Failure> {
         write(&folder.join("matches.csv"), &made.csv)?;
         write(&folder.join("matches.json"), &made.json()?)?;
@@ -201,7 +202,7 @@ impl<'a> Made<'a> {
         vec![named("ratios", plot(&self.outcomes)), named("calibration", calibration_plot(&self.passes))]
     }
 
-    /// For a document, whose pictures lie in the folder `beside`.
+    /// For a document whose figures are in the directory `beside`.
     fn text(&self, beside: &str, section: &str) -> String {
         let MatchIdentity { plan, case_base, program, .. } = self.identity;
         let cases = if case_library::league(&plan.league).is_some() {

@@ -1,5 +1,6 @@
-//! `onetwo firmware provision`: writes the page of 64 bytes that tells a robot its number, its team and its own keys, derived from the
-//! team's; `onetwo firmware flash --page` puts it beside the image (docs/architecture.md §6.1).
+//! `onetwo firmware provision`: writes the page of 64 bytes with a robot's number, its team and its own keys,
+//! derived from the team's; `onetwo firmware flash --page` puts it beside the firmware (docs/architecture.md
+//! §6.1).
 
 use std::fs;
 use std::io::Write as _;
@@ -14,13 +15,13 @@ use super::{at, failed};
 use crate::Failure;
 use crate::output::{note, say};
 
-/// Who the robot shall be.
+/// The robot's identity.
 #[derive(Debug, Args)]
 pub(crate) struct ProvisionArgs {
     /// Its number, 0–15.
     #[arg(long, value_name = "N")]
     robot: u8,
-    /// Its team's number on the air.
+    /// Its team's number on the radio.
     #[arg(long, value_name = "N")]
     team: u8,
     /// What it plays.
@@ -34,7 +35,7 @@ pub(crate) struct ProvisionArgs {
     out: PathBuf,
 }
 
-/// A league by its word.
+/// Name of a league.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum LeagueWord {
     /// The four-legged league of 2007.
@@ -91,7 +92,7 @@ fn write_for_owner(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     #[cfg(unix)]
     std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
     let mut file = options.open(path)?;
-    // The mode above is for new files; one that was there keeps its own until told.
+    // The mode above is for new files; an existing file keeps its own until it is set here.
     #[cfg(unix)]
     file.set_permissions(std::os::unix::fs::PermissionsExt::from_mode(0o600))?;
     file.write_all(bytes)

@@ -1,5 +1,5 @@
-//! `onetwo firmware report`: the tables of docs/firmware.md. What images take, and what a robot does when
-//! something breaks; written by `firmware report --write`.
+//! `onetwo firmware report`: the tables of docs/firmware.md. Resource usage of the firmware, and what a robot
+//! does when something breaks; written by `firmware report --write`.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,5 @@
-//! `onetwo firmware size`: resource usage of images. Flash and RAM by crate and by symbol, statics that hold
-//! RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of
+//! `onetwo firmware size`: resource usage of firmware images. Flash and RAM by crate and by symbol, statics
+//! that hold RAM for good, the deepest stack and the worst step under QEMU, each against the budgets of
 //! docs/architecture.md §9 and as a share of three robots' computers.
 
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ use super::{ImagesArgs, build, failed, sizes_of};
 use crate::Failure;
 use crate::output::say;
 
-/// How sizes are shown.
+/// Output format of the sizes.
 #[derive(Debug, Args)]
 pub(crate) struct SizeArgs {
     #[command(flatten)]
@@ -33,7 +33,7 @@ pub(crate) struct SizeArgs {
     json: bool,
 }
 
-/// All that is known of an image.
+/// All measurements of a firmware image.
 pub(super) struct Known {
     pub(super) program: Program,
     pub(super) sizes: Sizes,
@@ -41,7 +41,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// Builds it and looks; plays for so many seconds, or not at all.
+    /// Builds and inspects the program; plays for this number of seconds, or not at all.
     pub(super) fn of(program: Program, seconds: Option<f64>) -> Result<Self, Failure> {
         let sizes = sizes_of(&build(program)?)?;
         let measured = seconds.map(|seconds| measure(program, seconds)).transpose()?.flatten();
@@ -52,7 +52,7 @@ impl Known {
     pub(super) fn share(&self, chip: &Chip) -> Share {
         let share = |part: u64, all: u64| (1e4 * part as f64 / all as f64).round() / 100.0;
         let taken = self.sizes.ram + self.measured.map_or(0, |measured| u64::from(measured.stack));
-        // Where programs are loaded into RAM, the image takes RAM.
+        // On a chip without flash the program itself is loaded into RAM.
         let ram = if chip.flash.is_some() { taken } else { self.sizes.flash + taken };
         let step = self.measured.zip(self.steps_a_second());
         Share {
@@ -84,7 +84,7 @@ pub(super) struct Share {
     pub(super) step: Option<f64>,
 }
 
-/// An image in `size --json`.
+/// A firmware image in `size --json`.
 #[derive(Serialize)]
 struct SizeJson<'a> {
     image: &'a str,
@@ -134,7 +134,7 @@ impl<'a> From<&'a Part> for PartJson<'a> {
     }
 }
 
-/// Says it.
+/// Prints it.
 pub(super) fn run(args: &SizeArgs) -> Result<(), Failure> {
     let seconds = (!args.still).then_some(args.seconds);
     let images: Vec<_> = args.images.programs();

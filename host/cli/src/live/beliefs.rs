@@ -11,7 +11,7 @@ use page::{Layer, Shape, Tone, milli};
 use protocol::RobotId;
 use rules::Colour;
 
-/// A robot of ours nearer to the ball than this has it: nobody is said to mark it, m.
+/// If a robot of ours is nearer to the ball than this, no opponent is labelled as its marker, m.
 const AT_BALL: f32 = 0.5;
 /// Around an opponent, m: wider than any robot.
 const RING: f32 = 0.14;
@@ -52,7 +52,7 @@ fn taker(view: &View) -> Option<RobotId> {
     (far(&nearest) < AT_BALL).then_some(nearest.id)
 }
 
-/// A ring to point at, what it plays in a word, and a line to whom it marks.
+/// A ring to point at, its tactic as a label, and a line to the robot it marks.
 fn shapes(opponent: &Detected, us: Colour, view: &View, flip: Flip) -> Vec<Shape> {
     let place = |at: Point<geometry::Attack>| {
         let at = flip.to_field(at);
@@ -84,7 +84,7 @@ fn likely(opponent: &Detected, tactic: Tactic) -> f32 {
     opponent.likelihoods[tactic as usize]
 }
 
-/// Everything that is behind the word.
+/// All evidence behind the label.
 fn note(opponent: &Detected, us: Colour) -> String {
     let who = format!("{} {}", us.other().word(), opponent.opponent.number());
     let head = match (opponent.tactic, opponent.follows) {

@@ -1,5 +1,5 @@
-//! `composer`: composition of the page's scene from hosts and other sources; it remembers only what has to be
-//! told over time.
+//! `composer`: composition of the page's scene from hosts and other sources; it stores only what is displayed
+//! over time.
 
 use std::collections::VecDeque;
 
@@ -29,7 +29,7 @@ use crate::replay::phase_words;
 
 /// The ball's trail reaches back so far, s.
 const TRAIL_S: f64 = 1.5;
-/// Its prediction reaches ahead so far in steps of a tenth, and ends where it rests.
+/// Number of points of the ball's prediction, one each tenth of a second; it ends at the stop position.
 const AHEAD: usize = 15;
 
 /// What cases are called, and what they mean.
@@ -65,9 +65,9 @@ pub(crate) struct Moment<'a> {
     pub(crate) t: f64,
     /// On the hosts' clock.
     pub(crate) now: Instant,
-    /// Through whose eyes the field is seen.
+    /// The host whose world is displayed.
     pub(crate) eyes: &'a Host,
-    /// Whose robots tell what they think.
+    /// The hosts whose robots' states are displayed.
     pub(crate) hosts: &'a [&'a Host],
     /// What truly is, in a simulation.
     pub(crate) truth: Option<&'a Truth>,
@@ -119,7 +119,7 @@ impl Composer {
         self.images.hear(bytes);
     }
 
-    /// A datagram of the referee; `own` where the simulation's referee is shown in the moment too.
+    /// A datagram of the referee; `own` where the simulation's referee is part of the moment too.
     pub(crate) fn referee(&mut self, bytes: &[u8], t: f64, own: bool) {
         self.news.packet(bytes, t, own, &mut self.happenings);
     }
@@ -129,7 +129,7 @@ impl Composer {
         std::mem::take(&mut self.happenings)
     }
 
-    /// The scene of a moment: what is known at once, and what the page's thread works out of a picture of it.
+    /// The scene of a moment: what is known at once, and what the page's thread computes from a snapshot.
     pub(crate) fn compose(&mut self, moment: Moment<'_>) -> Sketch {
         let Moment { t, now, eyes, .. } = moment;
         let (world, game, field) = (eyes.world(), eyes.game(), eyes.field());
@@ -263,7 +263,7 @@ impl Composer {
     }
 }
 
-/// A field in the page's words.
+/// A field in the page's format.
 pub(crate) fn field_of(field: &FieldSpec) -> Field {
     Field {
         length: milli(field.length),

@@ -6,7 +6,7 @@ use host::Host;
 use page::{Gauge, milli};
 use protocol::{Instant, RobotId};
 
-/// A camera's image older than this misses three beats at 60 Hz, ms.
+/// A camera frame older than this misses three periods at 60 Hz, ms.
 const VISION_AGE_MS: f32 = 50.0;
 /// Fewer packets a second than one slow camera sends.
 const VISION_RATE: f32 = 50.0;
@@ -25,7 +25,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    /// Packets a second, anew each half second.
+    /// Packets a second, computed each half second.
     pub(super) fn of(&mut self, t: f64, count: u64) -> f32 {
         let (begin, before) = *self.since.get_or_insert((t, count));
         if t - begin >= 0.5 || t < begin {

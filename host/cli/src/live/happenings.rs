@@ -18,7 +18,7 @@ pub(super) struct News {
 }
 
 impl News {
-    /// A packet of the referee. Where our own referee tells its events itself, the packet's are left out.
+    /// A packet of the referee. Where our own referee reports its events itself, the packet's are left out.
     pub(super) fn packet(&mut self, bytes: &[u8], t: f64, own: bool, into: &mut Vec<Happening>) {
         let Ok(packet) = Referee::decode(bytes) else { return };
         let mut found = Vec::new();
@@ -36,7 +36,7 @@ impl News {
                 | happening::Kind::TeamName
                 | happening::Kind::DesignatedPosition => Kind::Event,
             };
-            // A number is for the record, not for the eye.
+            // Numbers are stored in the record and left out of the label.
             let words = match found.kind {
                 happening::Kind::Goal => format!("goal, {}", found.words),
                 happening::Kind::GameEvent if !found.words.is_empty() => format!("{name} ({})", found.words),
@@ -91,7 +91,7 @@ impl News {
     }
 }
 
-/// The tracker fits a kick anew as it sees more of it; within this time it is the same one, µs.
+/// The tracker refits a kick as it sees more of it; within this time it is the same one, µs.
 const SAME_KICK_US: u64 = 200_000;
 
 /// A game event of the league by its name: what a team did wrong, or anything else.

@@ -1,4 +1,5 @@
-//! A trial of the four-legged league on the page: the carpet as it is, and what the attackers say on the air.
+//! A trial of the four-legged league on the page: the true state of the field, and the attackers' radio
+//! messages.
 
 use arena::{Moment, News, TrialReport, Watcher};
 use casebase::CaseBase;

@@ -1,5 +1,4 @@
-//! `oracle`: answers to the page's questions about cases. The page's questions are answered by the very code
-//! of `onetwo cases explain`.
+//! `oracle`: answers to the page's questions about cases, by the same code as `onetwo cases explain`.
 
 use casebase::Settings;
 

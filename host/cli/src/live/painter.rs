@@ -1,6 +1,6 @@
-//! `painter`: deferred overlays. Planned ways, maps of passes, threats, what opponents are believed to play:
-//! from a picture of the moment, on the page's own thread, so that whoever drives the match pays for the
-//! picture alone. m, s, field frame.
+//! `painter`: deferred overlays. Planned paths, maps of passes, threats, the tactics that opponents are
+//! believed to play: computed from a snapshot, on the page's own thread, so that the match thread pays for
+//! the snapshot only. m, s, field frame.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,7 +13,7 @@ use rules::{Colour, Duty, FieldSpec, League};
 use super::tactics::Tactics;
 use super::ways::Ways;
 
-/// A robot and where it is told to be.
+/// A robot and the position it is ordered to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aim {
     pub(super) who: Who,
@@ -46,7 +46,7 @@ impl Painter {
     pub(super) fn sketch(&self, scene: Scene, picture: Picture) -> Sketch {
         let tactics = self.tactics.clone();
         Sketch::new(scene, move |scene| {
-            // Whatever was remembered before somebody failed with it is as good as any.
+            // After a panic of another thread the stored state is still usable.
             let mut tactics = tactics.lock().unwrap_or_else(PoisonError::into_inner);
             paint(scene, &picture, &mut tactics);
         })

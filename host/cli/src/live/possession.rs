@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(possession.share(Colour::Blue), Some(0.0));
         let ratio = possession.offence_ratio(Colour::Yellow).unwrap();
         assert!((ratio - 1.0 / 0.49).abs() < 1e-3, "{ratio}");
-        // A gap in the recording counts for nobody.
+        // A gap in the recording counts for neither team.
         possession.look(9.0, &world(1.0, 3.0), Phase::Run, Some(1));
         assert!((possession.offence_ratio(Colour::Yellow).unwrap() - ratio).abs() < 1e-6);
     }

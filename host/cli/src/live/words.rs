@@ -1,4 +1,4 @@
-//! `words`: texts of roles, reasons, directives and actions. Short words; places in m, field frame.
+//! `words`: texts of roles, reasons, directives and actions. Short labels; places in m, field frame.
 
 use casebase::{Action, Case, CaseRobot};
 use host::strategy::{Flip, Role, Why};
@@ -55,7 +55,7 @@ pub(crate) fn why(why: &Why) -> String {
         | Why::OfCase { .. }
         | Why::Coerces { .. }
         | Why::Coercing { .. } => why.to_string(),
-        // What strategy learns to say next is told in its own words.
+        // Reasons without a label of their own are printed by their name.
         other => spaced(&format!("{other:?}")),
     }
 }

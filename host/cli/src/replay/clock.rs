@@ -6,8 +6,9 @@
 use protocol::Instant;
 use serde::Serialize;
 
-/// A message this much earlier than the one before it means that the recorder's clock was set back, ns. Less is order: recorders
-/// write what came at the same time in any order, half a millisecond apart; 20 ms is more than one image's time at 60 Hz.
+/// A message this much earlier than the one before it means that the recorder's clock was set back, ns. A
+/// smaller step is a matter of order: recorders write messages of the same time in any order, half a
+/// millisecond apart; 20 ms is more than the time of one camera frame at 60 Hz.
 const STEP_BACK_NS: i64 = 20_000_000;
 /// Nothing at all for longer than this: the recording was paused, or its clock was set forward, s. What sends in a match sends at 1 Hz
 /// or faster.
@@ -18,7 +19,7 @@ const PAUSE_S: f64 = 2.0;
 pub(super) struct ClockStep {
     /// When, on the counted clock.
     pub(super) at_s: f64,
-    /// By how much; negative: set back. Positive: set forward, or nothing was recorded for so long.
+    /// By how much; negative: set back. Positive: set forward, or nothing was recorded for this time.
     pub(super) by_s: f64,
 }
 
@@ -35,7 +36,7 @@ pub(super) struct LogClock {
     pub(super) steps_more: u64,
 }
 
-/// Steps that are listed; of more only the number is told.
+/// Number of steps that are listed; beyond it they are only counted.
 const STEPS_LISTED: usize = 20;
 
 impl LogClock {

@@ -9,10 +9,10 @@ use ssl::Message;
 use ssl::event::GameEventType;
 use ssl::referee::{Command, Referee, Stage, TeamInfo};
 
-/// Something the referee said for the first time.
+/// An event that the referee reported for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Happening {
-    /// Seconds since the file's begin.
+    /// Seconds since the start of the file.
     pub(crate) at_s: f64,
     /// What kind of thing.
     pub(crate) kind: Kind,
@@ -23,7 +23,7 @@ pub(crate) struct Happening {
     pub(crate) words: String,
 }
 
-/// Kinds of happenings.
+/// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Kind {
@@ -41,7 +41,7 @@ pub(crate) enum Kind {
     DesignatedPosition,
 }
 
-/// Game events that are told; a referee that has more is no referee.
+/// Most game events that are reported; a source with more is not a referee.
 const EVENTS_MAX: usize = 65_536;
 
 /// Finds what is new in each packet of the referee.
@@ -62,7 +62,7 @@ struct Last {
     teams: [Account; 2],
 }
 
-/// What is told of a team when it changes.
+/// The state of a team whose changes are reported.
 #[derive(Clone, Debug)]
 struct Account {
     score: u32,
@@ -161,7 +161,7 @@ fn in_metres([x, y]: [i32; 2]) -> String {
 }
 
 impl Happening {
-    /// A line for people; whatever the referee's program named is within it.
+    /// A line for the operator; text of the referee's program is quoted in it.
     pub(super) fn tell(&self) -> String {
         let words = if self.words.is_empty() {
             String::new()
@@ -172,7 +172,7 @@ impl Happening {
     }
 }
 
-/// As much of a happening's words as is shown, characters.
+/// Longest text of an event that is printed, characters.
 const WORDS_LEN: usize = 200;
 
 /// A name as the league writes it; the number where nothing is known by it.
@@ -192,7 +192,7 @@ fn screaming(name: &str) -> String {
     out
 }
 
-/// Is a happening meant by a word? The begin of its name, whatever case and dashes.
+/// Whether a search text matches an event: the start of its name, without regard to case and dashes.
 pub(crate) fn is_meant(happening: &Happening, word: &str) -> bool {
     let plain = |text: &str| text.replace(['-', ' '], "_").to_ascii_uppercase();
     happening.name.starts_with(&plain(word))

@@ -55,7 +55,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     say(&if args.json { json(&report)? } else { report.tell() })?;
     let nothing = report.messages.is_empty().then(|| "holds no message".to_owned());
     match report.damage.or(nothing) {
-        // What could be read is told above; whoever takes it for the whole is warned by the exit code.
+        // What could be read is printed above; the exit code reports that it is not the whole file.
         Some(words) => Err(Failure::Recorded { file: args.file.clone(), words }),
         None => Ok(ExitCode::SUCCESS),
     }
@@ -150,7 +150,7 @@ impl<'a> Pass<'a> {
             }
             Some(Packet::Referee(packet)) => {
                 let ball = self.tracker.world(self.now).ball.map(|ball| ball.position);
-                // A log file does not say who sent its packets.
+                // A log file does not record the sender of its packets.
                 self.listener.hear(&packet, SenderAddress::INTERNAL, self.now, ball);
                 let before = self.report.happenings.len();
                 self.finder.read(&packet, at_s, &mut self.report.happenings);

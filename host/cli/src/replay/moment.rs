@@ -11,10 +11,10 @@ use serde::Serialize;
 use super::decided::Decided;
 use crate::live::words::spaced;
 
-/// A moment, for people and for JSON.
+/// A moment, as text and as JSON.
 #[derive(Debug, Serialize)]
 pub(super) struct Moment {
-    /// Seconds since the file's begin.
+    /// Seconds since the start of the file.
     at_s: f64,
     /// What it was asked for by, if by an event.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -41,7 +41,7 @@ pub(super) struct Score {
 struct Ball {
     /// m.
     at: [f32; 2],
-    /// Above the carpet, m.
+    /// Above the field surface, m.
     height: f32,
     /// m/s.
     velocity: [f32; 2],
@@ -95,7 +95,7 @@ impl Moment {
         }
     }
 
-    /// A few lines for people.
+    /// A few lines of text.
     pub(super) fn tell(&self) -> String {
         let mut lines = vec![match &self.event {
             Some(event) => format!("{:.3} s: {event}", self.at_s),

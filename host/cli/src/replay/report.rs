@@ -1,5 +1,5 @@
-//! `report`: statistics of a league log file. Counts of everything, for people and for JSON. Times: s since
-//! the begin.
+//! `report`: statistics of a league log file. Counts of everything, as text and as JSON. Times: s since the
+//! start.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,7 +64,7 @@ pub(super) struct OfKind {
     pub(super) rate: Rate,
 }
 
-/// One camera's images.
+/// One camera's frames.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Camera {
     pub(super) images: u64,
@@ -88,7 +88,7 @@ pub(super) struct Gap {
     pub(super) for_s: f64,
 }
 
-/// What became of images.
+/// Counts of camera frames by what the tracker did with them.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Tracker {
     pub(super) images: u64,
@@ -124,7 +124,7 @@ pub(super) struct Host {
     pub(super) packets_hash: String,
 }
 
-/// Gaps that are listed; of more only the number is told.
+/// Number of gaps that are listed; beyond it they are only counted.
 const GAPS_LISTED: usize = 20;
 
 impl Report {
@@ -154,7 +154,7 @@ impl Report {
         };
     }
 
-    /// For people.
+    /// As text.
     pub(super) fn tell(&self) -> String {
         let mut lines = vec![format!("{}: a league log file of {:.1} s", printable(&self.file), self.span_s)];
         for (name, messages) in &self.messages {

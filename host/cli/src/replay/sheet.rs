@@ -1,4 +1,4 @@
-//! `sheet`: what a recording says of the field and of both teams, as it was at last. Lengths in m.
+//! `sheet`: the last state of the field and of both teams in a recording. Lengths in m.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use ssl::referee::{Referee, TeamInfo};
 use ssl::vision::WrapperPacket;
 
-/// As much of a team's name as is shown, characters.
+/// Longest part of a team's name that is printed, characters.
 const NAME_LEN: usize = 60;
 
 /// Field and teams.
@@ -50,7 +50,7 @@ pub(super) struct Team {
     /// Still counting down.
     pub(super) yellow_cards_active: usize,
     pub(super) red_cards: u32,
-    /// Robots it may have on the field; none where the referee does not say.
+    /// Robots it may have on the field; `None` where the referee does not send it.
     pub(super) max_bots: Option<u32>,
 }
 
@@ -74,7 +74,7 @@ impl Sheet {
         self.teams = Some(Teams { blue: Team::of(&packet.blue), yellow: Team::of(&packet.yellow) });
     }
 
-    /// For people, a line each.
+    /// As text, a line each.
     pub(super) fn tell(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if let Some(field) = &self.field {

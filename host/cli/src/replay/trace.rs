@@ -34,7 +34,7 @@ struct Report<'a> {
     /// On the hosts' clock.
     span_s: (f64, f64),
     records: BTreeMap<&'static str, u64>,
-    /// Records of hosts that the header does not tell of.
+    /// Records of hosts that the header does not name.
     strays: u64,
     /// Field and teams, as they were at last.
     #[serde(flatten)]
@@ -64,7 +64,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let (mut finder, mut happenings, mut sheet) = (Finder::default(), Vec::new(), Sheet::default());
     let (mut records, mut strays, mut met) = (BTreeMap::new(), 0, 0);
     let mut span: Option<(Instant, Instant)> = None;
-    // Every host hears the same referee; the one that is looked at tells of the match.
+    // Every host receives the same referee; events are taken from the host that is displayed.
     let shown =
         header.hosts.iter().position(|host| Some(&*host.colour) == args.team.map(rules::Colour::word));
     let shown = shown.unwrap_or(0);
@@ -147,7 +147,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     };
     say(&words)?;
     match report.damage {
-        // What could be read is told above.
+        // What could be read is printed above.
         Some(words) => Err(failed(file, &words)),
         None if report.same_decisions => Ok(ExitCode::SUCCESS),
         None => Ok(ExitCode::FAILURE),
@@ -226,7 +226,7 @@ impl Report<'_> {
         if let Some(seed) = header.seed {
             let _ = write!(out, ", seed {seed}");
         }
-        // What a file says is shown as far as it can be a name.
+        // A name from the file is printed only if it is valid.
         if let Some(world) = header.world.as_ref().and_then(|world| world.parse::<WorldChoice>().ok())
             && world != WorldChoice::Nominal
         {
@@ -260,7 +260,7 @@ impl Report<'_> {
     }
 }
 
-/// As much of the recording program's version and commit as is shown, characters.
+/// Longest version and commit of the recording program that are printed, characters.
 const VERSION_LEN: usize = 60;
 
 /// What is wrong with a trace that ends so.

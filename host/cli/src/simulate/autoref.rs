@@ -1,5 +1,5 @@
-//! `autoref`: an automatic referee's connection to the league's game controller (TCP 10007). A thread of its own connects,
-//! registers, and reports events; what people should know comes back as lines.
+//! `autoref`: an automatic referee's connection to the league's game controller (TCP 10007). A thread of its
+//! own connects, registers, and reports events; messages for the operator come back as lines.
 
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, TrySendError, channel, sync_channel};
@@ -35,12 +35,12 @@ pub(super) struct Reporter {
 }
 
 impl Reporter {
-    /// Begins to connect, and goes on until it is dropped.
+    /// Starts to connect, and retries until it is dropped.
     pub(super) fn new(to: &str) -> Self {
         let (events, incoming) = sync_channel(WAITING_MAX);
         let (outgoing, lines) = channel();
         let mut talk = Talk { to: to.to_owned(), events: incoming, lines: outgoing, trouble: None };
-        // Where no thread can be had, the closed channel says so.
+        // If no thread can be started, the closed channel reports that.
         let _ = thread::Builder::new().name("autoref".to_owned()).spawn(move || talk.run());
         Self { to: to.to_owned(), events, lines, dropped: 0 }
     }
@@ -58,7 +58,7 @@ impl Reporter {
         }
     }
 
-    /// The next line for people.
+    /// The next line for the operator.
     pub(super) fn next_line(&mut self) -> Option<String> {
         if let Ok(line) = self.lines.try_recv() {
             return Some(line);
@@ -74,7 +74,7 @@ struct Talk {
     to: String,
     events: Receiver<(Instant, GameEvent)>,
     lines: Sender<String>,
-    /// What was said last about why there is no connection.
+    /// The last reported reason why there is no connection.
     trouble: Option<String>,
 }
 
@@ -118,7 +118,7 @@ impl Talk {
                 Ok(event) => event,
                 Err(RecvTimeoutError::Disconnected) => return Ok(Ended),
                 Err(RecvTimeoutError::Timeout) => {
-                    // Nothing is expected; a closed connection says so here.
+                    // No message is expected; the call detects a closed connection.
                     let idle = connection.receive::<ControllerToAutoRef>(Duration::ZERO);
                     idle.map_err(|error| error.to_string())?;
                     continue;
@@ -164,7 +164,7 @@ fn refused(reply: &ControllerReply) -> Option<String> {
     rejected.then(|| reply.reason.clone().unwrap_or_else(|| "no reason given".to_owned()))
 }
 
-/// What kind of event it is, for people.
+/// Name of the kind of event, for the operator.
 fn name_of(event: &GameEvent) -> String {
     let kind = event.r#type.and_then(|kind| GameEventType::try_from(kind).ok());
     format!("{:?}", kind.unwrap_or(GameEventType::Unknown))
@@ -198,7 +198,8 @@ mod tests {
         assert!(address("").is_err() && address("host:").is_err() && address(":10007").is_err());
     }
 
-    /// A controller's side of one connection: greets, takes the registration, answers it with `code`.
+    /// A controller's side of one connection: sends its first message, takes the registration, answers it
+    /// with `code`.
     fn greet(listener: &TcpListener, code: StatusCode) -> (Connection, AutoRefRegistration) {
         let (stream, _) = listener.accept().expect("a connection");
         let mut talk = Connection::over(stream).expect("a talk");

@@ -1,5 +1,5 @@
-//! The ports that clients command the simulator by: the league's three, and grSim's own. One that is taken is told, and taken as
-//! soon as it is free.
+//! The ports that clients command the simulator by: the league's three, and grSim's own. A port in use is
+//! reported, and opened as soon as it is free.
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
@@ -33,7 +33,7 @@ struct Door {
 }
 
 impl Ports {
-    /// Opens what can be opened, and gives words for the rest.
+    /// Opens the ports that are free, and adds a message for each of the others.
     pub(super) fn open(listen: IpAddr, base: u16, legacy: Option<u16>, words: &mut Vec<String>) -> Self {
         let door = |offset: u16, port| {
             let number = if base == 0 { 0 } else { base + offset };
@@ -59,7 +59,7 @@ impl Ports {
         ports
     }
 
-    /// Three free ports in a row, so that clients need to be told one number only.
+    /// Three free ports in a row, so that clients need only one number.
     fn take_any(&mut self) {
         let listen = self.doors[0].address.ip();
         for _ in 0..100 {
@@ -125,7 +125,7 @@ impl Ports {
         }
     }
 
-    /// An answer to whoever asked. One that cannot be sent is lost, as any datagram may be.
+    /// Answers a request. An answer that cannot be sent is lost, as any datagram may be.
     pub(super) fn answer(&self, from: server::Port, to: SocketAddr, bytes: &[u8]) {
         if let Some(socket) =
             self.doors.iter().find(|door| door.port == from).and_then(|door| door.socket.as_ref())
@@ -139,7 +139,7 @@ impl Ports {
         self.answer(server::Port::Legacy, to, bytes);
     }
 
-    /// For people: where clients speak to.
+    /// The addresses that clients send to, for the operator.
     pub(super) fn words(&self) -> String {
         let mut doors = self.doors.iter();
         let first = doors.next().map(|door| door.address.to_string());

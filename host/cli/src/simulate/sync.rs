@@ -45,7 +45,7 @@ impl SyncPorts {
         Ok(Self { doors: [door(Colour::Blue, blue)?, door(Colour::Yellow, yellow)?] })
     }
 
-    /// For people: where clients connect to.
+    /// The address that clients connect to, for the operator.
     pub(super) fn line(&self) -> String {
         let [blue, yellow] = self.doors.each_ref().map(|door| match door.listener.local_addr() {
             Ok(address) => address.to_string(),
@@ -71,7 +71,7 @@ impl SyncPorts {
                     ));
                     continue;
                 }
-                // Some systems hand the listener's mode on.
+                // On some systems a connection inherits the listener's mode.
                 match stream.set_nonblocking(false).map_err(ssl_io).and_then(|()| Connection::over(stream)) {
                     Ok(client) => door.clients.push(client),
                     Err(error) => lines.push(format!("sync     {error}")),
@@ -135,7 +135,7 @@ mod tests {
         }
     }
 
-    /// A client of each team takes turns for that many steps of 16 ms; everything it was answered.
+    /// A client of each team takes turns for `steps` steps of 16 ms; returns all answers.
     fn play(steps: u32) -> Vec<u8> {
         let settings =
             ServerSettings::of(League::DivisionB, Profile::Ours, 3, 0.0).expect("a league on wheels");

@@ -36,7 +36,7 @@ r_min = 100
 r_max = 250
 "#;
 
-/// The case file of docs/case-format.md §1, word for word.
+/// The case file of docs/case-format.md §1, verbatim.
 pub(crate) const PASS_AROUND: &str = r#"intent = "Two attackers at the centre line, a defender ahead: pass around it and shoot."
 defending = "yellow"
 ball = { at = [-600, 0], scope = [450, 250] }        # mm; scope = (τx, τy)
@@ -64,10 +64,10 @@ pub(crate) fn shot_at(x: i32, y: i32) -> String {
     )
 }
 
-/// The problem of docs/case-format.md §5.1, word for word.
+/// The problem of docs/case-format.md §5.1, verbatim.
 pub(crate) const PROBLEM: &str = r#"{"ball":[-600,10],"defending":"yellow","teammates":{"1":[-700,0],"3":[200,800]},"opponents":[[-150,40]]}"#;
 
-/// A library folder under the build's scratch space, made anew: `league.toml` and these files.
+/// A library directory under the build's scratch space, created again: `league.toml` and these files.
 pub(crate) fn library(test: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cases-cli").join(test);
     if folder.exists() {

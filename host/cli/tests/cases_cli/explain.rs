@@ -32,7 +32,7 @@ fn every_case_under_the_goal_has_its_verdict_and_its_evidence() {
 #[test]
 fn a_missing_robot_and_a_blocked_leg_are_told_apart() {
     let alone = PROBLEM.replace(",\"3\":[200,800]", "");
-    // On the very line from (-600, 10) to (300, 910), half way: ρ = 200 mm, its edge at 200 mm · √1.002393.
+    // On the line from (-600, 10) to (300, 910), at its middle: ρ = 200 mm, its edge at 200 mm · √1.002393.
     let blocked = PROBLEM.replace("[-150,40]", "[2000,1700],[-150,460]");
     let run = cases("explain", &folder("explain-verdicts"), &["--json"], format!("{alone}\n{blocked}\n"));
     let lines = run.lines();
@@ -54,7 +54,7 @@ fn candidates_are_ranked_as_retrieval_ranks_them() {
     let explained = cases("explain", &folder, &["--json"], problem).stdout;
     let read: serde_json::Value = serde_json::from_str(&explained).unwrap();
     let ranks: Vec<_> = read["cases"].as_array().unwrap().iter().map(|row| row["rank"].as_u64()).collect();
-    // Both are 20 mm away and cost the same: the lower id ranks first; the mirror images lie out of reach.
+    // Both are 20 mm away and cost the same: the lower id ranks first; the mirrored copies are out of scope.
     assert_eq!(ranks, [Some(1), None, Some(2), None]);
     let retrieved: serde_json::Value =
         serde_json::from_str(&cases("retrieve", &folder, &[], problem).stdout).unwrap();

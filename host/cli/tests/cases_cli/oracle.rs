@@ -47,7 +47,7 @@ fn a_thousand_lines_are_answered_as_the_oracle_answers() {
     assert!(winners * 4 > PROBLEMS, "only {winners} problems have an answer");
 }
 
-/// What both verbs say of a problem.
+/// The answers of both verbs to a problem.
 #[derive(Deserialize)]
 struct Told {
     #[serde(alias = "winner")]

@@ -1,6 +1,6 @@
 //! `page_browser`: browser tests of the page. A real Chromium on the built program: it loads, robots move,
-//! layers switch, an explanation opens, a hand drags, a recording seeks to its goal, a lost connection is
-//! shown and heals, no error on the console.
+//! layers switch, an explanation opens, a drag works, a recording seeks to its goal, a lost connection is
+//! displayed and recovers, no error on the console.
 //!
 //! `cargo xtask test --only page` installs the browser where it can and runs this; plain `cargo test` does without.
 
@@ -51,7 +51,7 @@ fn a_match_is_watched_asked_and_touched() {
     tab.wait("document.querySelectorAll('#tab-why .card').length === 12", 20).unwrap();
     tab.click("[data-robot=blue2]").unwrap();
     tab.wait("onetwo.store.chosen?.id === 2", 5).unwrap();
-    // Words on cards change many times a second: what a hand presses stays until it lets go.
+    // Texts on cards change many times a second: a pressed element stays until it is released.
     let pressed = "(async () => {
       const card = document.querySelector('[data-robot=blue3]');
       card.dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }));
@@ -80,12 +80,12 @@ fn a_match_is_watched_asked_and_touched() {
     no_errors(&mut tab);
 }
 
-/// What maps and labels say of a place is told where somebody points at it; words do not stand upon each other.
+/// What maps and labels mean at a place is displayed where the pointer is; texts do not overlap.
 fn explained_on_the_field(tab: &mut Tab<'_>) {
     tab.eval("['pass-receive', 'believed'].forEach((name) => onetwo.setLayer(name, true))").unwrap();
     tab.wait("onetwo.layers().filter((l) => ['pass-receive', 'believed'].includes(l.name)).every((l) => l.shown && l.count > 0)", 60)
         .unwrap();
-    // The best place of the map, but for those where a robot stands: a hand there asks the robot.
+    // The best place of the map that is free of robots: over a robot the pointer selects the robot.
     let told = "(() => {
       const { layers, robots, ball } = onetwo.store.scene;
       const heat = layers.find((l) => l.name === 'pass-receive').shapes[0];
@@ -124,7 +124,7 @@ fn onetwo_says(tab: &mut Tab<'_>, script: &str, words: &str) {
     panic!("{words}: not in {said}");
 }
 
-/// Stand still, step, drag the ball, begin anew.
+/// Pause, single step, drag the ball, restart.
 fn control(tab: &mut Tab<'_>) {
     tab.key("4").unwrap();
     tab.wait("!document.getElementById('tab-control').hidden", 5).unwrap();
@@ -138,7 +138,7 @@ fn control(tab: &mut Tab<'_>) {
     let spot = [0, 1].map(|i: usize| at[i].as_f64().unwrap() + stage[i].as_f64().unwrap());
     tab.click("#layers-open").unwrap();
     tab.drag(spot, [spot[0] + 120.0, spot[1] - 60.0]).unwrap();
-    // A ball that is put stands where the truth says, at once; the host sees it with the next image.
+    // A ball that is put is at once where the truth has it; the host sees it with the next camera frame.
     tab.eval("onetwo.setLayer('truth', true)").unwrap();
     tab.wait(
         &format!("(() => {{ const s = onetwo.store.latest.layers.find((l) => l.name === 'truth').shapes.at(-1).at; const p = onetwo.camera.to(s); return Math.hypot(p[0] - {} - 120, p[1] - {} + 60) < 12 }})()", at[0], at[1]),
@@ -159,7 +159,7 @@ fn look_back(tab: &mut Tab<'_>) {
     tab.wait("!onetwo.time.live && Math.abs(onetwo.store.scene.t - 1) < 0.1", 20).unwrap();
     tab.key("l").unwrap();
     tab.wait("onetwo.time.live && onetwo.store.scene.t > 2", 10).unwrap();
-    // What is not played yet cannot be shown.
+    // What is not played yet cannot be displayed.
     tab.eval("location.hash = '#t=9999'").unwrap();
     tab.wait("onetwo.time.live && /not played yet/.test(document.getElementById('note').textContent)", 10)
         .unwrap();
@@ -181,7 +181,7 @@ fn a_recording_seeks_to_its_goal_and_to_the_moment_of_an_address() {
     .unwrap();
     assert!(number(&mut tab, "Math.abs(onetwo.store.scene.ball.at[0])") > 2.5, "the ball is in the goal");
     tab.wait("/#t=/.test(location.hash)", 5).unwrap();
-    // A moment that is none, and one after the end: told, and the last one is shown.
+    // A moment that is no number, and one after the end: reported, and the last one is displayed.
     tab.eval("location.hash = '#t=soon'").unwrap();
     tab.wait("/names no moment/.test(document.getElementById('note').textContent)", 5).unwrap();
     tab.eval("location.hash = '#t=9999'").unwrap();
@@ -216,7 +216,7 @@ fn a_lost_connection_is_shown_and_heals() {
     let _second = Program::start(&[&words[..], &[&address]].concat());
     tab.wait("document.getElementById('lost').hidden && document.getElementById('connection').dataset.state === 'live'", 30).unwrap();
     tab.wait("onetwo.store.scene.t > 0.5", 20).unwrap();
-    // A socket that nobody answers is told by the browser itself; anything else would be ours.
+    // A socket without an answer is reported by the browser itself; any other error would be ours.
     let told: Vec<_> = tab.errors().into_iter().filter(|error| !error.contains("ERR_CONNECTION")).collect();
     assert_eq!(told, Vec::<String>::new());
 }

@@ -59,7 +59,7 @@ impl Program {
         self.token.as_deref()
     }
 
-    /// Waits for a line with these words on stderr.
+    /// Waits for a line on stderr that contains `words`.
     #[allow(dead_code, reason = "one of the two tests that share this file listens")]
     pub(crate) fn says(&self, words: &str) {
         while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(40)) {
